@@ -1,0 +1,375 @@
+//! The datapath: every arithmetic step of the machine is one call here.
+//!
+//! Each call does one operation on words, tells the probe, and applies the
+//! overflow policy. There is no call that multiplies and none that divides;
+//! the restoring divide is built by its user from [`Datapath::divide_step`].
+
+use crate::probe::Memory;
+use crate::{Format, Number, OpClass, Overflow, Place, Probe, Stage, WideWord, Word};
+
+/// The operation during which a word overflowed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TrapOp {
+    /// A sum.
+    Add,
+    /// A difference or a negation.
+    Sub,
+    /// A left shift.
+    ShiftLeft,
+    /// A constant of the frame, handed over by the host.
+    Load,
+}
+
+impl TrapOp {
+    /// The operation in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Add => "add",
+            Self::Sub => "subtract",
+            Self::ShiftLeft => "shift left",
+            Self::Load => "load of a frame constant",
+        }
+    }
+}
+
+/// The first overflow of a frame under [`Overflow::Trap`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+#[error(
+    "a word of {bits} bits overflowed in {} (stage {}, octree level {}, record {record})",
+    op.name(), place.stage.name(), place.level
+)]
+pub struct Trap {
+    /// The operation.
+    pub op: TrapOp,
+    /// Stage and octree level.
+    pub place: Place,
+    /// Number of the record within the frame, from 0.
+    pub record: u64,
+    /// Width of the word that overflowed, in bits.
+    pub bits: u32,
+}
+
+/// A datapath of one word format (and the wide one that goes with it).
+#[derive(Debug)]
+pub struct Datapath<P: Probe> {
+    format: Format,
+    policy: Overflow,
+    /// 64 less the width: shifting left and right by it sign-extends a word.
+    spare: [u32; 2],
+    place: Place,
+    record: u64,
+    trap: Option<Trap>,
+    overflows: u64,
+    probe: P,
+}
+
+impl<P: Probe> Datapath<P> {
+    /// A datapath for words of `format`; wide words have twice its bits.
+    pub fn new(format: Format, policy: Overflow, probe: P) -> Self {
+        Self {
+            format,
+            policy,
+            spare: [64 - format.bits(), 64 - format.wide().bits()],
+            place: Place {
+                stage: Stage::Pop,
+                level: 0,
+            },
+            record: 0,
+            trap: None,
+            overflows: 0,
+            probe,
+        }
+    }
+
+    /// The format of its words.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        self.format
+    }
+
+    /// The first overflow so far, if the policy is to trap.
+    #[inline]
+    #[must_use]
+    pub fn trap(&self) -> Option<Trap> {
+        self.trap
+    }
+
+    /// How many results did not fit so far, under any policy.
+    #[must_use]
+    pub fn overflows(&self) -> u64 {
+        self.overflows
+    }
+
+    /// The probe, to read what it saw.
+    pub fn into_probe(self) -> P {
+        self.probe
+    }
+
+    /// Begins a record's turn.
+    #[inline(always)]
+    pub fn begin_record(&mut self, index: u64, level: u32) {
+        self.record = index;
+        self.place.level = level;
+        if P::ENABLED {
+            self.probe.record(index, level);
+        }
+    }
+
+    /// Names the stage to which the operations that follow belong.
+    #[inline(always)]
+    pub fn stage(&mut self, stage: Stage) {
+        self.place.stage = stage;
+    }
+
+    /// Reports the read of a memory.
+    #[inline(always)]
+    pub fn read(&mut self, memory: Memory, address: u64) {
+        if P::ENABLED {
+            self.probe.read(memory, address, self.place);
+        }
+    }
+
+    /// Reports the write of a memory.
+    #[inline(always)]
+    pub fn write(&mut self, memory: Memory, address: u64) {
+        if P::ENABLED {
+            self.probe.write(memory, address, self.place);
+        }
+    }
+
+    /// Width of words of type `T`, in bits.
+    #[inline(always)]
+    fn width<T: Number>(&self) -> u32 {
+        64 - self.spare[usize::from(T::WIDE)]
+    }
+
+    #[inline(always)]
+    fn note<T: Number>(&mut self, class: OpClass) {
+        if P::ENABLED {
+            self.probe.op(class, self.width::<T>(), self.place, 1);
+        }
+    }
+
+    /// Brings an exact result (`raw`, or beyond 64 bits if `carried`) into the format.
+    #[inline(always)]
+    fn fit<T: Number>(&mut self, op: TrapOp, raw: i64, carried: bool) -> T {
+        let spare = self.spare[usize::from(T::WIDE)];
+        let wrapped = (raw << spare) >> spare;
+        if carried | (wrapped != raw) {
+            return self.overflowed(op, raw, carried, wrapped);
+        }
+        T::from_raw(raw)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn overflowed<T: Number>(&mut self, op: TrapOp, raw: i64, carried: bool, wrapped: i64) -> T {
+        self.overflows += 1;
+        if self.policy == Overflow::Trap && self.trap.is_none() {
+            self.trap = Some(Trap {
+                op,
+                place: self.place,
+                record: self.record,
+                bits: self.width::<T>(),
+            });
+        }
+        if self.policy == Overflow::Saturate {
+            let spare = self.spare[usize::from(T::WIDE)];
+            // A carry out of 64 bits flips the sign of what is left.
+            let negative = (raw < 0) != carried;
+            return T::from_raw(if negative {
+                i64::MIN >> spare
+            } else {
+                i64::MAX >> spare
+            });
+        }
+        T::from_raw(wrapped)
+    }
+
+    /// Takes a constant of the frame; one that does not fit overflows.
+    #[inline]
+    pub fn load(&mut self, value: i64) -> Word {
+        self.fit(TrapOp::Load, value, false)
+    }
+
+    /// Takes a wide constant of the frame; one that does not fit overflows.
+    #[inline]
+    pub fn load_wide(&mut self, value: i64) -> WideWord {
+        self.fit(TrapOp::Load, value, false)
+    }
+
+    /// `a + b`.
+    #[inline(always)]
+    pub fn add<T: Number>(&mut self, a: T, b: T) -> T {
+        self.note::<T>(OpClass::Add);
+        let (raw, carried) = a.raw().overflowing_add(b.raw());
+        self.fit(TrapOp::Add, raw, carried)
+    }
+
+    /// `a - b`.
+    #[inline(always)]
+    pub fn sub<T: Number>(&mut self, a: T, b: T) -> T {
+        self.note::<T>(OpClass::Sub);
+        let (raw, carried) = a.raw().overflowing_sub(b.raw());
+        self.fit(TrapOp::Sub, raw, carried)
+    }
+
+    /// `-a`.
+    #[inline(always)]
+    pub fn neg<T: Number>(&mut self, a: T) -> T {
+        self.note::<T>(OpClass::Sub);
+        let (raw, carried) = 0i64.overflowing_sub(a.raw());
+        self.fit(TrapOp::Sub, raw, carried)
+    }
+
+    /// `(a + b) >> 1`, the sum taken in one bit more than the word: it cannot
+    /// overflow. One add, one shift.
+    #[inline(always)]
+    pub fn midpoint<T: Number>(&mut self, a: T, b: T) -> T {
+        if P::ENABLED {
+            let bits = self.width::<T>();
+            self.probe.op(OpClass::Add, bits + 1, self.place, 1);
+            self.probe.op(OpClass::Shift, bits + 1, self.place, 1);
+        }
+        let (a, b) = (a.raw(), b.raw());
+        T::from_raw((a & b) + ((a ^ b) >> 1))
+    }
+
+    /// `a >> places`, rounded towards minus infinity; `places` may exceed the width.
+    #[inline(always)]
+    pub fn shr<T: Number>(&mut self, a: T, places: u32) -> T {
+        self.note::<T>(OpClass::Shift);
+        T::from_raw(a.raw() >> places.min(63))
+    }
+
+    /// `a << places`; overflows where bits that matter would be lost.
+    #[inline(always)]
+    pub fn shl<T: Number>(&mut self, a: T, places: u32) -> T {
+        self.note::<T>(OpClass::Shift);
+        let raw = a.raw();
+        let shifted = if places < 64 { raw << places } else { 0 };
+        if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {
+            // What is left has lost bits; `carried` says whether its sign is still the word's.
+            let spare = self.spare[usize::from(T::WIDE)];
+            let carried = (shifted < 0) != (raw < 0);
+            let wrapped = (shifted << spare) >> spare;
+            return self.overflowed(TrapOp::ShiftLeft, shifted, carried, wrapped);
+        }
+        self.fit(TrapOp::ShiftLeft, shifted, false)
+    }
+
+    /// `a < b`.
+    #[inline(always)]
+    pub fn lt<T: Number>(&mut self, a: T, b: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() < b.raw()
+    }
+
+    /// `a <= b`.
+    #[inline(always)]
+    pub fn le<T: Number>(&mut self, a: T, b: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() <= b.raw()
+    }
+
+    /// `a < 0`: the sign bit.
+    #[inline(always)]
+    pub fn is_negative<T: Number>(&mut self, a: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() < 0
+    }
+
+    /// `a > 0`.
+    #[inline(always)]
+    pub fn is_positive<T: Number>(&mut self, a: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() > 0
+    }
+
+    /// `a == 0`.
+    #[inline(always)]
+    pub fn is_zero<T: Number>(&mut self, a: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() == 0
+    }
+
+    /// The smaller of two words.
+    #[inline(always)]
+    pub fn min<T: Number>(&mut self, a: T, b: T) -> T {
+        self.note::<T>(OpClass::MinMax);
+        a.min(b)
+    }
+
+    /// The larger of two words.
+    #[inline(always)]
+    pub fn max<T: Number>(&mut self, a: T, b: T) -> T {
+        self.note::<T>(OpClass::MinMax);
+        a.max(b)
+    }
+
+    /// `a` where the bit is set, else `b`.
+    #[inline(always)]
+    pub fn select<T: Number>(&mut self, bit: bool, a: T, b: T) -> T {
+        self.note::<T>(OpClass::Select);
+        if bit { a } else { b }
+    }
+
+    /// Bit `place` of a word, from the right: a wire.
+    #[inline(always)]
+    #[must_use]
+    pub fn bit<T: Number>(&self, a: T, place: u32) -> bool {
+        (a.raw() >> place.min(63)) & 1 != 0
+    }
+
+    /// Bitwise and of two short vectors of `bits` bits.
+    #[inline(always)]
+    pub fn and_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
+        self.logic(bits);
+        a & b
+    }
+
+    /// Bitwise or of two short vectors of `bits` bits.
+    #[inline(always)]
+    pub fn or_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
+        self.logic(bits);
+        a | b
+    }
+
+    /// Bitwise exclusive or of two short vectors of `bits` bits.
+    #[inline(always)]
+    pub fn xor_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
+        self.logic(bits);
+        a ^ b
+    }
+
+    #[inline(always)]
+    fn logic(&mut self, bits: u32) {
+        if P::ENABLED {
+            self.probe.op(OpClass::Logic, bits, self.place, 1);
+        }
+    }
+
+    /// One step of a restoring divide: the remainder is doubled, `bit` comes
+    /// in from the right, and the divisor is taken away if it fits.
+    ///
+    /// `0 <= remainder < divisor` must hold before and holds after; the
+    /// doubled remainder needs one bit more than the word, as in hardware.
+    /// Returns the new remainder and the quotient's next bit.
+    #[inline(always)]
+    pub fn divide_step(&mut self, remainder: Word, divisor: Word, bit: bool) -> (Word, bool) {
+        if P::ENABLED {
+            let bits = self.width::<Word>() + 1;
+            self.probe.op(OpClass::DivideStep, bits, self.place, 1);
+        }
+        debug_assert!(0 <= remainder.0 && remainder.0 < divisor.0);
+        // 0 <= remainder < 2^63, so the doubled one fits 64 bits without sign.
+        let doubled = ((remainder.0 as u64) << 1) | u64::from(bit);
+        let divisor = divisor.0 as u64;
+        if doubled >= divisor {
+            (Word((doubled - divisor) as i64), true)
+        } else {
+            (Word(doubled as i64), false)
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Run-time word formats: how many bits a word has, how many of them are
+//! fraction, and what happens when a result does not fit.
+
+use serde::{Deserialize, Serialize};
+
+/// Narrowest word, in bits.
+pub const MIN_BITS: u32 = 16;
+/// Widest word, in bits.
+pub const MAX_BITS: u32 = 64;
+
+/// A two's complement word format: `bits` in all, `frac` of them fraction.
+///
+/// Values run from `-2^(bits-1)` to `2^(bits-1) - 1` units of `2^-frac`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Format {
+    bits: u32,
+    frac: u32,
+}
+
+/// Why a pair of numbers is no word format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum FormatError {
+    /// The width is outside 16..=64.
+    #[error("a word has {MIN_BITS} to {MAX_BITS} bits, not {0}")]
+    Bits(u32),
+    /// The fraction leaves no integer bit beside the sign.
+    #[error("a word of {bits} bits holds at most {max} fraction bits, not {frac}", max = bits - 2)]
+    Frac {
+        /// Width asked for, in bits.
+        bits: u32,
+        /// Fraction bits asked for.
+        frac: u32,
+    },
+}
+
+impl Format {
+    /// A format of `bits` (16..=64) with `frac` (0..=bits-2) fraction bits.
+    ///
+    /// # Errors
+    /// When either number is out of its range.
+    pub const fn new(bits: u32, frac: u32) -> Result<Self, FormatError> {
+        if bits < MIN_BITS || bits > MAX_BITS {
+            return Err(FormatError::Bits(bits));
+        }
+        if frac > bits - 2 {
+            return Err(FormatError::Frac { bits, frac });
+        }
+        Ok(Self { bits, frac })
+    }
+
+    /// Width in bits, 16..=64.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        self.bits
+    }
+
+    /// Fraction bits, 0..=bits-2.
+    #[must_use]
+    pub const fn frac(self) -> u32 {
+        self.frac
+    }
+
+    /// The format with twice the bits (at most 64) that holds products of two words.
+    #[must_use]
+    pub const fn wide(self) -> Self {
+        let bits = if self.bits > 32 { 64 } else { self.bits * 2 };
+        Self {
+            bits,
+            frac: self.frac,
+        }
+    }
+
+    /// Largest value, in units of the last place.
+    #[must_use]
+    pub const fn max(self) -> i64 {
+        i64::MAX >> (64 - self.bits)
+    }
+
+    /// Smallest value, in units of the last place.
+    #[must_use]
+    pub const fn min(self) -> i64 {
+        i64::MIN >> (64 - self.bits)
+    }
+
+    /// Whether `value` (units of the last place) is a word of this format.
+    #[must_use]
+    pub const fn holds(self, value: i64) -> bool {
+        let spare = 64 - self.bits;
+        (value << spare) >> spare == value
+    }
+}
+
+/// What a result outside the format becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Overflow {
+    /// The machine stops with an error that names operation, stage and record.
+    #[default]
+    Trap,
+    /// The bits above the word are dropped.
+    Wrap,
+    /// The nearest value of the format is taken.
+    Saturate,
+}

@@ -1,0 +1,238 @@
+//! What can be seen of the machine at work: one event for each operation and
+//! each access to a memory.
+
+use serde::{Deserialize, Serialize};
+
+/// The kinds of operation that the datapath has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum OpClass {
+    /// Two words added.
+    Add,
+    /// One word subtracted from another, or negated.
+    Sub,
+    /// Two words compared, or one word's sign tested against zero.
+    Compare,
+    /// The smaller or the larger of two words (one comparison, one select).
+    MinMax,
+    /// One of two words chosen by a bit.
+    Select,
+    /// A shift by a constant or by a level's number: wires or a small shifter.
+    Shift,
+    /// And, or, exclusive or, not.
+    Logic,
+    /// One step of the restoring divide: a trial subtraction and a select.
+    DivideStep,
+}
+
+impl OpClass {
+    /// All classes, in the order of their discriminants.
+    pub const ALL: [Self; 8] = [
+        Self::Add,
+        Self::Sub,
+        Self::Compare,
+        Self::MinMax,
+        Self::Select,
+        Self::Shift,
+        Self::Logic,
+        Self::DivideStep,
+    ];
+
+    /// The class in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Add => "add",
+            Self::Sub => "subtract",
+            Self::Compare => "compare",
+            Self::MinMax => "min/max",
+            Self::Select => "select",
+            Self::Shift => "shift",
+            Self::Logic => "logic",
+            Self::DivideStep => "divide step",
+        }
+    }
+}
+
+/// The stages of the record loop, in the order in which a record meets them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum Stage {
+    /// A record is taken from the stack.
+    Pop,
+    /// Is the record's quadtree node full by now?
+    Filled,
+    /// Does the voxel map to one pixel?
+    OnePixel,
+    /// The centre of the voxel in object space.
+    Centre,
+    /// Octant bits and the order of the children.
+    Order,
+    /// The vertices that the children share.
+    VertexPool,
+    /// A child's box in the image.
+    ChildBox,
+    /// The smallest unfilled quadtree node that holds the box.
+    QuadtreeFit,
+    /// A record is put on the stack.
+    Push,
+    /// A pixel is drawn, or a leaf's pixels are.
+    Draw,
+    /// Fill vectors are updated towards the root.
+    FillUpdate,
+    /// A cage changes from clip space to screen space.
+    ToScreen,
+}
+
+impl Stage {
+    /// All stages, in the order of their discriminants.
+    pub const ALL: [Self; 12] = [
+        Self::Pop,
+        Self::Filled,
+        Self::OnePixel,
+        Self::Centre,
+        Self::Order,
+        Self::VertexPool,
+        Self::ChildBox,
+        Self::QuadtreeFit,
+        Self::Push,
+        Self::Draw,
+        Self::FillUpdate,
+        Self::ToScreen,
+    ];
+
+    /// The stage in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pop => "pop",
+            Self::Filled => "filled?",
+            Self::OnePixel => "one pixel?",
+            Self::Centre => "centre",
+            Self::Order => "octant and order",
+            Self::VertexPool => "vertex pool",
+            Self::ChildBox => "child box",
+            Self::QuadtreeFit => "quadtree fit",
+            Self::Push => "push",
+            Self::Draw => "draw",
+            Self::FillUpdate => "fill update",
+            Self::ToScreen => "to screen",
+        }
+    }
+}
+
+/// The memories that the machine reads and writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum Memory {
+    /// The record stack; the address is the depth.
+    Stack,
+    /// Graph nodes; the address is the node.
+    Node,
+    /// Colours and normals of nodes; the address is the node.
+    Attribute,
+    /// Fill vectors; the address is the quadtree node.
+    FillVector,
+    /// Pixels; the address is `y * width + x`.
+    Pixel,
+}
+
+impl Memory {
+    /// All memories, in the order of their discriminants.
+    pub const ALL: [Self; 5] = [
+        Self::Stack,
+        Self::Node,
+        Self::Attribute,
+        Self::FillVector,
+        Self::Pixel,
+    ];
+
+    /// The memory in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stack => "stack",
+            Self::Node => "node",
+            Self::Attribute => "attribute",
+            Self::FillVector => "fill vector",
+            Self::Pixel => "pixel",
+        }
+    }
+}
+
+/// Where an operation happens: the stage and the octree level of the record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Place {
+    /// Stage of the record loop.
+    pub stage: Stage,
+    /// Octree level of the record that is worked on, 0 = root.
+    pub level: u32,
+}
+
+/// Sees every operation and every memory access.
+///
+/// All methods do nothing by default, and [`Probe::ENABLED`] lets the
+/// datapath leave the calls out altogether.
+pub trait Probe {
+    /// Whether anything listens.
+    const ENABLED: bool = true;
+
+    /// `times` operations of one class on words of `bits` bits were executed.
+    #[inline]
+    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+        let _ = (class, bits, place, times);
+    }
+
+    /// A memory was read.
+    #[inline]
+    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+        let _ = (memory, address, place);
+    }
+
+    /// A memory was written.
+    #[inline]
+    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+        let _ = (memory, address, place);
+    }
+
+    /// A record begins its turn; `index` counts the records of a frame.
+    #[inline]
+    fn record(&mut self, index: u64, level: u32) {
+        let _ = (index, level);
+    }
+}
+
+/// No probe: every call vanishes at compile time.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoProbe;
+
+impl Probe for NoProbe {
+    const ENABLED: bool = false;
+}
+
+impl<P: Probe> Probe for &mut P {
+    const ENABLED: bool = P::ENABLED;
+
+    #[inline]
+    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+        (**self).op(class, bits, place, times);
+    }
+
+    #[inline]
+    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+        (**self).read(memory, address, place);
+    }
+
+    #[inline]
+    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+        (**self).write(memory, address, place);
+    }
+
+    #[inline]
+    fn record(&mut self, index: u64, level: u32) {
+        (**self).record(index, level);
+    }
+}

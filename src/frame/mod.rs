@@ -1,0 +1,56 @@
+//! What an engine draws into: one entry for each sample.
+
+/// `node` where nothing is seen.
+pub const NO_NODE: u32 = u32::MAX;
+/// `voxel` where nothing is seen.
+pub const NO_VOXEL: [i32; 4] = [0, 0, 0, -1];
+
+/// The samples of one frame, row by row from the top left.
+///
+/// An engine stores which voxel is seen and nothing else; colour, normal and
+/// depth follow from it and are made afterwards, once for each sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// Samples across.
+    pub width: u32,
+    /// Samples down.
+    pub height: u32,
+    /// Graph node seen, or [`NO_NODE`].
+    pub node: Vec<u32>,
+    /// Object coordinates of the seen voxel's lowest corner, in finest
+    /// voxels, and its octree level (0 = root); or [`NO_VOXEL`].
+    pub voxel: Vec<[i32; 4]>,
+    /// Share of the records worked on for this sample, if it was asked for:
+    /// a record counts 1, spread evenly over its quadtree node's samples.
+    pub records: Option<Vec<f32>>,
+}
+
+impl Frame {
+    /// An empty frame; `with_records` asks for the records of each sample.
+    #[must_use]
+    pub fn new(width: u32, height: u32, with_records: bool) -> Self {
+        let samples = width as usize * height as usize;
+        Self {
+            width,
+            height,
+            node: vec![NO_NODE; samples],
+            voxel: vec![NO_VOXEL; samples],
+            records: with_records.then(|| vec![0.0; samples]),
+        }
+    }
+
+    /// Forgets what was drawn, keeps the memory.
+    pub fn clear(&mut self) {
+        self.node.fill(NO_NODE);
+        self.voxel.fill(NO_VOXEL);
+        if let Some(records) = &mut self.records {
+            records.fill(0.0);
+        }
+    }
+
+    /// Samples that show a voxel.
+    #[must_use]
+    pub fn drawn(&self) -> usize {
+        self.node.iter().filter(|&&node| node != NO_NODE).count()
+    }
+}

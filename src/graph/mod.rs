@@ -1,0 +1,142 @@
+//! The voxel graph: trees, DAGs with equal subtrees merged, and cyclic graphs.
+
+mod store;
+
+pub use store::Store;
+
+/// Deepest level that a graph may have: voxel coordinates stay within `i32`.
+pub const MAX_DEPTH: u32 = 30;
+
+/// Which children a node has, and where they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Topology {
+    /// Where the children begin: a node in a tree, an entry of `links` in a linked graph.
+    pub first: u32,
+    /// Bit `c` is set where child `c = x << 2 | y << 1 | z` exists. No bit: a solid leaf.
+    pub mask: u8,
+    /// Zero.
+    pub reserved: [u8; 3],
+}
+
+/// Where the object lies in the file's indices and in the world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// File index of the object's lowest corner, in finest voxels; may be negative.
+    pub origin_index: [i64; 3],
+    /// World position of file index (0, 0, 0).
+    pub world_origin: [f64; 3],
+    /// World length of a finest voxel's side.
+    pub voxel_size: f64,
+}
+
+impl Default for Placement {
+    fn default() -> Self {
+        Self {
+            origin_index: [0; 3],
+            world_origin: [0.0; 3],
+            voxel_size: 1.0,
+        }
+    }
+}
+
+/// A unit normal in two bytes (octahedral), or none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct PackedNormal(pub u16);
+
+/// A voxel graph.
+///
+/// Nodes `0..topology.len()` may have children; nodes from there up to
+/// `color.len()` are voxels of the finest level, which need no topology. A
+/// node without children is solid and, as in the paper (section 2.2), points
+/// to itself. A node that is reached at level `depth` is a voxel, whatever
+/// children it has: that is what ends a cyclic graph.
+#[derive(Debug, Clone)]
+pub struct Graph {
+    /// Levels below the root: the object is a cube of `2^depth` finest voxels a side.
+    pub depth: u32,
+    /// The node of the object.
+    pub root: u32,
+    /// Children of the inner nodes.
+    pub topology: Store<Topology>,
+    /// Child lists of a linked graph; empty in a plain tree, where the
+    /// children of a node are `first`, `first + 1`, ... in octant order.
+    pub links: Store<u32>,
+    /// Average colour (sRGB) of each node.
+    pub color: Store<[u8; 3]>,
+    /// Average normal of each node.
+    pub normal: Store<PackedNormal>,
+    /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; else empty.
+    pub level_start: Vec<u32>,
+    /// Voxels of the finest level that the object consists of, counted with repetition; saturates.
+    pub voxels: u64,
+    /// Where the object lies.
+    pub placement: Placement,
+}
+
+impl Graph {
+    /// Number of nodes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.color.len()
+    }
+
+    /// Whether there is nothing to draw.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.color.is_empty()
+    }
+
+    /// The graph's arrays as plain slices: what an engine walks.
+    #[must_use]
+    pub fn view(&self) -> GraphView<'_> {
+        GraphView {
+            depth: self.depth,
+            root: self.root,
+            topology: &self.topology,
+            links: &self.links,
+        }
+    }
+}
+
+/// Borrowed shape of a graph, without attributes.
+#[derive(Debug, Clone, Copy)]
+pub struct GraphView<'g> {
+    /// Levels below the root.
+    pub depth: u32,
+    /// The node of the object.
+    pub root: u32,
+    /// Children of the inner nodes.
+    pub topology: &'g [Topology],
+    /// Child lists of a linked graph, or empty.
+    pub links: &'g [u32],
+}
+
+impl GraphView<'_> {
+    /// The children that a node has, one bit each; 0 for a leaf.
+    #[inline]
+    #[must_use]
+    pub fn mask(&self, node: u32) -> u8 {
+        self.topology.get(node as usize).map_or(0, |t| t.mask)
+    }
+
+    /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
+    ///
+    /// A leaf has none here; that it points to itself is for the renderer to say.
+    #[inline]
+    #[must_use]
+    pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
+        let topology = self.topology.get(node as usize)?;
+        if topology.mask >> octant & 1 == 0 {
+            return None;
+        }
+        let before = topology.mask & ((1u8 << octant) - 1);
+        let slot = topology.first + before.count_ones();
+        if self.links.is_empty() {
+            Some(slot)
+        } else {
+            Some(self.links[slot as usize])
+        }
+    }
+}

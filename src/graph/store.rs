@@ -1,0 +1,53 @@
+//! An array of the graph: owned, or a window of a mapped file.
+
+use std::fmt;
+use std::ops::{Deref, Range};
+use std::sync::Arc;
+
+use bytemuck::Pod;
+use memmap2::Mmap;
+
+/// An array in memory or in a mapped file; reads as a slice either way.
+pub enum Store<T: Pod> {
+    /// Held in memory.
+    Owned(Vec<T>),
+    /// A range of bytes of a mapped file, aligned for `T`.
+    Mapped(Arc<Mmap>, Range<usize>),
+}
+
+impl<T: Pod> Deref for Store<T> {
+    type Target = [T];
+
+    #[inline]
+    fn deref(&self) -> &[T] {
+        match self {
+            Self::Owned(items) => items,
+            Self::Mapped(map, bytes) => bytemuck::cast_slice(&map[bytes.clone()]),
+        }
+    }
+}
+
+impl<T: Pod> From<Vec<T>> for Store<T> {
+    fn from(items: Vec<T>) -> Self {
+        Self::Owned(items)
+    }
+}
+
+impl<T: Pod> Clone for Store<T> {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Owned(items) => Self::Owned(items.clone()),
+            Self::Mapped(map, bytes) => Self::Mapped(Arc::clone(map), bytes.clone()),
+        }
+    }
+}
+
+impl<T: Pod> fmt::Debug for Store<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kind = match self {
+            Self::Owned(_) => "owned",
+            Self::Mapped(..) => "mapped",
+        };
+        write!(f, "Store({kind}, {} items)", self.len())
+    }
+}

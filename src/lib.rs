@@ -1,0 +1,15 @@
+//! Image-order voxel-graph rendering with nothing but adders and shifts.
+//!
+//! See `ARCHITECTURE.md` for the floors and `SPEC.md` for the numeric rules.
+
+pub mod frame;
+pub mod graph;
+pub mod machine;
+pub mod measure;
+pub mod picture;
+pub mod project;
+pub mod rays;
+pub mod scene;
+
+#[cfg(feature = "cli")]
+pub mod cli;

@@ -1,0 +1,2 @@
+//! The `shiftvox` command.
+fn main() {}

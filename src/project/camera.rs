@@ -1,0 +1,93 @@
+//! The camera, in world units.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A pinhole camera and the size of its picture.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    /// Position of the eye, world units.
+    pub eye: DVec3,
+    /// A point that is seen in the middle of the picture, world units.
+    pub target: DVec3,
+    /// A direction that is seen pointing up; not along the view axis.
+    pub up: DVec3,
+    /// Vertical field of view, degrees, above 0 and below 180.
+    pub fov_degrees: f64,
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+}
+
+/// Why a camera cannot see.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum CameraError {
+    /// A coordinate is infinite or not a number.
+    #[error("the camera has a coordinate that is not a finite number")]
+    NotFinite,
+    /// Eye and target coincide.
+    #[error("the camera's eye and target are the same point")]
+    NoDirection,
+    /// The up direction is zero or lies along the view axis.
+    #[error("the camera's up direction is zero or lies along the view axis")]
+    NoUp,
+    /// Field of view outside 0..180 degrees.
+    #[error("the field of view must lie between 0 and 180 degrees, not {0}")]
+    FieldOfView(f64),
+    /// No pixels, or more than the image quadtree takes.
+    #[error("a picture has 1 to {MAX_SIDE} pixels a side, not {0} x {1}")]
+    Size(u32, u32),
+}
+
+/// Most pixels a side.
+pub const MAX_SIDE: u32 = 1 << 15;
+
+/// The camera's axes: orthonormal, right-handed as (right, up, back).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Axes {
+    /// Towards growing pixel x.
+    pub right: DVec3,
+    /// Towards falling pixel y.
+    pub up: DVec3,
+    /// Along the view axis, away from the eye.
+    pub forward: DVec3,
+    /// Pixels per unit of slope: half the height over the tangent of half the field of view.
+    pub focal_px: f64,
+}
+
+impl Camera {
+    /// The camera's axes.
+    ///
+    /// # Errors
+    /// When the camera cannot see: see [`CameraError`].
+    pub fn axes(&self) -> Result<Axes, CameraError> {
+        if !(self.eye.is_finite() && self.target.is_finite() && self.up.is_finite()) {
+            return Err(CameraError::NotFinite);
+        }
+        if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
+            return Err(CameraError::FieldOfView(self.fov_degrees));
+        }
+        if self.width == 0 || self.height == 0 || self.width > MAX_SIDE || self.height > MAX_SIDE {
+            return Err(CameraError::Size(self.width, self.height));
+        }
+        let forward = (self.target - self.eye)
+            .try_normalize()
+            .ok_or(CameraError::NoDirection)?;
+        let right = forward.cross(self.up);
+        // Below this the two directions agree to within f64 rounding.
+        if right.length() <= 1e-12 * self.up.length() || self.up == DVec3::ZERO {
+            return Err(CameraError::NoUp);
+        }
+        let right = right.normalize();
+        let up = right.cross(forward);
+        let half_angle = self.fov_degrees * (std::f64::consts::PI / 360.0);
+        let focal_px = f64::from(self.height) / 2.0 / libm::tan(half_angle);
+        Ok(Axes {
+            right,
+            up,
+            forward,
+            focal_px,
+        })
+    }
+}

@@ -1,0 +1,32 @@
+//! What the engines have in common.
+
+use hwmodel::Trap;
+
+use super::FrameSetup;
+use crate::frame::Frame;
+use crate::graph::GraphView;
+
+/// Why a frame was not finished.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum EngineError {
+    /// A word overflowed under the trap policy.
+    #[error("{0}; use more bits, fewer fraction bits, or --overflow wrap|saturate")]
+    Trap(#[from] Trap),
+}
+
+/// What an engine counted of one frame: names and numbers, in a fixed order.
+pub type Stats = Vec<(&'static str, u64)>;
+
+/// Draws a frame from its recorded input.
+pub trait Engine {
+    /// Draws into `frame`, which has the size of `setup` and is cleared first.
+    ///
+    /// # Errors
+    /// When the frame cannot be finished; its contents are then of no use.
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError>;
+}

@@ -1,0 +1,516 @@
+//! The host's part of a frame: a camera and a placed object become the
+//! integers that every engine starts from.
+//!
+//! Here, and only here, is multiplied and divided. The result is quantised
+//! once; machine, fast engine, oracle and hardware see the same integers, so
+//! *exact* means exact for them. Rules: `SPEC.md`, "Frame set-up".
+//!
+//! Coordinates. A point `u` of the object (finest voxels, `0..=2^depth` a
+//! side) has the clip vector `(X, Y, W) = origin_clip + sum u_k edge_clip[k]`
+//! in units of `2^-clip_frac` finest voxels of depth. `X / W` and `Y / W` are
+//! fractions of the image root: the square of `2^levels` samples whose top
+//! left corner is the picture's. Sample `(i, j)` is at
+//! `((2i + 1) / 2^(levels + 1), (2j + 1) / 2^(levels + 1))`.
+
+use glam::DVec3;
+use hwmodel::{Format, FormatError};
+use serde::{Deserialize, Serialize};
+
+use super::camera::{Axes, Camera, CameraError};
+use crate::graph::{MAX_DEPTH, Placement};
+
+/// Most fraction bits of a clip vector; more would not be seen.
+const MAX_CLIP_FRAC: u32 = 30;
+/// Fraction bits of screen positions, unless the format or the user says otherwise.
+const DEFAULT_SCREEN_FRAC: u32 = 16;
+/// Records whose box leaves the picture by more than this part of it do not
+/// change to screen space (as a shift: 2^-3).
+pub const SCREEN_GUARD_SHIFT: u32 = 3;
+
+/// How a record holds its projected vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum CageKind {
+    /// Eight corners in Morton order (the paper).
+    Corners,
+    /// One corner and three edge vectors.
+    #[default]
+    Frame,
+}
+
+/// Which pixels a voxel draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Coverage {
+    /// The pixel in which its whole box lies (the paper).
+    Any,
+    /// The pixel that holds its centre, once it is no larger than a pixel.
+    Center,
+    /// Every pixel whose centre lies inside its silhouette.
+    #[default]
+    Exact,
+}
+
+/// What a frame is drawn with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SetupOptions {
+    /// Width of a machine word, bits (16..=64).
+    pub bits: u32,
+    /// Fraction bits of clip depths (voxels) and of screen positions (pixels);
+    /// `None`: as many as the frame leaves room for.
+    pub frac: Option<u32>,
+    /// How a record holds its vertices.
+    pub cage: CageKind,
+    /// Largest deviation, in pixels, at which a record may change from clip
+    /// space to screen space: 0 never, infinity at once.
+    pub tolerance_px: f64,
+    /// Drawing rule.
+    pub coverage: Coverage,
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves.
+    pub lod_px: f64,
+    /// Samples per pixel and axis, as a power of two: 0, 1 or 2.
+    pub aa_log2: u32,
+}
+
+impl Default for SetupOptions {
+    fn default() -> Self {
+        Self {
+            bits: 64,
+            frac: None,
+            cage: CageKind::default(),
+            tolerance_px: 1.0 / 16.0,
+            coverage: Coverage::default(),
+            lod_px: 1.0,
+            aa_log2: 0,
+        }
+    }
+}
+
+/// Why a frame cannot be set up.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SetupError {
+    /// The camera cannot see.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// Bits and fraction make no word.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The object is deeper than coordinates reach.
+    #[error("the object has {0} levels, more than {MAX_DEPTH}")]
+    Depth(u32),
+    /// Camera and object are out of all proportion.
+    #[error(
+        "the camera is too far from the object, or its view too narrow, for 64-bit coordinates"
+    )]
+    OutOfRange,
+    /// After quantisation the view has no volume.
+    #[error(
+        "with {bits} bits and {frac} fraction bits the view collapses to a plane: \
+         use more bits, or a camera nearer to the object"
+    )]
+    Collapsed {
+        /// Bits of a word.
+        bits: u32,
+        /// Fraction bits of clip vectors.
+        frac: u32,
+    },
+    /// A setting outside its range.
+    #[error("{name} must be {range}, not {value}")]
+    Setting {
+        /// The setting.
+        name: &'static str,
+        /// What it may be.
+        range: &'static str,
+        /// What it was.
+        value: f64,
+    },
+}
+
+/// The recorded input of a frame: all integers that an engine starts from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrameSetup {
+    /// What was asked for.
+    pub options: SetupOptions,
+    /// Samples across; the picture's width times the samples per pixel and axis.
+    pub width: u32,
+    /// Samples down.
+    pub height: u32,
+    /// Levels of the image quadtree: its root has `2^levels` samples a side.
+    pub levels: u32,
+    /// Levels of the object: its root has `2^depth` finest voxels a side.
+    pub depth: u32,
+    /// Word format; its fraction is the one of screen positions.
+    pub format: Format,
+    /// Fraction bits of clip vectors.
+    pub clip_frac: u32,
+    /// Clip vector `(X, Y, W)` of the object's lowest corner.
+    pub origin_clip: [i64; 3],
+    /// Clip vectors of a finest voxel's edges along x, y, z.
+    pub edge_clip: [[i64; 3]; 3],
+    /// Whether `edge_clip` as columns has a positive determinant (else negative).
+    pub positive: bool,
+    /// Levels below a finest voxel to which a solid may be subdivided.
+    pub sub_levels: u32,
+    /// The eye in object coordinates, units of `2^-sub_levels` voxels, rounded down.
+    pub eye_floor: [i64; 3],
+    /// The same, rounded up.
+    pub eye_ceil: [i64; 3],
+    /// Least depth `W` at which `any` and `center` draw; `exact` draws all that is before the eye.
+    pub near: i64,
+    /// By octree level, least depth `W` of a record that may change to screen
+    /// space; `i64::MAX`: none may.
+    pub screen_depth: Vec<i64>,
+    /// Size, in samples, up to which a record may be drawn at one sample.
+    pub size_limit: ShiftSum,
+    /// Size, in samples, up to which a node with children is taken for a
+    /// solid; `None`: only leaves are drawn.
+    pub lod_limit: Option<ShiftSum>,
+    /// Where the object lies, to name voxels and depths.
+    pub placement: Placement,
+}
+
+impl FrameSetup {
+    /// Quantises a camera's view of a placed object of `2^depth` voxels a side.
+    ///
+    /// # Errors
+    /// When the camera cannot see, the format is none, or a setting is out of its range.
+    pub fn new(
+        camera: &Camera,
+        placement: &Placement,
+        depth: u32,
+        options: &SetupOptions,
+    ) -> Result<Self, SetupError> {
+        let axes = camera.axes()?;
+        check_settings(options)?;
+        if depth > MAX_DEPTH {
+            return Err(SetupError::Depth(depth));
+        }
+        let root_px_log2 = root_log2(camera.width, camera.height);
+        let levels = root_px_log2 + options.aa_log2;
+        let view = View::new(camera, &axes, placement, root_px_log2);
+
+        let format = {
+            let room = options.bits.saturating_sub(levels + 4);
+            let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
+            Format::new(options.bits, frac)?
+        };
+        let clip_frac = match options.frac {
+            Some(frac) => frac.min(MAX_CLIP_FRAC),
+            None => view.widest_fraction(depth, format),
+        };
+        let (origin_clip, edge_clip) = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
+        if reach(&origin_clip, &edge_clip, depth).is_none() {
+            return Err(SetupError::OutOfRange);
+        }
+
+        let sub_levels = clip_frac.min((options.bits - 2).saturating_sub(depth));
+        let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)
+            .ok_or(SetupError::OutOfRange)?
+            .ok_or(SetupError::Collapsed {
+                bits: options.bits,
+                frac: clip_frac,
+            })?;
+
+        let near = 1i64 << clip_frac.saturating_sub(4);
+        let bound = depth + sub_levels;
+        Ok(Self {
+            options: *options,
+            width: camera.width << options.aa_log2,
+            height: camera.height << options.aa_log2,
+            levels,
+            depth,
+            format,
+            clip_frac,
+            origin_clip,
+            edge_clip,
+            positive: eye.positive,
+            sub_levels,
+            eye_floor: eye.floor,
+            eye_ceil: eye.ceil,
+            near,
+            screen_depth: (0..=bound)
+                .map(|level| view.screen_depth(level, depth, options, clip_frac, near))
+                .collect(),
+            size_limit: size_limit(options, 1.0).unwrap_or_default(),
+            lod_limit: size_limit(options, options.lod_px),
+            placement: *placement,
+        })
+    }
+
+    /// The deepest level of a record: the finest voxels' level and the
+    /// levels to which a solid may be subdivided.
+    #[must_use]
+    pub fn level_bound(&self) -> u32 {
+        self.depth + self.sub_levels
+    }
+
+    /// World depth of one unit of `W`.
+    #[must_use]
+    pub fn depth_unit_world(&self) -> f64 {
+        self.placement.voxel_size / (1u64 << self.clip_frac) as f64
+    }
+}
+
+/// `ceil(log2)` of the longer side of a picture.
+#[must_use]
+pub fn root_log2(width: u32, height: u32) -> u32 {
+    width.max(height).next_power_of_two().trailing_zeros()
+}
+
+fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
+    let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
+    if options.tolerance_px.is_nan() || options.tolerance_px < 0.0 {
+        return bad("tolerance", "0 pixels or more", options.tolerance_px);
+    }
+    if !(0.0..=4096.0).contains(&options.lod_px) {
+        return bad("level of detail", "0 to 4096 pixels", options.lod_px);
+    }
+    if options.aa_log2 > 2 {
+        let samples = f64::from(1u32 << options.aa_log2.min(31));
+        return bad("samples per axis", "1, 2 or 4", samples);
+    }
+    Ok(())
+}
+
+/// A constant factor as a sum of powers of two: `x` times it is a sum of
+/// shifted copies of `x`, one shift to the right each (negative: to the left).
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ShiftSum(Vec<i32>);
+
+/// Significant bits of a [`ShiftSum`].
+const SHIFT_SUM_BITS: i32 = 5;
+
+impl ShiftSum {
+    /// The largest sum of at most five neighbouring powers of two that is not above `value`.
+    #[must_use]
+    pub fn floor(value: f64) -> Self {
+        if value <= 0.0 {
+            return Self::default();
+        }
+        let leading = libm::floor(libm::log2(value)) as i32;
+        let kept = libm::floor(libm::ldexp(value, SHIFT_SUM_BITS - 1 - leading)) as u32;
+        Self(
+            (0..SHIFT_SUM_BITS)
+                .filter(|place| kept >> (SHIFT_SUM_BITS - 1 - place) & 1 != 0)
+                .map(|place| place - leading)
+                .collect(),
+        )
+    }
+
+    /// The shifts to the right, growing.
+    #[must_use]
+    pub fn shifts(&self) -> &[i32] {
+        &self.0
+    }
+
+    /// The factor.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.0.iter().map(|&s| libm::ldexp(1.0, -s)).sum()
+    }
+}
+
+/// A size in samples, less its share of twice the tolerance, so that
+/// neighbours that deviate by the tolerance leave no pinhole; `None` for 0.
+fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
+    let finite = options.tolerance_px.is_finite();
+    let tolerance = if finite { options.tolerance_px } else { 0.0 };
+    // Never below an eighth: with coarser tolerances the user has chosen holes.
+    let share = (1.0 - 2.0 * tolerance).max(0.125);
+    (samples > 0.0).then(|| ShiftSum::floor(samples * share))
+}
+
+/// The view of the object in real numbers.
+struct View {
+    /// Clip vectors of a voxel's edges.
+    edge: [DVec3; 3],
+    /// The eye in object coordinates, voxels.
+    eye: DVec3,
+    /// Pixels of the image root, as a power of two.
+    root_px_log2: u32,
+}
+
+impl View {
+    fn new(camera: &Camera, axes: &Axes, placement: &Placement, root_px_log2: u32) -> Self {
+        let root_px = f64::from(1u32 << root_px_log2);
+        let centre_x = f64::from(camera.width) / 2.0;
+        let centre_y = f64::from(camera.height) / 2.0;
+        let x = (axes.right * axes.focal_px + axes.forward * centre_x) / root_px;
+        let y = (axes.up * -axes.focal_px + axes.forward * centre_y) / root_px;
+        let w = axes.forward;
+        let origin = placement.origin_index;
+        let eye = (camera.eye - DVec3::from_array(placement.world_origin)) / placement.voxel_size
+            - DVec3::new(origin[0] as f64, origin[1] as f64, origin[2] as f64);
+        Self {
+            edge: [0, 1, 2].map(|k| DVec3::new(x[k], y[k], w[k])),
+            eye,
+            root_px_log2,
+        }
+    }
+
+    /// Integers of `2^-frac` voxels, if they fit 64 bits with room.
+    ///
+    /// The origin is made from the rounded edges, so that the eye stays where
+    /// the camera has it and only the view's shape is rounded.
+    fn quantise(&self, frac: u32) -> Option<([i64; 3], [[i64; 3]; 3])> {
+        let scale = (1u64 << frac) as f64;
+        let mut edge = [[0i64; 3]; 3];
+        for (to, from) in edge.iter_mut().zip(&self.edge) {
+            for (c, value) in to.iter_mut().enumerate() {
+                *value = to_i64(from[c] * scale)?;
+            }
+        }
+        let mut origin = [0i64; 3];
+        for (c, value) in origin.iter_mut().enumerate() {
+            let sum: f64 = (0..3).map(|k| edge[k][c] as f64 * self.eye[k]).sum();
+            *value = to_i64(-sum)?;
+        }
+        Some((origin, edge))
+    }
+
+    /// The most fraction bits with which positions fit a word and silhouette
+    /// planes a wide word, headroom included; 0 where none do.
+    fn widest_fraction(&self, depth: u32, format: Format) -> u32 {
+        (0..=MAX_CLIP_FRAC)
+            .rev()
+            .find(|&frac| {
+                self.quantise(frac)
+                    .and_then(|(origin, edge)| reach(&origin, &edge, depth))
+                    .is_some_and(|reach| {
+                        // Bisector tests take 2X - W, the guard 4W + X.
+                        reach.position <= (format.max() as i128) / 8
+                            && reach.plane <= (format.wide().max() as i128) / 8
+                    })
+            })
+            .unwrap_or(0)
+    }
+
+    /// Least `W` at which a record of `level` deviates from its screen-space
+    /// cage by at most the tolerance: `SPEC.md`, "The change to screen space".
+    fn screen_depth(
+        &self,
+        level: u32,
+        depth: u32,
+        options: &SetupOptions,
+        frac: u32,
+        near: i64,
+    ) -> i64 {
+        if options.tolerance_px == 0.0 {
+            return i64::MAX;
+        }
+        if options.tolerance_px.is_infinite() {
+            return near;
+        }
+        let guard = 1.0 / f64::from(1u32 << SCREEN_GUARD_SHIFT);
+        let depth_span: f64 = self.edge.iter().map(|e| e.z.abs()).sum();
+        let across = |axis: usize| -> f64 {
+            self.edge
+                .iter()
+                .map(|e| {
+                    let at = |x: f64| (e[axis] - x * e.z).abs();
+                    at(-guard).max(at(1.0 + guard))
+                })
+                .sum()
+        };
+        let root_samples = f64::from(1u32 << (self.root_px_log2 + options.aa_log2));
+        let product = across(0).max(across(1)) * depth_span * root_samples;
+        // A record's side in voxels, exact in f64.
+        let side = libm::ldexp(1.0, depth as i32 - level as i32);
+        let least = libm::sqrt(product / options.tolerance_px) * side;
+        to_i64(libm::ceil(libm::ldexp(least, frac as i32))).map_or(i64::MAX, |w| w.max(near))
+    }
+}
+
+/// A rounded f64 that fits 62 bits.
+fn to_i64(value: f64) -> Option<i64> {
+    let rounded = libm::round(value);
+    (rounded.abs() < (1u64 << 62) as f64).then_some(rounded as i64)
+}
+
+/// Largest magnitudes that a frame meets.
+struct Reach {
+    /// Of a coordinate of a clip vector.
+    position: i128,
+    /// Of a silhouette plane: the sum of its three coefficients.
+    plane: i128,
+}
+
+/// The reach over the object's eight corners; intermediate vertices lie between.
+/// `None` where it does not fit 127 bits.
+fn reach(origin: &[i64; 3], edge: &[[i64; 3]; 3], depth: u32) -> Option<Reach> {
+    let mut reach = Reach {
+        position: 0,
+        plane: 0,
+    };
+    for corner in 0..8u32 {
+        let mut at = origin.map(i128::from);
+        for (k, step) in edge.iter().enumerate() {
+            if corner >> (2 - k) & 1 == 1 {
+                for c in 0..3 {
+                    at[c] += i128::from(step[c]) << depth;
+                }
+            }
+        }
+        for c in at {
+            reach.position = reach.position.max(c.abs());
+        }
+        if reach.position > 1 << 62 {
+            return None;
+        }
+        for step in edge {
+            let plane = cross(&at, &step.map(i128::from));
+            let sum = plane.iter().map(|c| c.abs()).sum::<i128>();
+            reach.plane = reach.plane.max(sum);
+        }
+    }
+    Some(reach)
+}
+
+fn cross(a: &[i128; 3], b: &[i128; 3]) -> [i128; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// The eye of the quantised view, exactly: where the clip vector is zero.
+struct Eye {
+    floor: [i64; 3],
+    ceil: [i64; 3],
+    positive: bool,
+}
+
+impl Eye {
+    /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of
+    /// `2^-sub_levels`. `None`: beyond 127 bits; `Some(None)`: no volume.
+    fn solve(origin: &[i64; 3], edge: &[[i64; 3]; 3], sub_levels: u32) -> Option<Option<Self>> {
+        let edge = edge.map(|e| e.map(i128::from));
+        let minus_origin = origin.map(|c| -i128::from(c));
+        let determinant = |m: &[[i128; 3]; 3]| -> Option<i128> {
+            let minor = cross(&m[1], &m[2]);
+            (0..3).try_fold(0i128, |sum, c| {
+                m[0][c].checked_mul(minor[c])?.checked_add(sum)
+            })
+        };
+        let whole = determinant(&edge)?;
+        if whole == 0 {
+            return Some(None);
+        }
+        let mut floor = [0; 3];
+        let mut ceil = [0; 3];
+        for k in 0..3 {
+            let mut replaced = edge;
+            replaced[k] = minus_origin;
+            let part = determinant(&replaced)?.checked_mul(1i128 << sub_levels)?;
+            let (part, whole) = (part * whole.signum(), whole.abs());
+            floor[k] = i64::try_from(part.div_euclid(whole)).ok()?;
+            ceil[k] = floor[k] + i64::from(part.rem_euclid(whole) != 0);
+        }
+        Some(Some(Self {
+            floor,
+            ceil,
+            positive: whole > 0,
+        }))
+    }
+}
