@@ -1,8 +1,12 @@
 //! The voxel graph: trees, DAGs with equal subtrees merged, and cyclic graphs.
 
+mod progress;
 mod store;
+mod voxel;
 
+pub use progress::{Progress, Silent};
 pub use store::Store;
+pub use voxel::Voxel;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
