@@ -322,6 +322,20 @@ impl<P: Probe> Datapath<P> {
         (a.raw() >> place.min(63)) & 1 != 0
     }
 
+    /// A word as a wide word: wires that repeat the sign.
+    #[inline(always)]
+    #[must_use]
+    pub fn widen(&self, a: Word) -> WideWord {
+        WideWord(a.0)
+    }
+
+    /// Bits that a word's magnitude takes, 0 for zero: a priority encoder.
+    #[inline(always)]
+    pub fn bit_length(&mut self, a: Word) -> u32 {
+        self.note::<Word>(OpClass::Logic);
+        64 - a.0.unsigned_abs().leading_zeros()
+    }
+
     /// Bitwise and of two short vectors of `bits` bits.
     #[inline(always)]
     pub fn and_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {
@@ -350,11 +364,21 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
+    /// A word shifted left by one with `bit` coming in from the right: the
+    /// quotient register of a divide. Wires, not counted; overflows like a shift.
+    #[inline(always)]
+    pub fn shift_in(&mut self, a: Word, bit: bool) -> Word {
+        let raw = a.0;
+        let carried = (raw << 1) >> 1 != raw;
+        self.fit(TrapOp::ShiftLeft, raw << 1 | i64::from(bit), carried)
+    }
+
     /// One step of a restoring divide: the remainder is doubled, `bit` comes
     /// in from the right, and the divisor is taken away if it fits.
     ///
-    /// `0 <= remainder < divisor` must hold before and holds after; the
-    /// doubled remainder needs one bit more than the word, as in hardware.
+    /// `0 <= remainder < divisor` must hold before (else the quotient is of no
+    /// use) and holds after; the doubled remainder needs one bit more than the
+    /// word, as in hardware.
     /// Returns the new remainder and the quotient's next bit.
     #[inline(always)]
     pub fn divide_step(&mut self, remainder: Word, divisor: Word, bit: bool) -> (Word, bool) {
@@ -362,7 +386,6 @@ impl<P: Probe> Datapath<P> {
             let bits = self.width::<Word>() + 1;
             self.probe.op(OpClass::DivideStep, bits, self.place, 1);
         }
-        debug_assert!(0 <= remainder.0 && remainder.0 < divisor.0);
         // 0 <= remainder < 2^63, so the doubled one fits 64 bits without sign.
         let doubled = ((remainder.0 as u64) << 1) | u64::from(bit);
         let divisor = divisor.0 as u64;
@@ -370,6 +393,29 @@ impl<P: Probe> Datapath<P> {
             (Word((doubled - divisor) as i64), true)
         } else {
             (Word(doubled as i64), false)
+        }
+    }
+
+    /// One step of a restoring divide for a quotient bit of weight
+    /// `2^place`: `divisor << place` is taken away if it fits. The shifted
+    /// divisor is wires into a subtractor of `place` bits more than the word.
+    #[inline(always)]
+    pub fn divide_integer_step(
+        &mut self,
+        remainder: Word,
+        divisor: Word,
+        place: u32,
+    ) -> (Word, bool) {
+        if P::ENABLED {
+            let bits = self.width::<Word>() + place;
+            self.probe.op(OpClass::DivideStep, bits, self.place, 1);
+        }
+        let shifted = i128::from(divisor.0) << place;
+        let left = i128::from(remainder.0) - shifted;
+        if left >= 0 {
+            (Word(left as i64), true)
+        } else {
+            (remainder, false)
         }
     }
 }

@@ -1,5 +1,9 @@
 //! What an engine draws into: one entry for each sample.
 
+pub mod quadtree;
+
+pub use quadtree::{FillVectors, QuadNode};
+
 /// `node` where nothing is seen.
 pub const NO_NODE: u32 = u32::MAX;
 /// `voxel` where nothing is seen.

@@ -21,6 +21,8 @@ use crate::graph::{MAX_DEPTH, Placement};
 
 /// Most fraction bits of a clip vector; more would not be seen.
 const MAX_CLIP_FRAC: u32 = 30;
+/// Most levels below a finest voxel.
+const MAX_SUB_LEVELS: u32 = 24;
 /// Fraction bits of screen positions, unless the format or the user says otherwise.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Records whose box leaves the picture by more than this part of it do not
@@ -61,7 +63,7 @@ pub struct SetupOptions {
     pub frac: Option<u32>,
     /// How a record holds its vertices.
     pub cage: CageKind,
-    /// Largest deviation, in pixels, at which a record may change from clip
+    /// Largest deviation, in samples, at which a record may change from clip
     /// space to screen space: 0 never, infinity at once.
     pub tolerance_px: f64,
     /// Drawing rule.
@@ -155,11 +157,16 @@ pub struct FrameSetup {
     pub eye_floor: [i64; 3],
     /// The same, rounded up.
     pub eye_ceil: [i64; 3],
-    /// Least depth `W` at which `any` and `center` draw; `exact` draws all that is before the eye.
+    /// Least depth `W` at which `any` and `center` draw (`exact` draws all
+    /// that is before the eye), units of `2^-clip_frac` voxels.
     pub near: i64,
     /// By octree level, least depth `W` of a record that may change to screen
     /// space; `i64::MAX`: none may.
     pub screen_depth: Vec<i64>,
+    /// What a clip-space box is widened by when it is tested against the
+    /// quadtree, in samples, as a shift to the right (0 = one sample): the
+    /// tolerance, rounded up to a power of two; `None`: nothing.
+    pub grow_shift: Option<i32>,
     /// Size, in samples, up to which a record may be drawn at one sample.
     pub size_limit: ShiftSum,
     /// Size, in samples, up to which a node with children is taken for a
@@ -190,20 +197,20 @@ impl FrameSetup {
         let view = View::new(camera, &axes, placement, root_px_log2);
 
         let format = {
-            let room = options.bits.saturating_sub(levels + 4);
+            let room = options.bits.saturating_sub(levels + 5);
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
             Format::new(options.bits, frac)?
         };
-        let clip_frac = match options.frac {
-            Some(frac) => frac.min(MAX_CLIP_FRAC),
-            None => view.widest_fraction(depth, format),
+        let (clip_frac, sub_levels) = match options.frac {
+            Some(frac) => split_fraction(frac, MAX_CLIP_FRAC, options.coverage),
+            None => view.widest_fraction(depth, format, options.coverage),
         };
+        let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
         let (origin_clip, edge_clip) = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
         if reach(&origin_clip, &edge_clip, depth).is_none() {
             return Err(SetupError::OutOfRange);
         }
 
-        let sub_levels = clip_frac.min((options.bits - 2).saturating_sub(depth));
         let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)
             .ok_or(SetupError::OutOfRange)?
             .ok_or(SetupError::Collapsed {
@@ -229,8 +236,11 @@ impl FrameSetup {
             eye_ceil: eye.ceil,
             near,
             screen_depth: (0..=bound)
-                .map(|level| view.screen_depth(level, depth, options, clip_frac, near))
+                .map(|level| {
+                    view.screen_depth(level, depth, options, clip_frac, format.frac(), near)
+                })
                 .collect(),
+            grow_shift: grow_shift(options),
             size_limit: size_limit(options, 1.0).unwrap_or_default(),
             lod_limit: size_limit(options, options.lod_px),
             placement: *placement,
@@ -249,6 +259,17 @@ impl FrameSetup {
     pub fn depth_unit_world(&self) -> f64 {
         self.placement.voxel_size / (1u64 << self.clip_frac) as f64
     }
+}
+
+/// Shares `total` fraction bits of a position between the precision of the
+/// view (at most `most`) and exact halving below the finest voxels, which
+/// only the rules that subdivide solids have a use for.
+fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
+    if coverage == Coverage::Exact {
+        return (total.min(most), 0);
+    }
+    let clip_frac = most.min(total - total / 3);
+    (clip_frac, (total - clip_frac).min(MAX_SUB_LEVELS))
 }
 
 /// `ceil(log2)` of the longer side of a picture.
@@ -270,6 +291,12 @@ fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
         return bad("samples per axis", "1, 2 or 4", samples);
     }
     Ok(())
+}
+
+/// The tolerance, rounded up to `2^-shift` samples.
+fn grow_shift(options: &SetupOptions) -> Option<i32> {
+    let tolerance = options.tolerance_px;
+    (tolerance > 0.0 && tolerance.is_finite()).then(|| -(libm::ceil(libm::log2(tolerance)) as i32))
 }
 
 /// A constant factor as a sum of powers of two: `x` times it is a sum of
@@ -368,21 +395,27 @@ impl View {
         Some((origin, edge))
     }
 
-    /// The most fraction bits with which positions fit a word and silhouette
-    /// planes a wide word, headroom included; 0 where none do.
-    fn widest_fraction(&self, depth: u32, format: Format) -> u32 {
-        (0..=MAX_CLIP_FRAC)
+    /// The most fraction bits, and levels below a finest voxel, with which
+    /// positions fit a word and silhouette planes a wide word, with headroom
+    /// (bisector tests take `2X - W`, the divide `X + 4W` and `8W`).
+    fn widest_fraction(&self, depth: u32, format: Format, coverage: Coverage) -> (u32, u32) {
+        let fits = |frac: u32, shift: u32, plane_too: bool| {
+            self.quantise(frac)
+                .and_then(|(origin, edge)| reach(&origin, &edge, depth))
+                .is_some_and(|reach| {
+                    reach.position << shift <= i128::from(format.max()) / 8
+                        && (!plane_too || reach.plane <= i128::from(format.wide().max()) / 8)
+                })
+        };
+        let plane_frac = (0..=MAX_CLIP_FRAC).rev().find(|&f| fits(f, 0, true));
+        let Some(plane_frac) = plane_frac else {
+            return (0, 0);
+        };
+        let room = (0..=MAX_SUB_LEVELS)
             .rev()
-            .find(|&frac| {
-                self.quantise(frac)
-                    .and_then(|(origin, edge)| reach(&origin, &edge, depth))
-                    .is_some_and(|reach| {
-                        // Bisector tests take 2X - W, the guard 4W + X.
-                        reach.position <= (format.max() as i128) / 8
-                            && reach.plane <= (format.wide().max() as i128) / 8
-                    })
-            })
-            .unwrap_or(0)
+            .find(|&shift| fits(plane_frac, shift, false))
+            .unwrap_or(0);
+        split_fraction(plane_frac + room, plane_frac, coverage)
     }
 
     /// Least `W` at which a record of `level` deviates from its screen-space
@@ -393,6 +426,7 @@ impl View {
         depth: u32,
         options: &SetupOptions,
         frac: u32,
+        screen_frac: u32,
         near: i64,
     ) -> i64 {
         if options.tolerance_px == 0.0 {
@@ -400,6 +434,12 @@ impl View {
         }
         if options.tolerance_px.is_infinite() {
             return near;
+        }
+        // Quotients are rounded down: a corner and three edges, one unit each.
+        let rounding = 4.0 * libm::ldexp(1.0, -(screen_frac as i32));
+        let allowed = (options.tolerance_px - rounding) * (1.0 - 1e-6);
+        if allowed <= 0.0 {
+            return i64::MAX;
         }
         let guard = 1.0 / f64::from(1u32 << SCREEN_GUARD_SHIFT);
         let depth_span: f64 = self.edge.iter().map(|e| e.z.abs()).sum();
@@ -416,7 +456,7 @@ impl View {
         let product = across(0).max(across(1)) * depth_span * root_samples;
         // A record's side in voxels, exact in f64.
         let side = libm::ldexp(1.0, depth as i32 - level as i32);
-        let least = libm::sqrt(product / options.tolerance_px) * side;
+        let least = libm::sqrt(product / allowed) * side;
         to_i64(libm::ceil(libm::ldexp(least, frac as i32))).map_or(i64::MAX, |w| w.max(near))
     }
 }

@@ -1,0 +1,173 @@
+//! The image quadtree: which parts of the picture are full (paper, 3.3).
+//!
+//! Each node has a 4-bit fill vector, one bit for each quadrant
+//! (`y << 1 | x`). A drawn sample sets all its bits; a full node sets its bit
+//! in its parent. Quadrants outside the picture are full from the start, so
+//! that clipping to the picture is the same test as occlusion.
+
+/// A node of the image quadtree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct QuadNode {
+    /// Level, 0 = root; a sample is at the deepest level.
+    pub level: u32,
+    /// Column among the `2^level` nodes across.
+    pub x: u32,
+    /// Row among the `2^level` nodes down.
+    pub y: u32,
+}
+
+impl QuadNode {
+    /// The root: the whole picture and what is right of and below it.
+    pub const ROOT: Self = Self {
+        level: 0,
+        x: 0,
+        y: 0,
+    };
+
+    /// Quadrant `y << 1 | x` of this node.
+    #[inline]
+    #[must_use]
+    pub const fn quadrant(self, quadrant: u8) -> Self {
+        Self {
+            level: self.level + 1,
+            x: self.x << 1 | (quadrant & 1) as u32,
+            y: self.y << 1 | (quadrant >> 1) as u32,
+        }
+    }
+
+    /// Which quadrant of its parent this node is.
+    #[inline]
+    #[must_use]
+    pub const fn in_parent(self) -> u8 {
+        ((self.y & 1) << 1 | self.x & 1) as u8
+    }
+}
+
+/// All four quadrants.
+pub const FULL: u8 = 0b1111;
+
+/// The fill vectors of all nodes, level by level, row by row.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FillVectors {
+    levels: u32,
+    vectors: Vec<u8>,
+    empty_picture: Vec<u8>,
+}
+
+/// Place of a level's first node among all nodes: `(4^level - 1) / 3`.
+const fn level_start(level: u32) -> usize {
+    ((1 << (2 * level)) - 1) / 3
+}
+
+impl FillVectors {
+    /// An empty picture of `width` x `height` samples in a root of `2^levels` a side.
+    #[must_use]
+    pub fn new(levels: u32, width: u32, height: u32) -> Self {
+        let mut fill = Self {
+            levels,
+            vectors: vec![0; level_start(levels + 1)],
+            empty_picture: Vec::new(),
+        };
+        for level in (0..=levels).rev() {
+            let side = 1u32 << level;
+            for y in 0..side {
+                for x in 0..side {
+                    let node = QuadNode { level, x, y };
+                    let vector = if level == levels {
+                        if x < width && y < height { 0 } else { FULL }
+                    } else {
+                        (0..4).fold(0, |bits, quadrant| {
+                            let full = fill.vector(node.quadrant(quadrant)) == FULL;
+                            bits | u8::from(full) << quadrant
+                        })
+                    };
+                    let at = fill.address(node);
+                    fill.vectors[at] = vector;
+                }
+            }
+        }
+        fill.empty_picture.clone_from(&fill.vectors);
+        fill
+    }
+
+    /// Forgets what was drawn.
+    pub fn clear(&mut self) {
+        self.vectors.copy_from_slice(&self.empty_picture);
+    }
+
+    /// Level of the samples.
+    #[must_use]
+    pub fn levels(&self) -> u32 {
+        self.levels
+    }
+
+    /// Number of nodes: the fill-vector memory has 4 bits for each.
+    #[must_use]
+    pub fn nodes(&self) -> usize {
+        self.vectors.len()
+    }
+
+    /// Address of a node's vector.
+    #[inline]
+    #[must_use]
+    pub fn address(&self, node: QuadNode) -> usize {
+        level_start(node.level) + ((node.y as usize) << node.level) + node.x as usize
+    }
+
+    /// The fill vector of a node.
+    #[inline]
+    #[must_use]
+    pub fn vector(&self, node: QuadNode) -> u8 {
+        self.vectors[self.address(node)]
+    }
+
+    /// Sets bits of a node's vector and returns the vector.
+    #[inline]
+    pub fn set(&mut self, node: QuadNode, bits: u8) -> u8 {
+        let at = self.address(node);
+        self.vectors[at] |= bits;
+        self.vectors[at]
+    }
+
+    /// Whether every invariant holds: a bit is set exactly where the quadrant is full.
+    #[must_use]
+    pub fn is_consistent(&self) -> bool {
+        (0..self.levels).all(|level| {
+            let side = 1u32 << level;
+            (0..side).all(|y| {
+                (0..side).all(|x| {
+                    let node = QuadNode { level, x, y };
+                    (0..4).all(|quadrant| {
+                        let full = self.vector(node.quadrant(quadrant)) == FULL;
+                        full == (self.vector(node) >> quadrant & 1 != 0)
+                    })
+                })
+            })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn outside_the_picture_is_full_from_the_start() {
+        let fill = FillVectors::new(3, 5, 2);
+        assert!(fill.is_consistent());
+        // Rows 4..8 are outside: both lower quadrants of the root.
+        assert_eq!(fill.vector(QuadNode::ROOT), 0b1100);
+        // Column 4 alone is inside the upper right quadrant.
+        let right = QuadNode::ROOT.quadrant(1);
+        assert_eq!(fill.vector(right), 0b1110);
+    }
+
+    #[test]
+    fn a_one_sample_picture_is_its_root() {
+        let mut fill = FillVectors::new(0, 1, 1);
+        assert_eq!(fill.vector(QuadNode::ROOT), 0);
+        assert_eq!(fill.set(QuadNode::ROOT, FULL), FULL);
+        fill.clear();
+        assert_eq!(fill.vector(QuadNode::ROOT), 0);
+    }
+}

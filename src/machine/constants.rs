@@ -1,0 +1,152 @@
+//! The frame's constants as machine words, loaded before the first record.
+
+use hwmodel::{Datapath, Probe, WideWord, Word};
+
+use crate::project::setup::ShiftSum;
+use crate::project::{Coverage, FrameSetup};
+
+/// How a clip-space box is compared with a bisector of the quadtree.
+#[derive(Debug, Clone)]
+pub(super) enum Margin {
+    /// As it is: half-open boxes.
+    Plain,
+    /// Widened by `2^-shift` samples on each side, closed: what the change
+    /// to screen space may add.
+    Grow(i32),
+    /// Quadrants count only where the box holds one of their sample points:
+    /// narrowed by half of this many samples on each side, closed.
+    Gap(ShiftSum),
+}
+
+/// Constants of a frame.
+#[derive(Debug)]
+pub(super) struct Constants {
+    pub(super) coverage: Coverage,
+    /// Level of the samples in the image quadtree.
+    pub(super) levels: u32,
+    /// Octree level of the finest voxels.
+    pub(super) depth: u32,
+    /// Levels below.
+    pub(super) sub_levels: u32,
+    pub(super) level_bound: u32,
+    /// Fraction bits of screen positions.
+    pub(super) screen_frac: u32,
+    /// Fraction bits of the quotient's guard against the exact rule's gaps.
+    pub(super) finite_tolerance: bool,
+    pub(super) margin: Margin,
+    /// Like `margin`, for tests that never leave gaps (edges of the picture).
+    pub(super) grow: Option<i32>,
+    pub(super) size_limit: ShiftSum,
+    pub(super) lod_limit: Option<ShiftSum>,
+    /// `size_limit` and `lod_limit` in screen units.
+    pub(super) size_limit_screen: Word,
+    pub(super) lod_limit_screen: Word,
+    pub(super) near: Word,
+    /// By level; `None`: never.
+    pub(super) screen_depth: Vec<Option<Word>>,
+    pub(super) eye_floor: [Word; 3],
+    pub(super) eye_ceil: [Word; 3],
+    pub(super) positive: bool,
+    /// `a` and `b` of the planes perpendicular to the three axes.
+    pub(super) axis_ab: [[WideWord; 2]; 3],
+    /// Their `c` at the root of the quadtree.
+    pub(super) axis_c: [WideWord; 3],
+    /// The root's planes through its lowest corner, by edge direction.
+    pub(super) edge_planes: [[WideWord; 3]; 3],
+    /// Clip vector of the root's lowest corner (X, Y, W).
+    pub(super) origin: [Word; 3],
+    /// Clip vectors of the root's edges: by coordinate, then by axis.
+    pub(super) edges: [[Word; 3]; 3],
+}
+
+fn cross(a: [i64; 3], b: [i64; 3]) -> [i128; 3] {
+    let at = |i: usize, j: usize| {
+        i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
+    };
+    [at(1, 2), at(2, 0), at(0, 1)]
+}
+
+/// An integer that the host hands over; beyond 64 bits it is cut to the
+/// nearest, which no format holds, so that the load overflows as it must.
+fn clamp(value: i128) -> i64 {
+    i64::try_from(value).unwrap_or(if value < 0 { i64::MIN } else { i64::MAX })
+}
+
+impl Constants {
+    /// Loads a frame. This is host work: it multiplies, once for a frame, and
+    /// no probe sees it; the loads check that everything fits its word.
+    pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
+        let options = &setup.options;
+        let exact = options.coverage == Coverage::Exact;
+        let scale = setup.sub_levels;
+        let mut word = |value: i64, shift: u32| dp.load(clamp(i128::from(value) << shift));
+        let origin = setup.origin_clip.map(|c| word(c, scale));
+        let edges =
+            [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(setup.edge_clip[k][c], scale + setup.depth)));
+        let screen_depth = setup
+            .screen_depth
+            .iter()
+            .map(|&w| {
+                let scaled = i128::from(w) << scale;
+                let reachable = w != i64::MAX && scaled <= i128::from(setup.format.max());
+                reachable.then(|| Word::from_host(clamp(scaled)))
+            })
+            .collect();
+        // Beyond the object all eyes compare alike, so a far one is brought near.
+        let far = 1i64 << (setup.depth + setup.sub_levels);
+        let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, far + 1)));
+        let screen_frac = setup.format.frac();
+        let screen_limit = |limit: &ShiftSum| {
+            let units = libm::ldexp(limit.value(), screen_frac as i32);
+            Word::from_host(libm::floor(units) as i64)
+        };
+        let near = word(setup.near, scale);
+
+        let mut axis_ab = [[WideWord::ZERO; 2]; 3];
+        let mut axis_c = [WideWord::ZERO; 3];
+        let mut edge_planes = [[WideWord::ZERO; 3]; 3];
+        if exact {
+            for k in 0..3 {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let [a, b, c] =
+                    cross(setup.edge_clip[i], setup.edge_clip[j]).map(|c| dp.load_wide(clamp(c)));
+                axis_ab[k] = [a, b];
+                axis_c[k] = c;
+                edge_planes[k] =
+                    cross(setup.origin_clip, setup.edge_clip[k]).map(|c| dp.load_wide(clamp(c)));
+            }
+        }
+        let gap = exact
+            && setup.lod_limit.is_none()
+            && (setup.grow_shift.is_none() || options.tolerance_px <= 0.4375);
+        Self {
+            coverage: options.coverage,
+            levels: setup.levels,
+            depth: setup.depth,
+            sub_levels: setup.sub_levels,
+            level_bound: setup.level_bound(),
+            screen_frac,
+            finite_tolerance: options.tolerance_px.is_finite(),
+            margin: match setup.grow_shift {
+                _ if gap => Margin::Gap(setup.size_limit.clone()),
+                Some(shift) => Margin::Grow(shift),
+                None => Margin::Plain,
+            },
+            grow: setup.grow_shift,
+            size_limit: setup.size_limit.clone(),
+            lod_limit: setup.lod_limit.clone(),
+            size_limit_screen: screen_limit(&setup.size_limit),
+            lod_limit_screen: setup.lod_limit.as_ref().map_or(Word::ZERO, screen_limit),
+            near,
+            screen_depth,
+            eye_floor: eye(setup.eye_floor),
+            eye_ceil: eye(setup.eye_ceil),
+            positive: setup.positive,
+            axis_ab,
+            axis_c,
+            edge_planes,
+            origin,
+            edges,
+        }
+    }
+}

@@ -1,0 +1,405 @@
+//! The smallest unfilled quadtree node that holds a voxel's box (paper, 3.5).
+//!
+//! From the parent's node on, the box is tested against the two bisectors;
+//! if all quadrants that it overlaps are full, it is rejected; if it overlaps
+//! exactly one, that quadrant is next; else the node is found. Where a record
+//! ends does not depend on what is drawn, only whether it is rejected does.
+
+use hwmodel::{Datapath, Memory, Probe, Stage, WideWord, Word};
+
+use super::constants::{Constants, Margin};
+use super::lattice::Lattice;
+use super::record::{Clip, Planes, Screen};
+use crate::frame::quadtree::FULL;
+use crate::frame::{FillVectors, QuadNode};
+
+/// Which halves a box overlaps along one axis.
+#[derive(Clone, Copy)]
+struct Halves {
+    low: bool,
+    high: bool,
+}
+
+/// The four quadrants (`y << 1 | x`) that halves along x and y leave.
+fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
+    let across = u8::from(x.low) * 0b0101 | u8::from(x.high) * 0b1010;
+    let down = u8::from(y.low) * 0b0011 | u8::from(y.high) * 0b1100;
+    dp.and_bits(4, across, down)
+}
+
+/// The fill vectors as the fit sees them.
+pub(super) struct Fill<'f> {
+    pub(super) vectors: &'f FillVectors,
+    /// Whether full quadrants reject.
+    pub(super) reject: bool,
+}
+
+impl Fill<'_> {
+    /// Whether a box that overlaps `quadrants` of `quad` has nowhere to go.
+    #[inline]
+    fn rejects<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode, quadrants: u8) -> bool {
+        if !self.reject {
+            return quadrants == 0;
+        }
+        dp.read(Memory::FillVector, self.vectors.address(quad) as u64);
+        dp.and_bits(4, quadrants, !self.vectors.vector(quad) & FULL) == 0
+    }
+}
+
+/// The only quadrant of a vector, if it has just one.
+fn only(quadrants: u8) -> Option<u8> {
+    quadrants
+        .is_power_of_two()
+        .then(|| quadrants.trailing_zeros() as u8)
+}
+
+/// `a >> places`, or to the left for negative `places`.
+#[inline]
+pub(super) fn shift<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Word {
+    if places >= 0 {
+        dp.shr(a, places as u32)
+    } else {
+        dp.shl(a, places.unsigned_abs())
+    }
+}
+
+/// A position in the image: quadtree node, and whether the box lies inside it.
+pub(super) struct Place {
+    pub(super) quad: QuadNode,
+    pub(super) inside: bool,
+}
+
+/// Fits a clip-space voxel, and makes its coordinates and planes relative to
+/// the node found. `None`: rejected.
+pub(super) fn clip<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &Fill<'_>,
+    place: &Place,
+    pose: &mut Clip<L>,
+    planes: &mut Planes,
+) -> Option<Place> {
+    dp.stage(Stage::QuadtreeFit);
+    let mut quad = place.quad;
+    let inside = place.inside
+        || match border(dp, constants, quad, pose) {
+            Border::Outside => return None,
+            Border::Across => false,
+            Border::Inside => true,
+        };
+    loop {
+        let below = constants.levels - quad.level;
+        let (doubled_x, x) = bisect(dp, constants, below, &pose.x, &pose.w);
+        let (doubled_y, y) = bisect(dp, constants, below, &pose.y, &pose.w);
+        let overlapped = quadrants(dp, x, y);
+        if fill.rejects(dp, quad, overlapped) {
+            return None;
+        }
+        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
+            break;
+        };
+        let to_x = rebase(dp, quadrant & 1 != 0, &pose.x, doubled_x);
+        let to_y = rebase(dp, quadrant & 2 != 0, &pose.y, doubled_y);
+        if !inside && !(near_node(dp, &to_x, &pose.w) && near_node(dp, &to_y, &pose.w)) {
+            // Too far outside: coordinates would grow beyond the word.
+            break;
+        }
+        (pose.x, pose.y) = (to_x, to_y);
+        if constants.coverage == crate::project::Coverage::Exact {
+            rebase_planes(dp, constants, planes, quadrant);
+        }
+        quad = quad.quadrant(quadrant);
+    }
+    Some(Place { quad, inside })
+}
+
+/// Twice the coordinate less the width: its sign is the side of the
+/// bisector, its values are the right half's coordinates.
+fn bisect<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    below: u32,
+    x: &L,
+    w: &L,
+) -> (L, Halves) {
+    let relative = x.zip(w, |x, w| {
+        let doubled = dp.shl(x, 1);
+        dp.sub(doubled, w)
+    });
+    let below = below as i32;
+    let halves = match &constants.margin {
+        Margin::Plain => {
+            let (low, high) = relative.span(dp);
+            let low = dp.is_negative(low);
+            let high = dp.is_positive(high) || !low;
+            Halves { low, high }
+        }
+        &Margin::Grow(grow) => {
+            let margin = w.map(|w| shift(dp, w, grow + below - 1));
+            closed(dp, &relative, &margin)
+        }
+        Margin::Gap(samples) if below > 0 => {
+            // Narrowed: the sum of shifted widths, taken with the other sign.
+            let margin = w.map(|w| {
+                let sum = sum_of_shifts(dp, w, samples.shifts(), below);
+                dp.neg(sum)
+            });
+            closed(dp, &relative, &margin)
+        }
+        Margin::Gap(_) => {
+            // At a sample there is one sample point, in the middle.
+            let halves = match constants.grow {
+                None => closed_plain(dp, &relative),
+                Some(grow) => {
+                    let margin = w.map(|w| shift(dp, w, grow - 1));
+                    closed(dp, &relative, &margin)
+                }
+            };
+            let both = halves.low && halves.high;
+            Halves {
+                low: both,
+                high: both,
+            }
+        }
+    };
+    (relative, halves)
+}
+
+/// `a` times a factor, as shifted copies of `a`, each `extra` places further right.
+pub(super) fn sum_of_shifts<P: Probe>(
+    dp: &mut Datapath<P>,
+    a: Word,
+    shifts: &[i32],
+    extra: i32,
+) -> Word {
+    let mut sum = Word::ZERO;
+    for (i, &places) in shifts.iter().enumerate() {
+        let part = shift(dp, a, places + extra);
+        sum = if i == 0 { part } else { dp.add(sum, part) };
+    }
+    sum
+}
+
+/// Both sides of a line, boxes closed and widened by `margin`.
+fn closed<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L, margin: &L) -> Halves {
+    let lowered = relative.zip(margin, |v, m| dp.sub(v, m));
+    let raised = relative.zip(margin, |v, m| dp.add(v, m));
+    let (low, _) = lowered.span(dp);
+    let (_, high) = raised.span(dp);
+    Halves {
+        low: !dp.is_positive(low),
+        high: !dp.is_negative(high),
+    }
+}
+
+fn closed_plain<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L) -> Halves {
+    let (low, high) = relative.span(dp);
+    Halves {
+        low: !dp.is_positive(low),
+        high: !dp.is_negative(high),
+    }
+}
+
+/// The coordinates in the left half (doubled) or in the right half (as tested).
+fn rebase<P: Probe, L: Lattice>(dp: &mut Datapath<P>, right: bool, x: &L, tested: L) -> L {
+    if right {
+        tested
+    } else {
+        x.map(|x| dp.shl(x, 1))
+    }
+}
+
+/// Whether a box leaves a node by at most the node's width.
+fn near_node<P: Probe, L: Lattice>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
+    let from_left = x.zip(w, |x, w| dp.add(x, w));
+    let (low, _) = from_left.span(dp);
+    let to_right = x.zip(w, |x, w| {
+        let double = dp.shl(w, 1);
+        dp.sub(x, double)
+    });
+    let (_, high) = to_right.span(dp);
+    !dp.is_negative(low) && !dp.is_positive(high)
+}
+
+/// Planes relative to a quadrant: `c' = 2c + bx a + by b`.
+fn rebase_planes<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    planes: &mut Planes,
+    quadrant: u8,
+) {
+    for plane in &mut planes.edge {
+        plane[2] = rebased(dp, [plane[0], plane[1]], plane[2], quadrant);
+    }
+    for (c, &ab) in planes.axis_c.iter_mut().zip(&constants.axis_ab) {
+        *c = rebased(dp, ab, *c, quadrant);
+    }
+}
+
+/// The constant of `a x + b y + c` in a quadrant's own coordinates, doubled.
+#[inline]
+pub(super) fn rebased<P: Probe>(
+    dp: &mut Datapath<P>,
+    [a, b]: [WideWord; 2],
+    c: WideWord,
+    quadrant: u8,
+) -> WideWord {
+    let mut to = dp.shl(c, 1);
+    if quadrant & 1 != 0 {
+        to = dp.add(to, a);
+    }
+    if quadrant & 2 != 0 {
+        to = dp.add(to, b);
+    }
+    to
+}
+
+/// How a box lies to the edges of a node that is cut by the picture's border.
+enum Border {
+    Inside,
+    Across,
+    Outside,
+}
+
+/// The box against the four edges of a node, which are the picture's where
+/// the parent's box left it.
+fn border<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    pose: &Clip<L>,
+) -> Border {
+    let below = (constants.levels - quad.level) as i32;
+    let mut inside = true;
+    for x in [&pose.x, &pose.y] {
+        let from_left = *x;
+        let from_right = x.zip(&pose.w, |x, w| dp.sub(x, w));
+        let (left, right) = match constants.grow {
+            None => (from_left.span(dp), from_right.span(dp)),
+            Some(grow) => {
+                let margin = pose.w.map(|w| shift(dp, w, grow + below));
+                let outward = |dp: &mut Datapath<P>, v: &L| {
+                    let raised = v.zip(&margin, |v, m| dp.add(v, m));
+                    let lowered = v.zip(&margin, |v, m| dp.sub(v, m));
+                    let (_, high) = raised.span(dp);
+                    let (low, _) = lowered.span(dp);
+                    (low, high)
+                };
+                (outward(dp, &from_left), outward(dp, &from_right))
+            }
+        };
+        if dp.is_negative(left.1) || dp.is_positive(right.0) {
+            return Border::Outside;
+        }
+        inside &= if constants.grow.is_some() {
+            dp.is_positive(left.0) && dp.is_negative(right.1)
+        } else {
+            !dp.is_negative(left.0) && !dp.is_positive(right.1)
+        };
+    }
+    if inside {
+        Border::Inside
+    } else {
+        Border::Across
+    }
+}
+
+/// Fits a screen-space voxel. `None`: rejected.
+pub(super) fn screen<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &Fill<'_>,
+    place: &Place,
+    pose: &Screen<L>,
+) -> Option<Place> {
+    dp.stage(Stage::QuadtreeFit);
+    let mut quad = place.quad;
+    let inside = place.inside
+        || match screen_border(dp, constants, quad, pose) {
+            Border::Outside => return None,
+            Border::Across => false,
+            Border::Inside => true,
+        };
+    loop {
+        let below = constants.levels - quad.level;
+        let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
+        let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
+        let overlapped = quadrants(dp, x, y);
+        if fill.rejects(dp, quad, overlapped) {
+            return None;
+        }
+        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
+            break;
+        };
+        quad = quad.quadrant(quadrant);
+    }
+    Some(Place { quad, inside })
+}
+
+/// A position on the picture in half samples, as a screen-space word: wires.
+fn at_half_samples(constants: &Constants, half_samples: i64) -> Word {
+    let shifted = if constants.screen_frac > 0 {
+        half_samples << (constants.screen_frac - 1)
+    } else {
+        half_samples >> 1
+    };
+    Word::from_host(shifted)
+}
+
+fn screen_halves<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    below: u32,
+    column: u32,
+    (low, high): (Word, Word),
+) -> Halves {
+    let bisector = i64::from(2 * column + 1) << below;
+    match &constants.margin {
+        Margin::Gap(_) if below == 0 => {
+            let middle = at_half_samples(constants, bisector);
+            let both = dp.le(low, middle) && dp.le(middle, high);
+            Halves {
+                low: both,
+                high: both,
+            }
+        }
+        Margin::Gap(_) => {
+            // The sample points on either side of the bisector.
+            let before = at_half_samples(constants, bisector - 1);
+            let after = at_half_samples(constants, bisector + 1);
+            Halves {
+                low: dp.le(low, before),
+                high: dp.le(after, high),
+            }
+        }
+        Margin::Plain | Margin::Grow(_) => {
+            let middle = at_half_samples(constants, bisector);
+            let low = dp.lt(low, middle);
+            let high = dp.lt(middle, high) || !low;
+            Halves { low, high }
+        }
+    }
+}
+
+fn screen_border<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    pose: &Screen<L>,
+) -> Border {
+    let below = constants.levels - quad.level;
+    let mut inside = true;
+    for (column, (low, high)) in [(quad.x, pose.x_span), (quad.y, pose.y_span)] {
+        let left = at_half_samples(constants, i64::from(column) << (below + 1));
+        let right = at_half_samples(constants, i64::from(column + 1) << (below + 1));
+        if dp.lt(high, left) || dp.lt(right, low) {
+            return Border::Outside;
+        }
+        inside &= dp.le(left, low) && dp.le(high, right);
+    }
+    if inside {
+        Border::Inside
+    } else {
+        Border::Across
+    }
+}

@@ -1,0 +1,256 @@
+//! One coordinate of a voxel's eight projected vertices, held in either of
+//! two ways: eight corners (the paper) or one corner and three edges.
+//!
+//! A lattice says how its children's values follow from its own by adds and
+//! shifts, and between which values all its vertices lie. Two lattices make a
+//! cage in screen space (x, y), three in clip space (X, Y, W).
+
+use hwmodel::{Datapath, Probe, Word};
+
+/// One coordinate of eight vertices.
+pub(super) trait Lattice: Copy + std::fmt::Debug {
+    /// The vertices of a parallelepiped with this corner and these edges
+    /// (along x, y, z).
+    fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
+
+    /// The eight children's lattices, in Morton order; their vertices lie
+    /// between this lattice's.
+    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8];
+
+    /// The least and the greatest vertex.
+    fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word);
+
+    /// The middle of the lowest and the highest corner, rounded down.
+    fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word;
+
+    /// The edges from the lowest corner along x, y, z.
+    fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
+
+    /// The lowest corner.
+    fn corner(&self) -> Word;
+
+    /// `f` applied to each number that makes up the lattice; `f` is linear.
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
+
+    /// `f` applied to each pair of numbers; `f` is linear.
+    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
+
+    /// All vertices moved by `by`.
+    fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
+
+    /// The lattice of the vertices' quotients `x / w`, as `divide` makes them.
+    fn project<P: Probe>(
+        dp: &mut Datapath<P>,
+        x: &Self,
+        w: &Self,
+        divide: impl FnMut(&mut Datapath<P>, Word, Word) -> Word,
+    ) -> Self;
+}
+
+/// Eight corners in Morton order (`x << 2 | y << 1 | z`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Corners([Word; 8]);
+
+impl Lattice for Corners {
+    fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
+        let [x, y, z] = edges;
+        let mut v = [corner; 8];
+        v[4] = dp.add(v[0], x);
+        v[2] = dp.add(v[0], y);
+        v[6] = dp.add(v[4], y);
+        for low in [0, 2, 4, 6] {
+            v[low + 1] = dp.add(v[low], z);
+        }
+        Self(v)
+    }
+
+    /// The paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 lattice made
+    /// axis by axis, 4 midpoints along x, 6 along y, 9 along z. The order is
+    /// normative: rounding makes others differ in the last bit.
+    #[inline]
+    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+        // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
+        let mut pool = [Word::ZERO; 27];
+        for (corner, &value) in self.0.iter().enumerate() {
+            let (i, j, k) = (corner >> 2, corner >> 1 & 1, corner & 1);
+            pool[18 * i + 6 * j + 2 * k] = value;
+        }
+        for j in [0, 2] {
+            for k in [0, 2] {
+                let at = 3 * j + k;
+                pool[9 + at] = dp.midpoint(pool[at], pool[18 + at]);
+            }
+        }
+        for i in 0..3 {
+            for k in [0, 2] {
+                let at = 9 * i + k;
+                pool[at + 3] = dp.midpoint(pool[at], pool[at + 6]);
+            }
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                let at = 9 * i + 3 * j;
+                pool[at + 1] = dp.midpoint(pool[at], pool[at + 2]);
+            }
+        }
+        std::array::from_fn(|child| {
+            let (i, j, k) = (child >> 2, child >> 1 & 1, child & 1);
+            Self(std::array::from_fn(|corner| {
+                let (a, b, c) = (corner >> 2, corner >> 1 & 1, corner & 1);
+                pool[9 * (i + a) + 3 * (j + b) + k + c]
+            }))
+        })
+    }
+
+    #[inline]
+    fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
+        let mut low = self.0[0];
+        let mut high = self.0[0];
+        for &value in &self.0[1..] {
+            low = dp.min(low, value);
+            high = dp.max(high, value);
+        }
+        (low, high)
+    }
+
+    #[inline]
+    fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word {
+        dp.midpoint(self.0[0], self.0[7])
+    }
+
+    #[inline]
+    fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3] {
+        [4, 2, 1].map(|end| dp.sub(self.0[end], self.0[0]))
+    }
+
+    #[inline]
+    fn corner(&self) -> Word {
+        self.0[0]
+    }
+
+    #[inline]
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
+        Self(self.0.map(f))
+    }
+
+    #[inline]
+    fn zip(&self, other: &Self, mut f: impl FnMut(Word, Word) -> Word) -> Self {
+        Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
+    }
+
+    fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
+        Self(self.0.map(|value| dp.add(value, by)))
+    }
+
+    fn project<P: Probe>(
+        dp: &mut Datapath<P>,
+        x: &Self,
+        w: &Self,
+        mut divide: impl FnMut(&mut Datapath<P>, Word, Word) -> Word,
+    ) -> Self {
+        x.zip(w, |x, w| divide(dp, x, w))
+    }
+}
+
+/// One corner and the three edges that leave it along x, y, z.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Frame {
+    corner: Word,
+    edges: [Word; 3],
+}
+
+impl Lattice for Frame {
+    fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
+        Self { corner, edges }
+    }
+
+    /// Edges are halved towards zero (the sign bit is added before the
+    /// shift), so that children never leave their parent; seven adds make the
+    /// eight corners.
+    #[inline]
+    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+        let edges = self.edges.map(|edge| {
+            let sign = Word::from_host(i64::from(dp.bit(edge, 63)));
+            dp.midpoint(edge, sign)
+        });
+        let mut corner = [self.corner; 8];
+        corner[4] = dp.add(corner[0], edges[0]);
+        corner[2] = dp.add(corner[0], edges[1]);
+        corner[6] = dp.add(corner[4], edges[1]);
+        for low in [0, 2, 4, 6] {
+            corner[low + 1] = dp.add(corner[low], edges[2]);
+        }
+        corner.map(|corner| Self { corner, edges })
+    }
+
+    #[inline]
+    fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
+        let mut low = self.corner;
+        let mut high = self.corner;
+        for edge in self.edges {
+            let below = dp.min(edge, Word::ZERO);
+            let above = dp.max(edge, Word::ZERO);
+            low = dp.add(low, below);
+            high = dp.add(high, above);
+        }
+        (low, high)
+    }
+
+    #[inline]
+    fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word {
+        let [x, y, z] = self.edges;
+        let xy = dp.add(x, y);
+        let half = dp.midpoint(xy, z);
+        dp.add(self.corner, half)
+    }
+
+    #[inline]
+    fn edges<P: Probe>(&self, _: &mut Datapath<P>) -> [Word; 3] {
+        self.edges
+    }
+
+    #[inline]
+    fn corner(&self) -> Word {
+        self.corner
+    }
+
+    #[inline]
+    fn map(&self, mut f: impl FnMut(Word) -> Word) -> Self {
+        Self {
+            corner: f(self.corner),
+            edges: self.edges.map(f),
+        }
+    }
+
+    #[inline]
+    fn zip(&self, other: &Self, mut f: impl FnMut(Word, Word) -> Word) -> Self {
+        Self {
+            corner: f(self.corner, other.corner),
+            edges: std::array::from_fn(|k| f(self.edges[k], other.edges[k])),
+        }
+    }
+
+    fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
+        Self {
+            corner: dp.add(self.corner, by),
+            edges: self.edges,
+        }
+    }
+
+    /// Four of the eight vertices are projected; the others follow.
+    fn project<P: Probe>(
+        dp: &mut Datapath<P>,
+        x: &Self,
+        w: &Self,
+        mut divide: impl FnMut(&mut Datapath<P>, Word, Word) -> Word,
+    ) -> Self {
+        let corner = divide(dp, x.corner, w.corner);
+        let edges = std::array::from_fn(|k| {
+            let end_x = dp.add(x.corner, x.edges[k]);
+            let end_w = dp.add(w.corner, w.edges[k]);
+            let end = divide(dp, end_x, end_w);
+            dp.sub(end, corner)
+        });
+        Self { corner, edges }
+    }
+}

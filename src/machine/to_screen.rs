@@ -1,0 +1,106 @@
+//! The change from clip space to screen space: the one place where the
+//! machine divides, bit by bit, with subtractions and shifts.
+
+use hwmodel::{Datapath, Probe, Stage, Word};
+
+use super::constants::Constants;
+use super::fit::{Place, shift};
+use super::lattice::Lattice;
+use super::record::{Clip, Screen};
+use crate::project::setup::SCREEN_GUARD_SHIFT;
+
+/// Integer bits of a quotient: positions from -4 to 12 node widths.
+const INTEGER_BITS: u32 = 4;
+/// What is added to a numerator to make it positive: `w << this`.
+const OFFSET_SHIFT: u32 = 2;
+
+/// The vertices in screen space, if the record may change at its level.
+pub(super) fn change<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    level: u32,
+    place: &Place,
+    pose: &Clip<L>,
+) -> Option<Screen<L>> {
+    let least = constants.screen_depth.get(level as usize).copied()??;
+    dp.stage(Stage::ToScreen);
+    if dp.lt(pose.w_min, least) {
+        return None;
+    }
+    if !place.inside && !within_guard(dp, constants, place, pose) {
+        return None;
+    }
+    let below = constants.levels - place.quad.level;
+    let mut along = |x: &L, column: u32| {
+        let bits = below + constants.screen_frac;
+        // The node's left edge, less the numerators' offset.
+        let edge = (i64::from(column) - (1 << OFFSET_SHIFT)) << bits;
+        let edge = dp.load(edge);
+        let to = L::project(dp, x, &pose.w, |dp, x, w| divide(dp, x, w, bits));
+        let to = to.moved(dp, edge);
+        let span = to.span(dp);
+        (to, span)
+    };
+    let (x, x_span) = along(&pose.x, place.quad.x);
+    let (y, y_span) = along(&pose.y, place.quad.y);
+    Some(Screen {
+        x,
+        y,
+        x_span,
+        y_span,
+    })
+}
+
+/// Whether the box leaves the picture by no more than the tolerance's bound
+/// allows for: an eighth of it; with an infinite tolerance, four times.
+fn within_guard<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    place: &Place,
+    pose: &Clip<L>,
+) -> bool {
+    let level = place.quad.level as i32;
+    let places = if constants.finite_tolerance {
+        SCREEN_GUARD_SHIFT as i32 - level
+    } else {
+        -(OFFSET_SHIFT as i32) - level
+    };
+    if level > 0 && places <= 0 {
+        // The fit has seen to it that no box leaves a node by more than its width.
+        return true;
+    }
+    [&pose.x, &pose.y].into_iter().all(|x| {
+        let from_left = x.zip(&pose.w, |x, w| {
+            let guard = shift(dp, w, places);
+            dp.add(x, guard)
+        });
+        let (low, _) = from_left.span(dp);
+        let from_right = x.zip(&pose.w, |x, w| {
+            let guard = shift(dp, w, places);
+            let beyond = dp.add(w, guard);
+            dp.sub(x, beyond)
+        });
+        let (_, high) = from_right.span(dp);
+        !dp.is_negative(low) && !dp.is_positive(high)
+    })
+}
+
+/// `floor((x / w + 4) * 2^fraction_bits)` by a restoring divide.
+///
+/// `w > 0` and `-4w <= x < 12w`. One step for each integer and fraction bit.
+fn divide<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, fraction_bits: u32) -> Word {
+    let offset = dp.shl(w, OFFSET_SHIFT);
+    let mut remainder = dp.add(x, offset);
+    let mut quotient = Word::ZERO;
+    for place in (0..INTEGER_BITS).rev() {
+        let (rest, bit) = dp.divide_integer_step(remainder, w, place);
+        remainder = rest;
+        quotient = dp.shift_in(quotient, bit);
+    }
+    for _ in 0..fraction_bits {
+        let (rest, bit) = dp.divide_step(remainder, w, false);
+        remainder = rest;
+        quotient = dp.shift_in(quotient, bit);
+    }
+    quotient
+}

@@ -1,0 +1,539 @@
+//! The record loop.
+
+use hwmodel::{Datapath, Memory, Probe, Stage, Word};
+
+use super::MachineOptions;
+use super::constants::Constants;
+use super::draw::Canvas;
+use super::fit::{self, Fill, Place};
+use super::lattice::Lattice;
+use super::planes::{self, Cube, PlaneSilhouette};
+use super::record::{Clip, Planes, Pose, Record, Screen};
+use super::size;
+use super::strips::StripSilhouette;
+use crate::frame::quadtree::FULL;
+use crate::frame::{FillVectors, Frame, QuadNode};
+use crate::graph::GraphView;
+use crate::project::{Coverage, EngineError, FrameSetup, Stats};
+
+/// Draws a frame with cages of lattice `L`.
+pub(super) fn run<P: Probe, L: Lattice>(
+    options: &MachineOptions,
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    fill: &mut FillVectors,
+    frame: &mut Frame,
+    probe: P,
+) -> Result<(Stats, P), EngineError> {
+    let mut dp = Datapath::new(setup.format, options.overflow, probe);
+    dp.stage(Stage::Push);
+    let constants = Constants::load(&mut dp, setup);
+    let heat = frame.records.is_some().then(|| vec![0; fill.nodes()]);
+    let mut walk = Walk::<P, L> {
+        dp,
+        constants,
+        options,
+        graph,
+        canvas: Canvas::new(fill, frame, heat),
+        stack: Vec::new(),
+        counts: Counts::default(),
+    };
+    walk.push_object();
+    while let Some(record) = walk.stack.pop() {
+        walk.turn(record);
+        if let Some(trap) = walk.dp.trap() {
+            return Err(trap.into());
+        }
+    }
+    if let Some(trap) = walk.dp.trap() {
+        return Err(trap.into());
+    }
+    let overflows = walk.dp.overflows();
+    let stats = walk.counts.stats(&walk.canvas, overflows);
+    walk.canvas.finish();
+    Ok((stats, walk.dp.into_probe()))
+}
+
+/// What a frame came to.
+#[derive(Debug, Default)]
+struct Counts {
+    records: u64,
+    subdivided: u64,
+    already_full: u64,
+    absent_children: u64,
+    behind_eye: u64,
+    rejected: u64,
+    changed_to_screen: u64,
+    at_bound: u64,
+    solids: u64,
+    deepest_stack: u64,
+}
+
+impl Counts {
+    fn stats(&self, canvas: &Canvas<'_>, overflows: u64) -> Stats {
+        vec![
+            ("records", self.records),
+            ("subdivided", self.subdivided),
+            ("already_full", self.already_full),
+            ("absent_children", self.absent_children),
+            ("behind_eye", self.behind_eye),
+            ("rejected_by_quadtree", self.rejected),
+            ("changed_to_screen", self.changed_to_screen),
+            ("at_level_bound", self.at_bound),
+            ("solids_drawn", self.solids),
+            ("samples_drawn", canvas.drawn),
+            ("samples_already_drawn", canvas.occluded),
+            ("deepest_stack", self.deepest_stack),
+            ("overflows", overflows),
+        ]
+    }
+}
+
+struct Walk<'a, P: Probe, L> {
+    dp: Datapath<P>,
+    constants: Constants,
+    options: &'a MachineOptions,
+    graph: &'a GraphView<'a>,
+    canvas: Canvas<'a>,
+    stack: Vec<Record<L>>,
+    counts: Counts,
+}
+
+impl<P: Probe, L: Lattice> Walk<'_, P, L> {
+    /// Makes the record of the whole object and pushes it.
+    fn push_object(&mut self) {
+        let c = &self.constants;
+        let dp = &mut self.dp;
+        let mut lattice =
+            |coordinate: usize| L::from_frame(dp, c.origin[coordinate], c.edges[coordinate]);
+        let (x, y, w) = (lattice(0), lattice(1), lattice(2));
+        let (w_min, w_max) = w.span(dp);
+        let side = dp.load(1i64 << (c.depth + c.sub_levels));
+        let record = Record {
+            min: [Word::ZERO; 3],
+            max: [side; 3],
+            node: self.graph.root,
+            level: 0,
+            voxel_level: 0,
+            solid: false,
+            quad: QuadNode::ROOT,
+            inside: false,
+            pose: Pose::Clip(Clip { x, y, w, w_min }),
+            planes: Planes {
+                edge: c.edge_planes,
+                axis_c: c.axis_c,
+            },
+        };
+        self.push_if_seen(record, w_max);
+    }
+
+    /// Whether a box whose greatest depth is `w_max` lies behind the eye.
+    fn is_behind(&mut self, w_max: Word) -> bool {
+        if self.constants.coverage == Coverage::Exact {
+            !self.dp.is_positive(w_max)
+        } else {
+            self.dp.lt(w_max, self.constants.near)
+        }
+    }
+
+    /// Pushes a clip-space record, if it is before the eye and there is an
+    /// unfilled quadtree node for it. `w_max` is its greatest depth.
+    fn push_if_seen(&mut self, mut record: Record<L>, w_max: Word) {
+        self.dp.stage(Stage::ChildBox);
+        if self.is_behind(w_max) {
+            self.counts.behind_eye += 1;
+            return;
+        }
+        let Pose::Clip(clip) = &mut record.pose else {
+            return;
+        };
+        let fill = Fill {
+            vectors: self.canvas.fill,
+            reject: self.options.reject_filled,
+        };
+        let place = Place {
+            quad: record.quad,
+            inside: record.inside,
+        };
+        let found = fit::clip(
+            &mut self.dp,
+            &self.constants,
+            &fill,
+            &place,
+            clip,
+            &mut record.planes,
+        );
+        self.push_at(record, found);
+    }
+
+    fn push_at(&mut self, record: Record<L>, found: Option<Place>) {
+        let Some(Place { quad, inside }) = found else {
+            self.counts.rejected += 1;
+            return;
+        };
+        self.dp.stage(Stage::Push);
+        self.dp.write(Memory::Stack, self.stack.len() as u64);
+        self.stack.push(Record {
+            quad,
+            inside,
+            ..record
+        });
+        self.counts.deepest_stack = self.counts.deepest_stack.max(self.stack.len() as u64);
+    }
+
+    /// A record's turn.
+    fn turn(&mut self, mut record: Record<L>) {
+        self.dp.begin_record(self.counts.records, record.level);
+        self.counts.records += 1;
+        self.canvas.warm(record.quad);
+        self.dp.stage(Stage::Pop);
+        self.dp.read(Memory::Stack, self.stack.len() as u64);
+
+        self.dp.stage(Stage::Filled);
+        if self.options.reject_filled {
+            let address = self.canvas.fill.address(record.quad);
+            self.dp.read(Memory::FillVector, address as u64);
+            let vector = self.canvas.fill.vector(record.quad);
+            if self.dp.and_bits(4, vector, FULL) == FULL {
+                self.counts.already_full += 1;
+                return;
+            }
+        }
+
+        if let Pose::Clip(clip) = &record.pose {
+            let place = Place {
+                quad: record.quad,
+                inside: record.inside,
+            };
+            let changed =
+                super::to_screen::change(&mut self.dp, &self.constants, record.level, &place, clip);
+            if let Some(screen) = changed {
+                self.counts.changed_to_screen += 1;
+                record.pose = Pose::Screen(screen);
+            }
+        }
+
+        self.dp.stage(Stage::OnePixel);
+        if !record.solid {
+            self.dp.read(Memory::Node, u64::from(record.node));
+            record.solid =
+                record.level >= self.constants.depth || self.graph.mask(record.node) == 0;
+        }
+        match self.verdict(&mut record) {
+            Verdict::DrawCentre => self.draw_centre(&record),
+            Verdict::DrawQuad => self.draw_quad(&record),
+            Verdict::DrawSolid => self.draw_solid(&record),
+            Verdict::Subdivide => self.subdivide(&record),
+        }
+    }
+
+    /// What is to become of a record. May find it solid by level of detail.
+    fn verdict(&mut self, record: &mut Record<L>) -> Verdict {
+        let verdict = match self.constants.coverage {
+            Coverage::Any => self.verdict_any(record),
+            Coverage::Center => self.verdict_center(record),
+            Coverage::Exact => return self.verdict_exact(record),
+        };
+        if verdict == Verdict::Subdivide && record.level >= self.constants.level_bound {
+            self.counts.at_bound += 1;
+            return Verdict::DrawCentre;
+        }
+        verdict
+    }
+
+    /// The paper's rule: a box within one sample is drawn there.
+    fn verdict_any(&mut self, record: &mut Record<L>) -> Verdict {
+        self.take_for_solid(record);
+        let one = record.quad.level == self.constants.levels && record.inside;
+        if !one || self.crosses_near(record) {
+            return Verdict::Subdivide;
+        }
+        // Within one sample, a level of detail of one sample or more is met.
+        let coarse = self
+            .constants
+            .lod_limit
+            .as_ref()
+            .is_some_and(|limit| limit.value() >= self.constants.size_limit.value());
+        if record.solid || coarse {
+            Verdict::DrawQuad
+        } else {
+            Verdict::Subdivide
+        }
+    }
+
+    /// A voxel no larger than a sample is drawn at the sample of its centre.
+    fn verdict_center(&mut self, record: &mut Record<L>) -> Verdict {
+        self.take_for_solid(record);
+        if record.solid && !self.crosses_near(record) && self.is_small(record, Limit::Sample) {
+            Verdict::DrawCentre
+        } else {
+            Verdict::Subdivide
+        }
+    }
+
+    /// Leaves are drawn by their silhouettes, what level of detail stops by its centre.
+    fn verdict_exact(&mut self, record: &mut Record<L>) -> Verdict {
+        if self.constants.lod_limit.is_some()
+            && !self.crosses_near(record)
+            && self.is_small(record, Limit::LevelOfDetail)
+        {
+            if self.is_small(record, Limit::Sample) {
+                return Verdict::DrawCentre;
+            }
+            record.solid = true;
+        }
+        if record.solid {
+            Verdict::DrawSolid
+        } else {
+            Verdict::Subdivide
+        }
+    }
+
+    /// Level of detail: a node with children that is small enough is a solid.
+    fn take_for_solid(&mut self, record: &mut Record<L>) {
+        if !record.solid
+            && self.constants.lod_limit.is_some()
+            && !self.crosses_near(record)
+            && self.is_small(record, Limit::LevelOfDetail)
+        {
+            record.solid = true;
+        }
+    }
+
+    fn crosses_near(&mut self, record: &Record<L>) -> bool {
+        match &record.pose {
+            Pose::Clip(clip) => self.dp.lt(clip.w_min, self.constants.near),
+            Pose::Screen(_) => false,
+        }
+    }
+
+    fn is_small(&mut self, record: &Record<L>, limit: Limit) -> bool {
+        let c = &self.constants;
+        match &record.pose {
+            Pose::Clip(clip) => {
+                let limit = match limit {
+                    Limit::Sample => Some(&c.size_limit),
+                    Limit::LevelOfDetail => c.lod_limit.as_ref(),
+                };
+                limit.is_some_and(|limit| {
+                    let below = c.levels - record.quad.level;
+                    size::clip_at_most(&mut self.dp, clip, limit, below)
+                })
+            }
+            Pose::Screen(screen) => {
+                let limit = match limit {
+                    Limit::Sample => c.size_limit_screen,
+                    Limit::LevelOfDetail => c.lod_limit_screen,
+                };
+                size::screen_at_most(&mut self.dp, screen, limit)
+            }
+        }
+    }
+
+    fn draw_quad(&mut self, record: &Record<L>) {
+        let seen = self.seen(record);
+        self.canvas
+            .draw(&mut self.dp, record.quad, record.node, seen);
+    }
+
+    /// Draws a record at the sample that holds its centre, if that is in the
+    /// picture and before the near plane.
+    fn draw_centre(&mut self, record: &Record<L>) {
+        self.dp.stage(Stage::Draw);
+        let sample = match &record.pose {
+            Pose::Clip(clip) => {
+                let w = clip.w.centre(&mut self.dp);
+                if self.dp.lt(w, self.constants.near) {
+                    return;
+                }
+                size::clip_sample(&mut self.dp, &self.constants, record, clip, w)
+            }
+            Pose::Screen(screen) => {
+                size::screen_sample(&mut self.dp, &self.constants, record, screen)
+            }
+        };
+        if let Some(sample) = sample {
+            let seen = self.seen(record);
+            self.canvas.draw(&mut self.dp, sample, record.node, seen);
+        }
+    }
+
+    fn draw_solid(&mut self, record: &Record<L>) {
+        self.counts.solids += 1;
+        self.dp.stage(Stage::Draw);
+        let seen = self.seen(record);
+        match &record.pose {
+            Pose::Clip(clip) => {
+                let cube = Cube {
+                    planes: &record.planes,
+                    level: record.level,
+                    min: record.min,
+                    max: record.max,
+                    before_eye: self.dp.is_positive(clip.w_min),
+                };
+                let outline = PlaneSilhouette::new(&mut self.dp, &self.constants, &cube);
+                self.canvas
+                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
+            }
+            Pose::Screen(screen) => {
+                let outline =
+                    StripSilhouette::new(&mut self.dp, &self.constants, record.quad, screen);
+                self.canvas
+                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
+            }
+        }
+    }
+
+    /// The voxel that a record stands for: lowest corner in finest voxels, level.
+    fn seen(&self, record: &Record<L>) -> [i32; 4] {
+        let side_log2 = self.constants.depth - record.voxel_level;
+        let corner = record.min.map(|min| {
+            let voxel = min.to_host() >> self.constants.sub_levels;
+            (voxel >> side_log2 << side_log2) as i32
+        });
+        [corner[0], corner[1], corner[2], record.voxel_level as i32]
+    }
+
+    /// Makes a record's children and pushes those that are seen.
+    fn subdivide(&mut self, record: &Record<L>) {
+        self.counts.subdivided += 1;
+        self.dp.stage(Stage::Centre);
+        let centre: [Word; 3] =
+            std::array::from_fn(|k| self.dp.midpoint(record.min[k], record.max[k]));
+
+        self.dp.stage(Stage::Order);
+        let octant = (0..3).fold(0u8, |bits, k| {
+            // The centre is on the positive side where the eye is below it.
+            bits << 1 | u8::from(self.dp.lt(self.constants.eye_floor[k], centre[k]))
+        });
+        let order = self
+            .options
+            .order
+            .map(|nearest| self.dp.xor_bits(3, octant, nearest));
+
+        self.dp.stage(Stage::VertexPool);
+        let poses: Poses<L> = match &record.pose {
+            Pose::Clip(clip) => Poses::Clip {
+                x: clip.x.children(&mut self.dp),
+                y: clip.y.children(&mut self.dp),
+                w: clip.w.children(&mut self.dp),
+            },
+            Pose::Screen(screen) => Poses::Screen {
+                x: screen.x.children(&mut self.dp),
+                y: screen.y.children(&mut self.dp),
+            },
+        };
+        for &child in order.iter().rev() {
+            let node = if record.solid {
+                Some(record.node)
+            } else {
+                self.graph.child(record.node, child)
+            };
+            match node {
+                Some(node) => self.push_child(record, child, node, &centre, &poses),
+                None => self.counts.absent_children += 1,
+            }
+        }
+    }
+
+    fn push_child(
+        &mut self,
+        parent: &Record<L>,
+        octant: u8,
+        node: u32,
+        centre: &[Word; 3],
+        poses: &Poses<L>,
+    ) {
+        self.dp.stage(Stage::ChildBox);
+        let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
+        let min = std::array::from_fn(|k| self.dp.select(upper[k], centre[k], parent.min[k]));
+        let max = std::array::from_fn(|k| self.dp.select(upper[k], parent.max[k], centre[k]));
+        let level = parent.level + 1;
+        let child = octant as usize;
+        let record = |pose, planes| Record {
+            min,
+            max,
+            node,
+            level,
+            voxel_level: if parent.solid {
+                parent.voxel_level
+            } else {
+                level
+            },
+            solid: parent.solid,
+            quad: parent.quad,
+            inside: parent.inside,
+            pose,
+            planes,
+        };
+        match poses {
+            Poses::Clip { x, y, w } => {
+                let (w_min, w_max) = w[child].span(&mut self.dp);
+                let clip = Clip {
+                    x: x[child],
+                    y: y[child],
+                    w: w[child],
+                    w_min,
+                };
+                let planes = if self.constants.coverage == Coverage::Exact {
+                    self.dp.stage(Stage::VertexPool);
+                    planes::of_child(
+                        &mut self.dp,
+                        &self.constants,
+                        &parent.planes,
+                        parent.level,
+                        octant,
+                    )
+                } else {
+                    parent.planes
+                };
+                self.push_if_seen(record(Pose::Clip(clip), planes), w_max);
+            }
+            Poses::Screen { x, y } => {
+                let screen = Screen {
+                    x: x[child],
+                    y: y[child],
+                    x_span: x[child].span(&mut self.dp),
+                    y_span: y[child].span(&mut self.dp),
+                };
+                let fill = Fill {
+                    vectors: self.canvas.fill,
+                    reject: self.options.reject_filled,
+                };
+                let place = Place {
+                    quad: parent.quad,
+                    inside: parent.inside,
+                };
+                let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &screen);
+                self.push_at(record(Pose::Screen(screen), parent.planes), found);
+            }
+        }
+    }
+}
+
+/// Which size a record is held against.
+#[derive(Clone, Copy)]
+enum Limit {
+    /// One sample, less twice the tolerance.
+    Sample,
+    /// The level of detail, less its share of it.
+    LevelOfDetail,
+}
+
+#[derive(PartialEq, Eq)]
+enum Verdict {
+    /// Draw at the sample of the centre.
+    DrawCentre,
+    /// Draw at the record's quadtree node, which is a sample.
+    DrawQuad,
+    /// Draw every sample in the silhouette.
+    DrawSolid,
+    /// Go on with its children.
+    Subdivide,
+}
+
+/// The eight children's cages.
+enum Poses<L> {
+    Clip { x: [L; 8], y: [L; 8], w: [L; 8] },
+    Screen { x: [L; 8], y: [L; 8] },
+}
