@@ -18,6 +18,15 @@ pub(super) enum Margin {
     Gap(ShiftSum),
 }
 
+/// Size, in units of the last place of a screen position, up to which a
+/// record is a solid whatever it has below it: rounded midpoints do not part
+/// vertices that are so near to each other.
+const LEAST_SIZE: i64 = 4;
+
+/// Records across the near plane are dropped once they span less depth than
+/// this part of the near plane's, as a shift.
+const NEAR_CROSSING_SHIFT: u32 = 6;
+
 /// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
@@ -31,17 +40,19 @@ pub(super) struct Constants {
     pub(super) level_bound: u32,
     /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
-    /// Fraction bits of the quotient's guard against the exact rule's gaps.
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
     /// Like `margin`, for tests that never leave gaps (edges of the picture).
     pub(super) grow: Option<i32>,
     pub(super) size_limit: ShiftSum,
     pub(super) lod_limit: Option<ShiftSum>,
-    /// `size_limit` and `lod_limit` in screen units.
+    /// `size_limit` and `lod_limit` in screen units, at least [`LEAST_SIZE`].
     pub(super) size_limit_screen: Word,
     pub(super) lod_limit_screen: Word,
+    pub(super) least_size_screen: Word,
     pub(super) near: Word,
+    /// Depth that a record across the near plane must span to be subdivided.
+    pub(super) near_crossing: Word,
     /// By level; `None`: never.
     pub(super) screen_depth: Vec<Option<Word>>,
     pub(super) eye_floor: [Word; 3],
@@ -98,7 +109,7 @@ impl Constants {
         let screen_frac = setup.format.frac();
         let screen_limit = |limit: &ShiftSum| {
             let units = libm::ldexp(limit.value(), screen_frac as i32);
-            Word::from_host(libm::floor(units) as i64)
+            Word::from_host((libm::floor(units) as i64).max(LEAST_SIZE))
         };
         let near = word(setup.near, scale);
 
@@ -136,8 +147,13 @@ impl Constants {
             size_limit: setup.size_limit.clone(),
             lod_limit: setup.lod_limit.clone(),
             size_limit_screen: screen_limit(&setup.size_limit),
-            lod_limit_screen: setup.lod_limit.as_ref().map_or(Word::ZERO, screen_limit),
+            lod_limit_screen: setup
+                .lod_limit
+                .as_ref()
+                .map_or(Word::from_host(LEAST_SIZE), screen_limit),
+            least_size_screen: Word::from_host(LEAST_SIZE),
             near,
+            near_crossing: Word::from_host(near.to_host() >> NEAR_CROSSING_SHIFT),
             screen_depth,
             eye_floor: eye(setup.eye_floor),
             eye_ceil: eye(setup.eye_ceil),

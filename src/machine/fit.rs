@@ -88,23 +88,19 @@ pub(super) fn clip<P: Probe, L: Lattice>(
             Border::Inside => true,
         };
     loop {
-        let below = constants.levels - quad.level;
-        let (doubled_x, x) = bisect(dp, constants, below, &pose.x, &pose.w);
-        let (doubled_y, y) = bisect(dp, constants, below, &pose.y, &pose.w);
-        let overlapped = quadrants(dp, x, y);
+        let (overlapped, far) = clip_quadrants(dp, constants, quad, pose);
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
-        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
+        let Some(quadrant) = only(overlapped).filter(|_| quad.level < constants.levels) else {
             break;
         };
-        let to_x = rebase(dp, quadrant & 1 != 0, &pose.x, doubled_x);
-        let to_y = rebase(dp, quadrant & 2 != 0, &pose.y, doubled_y);
-        if !inside && !(near_node(dp, &to_x, &pose.w) && near_node(dp, &to_y, &pose.w)) {
+        let to = clip_in_quadrant(dp, pose, quadrant, far);
+        if !inside && !(near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w)) {
             // Too far outside: coordinates would grow beyond the word.
             break;
         }
-        (pose.x, pose.y) = (to_x, to_y);
+        *pose = to;
         if constants.coverage == crate::project::Coverage::Exact {
             rebase_planes(dp, constants, planes, quadrant);
         }
@@ -304,6 +300,47 @@ fn border<P: Probe, L: Lattice>(
     }
 }
 
+/// The quadrants of its node that a clip-space box overlaps, and the
+/// coordinates in the far halves.
+pub(super) fn clip_quadrants<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    pose: &Clip<L>,
+) -> (u8, [L; 2]) {
+    let below = constants.levels - quad.level;
+    let (far_x, x) = bisect(dp, constants, below, &pose.x, &pose.w);
+    let (far_y, y) = bisect(dp, constants, below, &pose.y, &pose.w);
+    (quadrants(dp, x, y), [far_x, far_y])
+}
+
+/// A clip-space voxel relative to a quadrant of its node.
+pub(super) fn clip_in_quadrant<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    pose: &Clip<L>,
+    quadrant: u8,
+    [far_x, far_y]: [L; 2],
+) -> Clip<L> {
+    Clip {
+        x: rebase(dp, quadrant & 1 != 0, &pose.x, far_x),
+        y: rebase(dp, quadrant & 2 != 0, &pose.y, far_y),
+        ..*pose
+    }
+}
+
+/// The quadrants of a node that a screen-space box overlaps.
+pub(super) fn screen_quadrants<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    pose: &Screen<L>,
+) -> u8 {
+    let below = constants.levels - quad.level;
+    let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
+    let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
+    quadrants(dp, x, y)
+}
+
 /// Fits a screen-space voxel. `None`: rejected.
 pub(super) fn screen<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
@@ -321,14 +358,11 @@ pub(super) fn screen<P: Probe, L: Lattice>(
             Border::Inside => true,
         };
     loop {
-        let below = constants.levels - quad.level;
-        let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
-        let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
-        let overlapped = quadrants(dp, x, y);
+        let overlapped = screen_quadrants(dp, constants, quad, pose);
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
-        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
+        let Some(quadrant) = only(overlapped).filter(|_| quad.level < constants.levels) else {
             break;
         };
         quad = quad.quadrant(quadrant);

@@ -25,6 +25,7 @@ mod silhouette;
 mod size;
 mod strips;
 mod to_screen;
+mod verdict;
 mod walk;
 
 use hwmodel::{NoProbe, Overflow, Probe};

@@ -11,6 +11,7 @@ use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
 use super::strips::StripSilhouette;
+use super::verdict::Verdict;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
@@ -56,15 +57,16 @@ pub(super) fn run<P: Probe, L: Lattice>(
 
 /// What a frame came to.
 #[derive(Debug, Default)]
-struct Counts {
+pub(super) struct Counts {
     records: u64,
     subdivided: u64,
     already_full: u64,
+    hidden: u64,
     absent_children: u64,
     behind_eye: u64,
     rejected: u64,
     changed_to_screen: u64,
-    at_bound: u64,
+    pub(super) at_bound: u64,
     solids: u64,
     deepest_stack: u64,
 }
@@ -75,6 +77,7 @@ impl Counts {
             ("records", self.records),
             ("subdivided", self.subdivided),
             ("already_full", self.already_full),
+            ("hidden_across_bisectors", self.hidden),
             ("absent_children", self.absent_children),
             ("behind_eye", self.behind_eye),
             ("rejected_by_quadtree", self.rejected),
@@ -89,14 +92,14 @@ impl Counts {
     }
 }
 
-struct Walk<'a, P: Probe, L> {
-    dp: Datapath<P>,
-    constants: Constants,
+pub(super) struct Walk<'a, P: Probe, L> {
+    pub(super) dp: Datapath<P>,
+    pub(super) constants: Constants,
     options: &'a MachineOptions,
     graph: &'a GraphView<'a>,
     canvas: Canvas<'a>,
     stack: Vec<Record<L>>,
-    counts: Counts,
+    pub(super) counts: Counts,
 }
 
 impl<P: Probe, L: Lattice> Walk<'_, P, L> {
@@ -125,6 +128,11 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             },
         };
         self.push_if_seen(record, w_max);
+    }
+
+    /// Whether full quadrants reject records.
+    pub(super) fn is_rejecting(&self) -> bool {
+        self.options.reject_filled
     }
 
     /// Whether a box whose greatest depth is `w_max` lies behind the eye.
@@ -221,119 +229,52 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
         match self.verdict(&mut record) {
             Verdict::DrawCentre => self.draw_centre(&record),
-            Verdict::DrawQuad => self.draw_quad(&record),
+            Verdict::DrawBox => self.draw_box(&record),
             Verdict::DrawSolid => self.draw_solid(&record),
+            Verdict::Drop => {}
+            Verdict::Subdivide if self.is_hidden(&record) => self.counts.hidden += 1,
             Verdict::Subdivide => self.subdivide(&record),
         }
     }
 
-    /// What is to become of a record. May find it solid by level of detail.
-    fn verdict(&mut self, record: &mut Record<L>) -> Verdict {
-        let verdict = match self.constants.coverage {
-            Coverage::Any => self.verdict_any(record),
-            Coverage::Center => self.verdict_center(record),
-            Coverage::Exact => return self.verdict_exact(record),
-        };
-        if verdict == Verdict::Subdivide && record.level >= self.constants.level_bound {
-            self.counts.at_bound += 1;
-            return Verdict::DrawCentre;
-        }
-        verdict
-    }
-
-    /// The paper's rule: a box within one sample is drawn there.
-    fn verdict_any(&mut self, record: &mut Record<L>) -> Verdict {
-        self.take_for_solid(record);
-        let one = record.quad.level == self.constants.levels && record.inside;
-        if !one || self.crosses_near(record) {
-            return Verdict::Subdivide;
-        }
-        // Within one sample, a level of detail of one sample or more is met.
-        let coarse = self
-            .constants
-            .lod_limit
-            .as_ref()
-            .is_some_and(|limit| limit.value() >= self.constants.size_limit.value());
-        if record.solid || coarse {
-            Verdict::DrawQuad
-        } else {
-            Verdict::Subdivide
+    /// Draws a record at every sample that its box overlaps.
+    fn draw_box(&mut self, record: &Record<L>) {
+        let seen = self.seen(record);
+        while let Some(sample) = self.first_open(record.quad, &record.pose) {
+            self.canvas.draw(&mut self.dp, sample, record.node, seen);
         }
     }
 
-    /// A voxel no larger than a sample is drawn at the sample of its centre.
-    fn verdict_center(&mut self, record: &mut Record<L>) -> Verdict {
-        self.take_for_solid(record);
-        if record.solid && !self.crosses_near(record) && self.is_small(record, Limit::Sample) {
-            Verdict::DrawCentre
-        } else {
-            Verdict::Subdivide
+    /// The first sample of a node that a box overlaps and that is not drawn
+    /// yet. Unlike the fit it goes on where a box lies across a bisector.
+    pub(super) fn first_open(&mut self, quad: QuadNode, pose: &Pose<L>) -> Option<QuadNode> {
+        self.dp.stage(Stage::QuadtreeFit);
+        let fill = &self.canvas.fill;
+        self.dp.read(Memory::FillVector, fill.address(quad) as u64);
+        let open = !fill.vector(quad) & FULL;
+        if quad.level == self.constants.levels {
+            return (open != 0).then_some(quad);
         }
-    }
-
-    /// Leaves are drawn by their silhouettes, what level of detail stops by its centre.
-    fn verdict_exact(&mut self, record: &mut Record<L>) -> Verdict {
-        if self.constants.lod_limit.is_some()
-            && !self.crosses_near(record)
-            && self.is_small(record, Limit::LevelOfDetail)
-        {
-            if self.is_small(record, Limit::Sample) {
-                return Verdict::DrawCentre;
-            }
-            record.solid = true;
-        }
-        if record.solid {
-            Verdict::DrawSolid
-        } else {
-            Verdict::Subdivide
-        }
-    }
-
-    /// Level of detail: a node with children that is small enough is a solid.
-    fn take_for_solid(&mut self, record: &mut Record<L>) {
-        if !record.solid
-            && self.constants.lod_limit.is_some()
-            && !self.crosses_near(record)
-            && self.is_small(record, Limit::LevelOfDetail)
-        {
-            record.solid = true;
-        }
-    }
-
-    fn crosses_near(&mut self, record: &Record<L>) -> bool {
-        match &record.pose {
-            Pose::Clip(clip) => self.dp.lt(clip.w_min, self.constants.near),
-            Pose::Screen(_) => false,
-        }
-    }
-
-    fn is_small(&mut self, record: &Record<L>, limit: Limit) -> bool {
-        let c = &self.constants;
-        match &record.pose {
+        let (overlapped, far) = match pose {
             Pose::Clip(clip) => {
-                let limit = match limit {
-                    Limit::Sample => Some(&c.size_limit),
-                    Limit::LevelOfDetail => c.lod_limit.as_ref(),
-                };
-                limit.is_some_and(|limit| {
-                    let below = c.levels - record.quad.level;
-                    size::clip_at_most(&mut self.dp, clip, limit, below)
-                })
+                let (overlapped, far) =
+                    fit::clip_quadrants(&mut self.dp, &self.constants, quad, clip);
+                (overlapped, Some((clip, far)))
             }
             Pose::Screen(screen) => {
-                let limit = match limit {
-                    Limit::Sample => c.size_limit_screen,
-                    Limit::LevelOfDetail => c.lod_limit_screen,
-                };
-                size::screen_at_most(&mut self.dp, screen, limit)
+                let overlapped = fit::screen_quadrants(&mut self.dp, &self.constants, quad, screen);
+                (overlapped, None)
             }
-        }
-    }
-
-    fn draw_quad(&mut self, record: &Record<L>) {
-        let seen = self.seen(record);
-        self.canvas
-            .draw(&mut self.dp, record.quad, record.node, seen);
+        };
+        let candidates = self.dp.and_bits(4, overlapped, open);
+        (0..4)
+            .filter(|quadrant| candidates >> quadrant & 1 != 0)
+            .find_map(|quadrant| {
+                let inner = far.map(|(clip, far)| {
+                    Pose::Clip(fit::clip_in_quadrant(&mut self.dp, clip, quadrant, far))
+                });
+                self.first_open(quad.quadrant(quadrant), inner.as_ref().unwrap_or(pose))
+            })
     }
 
     /// Draws a record at the sample that holds its centre, if that is in the
@@ -509,27 +450,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             }
         }
     }
-}
-
-/// Which size a record is held against.
-#[derive(Clone, Copy)]
-enum Limit {
-    /// One sample, less twice the tolerance.
-    Sample,
-    /// The level of detail, less its share of it.
-    LevelOfDetail,
-}
-
-#[derive(PartialEq, Eq)]
-enum Verdict {
-    /// Draw at the sample of the centre.
-    DrawCentre,
-    /// Draw at the record's quadtree node, which is a sample.
-    DrawQuad,
-    /// Draw every sample in the silhouette.
-    DrawSolid,
-    /// Go on with its children.
-    Subdivide,
 }
 
 /// The eight children's cages.

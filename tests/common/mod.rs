@@ -1,0 +1,214 @@
+//! Random scenes and cameras that several tests share.
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use glam::DVec3;
+use proptest::prelude::*;
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, PackedNormal, Placement, Topology};
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
+
+/// A graph from each node's children by octant; a node without any is a leaf.
+pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
+    let mut topology = Vec::new();
+    let mut links = Vec::new();
+    for children in nodes {
+        let mut mask = 0;
+        let first = links.len() as u32;
+        for (octant, child) in children.iter().enumerate() {
+            if let Some(child) = child {
+                mask |= 1 << octant;
+                links.push(*child);
+            }
+        }
+        topology.push(Topology {
+            first,
+            mask,
+            reserved: [0; 3],
+        });
+    }
+    if links.is_empty() {
+        links.push(0);
+    }
+    Graph {
+        depth,
+        root: 0,
+        color: (0..nodes.len())
+            .map(|i| [i as u8, 100, 200])
+            .collect::<Vec<_>>()
+            .into(),
+        normal: vec![PackedNormal(0); nodes.len()].into(),
+        topology: topology.into(),
+        links: links.into(),
+        level_start: Vec::new(),
+        voxels: 0,
+        placement: Placement::default(),
+    }
+}
+
+/// A dense cube: one node, all of whose children are itself.
+pub fn solid(depth: u32) -> Graph {
+    linked(depth, &[[Some(0); 8]])
+}
+
+/// The Sierpinski tetrahedron: one node, four of whose children are itself.
+pub fn sierpinski(depth: u32) -> Graph {
+    let mut children = [None; 8];
+    for octant in [0, 3, 5, 6] {
+        children[octant] = Some(0);
+    }
+    linked(depth, &[children])
+}
+
+/// A full octree over the voxels of a predicate, leaves at the finest level.
+pub fn octree(depth: u32, is_filled: &dyn Fn([i32; 3]) -> bool) -> Graph {
+    fn node(
+        nodes: &mut Vec<[Option<u32>; 8]>,
+        at: [i32; 3],
+        side: i32,
+        is_filled: &dyn Fn([i32; 3]) -> bool,
+    ) -> Option<u32> {
+        if side == 1 {
+            if !is_filled(at) {
+                return None;
+            }
+            nodes.push([None; 8]);
+            return Some(nodes.len() as u32 - 1);
+        }
+        let me = nodes.len();
+        nodes.push([None; 8]);
+        let half = side / 2;
+        let mut any = false;
+        for octant in 0..8usize {
+            let corner = [
+                at[0] + half * (octant as i32 >> 2),
+                at[1] + half * (octant as i32 >> 1 & 1),
+                at[2] + half * (octant as i32 & 1),
+            ];
+            let child = node(nodes, corner, half, is_filled);
+            nodes[me][octant] = child;
+            any |= child.is_some();
+        }
+        if any {
+            Some(me as u32)
+        } else {
+            nodes.truncate(me);
+            None
+        }
+    }
+    let mut nodes = Vec::new();
+    node(&mut nodes, [0; 3], 1 << depth, is_filled).expect("an octree needs a voxel");
+    linked(depth, &nodes)
+}
+
+/// Random graphs: children may be any node, so most are cyclic; a graph ends
+/// at its depth.
+pub fn any_graph(depths: std::ops::Range<u32>) -> impl Strategy<Value = Graph> {
+    (depths, 1..8usize).prop_flat_map(|(depth, count)| {
+        let child = prop_oneof![
+            2 => Just(None),
+            1 => (0..count as u32).prop_map(Some),
+        ];
+        proptest::collection::vec(proptest::array::uniform8(child), count)
+            .prop_map(move |nodes| linked(depth, &nodes))
+    })
+}
+
+/// Random octrees with some large leaves.
+pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
+    let side = 1usize << depth;
+    proptest::collection::vec(proptest::bool::weighted(density), side * side * side).prop_map(
+        move |bits| {
+            octree(depth, &|[x, y, z]| {
+                let at = (x as usize * side + y as usize) * side + z as usize;
+                bits[at] || at == 0
+            })
+        },
+    )
+}
+
+/// Cameras about a cube of side `side`: outside, on faces and lattice points,
+/// inside; many aligned with an axis, so that ties abound.
+pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
+    let free = -2.0..3.0f64;
+    let lattice = prop_oneof![Just(0.0), Just(0.25), Just(0.5), Just(1.0), Just(-0.5)];
+    let coordinate = prop_oneof![3 => free, 1 => lattice].boxed();
+    let eye = proptest::array::uniform3(coordinate);
+    let axis = (0..3usize, any::<bool>()).prop_map(|(axis, back)| {
+        let sign = if back { -1.0 } else { 1.0 };
+        [DVec3::X, DVec3::Y, DVec3::Z][axis] * sign
+    });
+    let towards = prop_oneof![
+        3 => proptest::array::uniform3(0.0..1.0f64).prop_map(Some),
+        1 => Just(None),
+    ];
+    (eye, towards, axis, 5.0..150.0f64, sizes.clone(), sizes).prop_filter_map(
+        "a camera that sees",
+        move |(eye, towards, axis, fov_degrees, width, height)| {
+            let eye = DVec3::from_array(eye) * side;
+            let target = match towards {
+                Some(target) => DVec3::from_array(target) * side,
+                None => eye + axis,
+            };
+            let forward = (target - eye).try_normalize()?;
+            let up = if forward.z.abs() > 0.9 {
+                DVec3::Y
+            } else {
+                DVec3::Z
+            };
+            let camera = Camera {
+                eye,
+                target,
+                up,
+                fov_degrees,
+                width,
+                height,
+            };
+            camera.axes().ok().map(|_| camera)
+        },
+    )
+}
+
+/// A camera at `eye` that looks at `target`, 60 degrees, square.
+pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
+    Camera {
+        eye: DVec3::from_array(eye),
+        target: DVec3::from_array(target),
+        up: DVec3::Z,
+        fov_degrees: 60.0,
+        width: size,
+        height: size,
+    }
+}
+
+/// Sets a frame up.
+pub fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> FrameSetup {
+    FrameSetup::new(camera, &graph.placement, graph.depth, options).expect("a frame")
+}
+
+/// Draws with the machine.
+pub fn draw_with(
+    options: MachineOptions,
+    graph: &Graph,
+    setup: &FrameSetup,
+) -> Result<(Frame, Stats), EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
+    Ok((frame, stats))
+}
+
+/// Draws with the machine as it is.
+pub fn draw(graph: &Graph, setup: &FrameSetup) -> Frame {
+    draw_with(MachineOptions::default(), graph, setup)
+        .expect("no overflow")
+        .0
+}
+
+/// One number of a frame's statistics.
+pub fn stat(stats: &Stats, name: &str) -> u64 {
+    stats
+        .iter()
+        .find(|(n, _)| *n == name)
+        .unwrap_or_else(|| panic!("no statistic {name}"))
+        .1
+}
