@@ -132,9 +132,11 @@ mod tests {
 
             // The same view in greater numbers no longer fits 128 bits.
             let mut huge = setup.clone();
-            huge.origin_clip = setup.origin_clip.map(|c| c << 26);
-            huge.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << 26));
-            assert!(huge.levels == 5 && !View::new(&huge).fits_i128());
+            let numbers = setup.edge_clip.iter().flatten().chain(&setup.origin_clip);
+            let spare = numbers.map(|c| c.abs().leading_zeros()).min().unwrap_or(0) - 2;
+            huge.origin_clip = setup.origin_clip.map(|c| c << spare);
+            huge.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
+            assert!(!View::new(&huge).fits_i128());
             let mut from_huge = narrow.clone();
             Rays.render(&graph, &huge, &mut from_huge)
                 .expect("never fails");
