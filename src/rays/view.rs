@@ -1,0 +1,113 @@
+//! A frame's set-up as the oracle uses it: planes through the eye.
+
+use crate::project::FrameSetup;
+
+/// Line functions up to this magnitude, times eight, stay within `i128`.
+const I128_BOUND: i128 = 1 << 123;
+
+/// What all samples of a frame have in common.
+#[derive(Debug)]
+pub(super) struct View {
+    /// Clip vector of the object's lowest corner.
+    origin: [i128; 3],
+    /// Clip vectors of a finest voxel's edges.
+    edge: [[i128; 3]; 3],
+    /// `edge[k + 1] x edge[k + 2]`: its product with a ray direction is that
+    /// direction's object coordinate `k`, times the edges' determinant.
+    pub(super) normal: [[i128; 3]; 3],
+    /// Sign of the edges' determinant.
+    pub(super) determinant_sign: i32,
+    /// Levels of the object.
+    pub(super) depth: u32,
+    /// Levels of the image quadtree.
+    levels: u32,
+    /// Fraction bits of the eye.
+    sub_levels: u32,
+    /// The eye in units of `2^-sub_levels` voxels, rounded down and up.
+    eye_floor: [i64; 3],
+    eye_ceil: [i64; 3],
+}
+
+impl View {
+    pub(super) fn new(setup: &FrameSetup) -> Self {
+        let edge = setup.edge_clip.map(|e| e.map(i128::from));
+        Self {
+            origin: setup.origin_clip.map(i128::from),
+            edge,
+            normal: [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3])),
+            determinant_sign: if setup.positive { 1 } else { -1 },
+            depth: setup.depth,
+            levels: setup.levels,
+            sub_levels: setup.sub_levels,
+            eye_floor: setup.eye_floor,
+            eye_ceil: setup.eye_ceil,
+        }
+    }
+
+    /// Direction, in clip space, of the ray of sample `(i, j)`.
+    pub(super) fn ray(&self, i: u32, j: u32) -> [i64; 3] {
+        [
+            2 * i64::from(i) + 1,
+            2 * i64::from(j) + 1,
+            1 << (self.levels + 1),
+        ]
+    }
+
+    /// The plane through the eye and the voxel edge that leaves object point
+    /// `u` along `axis`: its product with a ray direction tells on which side
+    /// of the edge the ray passes. Zero where the edge's line goes through the eye.
+    pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
+        let mut point = self.origin;
+        for (step, along) in self.edge.iter().zip(u) {
+            for c in 0..3 {
+                point[c] += i128::from(along) * step[c];
+            }
+        }
+        cross(point, self.edge[axis])
+    }
+
+    /// On which side of the eye the slab `lo..hi` (voxels) of axis `k` lies:
+    /// 1 where it begins at or above the eye, -1 where it ends at or below
+    /// it, 0 where the eye is inside.
+    #[inline]
+    pub(super) fn side_of_eye(&self, k: usize, lo: i64, hi: i64) -> i32 {
+        // A whole number is >= the eye exactly when it is >= the eye rounded up.
+        if lo << self.sub_levels >= self.eye_ceil[k] {
+            1
+        } else if hi << self.sub_levels <= self.eye_floor[k] {
+            -1
+        } else {
+            0
+        }
+    }
+
+    /// Whether every line function of this frame, and every sum made on the
+    /// way to one, stays within `i128`.
+    ///
+    /// A line function is linear in the object point, so its largest
+    /// magnitude is at a corner of the object; differences of two are at most
+    /// twice that, and a sum adds two differences to a third value.
+    pub(super) fn fits_i128(&self) -> bool {
+        let side = 1i64 << self.depth;
+        (0..8i64).all(|corner| {
+            let u = [corner >> 2 & 1, corner >> 1 & 1, corner & 1].map(|bit| bit * side);
+            (0..3).all(|axis| {
+                // Components are at most 2^125: their sum fits u128.
+                let reach: u128 = self
+                    .edge_plane(axis, u)
+                    .iter()
+                    .map(|c| c.unsigned_abs())
+                    .sum();
+                reach <= I128_BOUND as u128 >> (self.levels + 1)
+            })
+        })
+    }
+}
+
+fn cross(a: [i128; 3], b: [i128; 3]) -> [i128; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}

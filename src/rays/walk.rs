@@ -1,0 +1,88 @@
+//! Which solid cell a ray meets first.
+//!
+//! # Why the first one found is the nearest
+//!
+//! The three planes that part a node into its children are each crossed at
+//! most once by a line, in the sense of its direction along that axis (which
+//! is never 0, ties resolved). Number the children by `rank = octant XOR
+//! start`, where `start` is the octant whose bit is set for each axis along
+//! which the ray runs downwards: crossing a plane turns one bit of the rank
+//! from 0 to 1, and none ever back. Of two children that the line goes
+//! through, the nearer one's rank is therefore a strict subset of the other's
+//! bits, a smaller number. So growing ranks are an order from near to far,
+//! for every line with these direction signs. Children are disjoint cubes
+//! and all cells inside the nearer one lie before those in the other; depth
+//! first in this order, the first solid cell is the nearest.
+
+use super::line::{Cube, Line};
+use super::number::Number;
+use super::view::View;
+use crate::graph::GraphView;
+
+/// A node, and its cell as a frame stores it.
+pub(super) type Seen = (u32, [i32; 4]);
+
+/// The search along one ray.
+pub(super) struct Walk<'w, N> {
+    graph: &'w GraphView<'w>,
+    depth: u32,
+    line: Line<'w, N>,
+    /// The octant in which a line with this direction begins.
+    start: u8,
+    /// Cubes tested so far.
+    pub(super) tested: u64,
+}
+
+impl<'w, N: Number> Walk<'w, N> {
+    pub(super) fn new(graph: &'w GraphView<'w>, view: &'w View, i: u32, j: u32) -> Self {
+        let line = Line::new(view, i, j);
+        let [x, y, z] = line.direction.map(|d| u8::from(d < 0));
+        Self {
+            graph,
+            depth: view.depth,
+            line,
+            start: x << 2 | y << 1 | z,
+            tested: 0,
+        }
+    }
+
+    /// The nearest solid cell on the ray.
+    pub(super) fn nearest(&mut self) -> Option<Seen> {
+        let root = Cube {
+            lo: [0; 3],
+            at_lo: self.line.at_origin,
+        };
+        self.tested += 1;
+        self.line
+            .enters(&root, 1 << self.depth, &self.line.along_side(self.depth))
+            .then(|| self.nearest_within(self.graph.root, 0, &root))
+            .flatten()
+    }
+
+    /// The nearest solid cell in `node`, whose cube the ray goes through.
+    fn nearest_within(&mut self, node: u32, level: u32, cube: &Cube<N>) -> Option<Seen> {
+        if level == self.depth || self.graph.mask(node) == 0 {
+            // Coordinates are at most 2^30 and levels at most 30.
+            let [x, y, z] = cube.lo.map(|c| c as i32);
+            return Some((node, [x, y, z, level as i32]));
+        }
+        let child_levels = self.depth - level - 1;
+        let side = 1i64 << child_levels;
+        let along_side = self.line.along_side(child_levels);
+        for rank in 0..8 {
+            let octant = rank ^ self.start;
+            let Some(child) = self.graph.child(node, octant) else {
+                continue;
+            };
+            let child_cube = self.line.neighbour(cube, octant, side, &along_side);
+            self.tested += 1;
+            if self.line.enters(&child_cube, side, &along_side) {
+                let seen = self.nearest_within(child, level + 1, &child_cube);
+                if seen.is_some() {
+                    return seen;
+                }
+            }
+        }
+        None
+    }
+}
