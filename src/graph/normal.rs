@@ -90,7 +90,10 @@ mod tests {
     fn axes_are_exact() {
         for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
             for direction in [axis, -axis] {
-                assert_eq!(PackedNormal::encode(direction * 3.0).decode(), Some(direction));
+                assert_eq!(
+                    PackedNormal::encode(direction * 3.0).decode(),
+                    Some(direction)
+                );
             }
         }
     }

@@ -213,8 +213,8 @@ impl Estimate<'_> {
             }
             let at = MORTON_TO_XYZ[bit];
             let moments = Moments::around(rows, at);
-            let outward = [0, 1, 2]
-                .map(|k| f64::from(corner[k]) + at[k] as f64 + 0.5 - self.centre[k]);
+            let outward =
+                [0, 1, 2].map(|k| f64::from(corner[k]) + at[k] as f64 + 0.5 - self.centre[k]);
             *normal = moments.normal(DVec3::from_array(outward));
         }
     }
@@ -468,7 +468,9 @@ mod tests {
         let mut state = 1u64;
         let mut rows = [[0u8; 8]; 8];
         for row in rows.iter_mut().flatten() {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
             *row = (state >> 56) as u8;
         }
         for at in MORTON_TO_XYZ {

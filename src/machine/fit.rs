@@ -20,11 +20,12 @@ struct Halves {
     high: bool,
 }
 
-/// The four quadrants (`y << 1 | x`) that halves along x and y leave.
-fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
+/// The four quadrants (`y << 1 | x`) that halves along x and y leave. Four
+/// gates on the comparators' outputs, a part of the 4-bit and that follows.
+fn quadrants(x: Halves, y: Halves) -> u8 {
     let across = u8::from(x.low) * 0b0101 | u8::from(x.high) * 0b1010;
     let down = u8::from(y.low) * 0b0011 | u8::from(y.high) * 0b1100;
-    dp.and_bits(4, across, down)
+    across & down
 }
 
 /// The fill vectors as the fit sees them.
@@ -311,7 +312,7 @@ pub(super) fn clip_quadrants<P: Probe, L: Lattice>(
     let below = constants.levels - quad.level;
     let (far_x, x) = bisect(dp, constants, below, &pose.x, &pose.w);
     let (far_y, y) = bisect(dp, constants, below, &pose.y, &pose.w);
-    (quadrants(dp, x, y), [far_x, far_y])
+    (quadrants(x, y), [far_x, far_y])
 }
 
 /// A clip-space voxel relative to a quadrant of its node.
@@ -338,7 +339,7 @@ pub(super) fn screen_quadrants<P: Probe, L: Lattice>(
     let below = constants.levels - quad.level;
     let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
     let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
-    quadrants(dp, x, y)
+    quadrants(x, y)
 }
 
 /// Fits a screen-space voxel. `None`: rejected.

@@ -107,8 +107,10 @@ pub(super) fn screen_sample<P: Probe, L: Lattice>(
         if !record.inside && (dp.lt(position, first) || dp.lt(last, position)) {
             return None;
         }
-        // A box of no size may lie on its node's far edge.
+        // A box of no size may lie on its node's far edge, and a word that
+        // overflowed anywhere.
         let position = dp.min(position, last);
+        let position = dp.max(position, first);
         Some(position.to_host() as u32)
     };
     let x = column(&screen.x, record.quad.x)?;

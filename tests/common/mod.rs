@@ -1,4 +1,5 @@
 //! Random scenes and cameras that several tests share.
+#![expect(unreachable_pub, reason = "a module of several test crates")]
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use glam::DVec3;
@@ -174,7 +175,11 @@ pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
     Camera {
         eye: DVec3::from_array(eye),
         target: DVec3::from_array(target),
-        up: DVec3::Z,
+        up: if eye[..2] == target[..2] {
+            DVec3::Y
+        } else {
+            DVec3::Z
+        },
         fov_degrees: 60.0,
         width: size,
         height: size,

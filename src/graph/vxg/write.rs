@@ -123,7 +123,13 @@ fn sections(graph: &Graph) -> [Cow<'_, [u8]>; SECTIONS] {
         Cow::Owned(topology.collect()),
         Cow::Owned(graph.links.iter().flat_map(|l| l.to_le_bytes()).collect()),
         Cow::Borrowed(graph.color.as_flattened()),
-        Cow::Owned(graph.normal.iter().flat_map(|n| n.0.to_le_bytes()).collect()),
+        Cow::Owned(
+            graph
+                .normal
+                .iter()
+                .flat_map(|n| n.0.to_le_bytes())
+                .collect(),
+        ),
     ]
 }
 

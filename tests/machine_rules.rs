@@ -1,0 +1,294 @@
+//! Properties of the machine's rules: cages agree, rejection does not show,
+//! nothing has holes, every input ends, narrow words trap.
+
+mod common;
+
+use common::*;
+use hwmodel::{Overflow, Probe};
+use proptest::prelude::*;
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions,
+};
+use shiftvox::rays::Rays;
+
+fn any_coverage() -> impl Strategy<Value = Coverage> {
+    prop_oneof![
+        Just(Coverage::Any),
+        Just(Coverage::Center),
+        Just(Coverage::Exact)
+    ]
+}
+
+fn any_cage() -> impl Strategy<Value = CageKind> {
+    prop_oneof![Just(CageKind::Corners), Just(CageKind::Frame)]
+}
+
+fn any_tolerance() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25), Just(f64::INFINITY)]
+}
+
+/// A probe that ends a frame that does not end by itself.
+#[derive(Default)]
+struct Bounded {
+    records: u64,
+}
+
+impl Probe for Bounded {
+    fn record(&mut self, _: u64, _: u32) {
+        self.records += 1;
+        assert!(self.records < 20_000_000, "this frame does not end");
+    }
+}
+
+fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    Rays.render(&graph.view(), setup, &mut frame)
+        .expect("the oracle never fails");
+    frame
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// In clip space, `corners` and `frame` are the same to the bit.
+    #[test]
+    fn cages_agree_in_clip_space(
+        graph in any_octree(3, 0.2),
+        camera in any_camera(8.0, 1..32),
+        coverage in any_coverage(),
+        lod_px in prop_oneof![Just(0.0), Just(0.5), Just(1.0), Just(3.0)],
+    ) {
+        let with = |cage| {
+            let options = SetupOptions {
+                cage, coverage, lod_px, tolerance_px: 0.0, ..SetupOptions::default()
+            };
+            let setup = setup(&graph, &camera, &options);
+            draw_with(MachineOptions::default(), &graph, &setup).expect("no overflow")
+        };
+        let (corners, corner_stats) = with(CageKind::Corners);
+        let (frame, frame_stats) = with(CageKind::Frame);
+        prop_assert_eq!(corners.voxel, frame.voxel);
+        prop_assert_eq!(corner_stats, frame_stats);
+    }
+
+    /// Full quadrants reject records; the picture is the same without.
+    #[test]
+    fn rejection_does_not_show(
+        graph in any_octree(2, 0.3),
+        camera in any_camera(4.0, 1..24),
+        coverage in any_coverage(),
+        cage in any_cage(),
+        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
+        lod_px in prop_oneof![Just(0.0), Just(0.5), Just(1.0)],
+    ) {
+        // Few fraction bits, so that a solid has few levels below it.
+        let frac = (coverage == Coverage::Any).then_some(6);
+        let options = SetupOptions {
+            bits: 48, frac, cage, coverage, lod_px, tolerance_px, ..SetupOptions::default()
+        };
+        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
+            return Ok(()); // Six bits do not hold every view.
+        };
+        let (with, some) = draw_with(MachineOptions::default(), &graph, &setup).expect("a frame");
+        let all = MachineOptions { reject_filled: false, ..MachineOptions::default() };
+        let (without, more) = draw_with(all, &graph, &setup).expect("a frame");
+        prop_assert_eq!(with.voxel, without.voxel);
+        prop_assert!(stat(&some, "records") <= stat(&more, "records"));
+    }
+
+    /// Every input ends: cyclic graphs, all formats, all policies.
+    #[test]
+    fn every_frame_ends(
+        (graph, camera) in any_graph(1..7).prop_flat_map(|graph| {
+            let side = f64::from(1u32 << graph.depth);
+            (Just(graph), any_camera(side, 1..24))
+        }),
+        coverage in any_coverage(),
+        cage in any_cage(),
+        tolerance_px in any_tolerance(),
+        lod_px in prop_oneof![Just(0.0), Just(1.0)],
+        bits in 16..=64u32,
+        frac in prop_oneof![Just(None), (0..20u32).prop_map(Some)],
+        overflow in prop_oneof![
+            Just(Overflow::Trap), Just(Overflow::Wrap), Just(Overflow::Saturate)
+        ],
+    ) {
+        let options = SetupOptions {
+            bits, frac, cage, tolerance_px, coverage, lod_px, aa_log2: 0,
+        };
+        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
+            return Ok(());
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let machine = MachineOptions { overflow, ..MachineOptions::default() };
+        let result = Machine::new(machine).render_probed(
+            &graph.view(), &setup, &mut frame, Bounded::default(),
+        );
+        if overflow != Overflow::Trap {
+            prop_assert!(result.is_ok());
+        }
+    }
+
+    /// Dense planes at all angles under `center`: a sample whose neighbours
+    /// are all covered is drawn.
+    #[test]
+    fn planes_have_no_holes(
+        axis in 0..3usize,
+        from in proptest::array::uniform3(-1.0..1.0f64),
+        distance in 1.2..6.0f64,
+        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
+        cage in any_cage(),
+        lod_px in prop_oneof![Just(0.0), Just(1.0)],
+    ) {
+        let graph = octree(4, &|at| at[axis] == 8);
+        no_holes(&graph, from, distance, tolerance_px, cage, lod_px)?;
+    }
+
+    #[test]
+    fn closed_surfaces_have_no_holes(
+        from in proptest::array::uniform3(-1.0..1.0f64),
+        distance in 1.2..6.0f64,
+        tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
+        cage in any_cage(),
+        lod_px in prop_oneof![Just(0.0), Just(1.0)],
+    ) {
+        // A sphere's shell, thick enough to be closed.
+        let graph = octree(4, &|at| {
+            let square: i32 = at.iter().map(|c| (2 * c - 15) * (2 * c - 15)).sum();
+            (11 * 11..15 * 15).contains(&square)
+        });
+        no_holes(&graph, from, distance, tolerance_px, cage, lod_px)?;
+    }
+}
+
+fn no_holes(
+    graph: &Graph,
+    from: [f64; 3],
+    distance: f64,
+    tolerance_px: f64,
+    cage: CageKind,
+    lod_px: f64,
+) -> Result<(), TestCaseError> {
+    let length = from.iter().map(|c| c * c).sum::<f64>().sqrt();
+    prop_assume!(length > 0.1);
+    let eye = from.map(|c| 8.0 + c / length * 16.0 * distance);
+    let size = 96;
+    let camera = Camera {
+        fov_degrees: 50.0,
+        ..camera(eye, [8.0, 8.0, 8.0], size)
+    };
+    let options = SetupOptions {
+        cage,
+        tolerance_px,
+        coverage: Coverage::Center,
+        lod_px,
+        ..SetupOptions::default()
+    };
+    let setup = setup(graph, &camera, &options);
+    let drawn = draw(graph, &setup);
+    let exact = oracle(graph, &setup);
+    let size = size as usize;
+    let mut inner = 0;
+    for y in 1..size - 1 {
+        for x in 1..size - 1 {
+            let covered = (0..9).all(|i| {
+                let at = (y + i / 3 - 1) * size + x + i % 3 - 1;
+                exact.voxel[at][3] >= 0
+            });
+            if covered {
+                inner += 1;
+                prop_assert!(drawn.voxel[y * size + x][3] >= 0, "a hole at ({x}, {y})");
+            }
+        }
+    }
+    prop_assume!(inner > 20);
+    Ok(())
+}
+
+#[test]
+fn an_object_beside_the_picture_costs_next_to_nothing() {
+    let graph = solid(8);
+    for target in [[-1000.0, -900.0, 0.0], [900.0, -1000.0, 128.0]] {
+        let camera = camera([128.0, -300.0, 128.0], target, 512);
+        for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+            let options = SetupOptions {
+                coverage,
+                ..SetupOptions::default()
+            };
+            let setup = setup(&graph, &camera, &options);
+            let (frame, stats) =
+                draw_with(MachineOptions::default(), &graph, &setup).expect("a frame");
+            assert_eq!(frame.drawn(), 0);
+            assert!(stat(&stats, "records") <= 1, "{stats:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_outside_the_picture_costs_no_more_than_the_border() {
+    // A dense wall: a narrow view of it, and one that is cut by the border.
+    let graph = octree(7, &|at| at[1] == 64);
+    let options = SetupOptions::default();
+    let records = |fov_degrees: f64, size: u32| {
+        let camera = Camera {
+            fov_degrees,
+            ..camera([64.0, -100.0, 64.0], [64.0, 64.0, 64.0], size)
+        };
+        let setup = setup(&graph, &camera, &options);
+        let (_, stats) = draw_with(MachineOptions::default(), &graph, &setup).expect("a frame");
+        stat(&stats, "records")
+    };
+    // The whole wall (128 voxels) across 256 samples, then a quarter of it
+    // (32 voxels) across 64: the same size on screen, a sixteenth of it seen.
+    let whole = records(2.0 * (64.0f64 / 164.0).atan().to_degrees(), 256);
+    let part = records(2.0 * (16.0f64 / 164.0).atan().to_degrees(), 64);
+    let border = 4 * 32 * 4;
+    assert!(
+        part <= whole / 16 + border,
+        "{part} records for a sixteenth of {whole}"
+    );
+}
+
+#[test]
+fn words_too_narrow_for_a_scene_trap_with_the_place_named() {
+    let graph = octree(7, &|at| at[1] == 64);
+    let camera = camera([64.0, -200.0, 64.0], [64.0, 64.0, 64.0], 256);
+    let options = SetupOptions {
+        bits: 16,
+        frac: Some(10),
+        ..SetupOptions::default()
+    };
+    let setup = setup(&graph, &camera, &options);
+    let result = draw_with(MachineOptions::default(), &graph, &setup);
+    let Err(EngineError::Trap(trap)) = result else {
+        panic!("no trap: {result:?}");
+    };
+    assert_eq!(trap.bits, 16);
+    let message = trap.to_string();
+    for part in ["16 bits", "stage", "octree level", "record"] {
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn wrapping_and_saturating_words_finish_where_trapping_ones_stop() {
+    let graph = octree(5, &|at| at[1] == 16);
+    let camera = camera([16.0, -60.0, 16.0], [16.0, 16.0, 16.0], 128);
+    let options = SetupOptions {
+        bits: 16,
+        frac: Some(9),
+        ..SetupOptions::default()
+    };
+    let setup = setup(&graph, &camera, &options);
+    for overflow in [Overflow::Wrap, Overflow::Saturate] {
+        let machine = MachineOptions {
+            overflow,
+            ..MachineOptions::default()
+        };
+        let (_, stats) = draw_with(machine, &graph, &setup).expect("no trap");
+        assert!(stat(&stats, "overflows") > 0);
+    }
+}
