@@ -20,11 +20,24 @@ fn build(indices: &[[i32; 3]]) -> Graph {
 }
 
 fn small_graphs() -> Vec<Graph> {
-    let tree = build(&[[0, 0, 0], [1, 0, 0], [1, 1, 0], [-5, 3, 2], [6, 6, 6], [7, 6, 6]]);
+    let tree = build(&[
+        [0, 0, 0],
+        [1, 0, 0],
+        [1, 1, 0],
+        [-5, 3, 2],
+        [6, 6, 6],
+        [7, 6, 6],
+    ]);
     let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
     let mut cyclic = LinkedGraph::new(9);
-    cyclic.add_node([1, 2, 3], [Some(0), None, None, Some(1), None, Some(0), Some(2), None]);
-    cyclic.add_node([1, 2, 3], [Some(2), None, None, Some(1), None, Some(0), Some(2), None]);
+    cyclic.add_node(
+        [1, 2, 3],
+        [Some(0), None, None, Some(1), None, Some(0), Some(2), None],
+    );
+    cyclic.add_node(
+        [1, 2, 3],
+        [Some(2), None, None, Some(1), None, Some(0), Some(2), None],
+    );
     cyclic.add_node([9, 9, 9], [None; 8]);
     vec![tree, dag, cyclic.build().unwrap(), build(&[[-3, 4, 5]])]
 }
@@ -79,14 +92,20 @@ fn files_return_what_was_stored() {
         assert!(matches!(opened.color, Store::Mapped(..)) || cfg!(target_endian = "big"));
         assert_eq!(parts(&opened), parts(graph));
         assert_eq!(parts(&vxg::verify(&path).unwrap()), parts(graph));
-        assert_eq!(parts(&vxg::from_bytes(&bytes_of(graph)).unwrap()), parts(graph));
+        assert_eq!(
+            parts(&vxg::from_bytes(&bytes_of(graph)).unwrap()),
+            parts(graph)
+        );
         assert!(vxg::is_vxg(&bytes_of(graph)));
         exercise(&opened);
         // Over the file that is mapped: the map keeps the old one.
         vxg::write(&opened, &path, true).unwrap();
         assert_eq!(parts(&vxg::verify(&path).unwrap()), parts(graph));
     }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), small_graphs().len());
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        small_graphs().len()
+    );
 }
 
 #[test]
@@ -165,7 +184,10 @@ fn seal(bytes: &mut [u8]) {
     };
     for entry in [128, 160, 192, 224] {
         let (offset, length) = (get(bytes, entry + 8), get(bytes, entry + 16));
-        if let Some(section) = offset.checked_add(length).and_then(|end| bytes.get(offset..end)) {
+        if let Some(section) = offset
+            .checked_add(length)
+            .and_then(|end| bytes.get(offset..end))
+        {
             let sum = xxhash_rust::xxh3::xxh3_64(section).to_le_bytes();
             bytes[entry + 24..entry + 32].copy_from_slice(&sum);
         }
@@ -220,19 +242,27 @@ fn messages_say_where_what_and_what_to_do() {
     let mut bytes = bytes_of(graph);
     fs::write(&path, b"VOX \x96\0\0\0").unwrap();
     let message = vxg::open(&path).unwrap_err().to_string();
-    assert!(message.contains("scene.vxg: section header, byte 0: expected the signature"), "{message}");
+    assert!(
+        message.contains("scene.vxg: section header, byte 0: expected the signature"),
+        "{message}"
+    );
     // A child list that leaves the nodes, under checksums that fit.
     bytes[512..516].copy_from_slice(&1000u32.to_le_bytes());
     seal(&mut bytes);
     fs::write(&path, &bytes).unwrap();
     let message = vxg::verify(&path).unwrap_err().to_string();
-    assert!(message.contains("section TOPO, byte 512: expected children"), "{message}");
+    assert!(
+        message.contains("section TOPO, byte 512: expected children"),
+        "{message}"
+    );
     assert!(message.contains("copy it again"), "{message}");
     // Another version, otherwise sound.
     bytes[8] = 2;
     seal(&mut bytes);
     fs::write(folder.path().join("new.vxg"), &bytes).unwrap();
-    let message = vxg::open(&folder.path().join("new.vxg")).unwrap_err().to_string();
+    let message = vxg::open(&folder.path().join("new.vxg"))
+        .unwrap_err()
+        .to_string();
     assert!(message.contains("version 1, not 2"), "{message}");
     let missing = vxg::open(&folder.path().join("none.vxg")).unwrap_err();
     assert!(matches!(missing, VxgError::Io { .. }));

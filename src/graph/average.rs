@@ -42,7 +42,11 @@ fn encode(linear: u64) -> u8 {
     let to_above = u64::from(table[above]) - linear;
     let to_below = linear - u64::from(table[above - 1]);
     // `above` is 1..=255 here.
-    (if to_above <= to_below { above } else { above - 1 }) as u8
+    (if to_above <= to_below {
+        above
+    } else {
+        above - 1
+    }) as u8
 }
 
 /// Colours and normals of some voxels, added up.
@@ -64,7 +68,8 @@ impl Sum {
         }
         if let Some(unit) = normal.decode() {
             for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                *sum += libm::rint(part * UNIT_NORMAL) as i64;
+                // Towards zero: both signs alike.
+                *sum += (part * UNIT_NORMAL) as i64;
             }
         }
     }

@@ -154,8 +154,18 @@ impl LinkedGraph {
             root: self.root,
             topology: topology.into(),
             links: links.into(),
-            color: self.nodes.iter().map(|n| n.color).collect::<Vec<_>>().into(),
-            normal: self.nodes.iter().map(|n| n.normal).collect::<Vec<_>>().into(),
+            color: self
+                .nodes
+                .iter()
+                .map(|n| n.color)
+                .collect::<Vec<_>>()
+                .into(),
+            normal: self
+                .nodes
+                .iter()
+                .map(|n| n.normal)
+                .collect::<Vec<_>>()
+                .into(),
             level_start: Vec::new(),
             voxels: 0,
             placement: self.placement,

@@ -112,7 +112,10 @@ fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
         } else {
             let mut known = Map::default();
             for node in nodes {
-                let key = (attributes(graph, node, by), child_classes(graph, node, &class));
+                let key = (
+                    attributes(graph, node, by),
+                    child_classes(graph, node, &class),
+                );
                 class[node as usize] = number(&mut known, key);
             }
         }
@@ -176,7 +179,11 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
         };
         // In a sound graph the finest level has no children anyway.
         let finest = ordered && level_start.len() > graph.depth as usize;
-        let children = if finest { [None; 8] } else { graph.children(chosen[next]) };
+        let children = if finest {
+            [None; 8]
+        } else {
+            graph.children(chosen[next])
+        };
         for (octant, child) in children.into_iter().enumerate() {
             let Some(child) = child else { continue };
             let name = &mut renamed[class[child as usize] as usize];
@@ -194,15 +201,28 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
         next += 1;
     }
     let has_children = |entry: &Topology| entry.mask != 0;
-    topology.truncate(topology.iter().rposition(has_children).map_or(0, |last| last + 1));
+    topology.truncate(
+        topology
+            .iter()
+            .rposition(has_children)
+            .map_or(0, |last| last + 1),
+    );
     topology.shrink_to_fit();
     let mut merged = Graph {
         depth: graph.depth,
         root: 0,
         topology: topology.into(),
         links: links.into(),
-        color: chosen.iter().map(|&n| graph.color_of(n)).collect::<Vec<_>>().into(),
-        normal: chosen.iter().map(|&n| graph.normal_of(n)).collect::<Vec<_>>().into(),
+        color: chosen
+            .iter()
+            .map(|&n| graph.color_of(n))
+            .collect::<Vec<_>>()
+            .into(),
+        normal: chosen
+            .iter()
+            .map(|&n| graph.normal_of(n))
+            .collect::<Vec<_>>()
+            .into(),
         level_start: Vec::new(),
         voxels: graph.voxels,
         placement: graph.placement,

@@ -55,7 +55,10 @@ impl Graph {
         self.validate_topology()?;
         let counted = self.count_voxels();
         check(self.voxels == counted, "voxels", 0, || {
-            format!("{counted}, the number of voxels counted, not {}", self.voxels)
+            format!(
+                "{counted}, the number of voxels counted, not {}",
+                self.voxels
+            )
         })
     }
 
@@ -133,7 +136,11 @@ impl Graph {
                 format!("a node below {nodes}, not {link}")
             })?;
         }
-        let slots = if linked { self.links.len() as u64 } else { nodes };
+        let slots = if linked {
+            self.links.len() as u64
+        } else {
+            nodes
+        };
         let mut level = 0;
         // In a tree stored level by level: the next node that has no parent yet.
         let mut orphan = 1u64;
@@ -168,7 +175,10 @@ impl Graph {
                 }
             } else {
                 expect(first == orphan && end <= below.end, &|| {
-                    format!("children from {orphan} and before {}, not {first}..{end}", below.end)
+                    format!(
+                        "children from {orphan} and before {}, not {first}..{end}",
+                        below.end
+                    )
                 })?;
                 orphan = end;
             }

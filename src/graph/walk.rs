@@ -82,7 +82,9 @@ impl Graph {
     pub fn nodes_per_level(&self) -> Vec<u64> {
         if self.is_level_ordered() {
             let pairs = self.level_start.windows(2);
-            return pairs.map(|p| u64::from(p[1].saturating_sub(p[0]))).collect();
+            return pairs
+                .map(|p| u64::from(p[1].saturating_sub(p[0])))
+                .collect();
         }
         let mut counts = Vec::new();
         let mut level = vec![self.root];

@@ -186,13 +186,19 @@ impl Header {
             format!("header checksum {stored:016x}, but the header has {actual:016x}")
         })?;
         let length = u32_at(header, at::HEADER_BYTES);
-        report.check(length == HEADER_BYTES as u32, at::HEADER_BYTES, DAMAGED, || {
-            format!("a header length of {HEADER_BYTES}, not {length}")
-        })?;
+        report.check(
+            length == HEADER_BYTES as u32,
+            at::HEADER_BYTES,
+            DAMAGED,
+            || format!("a header length of {HEADER_BYTES}, not {length}"),
+        )?;
         let expected_bytes = u64_at(header, at::FILE_BYTES);
-        report.check(file_bytes == expected_bytes, at::FILE_BYTES, DAMAGED, || {
-            format!("a file of {expected_bytes} bytes, not {file_bytes}")
-        })?;
+        report.check(
+            file_bytes == expected_bytes,
+            at::FILE_BYTES,
+            DAMAGED,
+            || format!("a file of {expected_bytes} bytes, not {file_bytes}"),
+        )?;
         let sections = read_sections(header, file_bytes, &report)?;
         let levels = u32_at(header, at::LEVELS) as usize;
         report.check(levels <= MAX_LEVEL_STARTS, at::LEVELS, DAMAGED, || {
@@ -249,7 +255,11 @@ impl Header {
                 reserved,
             }
         });
-        let links = section(1).as_chunks().0.iter().map(|&l| u32::from_le_bytes(l));
+        let links = section(1)
+            .as_chunks()
+            .0
+            .iter()
+            .map(|&l| u32::from_le_bytes(l));
         let normal = section(3).as_chunks().0.iter();
         let normal = normal.map(|&n| PackedNormal(u16::from_le_bytes(n)));
         self.graph(
@@ -280,7 +290,9 @@ impl Header {
             voxels: self.voxels,
             placement: self.placement,
         };
-        let structure = graph.validate_shape().and_then(|()| graph.validate_levels());
+        let structure = graph
+            .validate_shape()
+            .and_then(|()| graph.validate_levels());
         structure.map_err(|invalid| self.locate(invalid, path))?;
         Ok(graph)
     }
@@ -318,15 +330,22 @@ fn read_sections(
     report: &Reporter<'_>,
 ) -> Result<[Section; SECTIONS], VxgError> {
     let count = u32_at(header, at::SECTION_COUNT);
-    report.check(count as usize == SECTIONS, at::SECTION_COUNT, DAMAGED, || {
-        format!("{SECTIONS} sections, not {count}")
-    })?;
+    report.check(
+        count as usize == SECTIONS,
+        at::SECTION_COUNT,
+        DAMAGED,
+        || format!("{SECTIONS} sections, not {count}"),
+    )?;
     let mut sections = [Section::default(); SECTIONS];
     for (i, (kind, section)) in KINDS.iter().zip(&mut sections).enumerate() {
         let entry = at::SECTIONS + i * SECTION_ENTRY_BYTES;
         let tag = field::<4>(header, entry);
         report.check(tag == kind.tag, entry, DAMAGED, || {
-            format!("section {}, not {:?}", kind.name, tag.escape_ascii().to_string())
+            format!(
+                "section {}, not {:?}",
+                kind.name,
+                tag.escape_ascii().to_string()
+            )
         })?;
         let item = u32_at(header, entry + 4);
         report.check(item == kind.item_bytes, entry + 4, DAMAGED, || {
@@ -339,7 +358,10 @@ fn read_sections(
         };
         let whole = section.bytes.is_multiple_of(u64::from(kind.item_bytes));
         report.check(whole, entry + 16, DAMAGED, || {
-            format!("whole items of {} bytes, not {}", kind.item_bytes, section.bytes)
+            format!(
+                "whole items of {} bytes, not {}",
+                kind.item_bytes, section.bytes
+            )
         })?;
     }
     let (offsets, end) = layout(sections.map(|section| section.bytes));
@@ -365,7 +387,9 @@ fn verify_sections(
     let report = Reporter(path);
     let mut end = HEADER_BYTES as u64;
     for (kind, section) in KINDS.iter().zip(&header.sections) {
-        let padding = bytes.get(end as usize..section.offset as usize).unwrap_or_default();
+        let padding = bytes
+            .get(end as usize..section.offset as usize)
+            .unwrap_or_default();
         if let Some(place) = padding.iter().position(|&byte| byte != 0) {
             let offset = end + place as u64;
             let expected = format!("zero, not {}", padding[place]);
@@ -381,5 +405,7 @@ fn verify_sections(
         }
         end = section.offset + section.bytes;
     }
-    graph.validate().map_err(|invalid| header.locate(invalid, path))
+    graph
+        .validate()
+        .map_err(|invalid| header.locate(invalid, path))
 }
