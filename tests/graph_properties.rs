@@ -1,4 +1,5 @@
 //! A graph holds exactly the voxels that were pushed, however it was made.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::collections::BTreeMap;
 

@@ -1,6 +1,7 @@
 //! Time and memory of a surface of a million voxels; the time is printed, not judged.
 //!
 //! `cargo test --release --test graph_speed -- --ignored --nocapture` takes the larger ones too.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::time::Instant;
 
@@ -79,10 +80,10 @@ fn sphere(radius: i32) -> Vec<Voxel> {
 }
 
 #[test]
-fn a_surface_takes_at_most_ten_bytes_a_voxel() {
-    // Slopes of all kinds, and a lattice of steps, which has more inner nodes.
+fn a_surface_takes_at_most_twelve_bytes_a_voxel() {
+    // Five bytes a voxel, 13 an inner node; a surface has 0.43 to 0.49 of those for each voxel.
     for (name, voxels, limit) in [
-        ("sphere", sphere(340), 10.0),
+        ("sphere", sphere(340), 11.5),
         ("steps", surface(1100), 11.0),
     ] {
         assert!(voxels.len() > 1_000_000, "{}", voxels.len());
