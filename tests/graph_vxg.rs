@@ -1,4 +1,5 @@
 //! `.vxg` files return what was stored, and damage is found or harmless.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::fs;
 use std::path::Path;

@@ -68,7 +68,8 @@ impl Sum {
         }
         if let Some(unit) = normal.decode() {
             for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
-                *sum += libm::rint(part * UNIT_NORMAL) as i64;
+                // Towards zero: both signs alike.
+                *sum += (part * UNIT_NORMAL) as i64;
             }
         }
     }

@@ -33,12 +33,17 @@ impl PackedNormal {
         if unit.z < 0.0 {
             (u, v) = fold(u, v);
         }
-        let low_u = libm::floor(u * STEPS).clamp(-STEPS, STEPS - 1.0);
-        let low_v = libm::floor(v * STEPS).clamp(-STEPS, STEPS - 1.0);
+        // Not negative before the cast, which therefore rounds down.
+        let floor = |x: f64| f64::from((x * STEPS + STEPS) as i32) - STEPS;
+        let low_u = floor(u).clamp(-STEPS, STEPS - 1.0);
+        let low_v = floor(v).clamp(-STEPS, STEPS - 1.0);
         let mut best = (f64::NEG_INFINITY, Self::NONE);
         for (du, dv) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
             let (u, v) = (low_u + du, low_v + dv);
-            let likeness = unit.dot(unfold(u, v));
+            let point = unfold(u, v);
+            let along = unit.dot(point);
+            // The square of the cosine, but for a factor, with its sign.
+            let likeness = along * along.abs() / point.length_squared();
             if likeness > best.0 {
                 let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
                 best = (likeness, Self(byte(u) << 8 | byte(v)));
@@ -54,7 +59,9 @@ impl PackedNormal {
             return None;
         }
         let step = |byte: u16| (f64::from(byte) - f64::from(ZERO)).max(-STEPS);
-        Some(unfold(step(self.0 >> 8), step(self.0 & 0xff)))
+        let point = unfold(step(self.0 >> 8), step(self.0 & 0xff));
+        // Never zero: one of the three is at least a third.
+        Some(point / libm::sqrt(point.length_squared()))
     }
 
     /// Whether there is no normal.
@@ -70,16 +77,14 @@ fn fold(u: f64, v: f64) -> (f64, f64) {
     ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v))
 }
 
-/// The unit vector of a grid point.
+/// The point of the octahedron that a grid point stands for.
 fn unfold(u: f64, v: f64) -> DVec3 {
-    let (mut u, mut v) = (u / STEPS, v / STEPS);
+    let (mut u, mut v) = (u * (1.0 / STEPS), v * (1.0 / STEPS));
     let z = 1.0 - u.abs() - v.abs();
     if z < 0.0 {
         (u, v) = fold(u, v);
     }
-    // Never zero: one of the three is at least a third.
-    let vector = DVec3::new(u, v, z);
-    vector / libm::sqrt(vector.length_squared())
+    DVec3::new(u, v, z)
 }
 
 #[cfg(test)]

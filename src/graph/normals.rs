@@ -2,15 +2,16 @@
 //!
 //! Around each voxel, its 5 x 5 x 5 neighbourhood is taken as a heap of mass
 //! (weights 1 2 2 2 1 along each axis). Where the heap lies to one side of
-//! the voxel, as at the face, edge or corner of a solid, the normal points
-//! away from its centre of mass. Where it lies all around, as in a wall one
-//! voxel thick, that direction is noise, and the normal is the direction in
-//! which the heap is thinnest (the least axis of its covariance), turned away
-//! from the heap or else from the middle of the object. A wall that thin has two sides,
-//! and which one is *out* cannot be known from it: a viewer may turn such a
-//! normal towards the eye.
+//! the voxel or fills most of the neighbourhood, as in a solid, the normal
+//! points away from its centre of mass. Elsewhere, as in a wall one voxel
+//! thick, that direction is noise, and the normal is the direction in which
+//! the heap is thinnest (the least axis of its covariance), turned away from
+//! the middle of the object. A wall that thin has two sides, and which one is
+//! *out* cannot be known from it: a viewer may turn such a normal towards the eye.
 //!
-//! A voxel alone in its neighbourhood, or with all of it filled, has none.
+//! A voxel alone in its neighbourhood has none; nor has one whose six faces
+//! are all covered: it cannot be seen, and has no part in the normals of
+//! coarser nodes.
 //!
 //! Speed comes from bricks of 4^3 voxels, 64 bits each: the node two levels
 //! above the finest, its children's masks its bits. Its 26 neighbours come
@@ -33,16 +34,17 @@ const MAX_PIECES: usize = 4096;
 
 /// Weight of a voxel by its distance along an axis, -2 to 2.
 const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
-/// Mass of a full neighbourhood.
-const FULL_MASS: i32 = 8 * 8 * 8;
+/// Mass of half a neighbourhood. A wall of two voxels has it; a flat face
+/// has five eighths of a full one.
+const HALF_MASS: i32 = 8 * 8 * 8 / 2;
 /// Mass of a voxel alone.
 const LONE_MASS: i32 = 2 * 2 * 2;
 /// A centre of mass at least this far off, in voxels, tells the normal by
-/// itself: 0.8 is a flat face, 0.45 a concave edge, 0.5 a wall of two.
+/// itself: 0.8 is a flat face, 0.5 a wall of two.
 const ONE_SIDED: f64 = 0.6;
-/// How much the middle of the object has to say about which side is out,
-/// against the offset of the centre of mass in voxels.
-const OUTWARD_SHARE: f64 = 0.3;
+/// How much the centre of mass, in voxels, has to say about which side of a
+/// wall is out, against the middle of the object.
+const OFFSET_SHARE: f64 = 0.25;
 
 /// What the estimate is made from: a tree stored level by level.
 pub(super) struct Estimate<'t> {
@@ -51,6 +53,15 @@ pub(super) struct Estimate<'t> {
     pub(super) depth: u32,
     /// Middle of the object, finest voxels.
     pub(super) centre: [f64; 3],
+}
+
+/// Occupancy of 4^3 voxels, in two orders.
+#[derive(Debug, Clone, Copy)]
+struct Brick {
+    /// Bits in Morton order.
+    morton: u64,
+    /// Bit `z * 16 + y * 4 + x`.
+    by_rows: u64,
 }
 
 /// A subtree and the part of the finest level that it owns.
@@ -80,9 +91,13 @@ impl Estimate<'_> {
 
     fn fill_bricks(&self, level: u32, normals: &mut [PackedNormal], progress: &dyn Progress) {
         let first_brick = self.level_start[level as usize];
-        let bricks: Vec<u64> = (first_brick..self.level_start[level as usize + 1])
+        let bricks: Vec<Brick> = (first_brick..self.level_start[level as usize + 1])
             .into_par_iter()
-            .map(|node| self.brick(node))
+            .map(|node| {
+                let morton = self.brick(node);
+                let by_rows = to_rows(morton);
+                Brick { morton, by_rows }
+            })
             .collect();
         let (split_level, pieces) = self.pieces(level);
 
@@ -112,13 +127,10 @@ impl Estimate<'_> {
     /// The occupancy of a brick, bits in Morton order.
     fn brick(&self, node: u32) -> u64 {
         let Topology { first, mask, .. } = self.topology[node as usize];
-        let mut word = 0u64;
-        let mut child = first;
-        for octant in (0..8).filter(|octant| mask >> octant & 1 == 1) {
-            word |= u64::from(self.topology[child as usize].mask) << (8 * octant);
-            child += 1;
-        }
-        word
+        let octants = (0..8).filter(|octant| mask >> octant & 1 == 1);
+        octants.zip(first..).fold(0u64, |word, (octant, child)| {
+            word | u64::from(self.topology[child as usize].mask) << (8 * octant)
+        })
     }
 
     /// Nodes of the deepest level, no deeper than the bricks, that has few
@@ -212,6 +224,9 @@ impl Estimate<'_> {
                 continue;
             }
             let at = MORTON_TO_XYZ[bit];
+            if enclosed(rows, at) {
+                continue;
+            }
             let moments = Moments::around(rows, at);
             let outward =
                 [0, 1, 2].map(|k| f64::from(corner[k]) + at[k] as f64 + 0.5 - self.centre[k]);
@@ -233,7 +248,7 @@ const CHILD_NEIGHBOURS: [[(u8, u8); 27]; 8] = {
             let y = 2 + (octant >> 1 & 1) + neighbour / 3 % 3 - 1;
             let z = 2 + (octant & 1) + neighbour % 3 - 1;
             let parent = (x / 2 * 3 + y / 2) * 3 + z / 2;
-            let child = (x % 2) << 2 | (y % 2) << 1 | z % 2;
+            let child = (x % 2) << 2 | (y % 2) << 1 | (z % 2);
             table[octant][neighbour] = (parent as u8, child as u8);
             neighbour += 1;
         }
@@ -271,6 +286,7 @@ fn to_rows(word: u64) -> u64 {
 
 /// Puts a neighbouring brick into the 8^3 voxels around a brick, of which
 /// its own are 2 to 5: `rows[z][y]`, bit x.
+#[inline]
 fn put(rows: &mut [[u8; 8]; 8], neighbour: usize, brick_rows: u64) {
     /// First place in the window, first place in the brick, how many.
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
@@ -286,12 +302,20 @@ fn put(rows: &mut [[u8; 8]; 8], neighbour: usize, brick_rows: u64) {
     }
 }
 
+/// Whether all six faces of a brick's voxel are covered.
+fn enclosed(rows: &[[u8; 8]; 8], [x, y, z]: [usize; 3]) -> bool {
+    let (y, z) = (y + 2, z + 2);
+    let along_x = rows[z][y] >> (x + 1) & 0b101 == 0b101;
+    let across = rows[z][y - 1] & rows[z][y + 1] & rows[z - 1][y] & rows[z + 1][y];
+    along_x && across >> (x + 2) & 1 == 1
+}
+
 /// A walk over the bricks of a piece, in Morton order.
 struct Walk<'w> {
     estimate: &'w Estimate<'w>,
     brick_level: u32,
     first_brick: u32,
-    bricks: &'w [u64],
+    bricks: &'w [Brick],
     /// The next voxel of the piece.
     next: usize,
     normals: &'w mut [PackedNormal],
@@ -310,10 +334,10 @@ impl Walk<'_> {
         let mut rows = [[0u8; 8]; 8];
         for (slot, &node) in neighbours.iter().enumerate() {
             if node != ABSENT {
-                put(&mut rows, slot, to_rows(word_of(node)));
+                put(&mut rows, slot, word_of(node).by_rows);
             }
         }
-        let word = word_of(neighbours[SELF]);
+        let word = word_of(neighbours[SELF]).morton;
         let end = self.next + word.count_ones() as usize;
         self.estimate
             .fill_brick(&rows, word, corner, &mut self.normals[self.next..end]);
@@ -383,16 +407,16 @@ impl Moments {
     }
 
     fn normal(&self, outward: DVec3) -> PackedNormal {
-        if self.mass == FULL_MASS || self.mass <= LONE_MASS {
+        if self.mass <= LONE_MASS {
             return PackedNormal::NONE;
         }
         let mass = f64::from(self.mass);
         let mean = DVec3::from_array(self.first.map(f64::from)) / mass;
-        if mean.length_squared() >= ONE_SIDED * ONE_SIDED {
+        if self.mass > HALF_MASS || mean.length_squared() >= ONE_SIDED * ONE_SIDED {
             return PackedNormal::encode(-mean);
         }
         let thin = thinnest(&self.second.map(|moment| f64::from(moment) / mass), mean);
-        let hint = outward.normalize_or_zero() * OUTWARD_SHARE - mean;
+        let hint = outward.normalize_or_zero() - mean * OFFSET_SHARE;
         let turned = thin.map(|column| column.dot(hint));
         let direction = DVec3::from_array(turned);
         if direction.length() > 0.02 {
@@ -429,7 +453,8 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
     for squaring in 0..6 {
         let trace = columns[0].x + columns[1].y + columns[2].z;
         // Variances are above the floor, so the trace is above zero.
-        columns = columns.map(|column| column / trace);
+        let scale = 1.0 / trace;
+        columns = columns.map(|column| column * scale);
         if squaring < 5 {
             let [u, v, w] = columns;
             columns = columns.map(|column| u * column.x + v * column.y + w * column.z);
@@ -446,12 +471,12 @@ mod tests {
     fn rows_of_a_window_are_where_they_should_be() {
         // One voxel in each neighbour, seen at its place in the window.
         for neighbour in 0..27 {
-            for bit in 0..64 {
+            for (bit, place_in_brick) in MORTON_TO_XYZ.into_iter().enumerate() {
                 let mut rows = [[0u8; 8]; 8];
                 put(&mut rows, neighbour, to_rows(1 << bit));
                 let offset = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
                 let at = [0, 1, 2].map(|k| {
-                    let place = MORTON_TO_XYZ[bit][k] + 4 * offset[k];
+                    let place = place_in_brick[k] + 4 * offset[k];
                     place.checked_sub(2).filter(|&p| p < 8)
                 });
                 let mut expected = [[0u8; 8]; 8];

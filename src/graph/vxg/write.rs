@@ -10,7 +10,7 @@ use super::error::VxgError;
 use super::format::{
     HEADER_BYTES, KINDS, MAGIC, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION, at, layout,
 };
-use crate::graph::{Graph, Topology};
+use crate::graph::{Graph, PackedNormal, Topology};
 
 /// Writes a graph to a file.
 ///
@@ -112,7 +112,7 @@ fn sections(graph: &Graph) -> [Cow<'_, [u8]>; SECTIONS] {
             Cow::Borrowed(bytemuck::cast_slice::<Topology, u8>(&graph.topology)),
             Cow::Borrowed(bytemuck::cast_slice::<u32, u8>(&graph.links)),
             Cow::Borrowed(graph.color.as_flattened()),
-            Cow::Borrowed(bytemuck::cast_slice(&*graph.normal)),
+            Cow::Borrowed(bytemuck::cast_slice::<PackedNormal, u8>(&graph.normal)),
         ];
     }
     let topology = graph.topology.iter().flat_map(|entry| {
