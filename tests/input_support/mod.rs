@@ -1,6 +1,6 @@
 //! What the input tests share: reading into a list, finding data, and a writer of small `.vox` files.
 
-#![allow(dead_code, reason = "each test file uses a part")]
+#![allow(dead_code, unreachable_pub, reason = "a module that each test file uses a part of")]
 
 use std::path::PathBuf;
 

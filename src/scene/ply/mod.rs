@@ -283,6 +283,16 @@ fn read_line<R: BufRead>(
             vertex.put(*role, value);
         }
     }
+    if let Some(word) = words.next() {
+        return Err(Fault::new(
+            vertex_part(number),
+            begin,
+            format!("one number for each of {} properties", layout.properties.len()),
+            format!("{} after them", printable(word)),
+            "every vertex needs a line of its own",
+        )
+        .into());
+    }
     Ok(())
 }
 
