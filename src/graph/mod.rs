@@ -1,12 +1,27 @@
 //! The voxel graph: trees, DAGs with equal subtrees merged, and cyclic graphs.
 
+mod average;
+pub mod build;
+pub mod linked;
+pub mod merge;
+mod morton;
+mod normal;
+mod normals;
 mod progress;
 mod store;
+pub mod validate;
 mod voxel;
+pub mod vxg;
+pub mod walk;
 
+pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use linked::LinkedGraph;
+pub use merge::{MergeBy, MergeReport, merge};
 pub use progress::{Progress, Silent};
 pub use store::Store;
+pub use validate::Invalid;
 pub use voxel::Voxel;
+pub use walk::Cell;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
@@ -92,6 +107,44 @@ impl Graph {
         self.color.is_empty()
     }
 
+    /// Colour of a node; black for a node that does not exist.
+    #[inline]
+    #[must_use]
+    pub fn color_of(&self, node: u32) -> [u8; 3] {
+        self.color.get(node as usize).copied().unwrap_or_default()
+    }
+
+    /// Normal of a node; none for a node that does not exist.
+    #[inline]
+    #[must_use]
+    pub fn normal_of(&self, node: u32) -> PackedNormal {
+        self.normal.get(node as usize).copied().unwrap_or_default()
+    }
+
+    /// The children of a node by octant, those that do not exist left out.
+    #[must_use]
+    pub fn children(&self, node: u32) -> [Option<u32>; 8] {
+        let view = self.view();
+        let nodes = self.len() as u64;
+        std::array::from_fn(|octant| {
+            view.child(node, octant as u8)
+                .filter(|&child| u64::from(child) < nodes)
+        })
+    }
+
+    /// Bytes of the arrays, in memory or in the file that they are mapped from.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let sizes = [
+            size_of_val::<[Topology]>(&self.topology),
+            size_of_val::<[u32]>(&self.links),
+            size_of_val::<[[u8; 3]]>(&self.color),
+            size_of_val::<[PackedNormal]>(&self.normal),
+            size_of_val::<[u32]>(&self.level_start),
+        ];
+        sizes.iter().map(|&size| size as u64).sum()
+    }
+
     /// The graph's arrays as plain slices: what an engine walks.
     #[must_use]
     pub fn view(&self) -> GraphView<'_> {
@@ -128,6 +181,9 @@ impl GraphView<'_> {
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
     ///
     /// A leaf has none here; that it points to itself is for the renderer to say.
+    /// Never panics, whatever a damaged file holds: a child list that leaves
+    /// the file reads as no child, and a child without a node as a leaf
+    /// ([`Graph::color_of`] then says black).
     #[inline]
     #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
@@ -136,11 +192,12 @@ impl GraphView<'_> {
             return None;
         }
         let before = topology.mask & ((1u8 << octant) - 1);
-        let slot = topology.first + before.count_ones();
+        // Wraps only in a damaged file, where one wrong place is as good as another.
+        let slot = topology.first.wrapping_add(before.count_ones());
         if self.links.is_empty() {
             Some(slot)
         } else {
-            Some(self.links[slot as usize])
+            self.links.get(slot as usize).copied()
         }
     }
 }

@@ -1,0 +1,119 @@
+//! Averages of colour and normal, exact and in any order the same.
+//!
+//! Colours are averaged in linear light, because that is what adds up in an
+//! eye or a lens: a far wall of black and white voxels is sRGB 188, not 128.
+//! The sums are integers (linear light in 24 bits, normals in 2^-20), so the
+//! order of adding is of no consequence.
+
+use std::sync::LazyLock;
+
+use glam::DVec3;
+
+use super::PackedNormal;
+
+/// Linear light of full intensity.
+const FULL: f64 = 16_777_215.0;
+/// A unit normal's length in the sum.
+const UNIT_NORMAL: f64 = 1_048_576.0;
+
+/// Linear light of each sRGB value, rounded.
+static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
+    std::array::from_fn(|value| {
+        let encoded = value as f64 / 255.0;
+        let linear = if encoded <= 0.040_45 {
+            encoded / 12.92
+        } else {
+            libm::pow((encoded + 0.055) / 1.055, 2.4)
+        };
+        libm::round(linear * FULL) as u32
+    })
+});
+
+/// The sRGB value whose linear light is nearest.
+fn encode(linear: u64) -> u8 {
+    let table: &[u32; 256] = &LINEAR;
+    let above = table.partition_point(|&entry| u64::from(entry) < linear);
+    if above == 0 {
+        return 0;
+    }
+    if above == 256 {
+        return 255;
+    }
+    let to_above = u64::from(table[above]) - linear;
+    let to_below = linear - u64::from(table[above - 1]);
+    // `above` is 1..=255 here.
+    (if to_above <= to_below { above } else { above - 1 }) as u8
+}
+
+/// Colours and normals of some voxels, added up.
+///
+/// Room for 2^32 voxels: 24 + 32 bits of light, 21 + 32 bits of normal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Sum {
+    count: u64,
+    light: [u64; 3],
+    normal: [i64; 3],
+}
+
+impl Sum {
+    /// Adds a voxel.
+    pub(super) fn add_voxel(&mut self, color: [u8; 3], normal: PackedNormal) {
+        self.count += 1;
+        for (light, value) in self.light.iter_mut().zip(color) {
+            *light += u64::from(LINEAR[usize::from(value)]);
+        }
+        if let Some(unit) = normal.decode() {
+            for (sum, part) in self.normal.iter_mut().zip(unit.to_array()) {
+                *sum += libm::rint(part * UNIT_NORMAL) as i64;
+            }
+        }
+    }
+
+    /// Adds another sum.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.count += other.count;
+        for c in 0..3 {
+            self.light[c] += other.light[c];
+            self.normal[c] += other.normal[c];
+        }
+    }
+
+    /// The average colour; black of nothing.
+    pub(super) fn color(&self) -> [u8; 3] {
+        let count = self.count.max(1);
+        self.light.map(|light| encode((light + count / 2) / count))
+    }
+
+    /// The average direction; none where the normals cancel or there are none.
+    pub(super) fn normal(&self) -> PackedNormal {
+        let [x, y, z] = self.normal.map(|part| part as f64);
+        PackedNormal::encode(DVec3::new(x, y, z))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_colours_keep_their_value() {
+        for value in 0..=255u8 {
+            let mut sum = Sum::default();
+            for _ in 0..5 {
+                sum.add_voxel([value; 3], PackedNormal::NONE);
+            }
+            assert_eq!(sum.color(), [value; 3]);
+            assert_eq!(sum.normal(), PackedNormal::NONE);
+        }
+    }
+
+    #[test]
+    fn black_and_white_average_in_linear_light() {
+        let mut sum = Sum::default();
+        sum.add_voxel([0, 0, 255], PackedNormal::encode(DVec3::X));
+        sum.add_voxel([255, 0, 255], PackedNormal::encode(DVec3::Y));
+        assert_eq!(sum.color(), [188, 0, 255]);
+        let normal = sum.normal().decode().unwrap_or_default();
+        assert!(normal.dot(DVec3::new(1.0, 1.0, 0.0).normalize()) > 0.9999);
+    }
+}

@@ -1,0 +1,380 @@
+//! From loose voxels to a tree stored level by level.
+//!
+//! Voxels get a Morton key, are sorted by it, and of those at one index the
+//! last pushed stays. In that order every node's voxels are neighbours and a
+//! node of level `l` begins wherever the first `3 l` bits of the key change:
+//! one scan counts the nodes of each level, a second one writes them.
+
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::average::Sum;
+use super::normals::Estimate;
+use super::{Graph, PackedNormal, Placement, Progress, Topology, Voxel, morton};
+
+/// Longest side of the bounding box of a set of voxels.
+pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+
+/// Where normals come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Normals {
+    /// A voxel's own normal where it has one, else that of the surface around it.
+    #[default]
+    FromSurface,
+    /// Only voxels' own normals.
+    None,
+}
+
+/// How a graph is built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct BuildOptions {
+    /// Where normals come from.
+    pub normals: Normals,
+}
+
+/// Why no graph was built.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// No voxel was pushed.
+    #[error("there are no voxels, so there is nothing to build")]
+    Empty,
+    /// The bounding box is too long.
+    #[error(
+        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
+         are there stray voxels far from the object?"
+    )]
+    TooLarge {
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// Length of the bounding box, voxels.
+        extent: u64,
+    },
+    /// More voxels or nodes than 32 bits number.
+    #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
+    TooMany(u64),
+    /// The world placement makes no sense.
+    #[error("the world origin must be finite and the voxel size finite and above 0")]
+    Placement,
+}
+
+/// A pushed voxel: 20 bytes.
+#[derive(Debug, Clone, Copy)]
+struct Record {
+    /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
+    /// halves, because eight-byte alignment would cost four bytes.
+    key_high: u32,
+    key_low: u32,
+    /// Order of pushing.
+    sequence: u32,
+    color: [u8; 3],
+    normal: PackedNormal,
+}
+
+impl Record {
+    fn key(&self) -> u64 {
+        u64::from(self.key_high) << 32 | u64::from(self.key_low)
+    }
+
+    fn set_key(&mut self, key: u64) {
+        self.key_high = (key >> 32) as u32;
+        self.key_low = key as u32;
+    }
+}
+
+/// Collects voxels and makes a graph of them.
+///
+/// Holds 20 bytes for each voxel pushed (a growing `Vec` may reserve twice
+/// that; see [`Builder::reserve`]). [`Builder::finish`] sorts in place and
+/// needs the output and about a byte a voxel besides.
+#[derive(Debug)]
+pub struct Builder {
+    options: BuildOptions,
+    records: Vec<Record>,
+    min: [i32; 3],
+    max: [i32; 3],
+    /// Voxels pushed; above `u32::MAX` no more are kept.
+    pushed: u64,
+}
+
+impl Builder {
+    /// A builder without voxels.
+    #[must_use]
+    pub fn new(options: BuildOptions) -> Self {
+        Self {
+            options,
+            records: Vec::new(),
+            min: [i32::MAX; 3],
+            max: [i32::MIN; 3],
+            pushed: 0,
+        }
+    }
+
+    /// Makes room for so many voxels more.
+    pub fn reserve(&mut self, voxels: usize) {
+        self.records.reserve_exact(voxels);
+    }
+
+    /// Voxels pushed so far, repeated ones included.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.pushed
+    }
+
+    /// Whether no voxel was pushed yet.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.pushed == 0
+    }
+
+    /// Adds a voxel; it replaces an earlier one at the same index.
+    pub fn push(&mut self, voxel: Voxel) {
+        // NO_NODE is not a node, hence `<`.
+        if self.pushed < u64::from(u32::MAX) {
+            let mut packed = 0u64;
+            for axis in 0..3 {
+                let index = voxel.index[axis];
+                self.min[axis] = self.min[axis].min(index);
+                self.max[axis] = self.max[axis].max(index);
+                let low_bits = u64::from(index as u32) & (MAX_SIDE - 1);
+                packed |= low_bits << (axis as u32 * morton::MAX_BITS);
+            }
+            let mut record = Record {
+                key_high: 0,
+                key_low: 0,
+                sequence: self.pushed as u32,
+                color: voxel.color,
+                normal: voxel.normal.unwrap_or(PackedNormal::NONE),
+            };
+            record.set_key(packed);
+            self.records.push(record);
+        }
+        self.pushed += 1;
+    }
+
+    /// Makes the graph, placed at a world position of file index (0, 0, 0)
+    /// and with a world length of a voxel's side.
+    ///
+    /// The same voxels give the same graph whatever the order of pushing
+    /// (voxels at one index apart) and the number of threads.
+    ///
+    /// # Errors
+    /// When there are no voxels, too many, or too far apart: see [`BuildError`].
+    pub fn finish(
+        mut self,
+        placement_world: ([f64; 3], f64),
+        progress: &dyn Progress,
+    ) -> Result<Graph, BuildError> {
+        let (world_origin, voxel_size) = placement_world;
+        let finite = world_origin.iter().all(|c| c.is_finite()) && voxel_size.is_finite();
+        if !finite || voxel_size <= 0.0 {
+            return Err(BuildError::Placement);
+        }
+        let extent = self.extent()?;
+        let longest = extent.iter().copied().max().unwrap_or(1);
+        let depth = longest.next_power_of_two().trailing_zeros();
+
+        progress.begin("sort voxels", 0);
+        let min = self.min;
+        sort(&mut self.records, min);
+        progress.end();
+
+        let mut tree = Tree::build(self.records, depth, progress)?;
+        if self.options.normals == Normals::FromSurface {
+            let finest = tree.level_start[depth as usize] as usize;
+            Estimate {
+                topology: &tree.topology,
+                level_start: &tree.level_start,
+                depth,
+                centre: extent.map(|side| side as f64 / 2.0),
+            }
+            .fill(&mut tree.normal[finest..], progress);
+        }
+        progress.begin("average colours and normals", 0);
+        tree.average(0, 0);
+        progress.end();
+
+        let voxels = tree.color.len() as u64 - u64::from(tree.level_start[depth as usize]);
+        Ok(Graph {
+            depth,
+            root: 0,
+            topology: tree.topology.into(),
+            links: Vec::new().into(),
+            color: tree.color.into(),
+            normal: tree.normal.into(),
+            level_start: tree.level_start,
+            voxels,
+            placement: Placement {
+                origin_index: self.min.map(i64::from),
+                world_origin,
+                voxel_size,
+            },
+        })
+    }
+
+    /// Sides of the bounding box, voxels.
+    fn extent(&self) -> Result<[u64; 3], BuildError> {
+        if self.records.is_empty() {
+            return Err(BuildError::Empty);
+        }
+        if self.pushed > self.records.len() as u64 {
+            return Err(BuildError::TooMany(self.pushed));
+        }
+        let mut extent = [0; 3];
+        for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
+            let side = i64::from(self.max[axis]) - i64::from(self.min[axis]) + 1;
+            extent[axis] = side.unsigned_abs();
+            if extent[axis] > MAX_SIDE {
+                return Err(BuildError::TooLarge {
+                    axis: name,
+                    extent: extent[axis],
+                });
+            }
+        }
+        Ok(extent)
+    }
+}
+
+impl Extend<Voxel> for Builder {
+    fn extend<I: IntoIterator<Item = Voxel>>(&mut self, voxels: I) {
+        for voxel in voxels {
+            self.push(voxel);
+        }
+    }
+}
+
+/// Sorts by Morton key from the lowest corner, and keeps the last pushed of
+/// those at one index.
+fn sort(records: &mut Vec<Record>, min: [i32; 3]) {
+    records.par_iter_mut().for_each(|record| {
+        let packed = record.key();
+        // The extent is at most 2^21, so the low bits tell the distance.
+        let at = [0, 1, 2].map(|axis| {
+            let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
+            low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)
+        });
+        record.set_key(morton::key(at));
+    });
+    records.par_sort_unstable_by_key(|record| (record.key(), Reverse(record.sequence)));
+    records.dedup_by_key(|record| record.key());
+}
+
+/// The graph's arrays while they are made.
+struct Tree {
+    depth: u32,
+    topology: Vec<Topology>,
+    color: Vec<[u8; 3]>,
+    normal: Vec<PackedNormal>,
+    level_start: Vec<u32>,
+}
+
+impl Tree {
+    /// Shape and finest level, from sorted records.
+    fn build(
+        records: Vec<Record>,
+        depth: u32,
+        progress: &dyn Progress,
+    ) -> Result<Self, BuildError> {
+        progress.begin("build the tree", 0);
+        let level_start = level_starts(&records, depth)?;
+        let inner = level_start[depth as usize] as usize;
+        let nodes = level_start[depth as usize + 1] as usize;
+
+        let mut color = vec![[0; 3]; nodes];
+        let mut normal = vec![PackedNormal::NONE; nodes];
+        for (i, record) in records.iter().enumerate() {
+            color[inner + i] = record.color;
+            normal[inner + i] = record.normal;
+        }
+
+        let mut topology = vec![Topology::default(); inner];
+        // The next node of each level.
+        let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
+        let mut before = None;
+        for record in &records {
+            let key = record.key();
+            for level in first_new_level(before, key, depth)..=depth {
+                if level > 0 {
+                    let parent = next[level as usize - 1] as usize - 1;
+                    let octant = key >> (3 * (depth - level)) & 7;
+                    topology[parent].mask |= 1 << octant;
+                }
+                if level < depth {
+                    topology[next[level as usize] as usize].first = next[level as usize + 1];
+                }
+                next[level as usize] += 1;
+            }
+            before = Some(key);
+        }
+        progress.end();
+        Ok(Self {
+            depth,
+            topology,
+            color,
+            normal,
+            level_start,
+        })
+    }
+
+    /// Writes the averages of a node and all below it, and returns its sum.
+    /// Each finest voxel counts the same. At most 21 calls deep.
+    fn average(&mut self, node: u32, level: u32) -> Sum {
+        let mut sum = Sum::default();
+        let at = node as usize;
+        if level == self.depth {
+            sum.add_voxel(self.color[at], self.normal[at]);
+            return sum;
+        }
+        let Topology { first, mask, .. } = self.topology[at];
+        for child in first..first + mask.count_ones() {
+            if level + 1 == self.depth {
+                sum.add_voxel(self.color[child as usize], self.normal[child as usize]);
+            } else {
+                sum.add(&self.average(child, level + 1));
+            }
+        }
+        self.color[at] = sum.color();
+        self.normal[at] = sum.normal();
+        sum
+    }
+}
+
+/// The coarsest level at which a voxel begins a node of its own.
+fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 {
+    match before {
+        None => 0,
+        // Keys differ, and below bit 3 * depth.
+        Some(before) => depth - (before ^ key).ilog2() / 3,
+    }
+}
+
+/// The first node of each level, and the end.
+fn level_starts(records: &[Record], depth: u32) -> Result<Vec<u32>, BuildError> {
+    let begun = records
+        .par_windows(2)
+        .fold(
+            || [0u64; morton::MAX_BITS as usize + 1],
+            |mut begun, pair| {
+                let level = first_new_level(Some(pair[0].key()), pair[1].key(), depth);
+                begun[level as usize] += 1;
+                begun
+            },
+        )
+        .reduce(
+            || [0u64; morton::MAX_BITS as usize + 1],
+            |a, b| std::array::from_fn(|level| a[level] + b[level]),
+        );
+    // The first voxel begins a node at every level.
+    let mut nodes_at_level = 1u64;
+    let mut total = 0u64;
+    let mut starts = vec![0u64];
+    for count in &begun[..=depth as usize] {
+        nodes_at_level += count;
+        total += nodes_at_level;
+        starts.push(total);
+    }
+    if total >= u64::from(u32::MAX) {
+        return Err(BuildError::TooMany(total));
+    }
+    Ok(starts.into_iter().map(|start| start as u32).collect())
+}

@@ -1,0 +1,215 @@
+//! Merging equal subtrees: a tree becomes a directed acyclic graph.
+//!
+//! Two nodes are equal if their children are, octant by octant, and their
+//! colours and normals. In a graph stored level by level, levels are merged
+//! from the finest up, so each node is looked at once; two equal nodes of different levels stay
+//! apart. In any other graph, cyclic ones included, nodes start out equal and
+//! are told apart by their children's differences until no more are found.
+//!
+//! Nodes of the result are numbered in the order in which a walk by levels
+//! from the root meets them, so the root is node 0, and nodes and children that
+//! a render meets together lie together. A graph stored level by level stays so.
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hash};
+
+use xxhash_rust::xxh3::Xxh3Default;
+
+use super::{Graph, Progress, Topology};
+
+/// When two nodes are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum MergeBy {
+    /// Same shape, colours and normals: the merged graph looks the same.
+    #[default]
+    ShapeAndAttributes,
+    /// Same shape; of the attributes, some one's are kept. Tells what a
+    /// geometry alone would gain.
+    Shape,
+}
+
+/// What merging has done.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MergeReport {
+    /// Nodes before.
+    pub nodes_before: u64,
+    /// Nodes after.
+    pub nodes_after: u64,
+    /// [`Graph::bytes`] before.
+    pub bytes_before: u64,
+    /// [`Graph::bytes`] after, the child lists included.
+    pub bytes_after: u64,
+}
+
+impl MergeReport {
+    /// Nodes before for each node after, 1 or more.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.nodes_before as f64 / self.nodes_after.max(1) as f64
+    }
+}
+
+type Map<K> = HashMap<K, u32, BuildHasherDefault<Xxh3Default>>;
+/// What stands for a child that does not exist.
+const ABSENT: u32 = u32::MAX;
+
+/// Merges equal nodes. The result is the same on every machine; its cells
+/// are those of `graph` one for one, and so are their colours and normals
+/// under [`MergeBy::ShapeAndAttributes`].
+#[must_use]
+pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, MergeReport) {
+    progress.begin("merge equal subtrees", 0);
+    let class = if graph.is_level_ordered() {
+        classes_by_level(graph, by)
+    } else {
+        classes_by_difference(graph, by)
+    };
+    let merged = rebuild(graph, &class);
+    progress.end();
+    let report = MergeReport {
+        nodes_before: graph.len() as u64,
+        nodes_after: merged.len() as u64,
+        bytes_before: graph.bytes(),
+        bytes_after: merged.bytes(),
+    };
+    (merged, report)
+}
+
+/// Colour and normal in one number, or nothing.
+fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
+    if by == MergeBy::Shape {
+        return 0;
+    }
+    let [red, green, blue] = graph.color_of(node);
+    let normal = graph.normal_of(node).0.to_le_bytes();
+    u64::from_le_bytes([red, green, blue, normal[0], normal[1], 0, 0, 0])
+}
+
+/// The classes of a node's children.
+fn child_classes(graph: &Graph, node: u32, class: &[u32]) -> [u32; 8] {
+    graph
+        .children(node)
+        .map(|child| child.map_or(ABSENT, |child| class[child as usize]))
+}
+
+/// The number that stands for a key: the next one, if it is new.
+fn number<K: Hash + Eq>(known: &mut Map<K>, key: K) -> u32 {
+    // Fewer classes than nodes, which 32 bits number.
+    let next = known.len() as u32;
+    *known.entry(key).or_insert(next)
+}
+
+/// The class of each node, apart for each level.
+fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
+    let mut class = vec![0; graph.len()];
+    for pair in graph.level_start.windows(2).rev() {
+        let nodes = pair[0]..pair[1].min(class.len() as u32);
+        if pair[0] as usize >= graph.topology.len() {
+            let mut known = Map::default();
+            for node in nodes {
+                class[node as usize] = number(&mut known, attributes(graph, node, by));
+            }
+        } else {
+            let mut known = Map::default();
+            for node in nodes {
+                let key = (attributes(graph, node, by), child_classes(graph, node, &class));
+                class[node as usize] = number(&mut known, key);
+            }
+        }
+    }
+    class
+}
+
+/// The class of each node of any graph.
+fn classes_by_difference(graph: &Graph, by: MergeBy) -> Vec<u32> {
+    let nodes = 0..graph.len() as u32;
+    let mut class = vec![0; graph.len()];
+    let mut classes = 0;
+    loop {
+        let mut known = Map::default();
+        class = nodes
+            .clone()
+            .map(|node| {
+                let own = class[node as usize];
+                let children = child_classes(graph, node, &class);
+                number(&mut known, (own, attributes(graph, node, by), children))
+            })
+            .collect();
+        // Classes are only ever split, so an equal number is an equal partition.
+        if known.len() == classes {
+            return class;
+        }
+        classes = known.len();
+    }
+}
+
+/// One node for each class that can be reached.
+fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
+    let ordered = graph.is_level_ordered();
+    let classes = class.iter().max().map_or(0, |&most| most as usize + 1);
+    // New number by class. Classes of different levels share numbers in a graph stored
+    // level by level, so there the table is for one level.
+    let mut renamed = vec![ABSENT; classes];
+    let mut chosen = vec![graph.root];
+    let mut links = Vec::new();
+    let mut topology = Vec::new();
+    let mut level_start = vec![0u32];
+    let mut level_end = 1;
+    if let Some(&root_class) = class.get(graph.root as usize)
+        && !ordered
+    {
+        renamed[root_class as usize] = 0;
+    }
+    let mut next = 0;
+    while next < chosen.len() {
+        if ordered && next == level_end {
+            level_start.push(level_end as u32);
+            // Only the classes of the level just named are set.
+            for &node in &chosen[level_end..] {
+                renamed[class[node as usize] as usize] = ABSENT;
+            }
+            level_end = chosen.len();
+        }
+        let mut entry = Topology {
+            first: links.len() as u32,
+            ..Topology::default()
+        };
+        // In a sound graph the finest level has no children anyway.
+        let finest = ordered && level_start.len() > graph.depth as usize;
+        let children = if finest { [None; 8] } else { graph.children(chosen[next]) };
+        for (octant, child) in children.into_iter().enumerate() {
+            let Some(child) = child else { continue };
+            let name = &mut renamed[class[child as usize] as usize];
+            if *name == ABSENT {
+                *name = chosen.len() as u32;
+                chosen.push(child);
+            }
+            entry.mask |= 1 << octant;
+            links.push(*name);
+        }
+        if entry.mask == 0 {
+            entry.first = 0;
+        }
+        topology.push(entry);
+        next += 1;
+    }
+    let has_children = |entry: &Topology| entry.mask != 0;
+    topology.truncate(topology.iter().rposition(has_children).map_or(0, |last| last + 1));
+    topology.shrink_to_fit();
+    let mut merged = Graph {
+        depth: graph.depth,
+        root: 0,
+        topology: topology.into(),
+        links: links.into(),
+        color: chosen.iter().map(|&n| graph.color_of(n)).collect::<Vec<_>>().into(),
+        normal: chosen.iter().map(|&n| graph.normal_of(n)).collect::<Vec<_>>().into(),
+        level_start: Vec::new(),
+        voxels: graph.voxels,
+        placement: graph.placement,
+    };
+    if ordered {
+        level_start.push(merged.len() as u32);
+        merged.level_start = level_start;
+    }
+    merged
+}

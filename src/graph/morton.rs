@@ -1,0 +1,35 @@
+//! Morton order: the bits of x, y and z interleaved, x highest.
+
+/// Most bits a coordinate may have, so that three fit 63 bits.
+pub(super) const MAX_BITS: u32 = 21;
+
+/// Spreads 21 bits so that two zeros follow each.
+fn spread(value: u32) -> u64 {
+    let mut bits = u64::from(value) & 0x1f_ffff;
+    bits = (bits | bits << 32) & 0x001f_0000_0000_ffff;
+    bits = (bits | bits << 16) & 0x001f_0000_ff00_00ff;
+    bits = (bits | bits << 8) & 0x100f_00f0_0f00_f00f;
+    bits = (bits | bits << 4) & 0x10c3_0c30_c30c_30c3;
+    (bits | bits << 2) & 0x1249_2492_4924_9249
+}
+
+/// The Morton key of coordinates below `2^21`: three bits a level, each an
+/// octant `x << 2 | y << 1 | z`, the root's highest.
+pub(super) fn key(at: [u32; 3]) -> u64 {
+    spread(at[0]) << 2 | spread(at[1]) << 1 | spread(at[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn interleaves_every_bit() {
+        for bit in 0..MAX_BITS {
+            assert_eq!(key([1 << bit, 0, 0]), 4 << (3 * bit));
+            assert_eq!(key([0, 1 << bit, 0]), 2 << (3 * bit));
+            assert_eq!(key([0, 0, 1 << bit]), 1 << (3 * bit));
+        }
+        assert_eq!(key([0x1f_ffff; 3]), (1 << 63) - 1);
+    }
+}

@@ -1,0 +1,134 @@
+//! Normals in two bytes: octahedral, one byte an axis.
+//!
+//! The sphere is projected to the octahedron `|x| + |y| + |z| = 1`, its lower
+//! half is folded over the upper, and the square that results is a grid of
+//! 255 by 255 points. A byte holds `-127..=127` as `1..=255`; no byte is ever
+//! 0 in a normal, so the value 0 is free to say that there is none. The six
+//! axes are exact. Of the four grid points around a direction the nearest is
+//! taken: the error stays below 0.7 degrees.
+
+use glam::DVec3;
+
+use super::PackedNormal;
+
+/// Grid steps from the middle of the square to its edge.
+const STEPS: f64 = 127.0;
+/// The byte that stands for 0.
+const ZERO: u16 = 128;
+
+impl PackedNormal {
+    /// No normal.
+    pub const NONE: Self = Self(0);
+
+    /// The nearest normal to a direction of any length; none for zero or a
+    /// direction that is not finite.
+    #[must_use]
+    pub fn encode(direction: DVec3) -> Self {
+        let length_l1 = direction.x.abs() + direction.y.abs() + direction.z.abs();
+        if !(length_l1.is_finite() && length_l1 > 0.0) {
+            return Self::NONE;
+        }
+        let unit = direction / length_l1;
+        let (mut u, mut v) = (unit.x, unit.y);
+        if unit.z < 0.0 {
+            (u, v) = fold(u, v);
+        }
+        let low_u = libm::floor(u * STEPS).clamp(-STEPS, STEPS - 1.0);
+        let low_v = libm::floor(v * STEPS).clamp(-STEPS, STEPS - 1.0);
+        let mut best = (f64::NEG_INFINITY, Self::NONE);
+        for (du, dv) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
+            let (u, v) = (low_u + du, low_v + dv);
+            let likeness = unit.dot(unfold(u, v));
+            if likeness > best.0 {
+                let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
+                best = (likeness, Self(byte(u) << 8 | byte(v)));
+            }
+        }
+        best.1
+    }
+
+    /// The unit vector, if there is a normal. Any 16 bits are accepted.
+    #[must_use]
+    pub fn decode(self) -> Option<DVec3> {
+        if self == Self::NONE {
+            return None;
+        }
+        let step = |byte: u16| (f64::from(byte) - f64::from(ZERO)).max(-STEPS);
+        Some(unfold(step(self.0 >> 8), step(self.0 & 0xff)))
+    }
+
+    /// Whether there is no normal.
+    #[must_use]
+    pub fn is_none(self) -> bool {
+        self == Self::NONE
+    }
+}
+
+/// Turns the lower half of the octahedron out, and back in.
+fn fold(u: f64, v: f64) -> (f64, f64) {
+    let sign = |value: f64| if value < 0.0 { -1.0 } else { 1.0 };
+    ((1.0 - v.abs()) * sign(u), (1.0 - u.abs()) * sign(v))
+}
+
+/// The unit vector of a grid point.
+fn unfold(u: f64, v: f64) -> DVec3 {
+    let (mut u, mut v) = (u / STEPS, v / STEPS);
+    let z = 1.0 - u.abs() - v.abs();
+    if z < 0.0 {
+        (u, v) = fold(u, v);
+    }
+    // Never zero: one of the three is at least a third.
+    let vector = DVec3::new(u, v, z);
+    vector / libm::sqrt(vector.length_squared())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_are_exact() {
+        for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+            for direction in [axis, -axis] {
+                assert_eq!(PackedNormal::encode(direction * 3.0).decode(), Some(direction));
+            }
+        }
+    }
+
+    #[test]
+    fn none_stays_none() {
+        assert_eq!(PackedNormal::encode(DVec3::ZERO), PackedNormal::NONE);
+        assert_eq!(PackedNormal::encode(DVec3::NAN), PackedNormal::NONE);
+        assert_eq!(PackedNormal::encode(DVec3::INFINITY), PackedNormal::NONE);
+        assert_eq!(PackedNormal::NONE.decode(), None);
+    }
+
+    #[test]
+    fn every_value_decodes_to_a_unit_vector_and_canonical_ones_return() {
+        for bits in 1..=u16::MAX {
+            let Some(unit) = PackedNormal(bits).decode() else {
+                panic!("{bits} reads as none");
+            };
+            assert!((unit.length() - 1.0).abs() < 1e-12);
+            let again = PackedNormal::encode(unit).decode().unwrap_or_default();
+            assert!(unit.dot(again) > 1.0 - 1e-9, "{bits}: {unit} {again}");
+        }
+    }
+
+    #[test]
+    fn error_stays_below_seven_tenths_of_a_degree() {
+        // A Fibonacci sphere: even, and off the grid.
+        let points = 400_000;
+        let mut worst = 1.0f64;
+        for i in 0..points {
+            let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(points);
+            let around = f64::from(i) * 2.399_963_229_728_653;
+            let ring = libm::sqrt(1.0 - z * z);
+            let unit = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
+            let near = PackedNormal::encode(unit).decode().unwrap_or_default();
+            worst = worst.min(unit.dot(near));
+        }
+        let degrees = libm::acos(worst).to_degrees();
+        assert!(degrees < 0.7, "{degrees}");
+    }
+}

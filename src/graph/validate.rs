@@ -1,0 +1,184 @@
+//! Every invariant of a graph, checked.
+
+use super::{Graph, MAX_DEPTH};
+
+/// What is wrong with a graph: an array, an entry, and what it should be.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{array} entry {index}: expected {expected}")]
+pub struct Invalid {
+    /// Field of [`Graph`].
+    pub array: &'static str,
+    /// Entry of the array; 0 for a field that is none.
+    pub index: usize,
+    /// What should have been there, and what was.
+    pub expected: String,
+}
+
+/// Origins beyond this are not exact in `f64`.
+pub(super) const MAX_ORIGIN: i64 = 1 << 52;
+
+fn check(
+    holds: bool,
+    array: &'static str,
+    index: usize,
+    expected: impl FnOnce() -> String,
+) -> Result<(), Invalid> {
+    if holds {
+        return Ok(());
+    }
+    Err(Invalid {
+        array,
+        index,
+        expected: expected(),
+    })
+}
+
+impl Graph {
+    /// Checks every invariant, reading every entry.
+    ///
+    /// - `depth` at most [`MAX_DEPTH`]; placement finite, voxel size above 0;
+    /// - as many normals as colours, at least one, fewer than `u32::MAX`; no
+    ///   more topology than nodes; the root among the nodes;
+    /// - child lists within `links`, or within the nodes where there are no
+    ///   links; links within the nodes; reserved bytes zero;
+    /// - stored level by level: levels follow each other without gap, none
+    ///   empty, the root is the first node and the only one of its level, the
+    ///   finest level has no topology, children are of the level below; in a
+    ///   tree, each node is the child of exactly one, in order;
+    /// - `voxels` is what counting gives.
+    ///
+    /// # Errors
+    /// Names the first entry that is wrong.
+    pub fn validate(&self) -> Result<(), Invalid> {
+        self.validate_shape()?;
+        self.validate_levels()?;
+        self.validate_topology()?;
+        let counted = self.count_voxels();
+        check(self.voxels == counted, "voxels", 0, || {
+            format!("{counted}, the number of voxels counted, not {}", self.voxels)
+        })
+    }
+
+    /// Lengths and single fields: no entry of an array of nodes is read.
+    pub(super) fn validate_shape(&self) -> Result<(), Invalid> {
+        let nodes = self.color.len();
+        check(self.depth <= MAX_DEPTH, "depth", 0, || {
+            format!("at most {MAX_DEPTH}, not {}", self.depth)
+        })?;
+        check(nodes > 0 && nodes < u32::MAX as usize, "color", 0, || {
+            format!("1 to {} nodes, not {nodes}", u32::MAX - 1)
+        })?;
+        check(self.normal.len() == nodes, "normal", 0, || {
+            format!("{nodes} normals, one a node, not {}", self.normal.len())
+        })?;
+        check(self.topology.len() <= nodes, "topology", 0, || {
+            format!("at most {nodes} entries, not {}", self.topology.len())
+        })?;
+        check(self.links.len() <= u32::MAX as usize, "links", 0, || {
+            format!("at most {} links, not {}", u32::MAX, self.links.len())
+        })?;
+        check((self.root as usize) < nodes, "root", 0, || {
+            format!("a node below {nodes}, not {}", self.root)
+        })?;
+        let place = &self.placement;
+        let near = |&origin: &i64| (-MAX_ORIGIN..=MAX_ORIGIN).contains(&origin);
+        check(place.origin_index.iter().all(near), "placement", 0, || {
+            format!("an origin within 2^52, not {:?}", place.origin_index)
+        })?;
+        let finite = place.world_origin.iter().all(|c| c.is_finite());
+        check(finite, "placement", 0, || {
+            format!("a finite world origin, not {:?}", place.world_origin)
+        })?;
+        let size = place.voxel_size;
+        check(size.is_finite() && size > 0.0, "placement", 0, || {
+            format!("a finite voxel size above 0, not {size}")
+        })
+    }
+
+    /// The level table, if there is one.
+    pub(super) fn validate_levels(&self) -> Result<(), Invalid> {
+        let starts = &self.level_start;
+        if starts.is_empty() {
+            return Ok(());
+        }
+        let entries = self.depth as usize + 2;
+        check(starts.len() == entries, "level_start", 0, || {
+            format!("no entries or {entries}, not {}", starts.len())
+        })?;
+        let ends = starts[0] == 0 && starts[1] == 1 && self.root == 0;
+        check(ends, "level_start", 0, || {
+            "node 0 as the root and only node of level 0".to_owned()
+        })?;
+        for (level, pair) in starts.windows(2).enumerate() {
+            check(pair[0] < pair[1], "level_start", level + 1, || {
+                format!("more than {}, not {}", pair[0], pair[1])
+            })?;
+        }
+        let last = starts[entries - 1] as usize;
+        check(last == self.len(), "level_start", entries - 1, || {
+            format!("{}, the number of nodes, not {last}", self.len())
+        })?;
+        let finest = starts[entries - 2] as usize;
+        check(self.topology.len() <= finest, "topology", finest, || {
+            "no topology of the finest level".to_owned()
+        })
+    }
+
+    /// Every child list and every link.
+    fn validate_topology(&self) -> Result<(), Invalid> {
+        let nodes = self.len() as u64;
+        let linked = !self.links.is_empty();
+        for (index, &link) in self.links.iter().enumerate() {
+            check(u64::from(link) < nodes, "links", index, || {
+                format!("a node below {nodes}, not {link}")
+            })?;
+        }
+        let slots = if linked { self.links.len() as u64 } else { nodes };
+        let mut level = 0;
+        // In a tree stored level by level: the next node that has no parent yet.
+        let mut orphan = 1u64;
+        for (index, entry) in self.topology.iter().enumerate() {
+            let expect = |holds, what: &dyn Fn() -> String| check(holds, "topology", index, what);
+            expect(entry.reserved == [0; 3], &|| {
+                format!("reserved bytes 0, not {:?}", entry.reserved)
+            })?;
+            let first = u64::from(entry.first);
+            let end = first + u64::from(entry.mask.count_ones());
+            if entry.mask != 0 {
+                expect(end <= slots, &|| {
+                    format!("children before {slots}, not {first}..{end}")
+                })?;
+            }
+            if self.level_start.is_empty() {
+                continue;
+            }
+            while self.level_start[level + 1] as usize <= index {
+                level += 1;
+            }
+            if entry.mask == 0 {
+                continue;
+            }
+            let below =
+                u64::from(self.level_start[level + 1])..u64::from(self.level_start[level + 2]);
+            if linked {
+                for &link in &self.links[first as usize..end as usize] {
+                    expect(below.contains(&u64::from(link)), &|| {
+                        format!("children in {below:?}, the level below, not {link}")
+                    })?;
+                }
+            } else {
+                expect(first == orphan && end <= below.end, &|| {
+                    format!("children from {orphan} and before {}, not {first}..{end}", below.end)
+                })?;
+                orphan = end;
+            }
+        }
+        if !self.level_start.is_empty() && !linked {
+            let last = self.topology.len();
+            check(orphan == nodes, "topology", last, || {
+                format!("each of {nodes} nodes to have a parent, not only {orphan}")
+            })?;
+        }
+        Ok(())
+    }
+}

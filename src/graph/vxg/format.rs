@@ -1,0 +1,109 @@
+//! The layout of a `.vxg` file: `spec/graph.md`, "The .vxg file".
+//!
+//! A header of 512 bytes, then four sections, each aligned to 64 bytes with
+//! zeros between. All numbers are little-endian.
+
+use crate::graph::MAX_DEPTH;
+
+/// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
+pub(super) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
+/// Version of the layout.
+pub(super) const VERSION: u32 = 1;
+/// Bytes of the header.
+pub(super) const HEADER_BYTES: usize = 512;
+/// Sections begin at multiples of this.
+pub(super) const ALIGNMENT: u64 = 64;
+/// Sections of a file.
+pub(super) const SECTIONS: usize = 4;
+
+/// Where things are in the header.
+pub(super) mod at {
+    pub(in super::super) const VERSION: usize = 8;
+    pub(in super::super) const HEADER_BYTES: usize = 12;
+    pub(in super::super) const FILE_BYTES: usize = 16;
+    pub(in super::super) const DEPTH: usize = 24;
+    pub(in super::super) const ROOT: usize = 28;
+    pub(in super::super) const VOXELS: usize = 32;
+    pub(in super::super) const ORIGIN_INDEX: usize = 40;
+    pub(in super::super) const WORLD_ORIGIN: usize = 64;
+    pub(in super::super) const VOXEL_SIZE: usize = 88;
+    pub(in super::super) const LEVELS: usize = 96;
+    pub(in super::super) const SECTION_COUNT: usize = 100;
+    pub(in super::super) const SECTIONS: usize = 128;
+    pub(in super::super) const LEVEL_START: usize = 256;
+    pub(in super::super) const CHECKSUM: usize = 504;
+}
+
+/// Bytes of an entry of the section table.
+pub(super) const SECTION_ENTRY_BYTES: usize = 32;
+/// Most entries of the level table.
+pub(super) const MAX_LEVEL_STARTS: usize = MAX_DEPTH as usize + 2;
+
+/// A kind of section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Kind {
+    /// Four letters, as stored.
+    pub(super) tag: [u8; 4],
+    /// The same for a message.
+    pub(super) name: &'static str,
+    /// The field of the graph that it holds.
+    pub(super) array: &'static str,
+    /// Bytes of an item.
+    pub(super) item_bytes: u32,
+}
+
+/// The sections, in the order in which they are stored.
+pub(super) const KINDS: [Kind; SECTIONS] = [
+    Kind {
+        tag: *b"TOPO",
+        name: "TOPO",
+        array: "topology",
+        item_bytes: 8,
+    },
+    Kind {
+        tag: *b"LINK",
+        name: "LINK",
+        array: "links",
+        item_bytes: 4,
+    },
+    Kind {
+        tag: *b"COLR",
+        name: "COLR",
+        array: "color",
+        item_bytes: 3,
+    },
+    Kind {
+        tag: *b"NRML",
+        name: "NRML",
+        array: "normal",
+        item_bytes: 2,
+    },
+];
+
+/// Where a section lies, and its checksum.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Section {
+    /// Bytes from the beginning of the file.
+    pub(super) offset: u64,
+    /// Bytes, without the padding that follows.
+    pub(super) bytes: u64,
+    /// xxh3-64 of those bytes.
+    pub(super) checksum: u64,
+}
+
+/// The least multiple of the alignment that is not below; saturates.
+pub(super) fn align(offset: u64) -> u64 {
+    offset.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT)
+}
+
+/// Where sections of these lengths lie, and the length of the file. There is
+/// only one layout, so that a file has no room for anything unexplained.
+pub(super) fn layout(bytes: [u64; SECTIONS]) -> ([u64; SECTIONS], u64) {
+    let mut end = HEADER_BYTES as u64;
+    let offsets = bytes.map(|bytes| {
+        let offset = align(end);
+        end = offset.saturating_add(bytes);
+        offset
+    });
+    (offsets, end)
+}

@@ -1,0 +1,21 @@
+//! Mapping a file into memory: the only unsafe code of the graph.
+
+use std::fs::File;
+use std::io;
+use std::sync::Arc;
+
+use memmap2::Mmap;
+
+/// Maps a whole file for reading.
+pub(super) fn map(file: &File) -> io::Result<Arc<Mmap>> {
+    // SAFETY: a map must not change while it is borrowed. The map is private
+    // to this process and read-only, and files that this program writes are
+    // never changed in place: a new file takes the name, and the map keeps the
+    // old one alive. That no other program rewrites or truncates the file is
+    // the user's part, as with any program that maps its input: `spec/graph.md`
+    // says so. What is read is plain numbers of any value, and no
+    // index among them is followed unchecked, so changed bytes give a wrong
+    // picture. A file truncated under the map ends the process (SIGBUS).
+    let map = unsafe { Mmap::map(file) }?;
+    Ok(Arc::new(map))
+}

@@ -1,0 +1,165 @@
+//! Writing a `.vxg` file.
+
+use std::borrow::Cow;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::error::VxgError;
+use super::format::{
+    HEADER_BYTES, KINDS, MAGIC, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION, at, layout,
+};
+use crate::graph::{Graph, Topology};
+
+/// Writes a graph to a file.
+///
+/// It is written under a temporary name beside `path` and renamed when
+/// complete, so a failed run leaves nothing half-written.
+///
+/// # Errors
+/// When the graph breaks an invariant, when `path` exists and `overwrite` is
+/// false, or when the system refuses.
+pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
+    let refused = |doing: &'static str| {
+        move |source: io::Error| VxgError::Io {
+            file: path.to_owned(),
+            doing,
+            source,
+        }
+    };
+    graph.validate()?;
+    // Asked before the work; `persist_noclobber` is what makes sure.
+    if !overwrite && path.symlink_metadata().is_ok() {
+        return Err(VxgError::Exists(path.to_owned()));
+    }
+    let folder = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let mut options = tempfile::Builder::new();
+    options.prefix(".").suffix(".vxg.tmp");
+    #[cfg(unix)]
+    let readable = {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: the user's umask takes its bits away.
+        std::fs::Permissions::from_mode(0o666)
+    };
+    #[cfg(unix)]
+    options.permissions(readable);
+    let mut temporary = options
+        .tempfile_in(folder)
+        .map_err(refused("create a temporary file beside it"))?;
+    {
+        let mut out = BufWriter::with_capacity(1 << 16, temporary.as_file_mut());
+        write_unchecked(graph, &mut out)
+            .and_then(|()| out.flush())
+            .map_err(refused("write it"))?;
+    }
+    let stored = if overwrite {
+        temporary.persist(path)
+    } else {
+        temporary.persist_noclobber(path)
+    };
+    match stored {
+        Ok(_) => Ok(()),
+        Err(failure) if failure.error.kind() == io::ErrorKind::AlreadyExists => {
+            Err(VxgError::Exists(path.to_owned()))
+        }
+        Err(failure) => Err(refused("rename the temporary file")(failure.error)),
+    }
+}
+
+/// Writes a graph to anything that takes bytes.
+///
+/// # Errors
+/// When the graph breaks an invariant, or the writer fails (the file is then
+/// named `(output)`).
+pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
+    graph.validate()?;
+    write_unchecked(graph, out).map_err(|source| VxgError::Io {
+        file: "(output)".into(),
+        doing: "write",
+        source,
+    })
+}
+
+fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
+    let contents = sections(graph);
+    let (offsets, file_bytes) = layout([0, 1, 2, 3].map(|i: usize| contents[i].len() as u64));
+    let table: [Section; SECTIONS] = [0, 1, 2, 3].map(|i: usize| Section {
+        offset: offsets[i],
+        bytes: contents[i].len() as u64,
+        checksum: xxh3_64(&contents[i]),
+    });
+    out.write_all(&header(graph, &table, file_bytes))?;
+    let mut written = HEADER_BYTES as u64;
+    for (section, bytes) in table.iter().zip(&contents) {
+        // Less than the alignment.
+        let padding = (section.offset - written) as usize;
+        out.write_all(&[0; 64][..padding])?;
+        out.write_all(bytes)?;
+        written = section.offset + section.bytes;
+    }
+    Ok(())
+}
+
+/// The bytes of each section: the arrays themselves, except where the
+/// machine's byte order is the other one.
+fn sections(graph: &Graph) -> [Cow<'_, [u8]>; SECTIONS] {
+    if cfg!(target_endian = "little") {
+        return [
+            Cow::Borrowed(bytemuck::cast_slice::<Topology, u8>(&graph.topology)),
+            Cow::Borrowed(bytemuck::cast_slice::<u32, u8>(&graph.links)),
+            Cow::Borrowed(graph.color.as_flattened()),
+            Cow::Borrowed(bytemuck::cast_slice(&*graph.normal)),
+        ];
+    }
+    let topology = graph.topology.iter().flat_map(|entry| {
+        let [a, b, c, d] = entry.first.to_le_bytes();
+        [a, b, c, d, entry.mask, 0, 0, 0]
+    });
+    [
+        Cow::Owned(topology.collect()),
+        Cow::Owned(graph.links.iter().flat_map(|l| l.to_le_bytes()).collect()),
+        Cow::Borrowed(graph.color.as_flattened()),
+        Cow::Owned(graph.normal.iter().flat_map(|n| n.0.to_le_bytes()).collect()),
+    ]
+}
+
+fn header(graph: &Graph, table: &[Section; SECTIONS], file_bytes: u64) -> [u8; HEADER_BYTES] {
+    let mut header = [0u8; HEADER_BYTES];
+    let mut put = |offset: usize, bytes: &[u8]| {
+        header[offset..offset + bytes.len()].copy_from_slice(bytes);
+    };
+    put(0, &MAGIC);
+    put(at::VERSION, &VERSION.to_le_bytes());
+    put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
+    put(at::FILE_BYTES, &file_bytes.to_le_bytes());
+    put(at::DEPTH, &graph.depth.to_le_bytes());
+    put(at::ROOT, &graph.root.to_le_bytes());
+    put(at::VOXELS, &graph.voxels.to_le_bytes());
+    for axis in 0..3 {
+        let origin_index = graph.placement.origin_index[axis].to_le_bytes();
+        put(at::ORIGIN_INDEX + 8 * axis, &origin_index);
+        let world_origin = graph.placement.world_origin[axis].to_le_bytes();
+        put(at::WORLD_ORIGIN + 8 * axis, &world_origin);
+    }
+    put(at::VOXEL_SIZE, &graph.placement.voxel_size.to_le_bytes());
+    put(at::LEVELS, &(graph.level_start.len() as u32).to_le_bytes());
+    put(at::SECTION_COUNT, &(SECTIONS as u32).to_le_bytes());
+    for (i, (kind, section)) in KINDS.iter().zip(table).enumerate() {
+        let entry = at::SECTIONS + i * SECTION_ENTRY_BYTES;
+        put(entry, &kind.tag);
+        put(entry + 4, &kind.item_bytes.to_le_bytes());
+        put(entry + 8, &section.offset.to_le_bytes());
+        put(entry + 16, &section.bytes.to_le_bytes());
+        put(entry + 24, &section.checksum.to_le_bytes());
+    }
+    for (i, start) in graph.level_start.iter().enumerate() {
+        put(at::LEVEL_START + 4 * i, &start.to_le_bytes());
+    }
+    let checksum = xxh3_64(&header[..at::CHECKSUM]);
+    header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());
+    header
+}

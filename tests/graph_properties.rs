@@ -1,0 +1,416 @@
+//! A graph holds exactly the voxels that were pushed, however it was made.
+
+use std::collections::BTreeMap;
+
+use glam::DVec3;
+use proptest::prelude::*;
+use shiftvox::graph::linked::LinkedError;
+use shiftvox::graph::{
+    BuildError, BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Normals, PackedNormal, Silent,
+    Voxel, merge,
+};
+
+const PLACE: ([f64; 3], f64) = ([0.0; 3], 1.0);
+
+fn build_with(normals: Normals, voxels: &[Voxel]) -> Graph {
+    let mut builder = Builder::new(BuildOptions { normals });
+    builder.extend(voxels.iter().copied());
+    let graph = builder.finish(PLACE, &Silent).unwrap();
+    graph.validate().unwrap();
+    graph
+}
+
+fn build(voxels: &[Voxel]) -> Graph {
+    build_with(Normals::FromSurface, voxels)
+}
+
+fn at(index: [i32; 3]) -> Voxel {
+    Voxel {
+        index,
+        color: [200, 100, 50],
+        normal: None,
+    }
+}
+
+/// What each index shows, by walking.
+fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
+    let mut seen = BTreeMap::new();
+    for cell in graph.voxels() {
+        assert_eq!(cell.level, graph.depth);
+        let attributes = (graph.color_of(cell.node), graph.normal_of(cell.node));
+        assert!(seen.insert(graph.file_index(&cell), attributes).is_none());
+    }
+    seen
+}
+
+/// All that makes a graph, to be compared.
+fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
+    (
+        (graph.depth, graph.root, graph.voxels, graph.placement),
+        (graph.topology.to_vec(), graph.links.to_vec()),
+        (graph.color.to_vec(), graph.normal.to_vec()),
+        graph.level_start.clone(),
+    )
+}
+
+/// Clusters and strays, with repeated indices, a few colours, some normals.
+fn voxels() -> impl Strategy<Value = Vec<Voxel>> {
+    let near = prop::array::uniform3(-6..6i32);
+    let far = prop::array::uniform3(-900_000..900_000i32);
+    let wide = prop::array::uniform3(-40..300i32);
+    let index = prop_oneof![20 => near, 3 => wide, 1 => far];
+    let color = prop_oneof![Just([1, 2, 3]), Just([250, 0, 9]), any::<[u8; 3]>()];
+    let normal = prop_oneof![3 => Just(None), 1 => (1..=u16::MAX).prop_map(|n| Some(PackedNormal(n)))];
+    let voxel = (index, color, normal).prop_map(|(index, color, normal)| Voxel {
+        index,
+        color,
+        normal,
+    });
+    prop::collection::vec(voxel, 1..200)
+}
+
+fn last_by_index(voxels: &[Voxel]) -> BTreeMap<[i64; 3], Voxel> {
+    voxels.iter().map(|v| (v.index.map(i64::from), *v)).collect()
+}
+
+proptest! {
+    #[test]
+    fn every_voxel_is_at_its_place_and_no_other(voxels in voxels()) {
+        let graph = build_with(Normals::None, &voxels);
+        let expected: BTreeMap<_, _> = last_by_index(&voxels)
+            .into_iter()
+            .map(|(index, v)| (index, (v.color, v.normal.unwrap_or_default())))
+            .collect();
+        prop_assert_eq!(graph.voxels, expected.len() as u64);
+        prop_assert_eq!(seen(&graph), expected);
+    }
+
+    #[test]
+    fn cells_come_in_morton_order(voxels in voxels()) {
+        let graph = build(&voxels);
+        // Octants from the root down, as the order says.
+        let path = |corner: [i32; 3]| -> Vec<i32> {
+            (0..graph.depth).rev()
+                .map(|b| (corner[0] >> b & 1) << 2 | (corner[1] >> b & 1) << 1 | (corner[2] >> b & 1))
+                .collect()
+        };
+        let paths: Vec<_> = graph.voxels().map(|cell| path(cell.corner)).collect();
+        prop_assert!(paths.is_sorted());
+    }
+
+    #[test]
+    fn the_box_is_tight(voxels in voxels()) {
+        let graph = build(&voxels);
+        let all = last_by_index(&voxels);
+        let mut longest = 0;
+        for axis in 0..3 {
+            let low = all.keys().map(|i| i[axis]).min().unwrap();
+            let high = all.keys().map(|i| i[axis]).max().unwrap();
+            prop_assert_eq!(graph.placement.origin_index[axis], low);
+            longest = longest.max(high - low + 1);
+        }
+        prop_assert!(1i64 << graph.depth >= longest);
+        prop_assert!(graph.depth == 0 || 1i64 << (graph.depth - 1) < longest);
+    }
+
+    #[test]
+    fn the_order_of_pushing_and_threads_do_not_matter(voxels in voxels(), seed in any::<u64>()) {
+        let unique: Vec<Voxel> = last_by_index(&voxels).into_values().collect();
+        let mut shuffled = unique.clone();
+        let mut state = seed;
+        for i in (1..shuffled.len()).rev() {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+            shuffled.swap(i, (state >> 33) as usize % (i + 1));
+        }
+        let plain = parts(&build(&unique));
+        prop_assert_eq!(&parts(&build(&shuffled)), &plain);
+        prop_assert_eq!(&parts(&build(&voxels)), &plain);
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            prop_assert_eq!(&pool.install(|| parts(&build(&unique))), &plain);
+        }
+    }
+
+    #[test]
+    fn own_normals_are_kept(voxels in voxels()) {
+        let graph = build(&voxels);
+        for (index, (_, normal)) in seen(&graph) {
+            if let Some(own) = last_by_index(&voxels)[&index].normal {
+                prop_assert_eq!(normal, own);
+            }
+        }
+    }
+
+    #[test]
+    fn merging_changes_nothing_seen(voxels in voxels()) {
+        let graph = build(&voxels);
+        let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+        merged.validate().unwrap();
+        prop_assert_eq!(seen(&merged), seen(&graph));
+        prop_assert_eq!(merged.nodes_per_level().iter().sum::<u64>(), report.nodes_after);
+        prop_assert!(report.nodes_after <= report.nodes_before);
+        // Merging again finds nothing more, and the general way finds the same.
+        let (again, _) = merge(&merged, MergeBy::ShapeAndAttributes, &Silent);
+        prop_assert_eq!(parts(&again), parts(&merged));
+        let mut unordered = graph.clone();
+        unordered.level_start.clear();
+        let (general, _) = merge(&unordered, MergeBy::ShapeAndAttributes, &Silent);
+        general.validate().unwrap();
+        prop_assert_eq!(seen(&general), seen(&graph));
+        prop_assert!(general.len() <= merged.len());
+
+        let (shape, _) = merge(&graph, MergeBy::Shape, &Silent);
+        shape.validate().unwrap();
+        prop_assert!(shape.len() <= merged.len());
+        prop_assert!(seen(&shape).keys().eq(seen(&graph).keys()));
+    }
+}
+
+#[test]
+fn averages_are_over_finest_voxels_in_linear_light() {
+    // Three white voxels in one octant, one black in another: 3/4 of the light.
+    let white = [[0, 0, 0], [0, 0, 1], [0, 1, 0]];
+    let mut voxels: Vec<Voxel> = white
+        .map(|index| Voxel { index, color: [255; 3], normal: Some(PackedNormal::encode(DVec3::X)) })
+        .to_vec();
+    voxels.push(Voxel { index: [3, 3, 3], color: [0; 3], normal: Some(PackedNormal::encode(DVec3::Y)) });
+    let graph = build(&voxels);
+    assert_eq!(graph.level_start, [0, 1, 3, 7]);
+    // 0.75 encodes to 0.88 of 255.
+    assert_eq!(graph.color_of(0), [225; 3]);
+    let normal = graph.normal_of(0).decode().unwrap();
+    assert!(normal.dot(DVec3::new(3.0, 1.0, 0.0).normalize()) > 0.999);
+    assert_eq!(graph.color_of(1), [255; 3]);
+    assert_eq!(graph.color_of(2), [0; 3]);
+}
+
+#[test]
+fn one_voxel_is_a_root_without_topology() {
+    let graph = build(&[at([i32::MIN, 7, i32::MAX])]);
+    assert_eq!((graph.depth, graph.len(), graph.voxels), (0, 1, 1));
+    assert!(graph.topology.is_empty());
+    assert_eq!(graph.placement.origin_index, [i64::from(i32::MIN), 7, i64::from(i32::MAX)]);
+    assert_eq!(graph.voxels().count(), 1);
+    let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+    merged.validate().unwrap();
+    assert_eq!(seen(&merged), seen(&graph));
+}
+
+#[test]
+fn the_longest_box_is_built_and_a_longer_one_is_refused() {
+    let far = (1 << 21) - 1;
+    let graph = build(&[at([-5, 0, 0]), at([far - 5, 0, 3])]);
+    assert_eq!(graph.depth, 21);
+    assert_eq!(graph.voxels, 2);
+
+    let mut builder = Builder::new(BuildOptions::default());
+    builder.extend([at([0, 0, -1]), at([0, 0, far])]);
+    let refused = builder.finish(PLACE, &Silent).unwrap_err();
+    assert_eq!(refused, BuildError::TooLarge { axis: 'z', extent: 1 << 21 | 1 });
+
+    let empty = Builder::new(BuildOptions::default()).finish(PLACE, &Silent);
+    assert_eq!(empty.unwrap_err(), BuildError::Empty);
+    let mut builder = Builder::new(BuildOptions::default());
+    builder.push(at([0; 3]));
+    assert_eq!(builder.finish(([0.0; 3], 0.0), &Silent).unwrap_err(), BuildError::Placement);
+}
+
+/// All indices of a cube for which a test holds.
+fn solid(side: i32, inside: impl Fn(DVec3) -> bool) -> Vec<Voxel> {
+    let mut voxels = Vec::new();
+    for i in 0..side * side * side {
+        let index = [i / side / side, i / side % side, i % side];
+        if inside(DVec3::from_array(index.map(|c| f64::from(c) + 0.5))) {
+            voxels.push(at(index));
+        }
+    }
+    voxels
+}
+
+#[test]
+fn normals_of_a_ball_point_outwards() {
+    let middle = DVec3::splat(25.0);
+    let distance = |p: DVec3| (p - middle).length();
+    let ball = solid(50, |p| distance(p) < 22.0);
+    let shell = solid(50, |p| (21.0..22.0).contains(&distance(p)));
+    for (name, voxels, mean_limit, worst_limit) in
+        [("ball", ball, 4.0, 12.0), ("shell", shell, 5.0, 20.0)]
+    {
+        let graph = build(&voxels);
+        let (mut sum, mut worst, mut count) = (0.0, 0.0f64, 0.0);
+        for cell in graph.voxels() {
+            let index = graph.file_index(&cell).map(|c| c as f64 + 0.5);
+            let outward = DVec3::from_array(index) - middle;
+            if outward.length() < 21.0 {
+                continue;
+            }
+            let normal = graph.normal_of(cell.node).decode().unwrap();
+            let degrees = libm::acos(normal.dot(outward.normalize()).min(1.0)).to_degrees();
+            sum += degrees;
+            count += 1.0;
+            worst = worst.max(degrees);
+        }
+        eprintln!("{name}: mean error {:.2}, worst {worst:.2} degrees", sum / count);
+        assert!(sum / count < mean_limit, "{name}: mean {}", sum / count);
+        assert!(worst < worst_limit, "{name}: worst {worst}");
+    }
+}
+
+#[test]
+fn normals_of_faces_walls_and_edges() {
+    // A block: faces, an edge, a corner, and nothing inside.
+    let block = build(&solid(12, |_| true));
+    let normal = |graph: &Graph, index: [i64; 3]| seen(graph)[&index].1.decode();
+    assert_eq!(normal(&block, [0, 6, 6]), Some(DVec3::NEG_X));
+    assert_eq!(normal(&block, [6, 11, 6]), Some(DVec3::Y));
+    assert_eq!(normal(&block, [6, 6, 6]), None);
+    let corner = normal(&block, [11, 11, 11]).unwrap();
+    assert!(corner.dot(DVec3::ONE.normalize()) > 0.999);
+    // A concave edge.
+    let step = build(&solid(12, |p| p.x < 6.0 || p.z < 6.0));
+    let concave = normal(&step, [5, 6, 5]).unwrap();
+    assert!(concave.dot(DVec3::new(1.0, 0.0, 1.0).normalize()) > 0.99, "{concave}");
+    // A wall one voxel thick has the normal of its plane, slanted ones too.
+    let wall = build(&solid(16, |p| p.z < 1.0));
+    assert_eq!(normal(&wall, [8, 8, 0]).map(|n| n.abs()), Some(DVec3::Z));
+    let plane = DVec3::new(1.0, 2.0, 4.0);
+    let slanted = build(&solid(32, |p| (p.dot(plane) / 4.0 - 24.0).abs() <= 0.5));
+    for (index, (_, normal)) in seen(&slanted) {
+        if index.iter().all(|&c| (3..29).contains(&c)) {
+            let likeness = normal.decode().unwrap().dot(plane.normalize()).abs();
+            assert!(likeness > 0.97, "{index:?}: {likeness}");
+        }
+    }
+    // A voxel alone has none.
+    let lone = build(&[at([0, 0, 0]), at([100, 0, 0])]);
+    assert!(seen(&lone).values().all(|(_, normal)| normal.is_none()));
+}
+
+#[test]
+fn normals_are_the_same_wherever_the_object_lies() {
+    // Bricks fall differently over the object as it moves by a voxel.
+    let ball = solid(21, |p| (p - DVec3::splat(10.0)).length() < 9.3);
+    let plain = build(&ball);
+    for shift in 1..4 {
+        // A stray voxel fixes the box, far enough away to have no say.
+        let mut moved: Vec<Voxel> = ball.clone();
+        moved.push(at([-8 - shift, -8, -8]));
+        let graph = build(&moved);
+        let moved = seen(&graph);
+        for (index, (_, normal)) in seen(&plain) {
+            let (a, b) = (normal.decode(), moved[&index].1.decode());
+            match (a, b) {
+                (Some(a), Some(b)) => assert!(a.dot(b) > 0.95, "{index:?}: {a} {b}"),
+                _ => assert_eq!(a, b, "{index:?}"),
+            }
+        }
+    }
+}
+
+fn sierpinski(depth: u32) -> Graph {
+    let mut graph = LinkedGraph::new(depth);
+    let own = Some(0);
+    graph.add_node([9, 8, 7], [own, None, None, own, None, own, own, None]);
+    let graph = graph.build().unwrap();
+    graph.validate().unwrap();
+    graph
+}
+
+#[test]
+fn a_sierpinski_tetrahedron_is_one_node() {
+    let graph = sierpinski(4);
+    assert_eq!((graph.len(), graph.voxels), (1, 256));
+    let cells: Vec<_> = graph.voxels().collect();
+    assert_eq!(cells.len(), 256);
+    for cell in cells {
+        // Its voxels have an even number of ones in each bit of x, y, z.
+        assert_eq!(cell.corner[0] ^ cell.corner[1] ^ cell.corner[2], 0);
+    }
+    assert_eq!(graph.nodes_per_level(), [1; 5]);
+    assert_eq!(sierpinski(30).voxels, 1 << 60);
+    assert_eq!(sierpinski(30).voxels().take(1000).count(), 1000);
+}
+
+#[test]
+fn equal_nodes_of_cyclic_graphs_merge() {
+    // Two nodes that take turns, with equal colours: one node would do.
+    let mut graph = LinkedGraph::new(6);
+    graph.add_node([1; 3], [Some(1), None, None, Some(1), None, None, None, Some(2)]);
+    graph.add_node([1; 3], [Some(0), None, None, Some(0), None, None, None, Some(2)]);
+    graph.add_node([5; 3], [None; 8]);
+    let graph = graph.build().unwrap();
+    graph.validate().unwrap();
+    let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+    merged.validate().unwrap();
+    assert_eq!((report.nodes_before, report.nodes_after), (3, 2));
+    let corners = |graph: &Graph| -> Vec<_> {
+        graph.voxels().map(|c| (c.corner, c.level, graph.color_of(c.node))).collect()
+    };
+    assert_eq!(corners(&merged), corners(&graph));
+    // Solid leaves fill their cube: the count is of finest voxels.
+    assert_eq!(merged.voxels, graph.voxels);
+    let finest: u64 = graph.voxels().map(|c| 1 << (3 * (graph.depth - c.level))).sum();
+    assert_eq!(finest, graph.voxels);
+}
+
+#[test]
+fn a_full_cube_merges_to_a_node_a_level() {
+    let graph = build_with(Normals::None, &solid(16, |_| true));
+    let (merged, report) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+    merged.validate().unwrap();
+    assert_eq!(report.nodes_after, 5);
+    assert_eq!(merged.level_start, [0, 1, 2, 3, 4, 5]);
+    assert_eq!(merged.voxels, 4096);
+}
+
+#[test]
+fn impossible_links_are_refused() {
+    let refused = |graph: &LinkedGraph| graph.build().unwrap_err();
+    let mut graph = LinkedGraph::new(2);
+    assert_eq!(refused(&graph), LinkedError::Root { root: 0, nodes: 0 });
+    graph.add_node([0; 3], [None, Some(4), None, None, None, None, None, None]);
+    assert_eq!(refused(&graph), LinkedError::Child { node: 0, octant: 1, child: 4, nodes: 1 });
+    assert_eq!(refused(&LinkedGraph::new(31)), LinkedError::Depth(31));
+}
+
+/// Each way to break a graph, and the array that `validate` must name.
+#[test]
+fn validate_names_what_is_broken() {
+    type Break = fn(&mut Graph);
+    fn topology(graph: &mut Graph, change: impl Fn(&mut Vec<shiftvox::graph::Topology>)) {
+        let mut entries = graph.topology.to_vec();
+        change(&mut entries);
+        graph.topology = entries.into();
+    }
+    let tree = build(&solid(6, |p| p.x + p.y < 6.0));
+    let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
+    let breaks: [(&str, Break); 14] = [
+        ("depth", |g| g.depth = 31),
+        ("root", |g| g.root = g.len() as u32),
+        ("normal", |g| g.normal = g.normal[1..].to_vec().into()),
+        ("color", |g| g.color = Vec::new().into()),
+        ("voxels", |g| g.voxels += 1),
+        ("placement", |g| g.placement.voxel_size = f64::NAN),
+        ("placement", |g| g.placement.origin_index[1] = i64::MIN),
+        ("level_start", |g| g.level_start[1] = 2),
+        ("level_start", |g| *g.level_start.last_mut().unwrap() += 1),
+        ("level_start", |g| g.level_start.truncate(2)),
+        ("topology", |g| topology(g, |t| t[1].first = u32::MAX)),
+        ("topology", |g| topology(g, |t| t[1].reserved[2] = 1)),
+        ("topology", |g| topology(g, |t| t[0].first += 1)),
+        ("topology", |g| topology(g, |t| t.push(t[0]))),
+    ];
+    for graph in [&tree, &dag] {
+        for (i, (array, change)) in breaks.iter().enumerate() {
+            let mut broken = graph.clone();
+            change(&mut broken);
+            let invalid = broken.validate().expect_err(&format!("change {i} of {array}"));
+            assert_eq!(invalid.array, *array, "change {i}: {invalid}");
+        }
+    }
+    let mut broken = dag.clone();
+    let mut links = dag.links.to_vec();
+    links[3] = dag.len() as u32;
+    broken.links = links.into();
+    assert_eq!(broken.validate().unwrap_err().array, "links");
+}
