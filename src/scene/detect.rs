@@ -2,11 +2,10 @@
 
 use std::fmt;
 
+use crate::graph::vxg;
+
 /// How many bytes of a file [`detect`] should be given, where there are so many.
 pub const DETECT_BYTES: usize = 4096;
-
-/// First bytes of a `.vxg` file.
-pub const VXG_MAGIC: &[u8] = b"VXG";
 
 /// The formats that are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -65,10 +64,9 @@ impl fmt::Display for FileKind {
 /// not recognised: its first 80 bytes are free.
 #[must_use]
 pub fn detect(prefix: &[u8]) -> Option<FileKind> {
-    let marks: [(&[u8], FileKind); 7] = [
+    let marks: [(&[u8], FileKind); 6] = [
         (b"VOX ", FileKind::Vox),
         (b"\x93NUMPY", FileKind::Npy),
-        (VXG_MAGIC, FileKind::Vxg),
         (b"glTF", FileKind::Glb),
         (b"ply\n", FileKind::Ply),
         (b"ply\r", FileKind::Ply),
@@ -76,6 +74,9 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
     ];
     if let Some((_, kind)) = marks.iter().find(|(mark, _)| prefix.starts_with(mark)) {
         return Some(*kind);
+    }
+    if vxg::is_vxg(prefix) {
+        return Some(FileKind::Vxg);
     }
     let text = prefix.strip_prefix(b"\xef\xbb\xbf").unwrap_or(prefix);
     if text.trim_ascii_start().starts_with(b"{") && contains(text, b"\"asset\"") {
@@ -114,10 +115,16 @@ mod tests {
             (b"ply\nformat ascii 1.0\n", Some(FileKind::Ply)),
             (b"ply\r\nformat ascii 1.0\r\n", Some(FileKind::Ply)),
             (b"\x93NUMPY\x01\0", Some(FileKind::Npy)),
-            (b"VXG\x01", Some(FileKind::Vxg)),
+            (b"\x89VXG\r\n\x1a\n\x01", Some(FileKind::Vxg)),
             (b"glTF\x02\0\0\0", Some(FileKind::Glb)),
-            (b"  {\n \"asset\": {\"version\": \"2.0\"}}", Some(FileKind::Gltf)),
-            (b"# made by hand\n\nmtllib a.mtl\nv 0 0 0\n", Some(FileKind::Obj)),
+            (
+                b"  {\n \"asset\": {\"version\": \"2.0\"}}",
+                Some(FileKind::Gltf),
+            ),
+            (
+                b"# made by hand\n\nmtllib a.mtl\nv 0 0 0\n",
+                Some(FileKind::Obj),
+            ),
             (b"v 0 0 0\n", Some(FileKind::Obj)),
             (b"solid cube\n facet normal", Some(FileKind::Stl)),
             (b"{\"no\": 1}", None),

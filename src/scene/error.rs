@@ -24,7 +24,9 @@ pub enum SceneError {
     #[error(transparent)]
     Limit(Box<Fault>),
     /// The file is a mesh.
-    #[error("{file}: this is a {kind} mesh, and meshes are not supported yet; voxelise it first, for example to .vox or to a .ply of voxel indices")]
+    #[error(
+        "{file}: this is a {kind} mesh, and meshes are not supported yet; voxelise it first, for example to .vox or to a .ply of voxel indices"
+    )]
     Mesh {
         /// The file, as the user named it.
         file: String,
@@ -38,7 +40,9 @@ pub enum SceneError {
         file: String,
     },
     /// The content begins like none of the known formats.
-    #[error("{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") or .vxg (\"VXG\"); formats are told by content, so renaming the file does not help")]
+    #[error(
+        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") or .vxg (\"\\x89VXG\"); formats are told by content, so renaming the file does not help"
+    )]
     Unknown {
         /// The file, as the user named it.
         file: String,
@@ -162,7 +166,11 @@ pub(crate) fn printable(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "nothing (no bytes)".to_owned();
     }
-    let shown: String = bytes.iter().take(16).map(|b| b.escape_ascii().to_string()).collect();
+    let shown: String = bytes
+        .iter()
+        .take(16)
+        .map(|b| b.escape_ascii().to_string())
+        .collect();
     let rest = if bytes.len() > 16 { "..." } else { "" };
     format!("\"{shown}{rest}\"")
 }

@@ -14,14 +14,13 @@ use crate::graph::{Progress, Voxel};
 mod detect;
 mod emit;
 mod error;
-mod normal;
 mod npy;
 mod options;
 mod ply;
 mod ply_write;
 mod vox;
 
-pub use detect::{DETECT_BYTES, FileKind, VXG_MAGIC, detect};
+pub use detect::{DETECT_BYTES, FileKind, detect};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
@@ -54,17 +53,22 @@ pub fn read_voxels(
         }
     };
     let mut file = File::open(path).map_err(open("open the file"))?;
-    let length = file.metadata().map_err(open("ask for the file's size"))?.len();
+    let length = file
+        .metadata()
+        .map_err(open("ask for the file's size"))?
+        .len();
     let mut prefix = Vec::with_capacity(DETECT_BYTES);
     (&mut file)
         .take(DETECT_BYTES as u64)
         .read_to_end(&mut prefix)
         .map_err(open("read the file"))?;
-    file.seek(SeekFrom::Start(0)).map_err(open("seek in the file"))?;
+    file.seek(SeekFrom::Start(0))
+        .map_err(open("seek in the file"))?;
     let kind = supported(&prefix, &name)?;
     if kind == FileKind::Vox {
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(open("read the file"))?;
+        file.read_to_end(&mut bytes)
+            .map_err(open("read the file"))?;
         return read_voxels_from(&bytes, &name, options, sink, progress);
     }
     read_stream(
@@ -96,7 +100,15 @@ pub fn read_voxels_from(
         });
     }
     let length = bytes.len() as u64;
-    read_stream(kind, &mut Cursor::new(bytes), length, name, options, sink, progress)
+    read_stream(
+        kind,
+        &mut Cursor::new(bytes),
+        length,
+        name,
+        options,
+        sink,
+        progress,
+    )
 }
 
 /// Reads one of the formats that need not be held whole.

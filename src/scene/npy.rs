@@ -97,7 +97,9 @@ fn read_block<R: Read + Seek>(
     // At most BLOCK_ROWS x 7 x 8 bytes.
     block.resize((rows * columns * width) as usize, 0);
     let mut run = |at: u64, into: &mut [u8]| {
-        reader.seek(SeekFrom::Start(layout.data + at)).map_err(Problem::Read)?;
+        reader
+            .seek(SeekFrom::Start(layout.data + at))
+            .map_err(Problem::Read)?;
         reader.read_exact(into).map_err(Problem::Read)
     };
     if !layout.fortran {
@@ -153,18 +155,24 @@ fn hand_on(
         for (channel, byte) in color.iter_mut().enumerate() {
             let column = 3 + channel;
             let value = number(column);
-            *byte = value.clone().ok().and_then(|v| u8::try_from(v).ok()).ok_or_else(|| {
-                Fault::new(
-                    part(column),
-                    offset(column),
-                    "a colour from 0 to 255",
-                    value.map_or_else(|found| found, |value| value.to_string()),
-                    "columns 3, 4 and 5 hold red, green and blue as whole numbers",
-                )
-            })?;
+            *byte = value
+                .clone()
+                .ok()
+                .and_then(|v| u8::try_from(v).ok())
+                .ok_or_else(|| {
+                    Fault::new(
+                        part(column),
+                        offset(column),
+                        "a colour from 0 to 255",
+                        value.map_or_else(|found| found, |value| value.to_string()),
+                        "columns 3, 4 and 5 hold red, green and blue as whole numbers",
+                    )
+                })?;
         }
     }
-    emitter.voxel(index, color, None, || (format!("row {number_of_row}"), offset(0)))
+    emitter.voxel(index, color, None, || {
+        (format!("row {number_of_row}"), offset(0))
+    })
 }
 
 /// A number as a whole one, or what it is instead.
@@ -215,7 +223,10 @@ fn read_header<R: Read>(reader: &mut R, length: u64) -> Result<Layout, Problem> 
     if size > MAX_HEADER || start + size > length {
         return Err(fault(
             8,
-            format!("a header of at most {} bytes", MAX_HEADER.min(length - start)),
+            format!(
+                "a header of at most {} bytes",
+                MAX_HEADER.min(length - start)
+            ),
             format!("one of {size} bytes"),
         )
         .into());

@@ -2,8 +2,7 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-use super::normal;
-use crate::graph::Voxel;
+use crate::graph::{PackedNormal, Voxel};
 
 /// Digits of the largest count.
 const COUNT_DIGITS: usize = 20;
@@ -45,7 +44,10 @@ pub fn write_ply<W: Write + Seek>(
         row[12..15].copy_from_slice(&voxel.color);
         let mut length = 15;
         if normals {
-            let normal = voxel.normal.and_then(normal::unpack).unwrap_or_default();
+            let normal = voxel
+                .normal
+                .and_then(PackedNormal::decode)
+                .unwrap_or_default();
             for axis in 0..3 {
                 row[15 + 4 * axis..][..4].copy_from_slice(&(normal[axis] as f32).to_le_bytes());
             }

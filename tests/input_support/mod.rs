@@ -1,6 +1,11 @@
 //! What the input tests share: reading into a list, finding data, and a writer of small `.vox` files.
 
-#![allow(dead_code, unreachable_pub, reason = "a module that each test file uses a part of")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    reason = "test helpers; each test file uses a part"
+)]
 
 use std::path::PathBuf;
 
@@ -26,12 +31,16 @@ pub fn read_plain(bytes: &[u8]) -> Vec<Plain> {
 
 /// What an error says.
 pub fn message(bytes: &[u8]) -> String {
-    read(bytes, &ReadOptions::default()).unwrap_err().to_string()
+    read(bytes, &ReadOptions::default())
+        .unwrap_err()
+        .to_string()
 }
 
 /// A file that ships with the tests.
 pub fn shipped(name: &str) -> Vec<u8> {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+        .join("tests/data")
+        .join(name);
     std::fs::read(path).unwrap()
 }
 
@@ -79,7 +88,8 @@ impl VoxFile {
     pub fn model(self, size: [u32; 3], voxels: &[[u8; 4]]) -> Self {
         let mut content = (voxels.len() as u32).to_le_bytes().to_vec();
         content.extend(voxels.as_flattened());
-        self.chunk(b"SIZE", &numbers(&size)).chunk(b"XYZI", &content)
+        self.chunk(b"SIZE", &numbers(&size))
+            .chunk(b"XYZI", &content)
     }
 
     pub fn palette(self, entries: &[[u8; 4]]) -> Self {
@@ -96,7 +106,12 @@ impl VoxFile {
     ) -> Self {
         let mut content = numbers(&[id]);
         content.extend(dict(attributes));
-        content.extend(numbers(&[child, u32::MAX, layer as u32, frames.len() as u32]));
+        content.extend(numbers(&[
+            child,
+            u32::MAX,
+            layer as u32,
+            frames.len() as u32,
+        ]));
         for frame in frames {
             content.extend(dict(frame));
         }

@@ -10,10 +10,12 @@ mod source;
 
 use std::io::BufRead;
 
+use glam::DVec3;
+
 use super::emit::Emitter;
 use super::error::{Fault, Problem, printable};
-use super::normal;
 use super::{FileKind, ReadOptions, SceneInfo};
+use crate::graph::PackedNormal;
 use header::{Element, Encoding, Property};
 use source::{Number, Source, parse_number};
 
@@ -66,7 +68,11 @@ pub(super) fn read<R: BufRead>(
     let mut source = Source::new(reader);
     let header = header::read(&mut source)?;
     let is_named = |element: &&Element, name: &[u8]| element.name == name;
-    if header.elements.iter().any(|e| e.name == b"face" && e.count > 0) {
+    if header
+        .elements
+        .iter()
+        .any(|e| e.name == b"face" && e.count > 0)
+    {
         return Err(Problem::Mesh(FileKind::Ply));
     }
     let Some(vertices) = header.elements.iter().find(|e| is_named(e, b"vertex")) else {
@@ -126,7 +132,13 @@ fn understand(vertices: &Element, offset: u64) -> Result<Layout<'_>, Box<Fault>>
     let roles: Vec<Option<Role>> = vertices
         .properties
         .iter()
-        .map(|p| if p.list.is_none() { role(&p.name) } else { None })
+        .map(|p| {
+            if p.list.is_none() {
+                role(&p.name)
+            } else {
+                None
+            }
+        })
         .collect();
     let has = |kind: fn(usize) -> Role| (0..3).all(|i| roles.contains(&Some(kind(i))));
     if !has(Role::Position) {
@@ -164,7 +176,11 @@ fn skip<R: BufRead>(
         return Ok(());
     }
     if element.properties.iter().all(|p| p.list.is_none()) {
-        let stride: u64 = element.properties.iter().map(|p| p.scalar.size() as u64).sum();
+        let stride: u64 = element
+            .properties
+            .iter()
+            .map(|p| p.scalar.size() as u64)
+            .sum();
         if !source.skip(element.count.saturating_mul(stride))? {
             return Err(cut(source.offset()).into());
         }
@@ -259,7 +275,9 @@ fn read_line<R: BufRead>(
             break begin;
         }
     };
-    let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+    let mut words = line
+        .split(u8::is_ascii_whitespace)
+        .filter(|word| !word.is_empty());
     let mut next = |property: &Property| {
         let word = words.next();
         word.and_then(parse_number).ok_or_else(|| {
@@ -287,7 +305,10 @@ fn read_line<R: BufRead>(
         return Err(Fault::new(
             vertex_part(number),
             begin,
-            format!("one number for each of {} properties", layout.properties.len()),
+            format!(
+                "one number for each of {} properties",
+                layout.properties.len()
+            ),
             format!("{} after them", printable(word)),
             "every vertex needs a line of its own",
         )
@@ -322,7 +343,10 @@ fn hand_on(
         for (channel, value) in vertex.color.into_iter().enumerate() {
             color[channel] = to_channel(value).ok_or_else(|| {
                 Fault::new(
-                    format!("vertex {number}, property {}", ["red", "green", "blue"][channel]),
+                    format!(
+                        "vertex {number}, property {}",
+                        ["red", "green", "blue"][channel]
+                    ),
                     offset,
                     "a whole number from 0 to 255, or a real one from 0 to 1",
                     value.to_string(),
@@ -331,11 +355,11 @@ fn hand_on(
             })?;
         }
     }
-    let normal = if layout.has_normal {
-        normal::pack(vertex.normal.map(Number::real))
-    } else {
-        None
-    };
+    // A normal of length zero says that there is none.
+    let normal = layout
+        .has_normal
+        .then(|| PackedNormal::encode(DVec3::from_array(vertex.normal.map(Number::real))))
+        .filter(|normal| !normal.is_none());
     emitter.voxel(index, color, normal, || (vertex_part(number), offset))
 }
 

@@ -104,7 +104,9 @@ impl<'a, R: BufRead> Source<'a, R> {
             if buffer.is_empty() {
                 return Ok(false);
             }
-            let used = usize::try_from(count).unwrap_or(usize::MAX).min(buffer.len());
+            let used = usize::try_from(count)
+                .unwrap_or(usize::MAX)
+                .min(buffer.len());
             self.reader.consume(used);
             self.offset += used as u64;
             count -= used as u64;

@@ -12,7 +12,8 @@ use crate::scene::error::{Fault, printable};
 const HEADER: usize = 12;
 
 const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
-const DAMAGED: &str = "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
+const DAMAGED: &str =
+    "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
 
 /// One child of `MAIN`.
 #[derive(Debug, Clone, Copy)]
@@ -141,13 +142,18 @@ pub(super) struct Dict<'a> {
 impl<'a> Dict<'a> {
     /// The value of a key; of the last one where it is repeated.
     pub(super) fn get(&self, key: &str) -> Option<&'a [u8]> {
-        let found = self.entries.iter().rev().find(|(k, _)| *k == key.as_bytes());
+        let found = self
+            .entries
+            .iter()
+            .rev()
+            .find(|(k, _)| *k == key.as_bytes());
         found.map(|(_, value)| *value)
     }
 
     /// Whether a switch is on: present with the value 1.
     pub(super) fn is_set(&self, key: &str) -> bool {
-        self.get(key).is_some_and(|value| value.trim_ascii() == b"1")
+        self.get(key)
+            .is_some_and(|value| value.trim_ascii() == b"1")
     }
 
     /// The whole numbers of a value, exactly `N` of them, or `None` where the key is absent.
@@ -160,11 +166,15 @@ impl<'a> Dict<'a> {
         let Some(value) = self.get(key) else {
             return Ok(None);
         };
-        let mut words = value.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
+        let mut words = value
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
         let mut numbers = [0; N];
         let mut good = true;
         for number in &mut numbers {
-            let parsed = words.next().and_then(|word| std::str::from_utf8(word).ok()?.parse().ok());
+            let parsed = words
+                .next()
+                .and_then(|word| std::str::from_utf8(word).ok()?.parse().ok());
             match parsed {
                 Some(parsed) => *number = parsed,
                 None => good = false,
@@ -222,7 +232,10 @@ impl<'a> Fields<'a> {
 
     fn bytes(&mut self, count: u32, what: &str) -> Result<&'a [u8], Box<Fault>> {
         let rest = self.rest();
-        match usize::try_from(count).ok().and_then(|count| rest.get(..count)) {
+        match usize::try_from(count)
+            .ok()
+            .and_then(|count| rest.get(..count))
+        {
             Some(bytes) => {
                 self.at += bytes.len();
                 Ok(bytes)

@@ -68,7 +68,13 @@ pub(super) fn read(
                 return Ok(());
             }
             info.instances += 1;
-            place(model, Some(&instance.transform), &contents.palette, options, emitter)
+            place(
+                model,
+                Some(&instance.transform),
+                &contents.palette,
+                options,
+                emitter,
+            )
         })?;
         let missing = placed.iter().filter(|placed| !**placed).count();
         if missing > 0 {

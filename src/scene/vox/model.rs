@@ -26,10 +26,7 @@ pub(super) fn read_size(chunk: &Chunk<'_>) -> Result<[u32; 3], Box<Fault>> {
 }
 
 /// The model that a chunk `XYZI` completes.
-pub(super) fn read_voxels<'a>(
-    chunk: &Chunk<'a>,
-    size: [u32; 3],
-) -> Result<Model<'a>, Box<Fault>> {
+pub(super) fn read_voxels<'a>(chunk: &Chunk<'a>, size: [u32; 3]) -> Result<Model<'a>, Box<Fault>> {
     let mut fields = Fields::new(chunk);
     let count = fields.count("voxels", 4)? as usize;
     let (voxels, _) = fields.rest().as_chunks::<4>();

@@ -110,11 +110,7 @@ impl SceneGraph {
 }
 
 /// The rest of a chunk `nTRN`.
-fn transform_node(
-    fields: &mut Fields<'_>,
-    part: &str,
-    frame: u32,
-) -> Result<NodeKind, Box<Fault>> {
+fn transform_node(fields: &mut Fields<'_>, part: &str, frame: u32) -> Result<NodeKind, Box<Fault>> {
     let child = fields.u32("child id")?;
     fields.u32("reserved field")?;
     let layer = fields.u32("layer id")?;

@@ -11,9 +11,18 @@ type Counted = ([u8; 3], u64);
 
 /// A palette of at most [`MAX_COLORS`], and the 1-based index of every colour of `histogram`.
 pub(super) fn palette(histogram: &BTreeMap<[u8; 3], u64>) -> (Vec<[u8; 3]>, BTreeMap<[u8; 3], u8>) {
-    let mut boxes = vec![histogram.iter().map(|(c, n)| (*c, *n)).collect::<Vec<Counted>>()];
+    let mut boxes = vec![
+        histogram
+            .iter()
+            .map(|(c, n)| (*c, *n))
+            .collect::<Vec<Counted>>(),
+    ];
     if histogram.len() <= MAX_COLORS {
-        boxes = boxes.remove(0).into_iter().map(|counted| vec![counted]).collect();
+        boxes = boxes
+            .remove(0)
+            .into_iter()
+            .map(|counted| vec![counted])
+            .collect();
     } else {
         while boxes.len() < MAX_COLORS {
             // More colours than boxes, so some box still has two.
@@ -24,8 +33,10 @@ pub(super) fn palette(histogram: &BTreeMap<[u8; 3], u64>) -> (Vec<[u8; 3]>, BTre
             boxes.push(upper);
         }
     }
-    let mut means: Vec<([u8; 3], Vec<Counted>)> =
-        boxes.into_iter().map(|colors| (mean(&colors), colors)).collect();
+    let mut means: Vec<([u8; 3], Vec<Counted>)> = boxes
+        .into_iter()
+        .map(|colors| (mean(&colors), colors))
+        .collect();
     means.sort_unstable();
     let mut index_of = BTreeMap::new();
     for (i, (_, colors)) in means.iter().enumerate() {
@@ -67,7 +78,11 @@ fn split(colors: &mut Vec<Counted>) -> Vec<Counted> {
 
 /// The mean colour, weighted by numbers of voxels, rounded to nearest.
 fn mean(colors: &[Counted]) -> [u8; 3] {
-    let total: u128 = colors.iter().map(|(_, n)| u128::from(*n)).sum::<u128>().max(1);
+    let total: u128 = colors
+        .iter()
+        .map(|(_, n)| u128::from(*n))
+        .sum::<u128>()
+        .max(1);
     std::array::from_fn(|channel| {
         let sum: u128 = colors
             .iter()
@@ -84,7 +99,9 @@ mod tests {
 
     #[test]
     fn few_colors_are_kept_exactly() {
-        let histogram = (0..255u8).map(|i| ([i, 255 - i, 7], 1 + u64::from(i))).collect();
+        let histogram = (0..255u8)
+            .map(|i| ([i, 255 - i, 7], 1 + u64::from(i)))
+            .collect();
         let (palette, index_of) = palette(&histogram);
         assert_eq!(palette.len(), 255);
         for color in histogram.keys() {
@@ -107,7 +124,10 @@ mod tests {
         for color in histogram.keys() {
             let near = palette[usize::from(index_of[color]) - 1];
             for channel in 0..3 {
-                assert!(near[channel].abs_diff(color[channel]) <= 34, "{color:?} {near:?}");
+                assert!(
+                    near[channel].abs_diff(color[channel]) <= 34,
+                    "{color:?} {near:?}"
+                );
             }
         }
     }

@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(turn.place([3, 0, 0], [4, 2, 1]), [0, 1, 0]);
         assert_eq!(turn.place([0, 1, 0], [4, 2, 1]), [-1, -2, 0]);
         // Mirrored in x, odd size 3: centres -1/2, 1/2, 3/2 become 1/2, -1/2, -3/2.
-        let mirror = Transform::from_rotation_byte(0 | 1 << 2 | 1 << 4).unwrap();
+        let mirror = Transform::from_rotation_byte(1 << 2 | 1 << 4).unwrap();
         let xs = [0, 1, 2].map(|x| mirror.place([x, 0, 0], [3, 1, 1])[0]);
         assert_eq!(xs, [0, -1, -2]);
     }

@@ -74,7 +74,13 @@ pub(super) fn walk(
                 "the scene graph shares nodes too often; open the file in MagicaVoxel and save it again",
             )));
         }
-        enter(graph, child, Some((transform, hidden)), &mut path, &mut on_path)?;
+        enter(
+            graph,
+            child,
+            Some((transform, hidden)),
+            &mut path,
+            &mut on_path,
+        )?;
     }
     Ok(())
 }

@@ -51,7 +51,10 @@ impl VoxWriter {
         let block = voxel.index.map(|i| i.div_euclid(MODEL_SIDE));
         // The remainder by 256 is a byte.
         let local = voxel.index.map(|i| i.rem_euclid(MODEL_SIDE) as u8);
-        self.blocks.entry(block).or_default().push((local, voxel.color));
+        self.blocks
+            .entry(block)
+            .or_default()
+            .push((local, voxel.color));
     }
 
     /// Writes all voxels taken.
@@ -133,7 +136,10 @@ fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
     if stored.is_empty() {
         return ([0; 3], [1; 3]);
     }
-    (low, [0, 1, 2].map(|axis| u32::from(high[axis] - low[axis]) + 1))
+    (
+        low,
+        [0, 1, 2].map(|axis| u32::from(high[axis] - low[axis]) + 1),
+    )
 }
 
 /// A root, a group under it, and a transform and a shape for every model.
