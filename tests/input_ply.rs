@@ -273,7 +273,7 @@ fn messages_say_where_and_what() {
         (b"ply\nend_header\n".to_vec(), "a line \"format ... 1.0\""),
         (
             b"ply\nformat ascii 2.0\n".to_vec(),
-            "found \"format ascii 2.\"",
+            "found \"format ascii 2.0\"",
         ),
         (
             b"ply\nformat utf8 1.0\n".to_vec(),
