@@ -1,0 +1,32 @@
+//! Any bytes as `.vox`: a scene or an error, never a panic, never memory that the file does not justify.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use shiftvox::graph::Silent;
+use shiftvox::scene::{OutOfBounds, ReadOptions, read_voxels_from};
+
+fuzz_target!(|data: (u8, &[u8])| {
+    let (choice, rest) = data;
+    let oob = [
+        OutOfBounds::Wrap,
+        OutOfBounds::Keep,
+        OutOfBounds::Drop,
+        OutOfBounds::Error,
+    ][usize::from(choice & 3)];
+    let options = ReadOptions {
+        oob,
+        hidden: choice & 4 != 0,
+        frame: u32::from(choice >> 4),
+        model: (choice & 8 != 0).then_some(1),
+        ..ReadOptions::default()
+    };
+    // The magic and the main chunk are given, so that no run is lost on guessing them.
+    let mut bytes = b"VOX \x96\0\0\0MAIN\0\0\0\0".to_vec();
+    bytes.extend((rest.len() as u32).to_le_bytes());
+    bytes.extend(rest);
+    let mut count = 0u64;
+    let result = read_voxels_from(&bytes, "fuzz", &options, &mut |_| count += 1, &Silent);
+    if let Ok(info) = result {
+        assert_eq!(info.voxels, count);
+    }
+});

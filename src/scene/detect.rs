@@ -1,0 +1,139 @@
+//! Which format a file has, told from its first bytes and never from its name.
+
+use std::fmt;
+
+use crate::graph::vxg;
+
+/// How many bytes of a file [`detect`] should be given, where there are so many.
+pub const DETECT_BYTES: usize = 4096;
+
+/// The formats that are told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FileKind {
+    /// MagicaVoxel or VoxelShop model.
+    Vox,
+    /// PLY: a cloud of voxel indices, or a mesh where it has faces.
+    Ply,
+    /// A numpy array of voxel indices.
+    Npy,
+    /// A voxel graph of this program.
+    Vxg,
+    /// Wavefront mesh (text).
+    Obj,
+    /// glTF mesh (JSON).
+    Gltf,
+    /// glTF mesh (binary).
+    Glb,
+    /// Stereolithography mesh (text; the binary form has no mark to know it by).
+    Stl,
+}
+
+impl FileKind {
+    /// Whether files of this kind hold voxels that [`read_voxels`](super::read_voxels) yields.
+    #[must_use]
+    pub fn is_voxels(self) -> bool {
+        matches!(self, Self::Vox | Self::Ply | Self::Npy)
+    }
+
+    /// Whether files of this kind hold meshes.
+    #[must_use]
+    pub fn is_mesh(self) -> bool {
+        matches!(self, Self::Obj | Self::Gltf | Self::Glb | Self::Stl)
+    }
+}
+
+impl fmt::Display for FileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Vox => ".vox",
+            Self::Ply => ".ply",
+            Self::Npy => ".npy",
+            Self::Vxg => ".vxg",
+            Self::Obj => ".obj",
+            Self::Gltf => ".gltf",
+            Self::Glb => ".glb",
+            Self::Stl => ".stl",
+        })
+    }
+}
+
+/// Tells a file's format from its first bytes ([`DETECT_BYTES`] of them, or the whole of a shorter file).
+///
+/// `None` where they begin like no format that is known here. A binary STL is
+/// not recognised: its first 80 bytes are free.
+#[must_use]
+pub fn detect(prefix: &[u8]) -> Option<FileKind> {
+    let marks: [(&[u8], FileKind); 6] = [
+        (b"VOX ", FileKind::Vox),
+        (b"\x93NUMPY", FileKind::Npy),
+        (b"glTF", FileKind::Glb),
+        (b"ply\n", FileKind::Ply),
+        (b"ply\r", FileKind::Ply),
+        (b"solid ", FileKind::Stl),
+    ];
+    if let Some((_, kind)) = marks.iter().find(|(mark, _)| prefix.starts_with(mark)) {
+        return Some(*kind);
+    }
+    if vxg::is_vxg(prefix) {
+        return Some(FileKind::Vxg);
+    }
+    let text = prefix.strip_prefix(b"\xef\xbb\xbf").unwrap_or(prefix);
+    if text.trim_ascii_start().starts_with(b"{") && contains(text, b"\"asset\"") {
+        return Some(FileKind::Gltf);
+    }
+    looks_like_obj(text).then_some(FileKind::Obj)
+}
+
+/// Whether the first line that is neither blank nor a comment begins with a Wavefront keyword.
+fn looks_like_obj(text: &[u8]) -> bool {
+    const KEYWORDS: [&[u8]; 11] = [
+        b"v", b"vn", b"vt", b"vp", b"f", b"l", b"o", b"g", b"s", b"mtllib", b"usemtl",
+    ];
+    text.split(|b| *b == b'\n' || *b == b'\r')
+        .map(<[u8]>::trim_ascii)
+        .find(|line| !line.is_empty() && line[0] != b'#')
+        .and_then(|line| {
+            let end = line.iter().position(u8::is_ascii_whitespace)?;
+            Some(KEYWORDS.contains(&&line[..end]))
+        })
+        .unwrap_or(false)
+}
+
+fn contains(text: &[u8], what: &[u8]) -> bool {
+    text.windows(what.len()).any(|window| window == what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_told_by_content() {
+        for (begins, kind) in [
+            (&b"VOX \x96\0\0\0MAIN"[..], Some(FileKind::Vox)),
+            (b"ply\nformat ascii 1.0\n", Some(FileKind::Ply)),
+            (b"ply\r\nformat ascii 1.0\r\n", Some(FileKind::Ply)),
+            (b"\x93NUMPY\x01\0", Some(FileKind::Npy)),
+            (b"\x89VXG\r\n\x1a\n\x01", Some(FileKind::Vxg)),
+            (b"glTF\x02\0\0\0", Some(FileKind::Glb)),
+            (
+                b"  {\n \"asset\": {\"version\": \"2.0\"}}",
+                Some(FileKind::Gltf),
+            ),
+            (
+                b"# made by hand\n\nmtllib a.mtl\nv 0 0 0\n",
+                Some(FileKind::Obj),
+            ),
+            (b"v 0 0 0\n", Some(FileKind::Obj)),
+            (b"solid cube\n facet normal", Some(FileKind::Stl)),
+            (b"{\"no\": 1}", None),
+            (b"velvet 1 2 3\n", None),
+            (b"DOOD\xef\xbf\xbd", None),
+            (b"plyform", None),
+            (b"", None),
+        ] {
+            assert_eq!(detect(begins), kind, "{}", begins.escape_ascii());
+        }
+    }
+}

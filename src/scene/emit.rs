@@ -1,0 +1,99 @@
+//! The last step of every importer: limits, bounds and progress, then the caller's sink.
+
+use super::SceneInfo;
+use super::error::{Fault, Problem};
+use crate::graph::{PackedNormal, Progress, Voxel};
+
+/// Extent, in voxels, that a scene must stay below along every axis.
+pub const MAX_EXTENT: i64 = 1 << 21;
+
+/// Voxels between two calls of [`Progress::advance`].
+const PROGRESS_STEP: u64 = 1 << 16;
+
+/// Hands voxels on, having checked that their indices are within limits.
+pub(crate) struct Emitter<'a> {
+    sink: &'a mut dyn FnMut(Voxel),
+    progress: &'a dyn Progress,
+    count: u64,
+    low: [i32; 3],
+    high: [i32; 3],
+}
+
+impl<'a> Emitter<'a> {
+    pub(crate) fn new(sink: &'a mut dyn FnMut(Voxel), progress: &'a dyn Progress) -> Self {
+        Self {
+            sink,
+            progress,
+            count: 0,
+            low: [i32::MAX; 3],
+            high: [i32::MIN; 3],
+        }
+    }
+
+    /// Hands one voxel on. `place` says which part of the file it comes from, and at which byte that is.
+    #[inline]
+    pub(crate) fn voxel(
+        &mut self,
+        index: [i64; 3],
+        color: [u8; 3],
+        normal: Option<PackedNormal>,
+        place: impl Fn() -> (String, u64),
+    ) -> Result<(), Problem> {
+        let mut narrow = [0i32; 3];
+        for axis in 0..3 {
+            let Ok(i) = i32::try_from(index[axis]) else {
+                return Err(beyond_i32(axis, index[axis], place()));
+            };
+            narrow[axis] = i;
+            let low = self.low[axis].min(i);
+            let high = self.high[axis].max(i);
+            let extent = i64::from(high) - i64::from(low) + 1;
+            if extent >= MAX_EXTENT {
+                return Err(too_wide(axis, extent, place()));
+            }
+            self.low[axis] = low;
+            self.high[axis] = high;
+        }
+        (self.sink)(Voxel {
+            index: narrow,
+            color,
+            normal,
+        });
+        self.count += 1;
+        if self.count.is_multiple_of(PROGRESS_STEP) {
+            self.progress.advance(PROGRESS_STEP);
+        }
+        Ok(())
+    }
+
+    /// Enters what was handed on.
+    pub(crate) fn finish(self, info: &mut SceneInfo) {
+        self.progress.advance(self.count % PROGRESS_STEP);
+        info.voxels = self.count;
+        info.bounds = (self.count > 0).then_some((self.low, self.high));
+    }
+}
+
+const AXIS: [char; 3] = ['x', 'y', 'z'];
+
+#[cold]
+fn beyond_i32(axis: usize, index: i64, (part, offset): (String, u64)) -> Problem {
+    Problem::Limit(Fault::new(
+        part,
+        offset,
+        "voxel indices that fit 32 bits with sign",
+        format!("{} = {index}", AXIS[axis]),
+        "move the scene towards the origin",
+    ))
+}
+
+#[cold]
+fn too_wide(axis: usize, extent: i64, (part, offset): (String, u64)) -> Problem {
+    Problem::Limit(Fault::new(
+        part,
+        offset,
+        format!("an extent below {MAX_EXTENT} voxels along each axis"),
+        format!("at least {extent} along {}", AXIS[axis]),
+        "look for stray voxels far from the rest, or split the scene",
+    ))
+}

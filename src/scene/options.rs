@@ -1,0 +1,100 @@
+//! What a caller may choose about reading, and what it learns besides the voxels.
+
+use super::FileKind;
+
+/// What to do with `.vox` voxels whose coordinates lie outside their model's `SIZE`.
+///
+/// VoxelShop writes such files when told to fit the model to its bounding box:
+/// coordinates left of the box, or far right of it, end up in one byte modulo 256.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum OutOfBounds {
+    /// Take the coordinate, modulo 256, that is nearest to the middle of `SIZE`.
+    #[default]
+    Wrap,
+    /// Take the byte as it stands, 0 to 255.
+    Keep,
+    /// Leave such voxels out, as MagicaVoxel does.
+    Drop,
+    /// Refuse the file.
+    Error,
+}
+
+/// How to read a scene.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Voxels outside `SIZE`; only `.vox` has them.
+    pub oob: OutOfBounds,
+    /// Whether nodes and layers that are hidden in the editor are read too; only `.vox` has them.
+    pub hidden: bool,
+    /// Which frame of an animated `.vox` scene is read: the last key frame at or before this one.
+    pub frame: u32,
+    /// Which model, counted from 0, is read from a `.vox` that has several models
+    /// but no scene graph; `None` reads all of them, each at its own coordinates.
+    pub model: Option<u32>,
+    /// sRGB colour of voxels in files without colours.
+    pub default_color: [u8; 3],
+}
+
+impl Default for ReadOptions {
+    fn default() -> Self {
+        Self {
+            oob: OutOfBounds::default(),
+            hidden: false,
+            frame: 0,
+            model: None,
+            default_color: [200; 3],
+        }
+    }
+}
+
+/// What a file turned out to hold.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SceneInfo {
+    /// The file's format.
+    pub kind: FileKind,
+    /// Voxels that were handed on. Voxels that several models place at the
+    /// same index are counted, and handed on, each time: the last one counts.
+    pub voxels: u64,
+    /// Voxels stored in the file: each model counted once, however often it is placed.
+    pub stored_voxels: u64,
+    /// Lowest and highest index handed on, both inclusive; `None` where there is no voxel.
+    pub bounds: Option<([i32; 3], [i32; 3])>,
+    /// Models in the file; 1 for a cloud.
+    pub models: u32,
+    /// Scene graph nodes in the file.
+    pub nodes: u32,
+    /// Placements of models that were read.
+    pub instances: u32,
+    /// Placements of models that were left out because they are hidden.
+    pub hidden_instances: u32,
+    /// Stored voxels outside their model's `SIZE`.
+    pub outside_size: u64,
+    /// The palette, RGBA, of colour indices 1, 2, ...; empty where the file has none of its own.
+    pub palette: Vec<[u8; 4]>,
+    /// Whether the voxels have colours of their own.
+    pub has_colors: bool,
+    /// Whether the voxels have normals.
+    pub has_normals: bool,
+    /// What a user should know although the file could be read, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl SceneInfo {
+    pub(crate) fn new(kind: FileKind) -> Self {
+        Self {
+            kind,
+            voxels: 0,
+            stored_voxels: 0,
+            bounds: None,
+            models: 0,
+            nodes: 0,
+            instances: 0,
+            hidden_instances: 0,
+            outside_size: 0,
+            palette: Vec::new(),
+            has_colors: false,
+            has_normals: false,
+            warnings: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! The walk over a `.vox` file's chunks, and the reading of one chunk's fields.
+//!
+//! A file is `VOX `, a version, and one chunk `MAIN` whose children are all that
+//! matters. A chunk is an id of 4 bytes, the size of its content, the size of its
+//! children, the content, the children; numbers are little endian. Every size is
+//! compared with what is left before it is used, so nothing here reads beyond
+//! its bounds and nothing allocates by a number that the file merely claims.
+
+use crate::scene::error::{Fault, printable};
+
+/// Bytes of a chunk's header.
+const HEADER: usize = 12;
+
+const TRUNCATED: &str = "the file is cut short or damaged; export or copy it again";
+const DAMAGED: &str =
+    "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again";
+
+/// One child of `MAIN`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chunk<'a> {
+    /// Its id.
+    pub id: [u8; 4],
+    /// Where its header begins in the file.
+    pub offset: usize,
+    /// Its content, which begins 12 bytes after its header.
+    pub content: &'a [u8],
+}
+
+/// The children of `MAIN`, one after another; ends after the first error.
+pub(super) struct Chunks<'a> {
+    bytes: &'a [u8],
+    next: usize,
+    end: usize,
+    broken: bool,
+}
+
+/// Checks the file's head and goes to the first child of `MAIN`.
+pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
+    if bytes.len() < 8 || &bytes[..4] != b"VOX " {
+        return Err(Fault::new(
+            "file header",
+            0,
+            "\"VOX \" and a version (8 bytes)",
+            printable(&bytes[..bytes.len().min(8)]),
+            TRUNCATED,
+        ));
+    }
+    let (main, content, children) = header(bytes, 8, bytes.len(), "the file")?;
+    if &main != b"MAIN" {
+        return Err(Fault::new(
+            "first chunk",
+            8,
+            "the chunk \"MAIN\"",
+            printable(&main),
+            DAMAGED,
+        ));
+    }
+    let first = 8 + HEADER + content;
+    Ok(Chunks {
+        bytes,
+        next: first,
+        end: first + children,
+        broken: false,
+    })
+}
+
+impl Chunks<'_> {
+    /// Bytes of the file after the end of `MAIN`, which nobody reads.
+    pub(super) fn left_over(&self) -> usize {
+        self.bytes.len() - self.end
+    }
+}
+
+impl<'a> Iterator for Chunks<'a> {
+    type Item = Result<Chunk<'a>, Box<Fault>>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.broken || self.next == self.end {
+            return None;
+        }
+        let offset = self.next;
+        Some(match header(self.bytes, offset, self.end, "MAIN") {
+            Ok((id, content, children)) => {
+                let begin = offset + HEADER;
+                self.next = begin + content + children;
+                Ok(Chunk {
+                    id,
+                    offset,
+                    content: &self.bytes[begin..begin + content],
+                })
+            }
+            Err(fault) => {
+                self.broken = true;
+                Err(fault)
+            }
+        })
+    }
+}
+
+/// A chunk's id and its two sizes, which together end no later than `end`.
+fn header(
+    bytes: &[u8],
+    offset: usize,
+    end: usize,
+    within: &str,
+) -> Result<([u8; 4], usize, usize), Box<Fault>> {
+    let left = end - offset;
+    let Some(head) = bytes[offset..end].first_chunk::<HEADER>() else {
+        return Err(Fault::new(
+            "chunk header",
+            offset as u64,
+            format!("{HEADER} bytes of id and sizes"),
+            format!("{left} bytes left in {within}"),
+            TRUNCATED,
+        ));
+    };
+    let id = [head[0], head[1], head[2], head[3]];
+    let content = u32::from_le_bytes([head[4], head[5], head[6], head[7]]);
+    let children = u32::from_le_bytes([head[8], head[9], head[10], head[11]]);
+    let needed = u64::from(content) + u64::from(children);
+    if needed > (left - HEADER) as u64 {
+        return Err(Fault::new(
+            format!("chunk {}", printable(&id)),
+            offset as u64,
+            format!("{content} bytes of content and {children} of children, as its header says"),
+            format!("{} bytes left in {within}", left - HEADER),
+            TRUNCATED,
+        ));
+    }
+    // Both fit in `left`, which is a `usize`.
+    Ok((id, content as usize, children as usize))
+}
+
+/// A dictionary of strings, as scene nodes have them. Keys and values are kept as bytes.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Dict<'a> {
+    entries: Vec<(&'a [u8], &'a [u8])>,
+    /// Where it begins in the file.
+    pub offset: u64,
+}
+
+impl<'a> Dict<'a> {
+    /// The value of a key; of the last one where it is repeated.
+    pub(super) fn get(&self, key: &str) -> Option<&'a [u8]> {
+        let found = self
+            .entries
+            .iter()
+            .rev()
+            .find(|(k, _)| *k == key.as_bytes());
+        found.map(|(_, value)| *value)
+    }
+
+    /// Whether a switch is on: present with the value 1.
+    pub(super) fn is_set(&self, key: &str) -> bool {
+        self.get(key)
+            .is_some_and(|value| value.trim_ascii() == b"1")
+    }
+
+    /// The whole numbers of a value, exactly `N` of them, or `None` where the key is absent.
+    pub(super) fn numbers<const N: usize>(
+        &self,
+        key: &str,
+        part: &str,
+        expected: &str,
+    ) -> Result<Option<[i32; N]>, Box<Fault>> {
+        let Some(value) = self.get(key) else {
+            return Ok(None);
+        };
+        let mut words = value
+            .split(u8::is_ascii_whitespace)
+            .filter(|word| !word.is_empty());
+        let mut numbers = [0; N];
+        let mut good = true;
+        for number in &mut numbers {
+            let parsed = words
+                .next()
+                .and_then(|word| std::str::from_utf8(word).ok()?.parse().ok());
+            match parsed {
+                Some(parsed) => *number = parsed,
+                None => good = false,
+            }
+        }
+        if good && words.next().is_none() {
+            return Ok(Some(numbers));
+        }
+        Err(Fault::new(
+            format!("{part}, attribute {key}"),
+            self.offset,
+            expected,
+            printable(value),
+            DAMAGED,
+        ))
+    }
+}
+
+/// Reads the fields of one chunk in order.
+pub(super) struct Fields<'a> {
+    part: String,
+    content: &'a [u8],
+    at: usize,
+    base: usize,
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(chunk: &Chunk<'a>) -> Self {
+        Self {
+            part: format!("chunk {}", chunk.id.escape_ascii()),
+            content: chunk.content,
+            at: 0,
+            base: chunk.offset + HEADER,
+        }
+    }
+
+    /// What errors call this chunk.
+    pub(super) fn part(&self) -> &str {
+        &self.part
+    }
+
+    /// Where the next field lies in the file.
+    pub(super) fn offset(&self) -> u64 {
+        (self.base + self.at) as u64
+    }
+
+    /// What has not been read yet.
+    pub(super) fn rest(&self) -> &'a [u8] {
+        &self.content[self.at..]
+    }
+
+    fn fault(&self, expected: impl Into<String>, found: impl Into<String>) -> Box<Fault> {
+        Fault::new(self.part.clone(), self.offset(), expected, found, DAMAGED)
+    }
+
+    fn bytes(&mut self, count: u32, what: &str) -> Result<&'a [u8], Box<Fault>> {
+        let rest = self.rest();
+        match usize::try_from(count)
+            .ok()
+            .and_then(|count| rest.get(..count))
+        {
+            Some(bytes) => {
+                self.at += bytes.len();
+                Ok(bytes)
+            }
+            None => Err(self.fault(
+                format!("{count} bytes of {what}"),
+                format!("{} bytes left in the chunk", rest.len()),
+            )),
+        }
+    }
+
+    /// A number of 4 bytes.
+    pub(super) fn u32(&mut self, what: &str) -> Result<u32, Box<Fault>> {
+        let bytes = self.bytes(4, what)?;
+        Ok(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+    }
+
+    /// A count of things that take at least `least` bytes each.
+    pub(super) fn count(&mut self, what: &str, least: usize) -> Result<u32, Box<Fault>> {
+        let count = self.u32(what)?;
+        let room = self.rest().len() / least;
+        if count as usize > room {
+            self.at -= 4;
+            return Err(self.fault(
+                format!("a number of {what} that fits the chunk, at most {room}"),
+                count.to_string(),
+            ));
+        }
+        Ok(count)
+    }
+
+    /// A dictionary.
+    pub(super) fn dict(&mut self) -> Result<Dict<'a>, Box<Fault>> {
+        let offset = self.offset();
+        let count = self.count("attributes", 8)?;
+        let mut entries = Vec::new();
+        for _ in 0..count {
+            let length = self.u32("the length of an attribute's name")?;
+            let key = self.bytes(length, "an attribute's name")?;
+            let length = self.u32("the length of an attribute's value")?;
+            let value = self.bytes(length, "an attribute's value")?;
+            entries.push((key, value));
+        }
+        Ok(Dict { entries, offset })
+    }
+}

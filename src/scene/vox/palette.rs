@@ -1,0 +1,103 @@
+//! Colour indices to colours.
+//!
+//! Index 0 is no voxel; index `i` is entry `i - 1` of the file's palette, whose
+//! 256th entry is therefore never used, and some exporters leave it out. Alpha is
+//! not looked at: MagicaVoxel keeps transparency in its materials, and exporters
+//! fill alpha with 255 or 0 as they like. `IMAP` only says in which order the
+//! editor shows the palette, so it changes no colour.
+
+use super::chunk::Chunk;
+use crate::scene::error::Fault;
+
+/// Colours by index, 1 to 255; entry 0 is never asked for.
+#[derive(Debug, Clone)]
+pub(super) struct Palette {
+    rgba: [[u8; 4]; 256],
+    /// Entries that the file gives, 0 where it has no palette.
+    pub given: usize,
+}
+
+impl Palette {
+    /// MagicaVoxel's own palette, for files without one: the cube of six steps
+    /// without black, brightest first, then ten shades each of red, green, blue and grey.
+    pub(super) fn default_colors() -> Self {
+        const SHADES: [u8; 10] = [0xee, 0xdd, 0xbb, 0xaa, 0x88, 0x77, 0x55, 0x44, 0x22, 0x11];
+        let mut rgba = [[0, 0, 0, 0]; 256];
+        for (i, entry) in rgba[1..=215].iter_mut().enumerate() {
+            let step = |by: usize| 255 - 51 * (i / by % 6) as u8;
+            *entry = [step(36), step(6), step(1), 255];
+        }
+        for (i, shade) in SHADES.into_iter().enumerate() {
+            rgba[216 + i] = [shade, 0, 0, 255];
+            rgba[226 + i] = [0, shade, 0, 255];
+            rgba[236 + i] = [0, 0, shade, 255];
+            rgba[246 + i] = [shade, shade, shade, 255];
+        }
+        Self { rgba, given: 0 }
+    }
+
+    /// The palette of a chunk `RGBA`; entries that it lacks stay MagicaVoxel's own.
+    pub(super) fn read(chunk: &Chunk<'_>) -> Result<Self, Box<Fault>> {
+        let (entries, rest) = chunk.content.as_chunks::<4>();
+        if !rest.is_empty() || entries.len() > 256 {
+            return Err(Fault::new(
+                "chunk RGBA",
+                chunk.offset as u64,
+                "a palette of at most 256 entries of 4 bytes",
+                format!("{} bytes", chunk.content.len()),
+                "open the file in MagicaVoxel and save it again",
+            ));
+        }
+        let mut palette = Self::default_colors();
+        palette.given = entries.len();
+        for (slot, entry) in palette.rgba[1..].iter_mut().zip(entries) {
+            *slot = *entry;
+        }
+        Ok(palette)
+    }
+
+    /// The colour of an index.
+    #[inline]
+    pub(super) fn color(&self, index: u8) -> [u8; 3] {
+        let [r, g, b, _] = self.rgba[usize::from(index)];
+        [r, g, b]
+    }
+
+    /// The entries that the file gives and that an index can name.
+    pub(super) fn entries(&self) -> &[[u8; 4]] {
+        &self.rgba[1..=self.given.min(255)]
+    }
+}
+
+/// Checks a chunk `IMAP`, which changes no colour.
+pub(super) fn check_index_map(chunk: &Chunk<'_>) -> Result<(), Box<Fault>> {
+    if chunk.content.len() == 256 {
+        return Ok(());
+    }
+    Err(Fault::new(
+        "chunk IMAP",
+        chunk.offset as u64,
+        "256 bytes",
+        format!("{} bytes", chunk.content.len()),
+        "open the file in MagicaVoxel and save it again",
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn default_palette_is_magicavoxels() {
+        let ours = Palette::default_colors();
+        // dot_vox keeps the published table without its unused entry 0.
+        for (i, color) in dot_vox::DEFAULT_PALETTE.iter().take(255).enumerate() {
+            assert_eq!(
+                ours.rgba[i + 1],
+                [color.r, color.g, color.b, color.a],
+                "index {}",
+                i + 1
+            );
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Rotations in one byte, and where they put a voxel.
+
+use crate::scene::error::Fault;
+
+/// A signed permutation of the axes and a translation, applied in this order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Transform {
+    /// `source[row]`: the axis whose coordinate goes to axis `row`.
+    source: [u8; 3],
+    /// 1 or -1 for each row.
+    sign: [i64; 3],
+    /// Voxels.
+    translation: [i64; 3],
+}
+
+impl Transform {
+    pub(super) const IDENTITY: Self = Self {
+        source: [0, 1, 2],
+        sign: [1; 3],
+        translation: [0; 3],
+    };
+
+    /// The matrix of a rotation byte: bits 0-1 and 2-3 say in which column the first
+    /// and the second row have their entry, bits 4 to 6 which rows are negative.
+    /// The third row takes the column that is left. `None` where two rows claim one
+    /// column, or a column does not exist.
+    pub(super) fn from_rotation_byte(byte: u8) -> Option<Self> {
+        let first = byte & 3;
+        let second = byte >> 2 & 3;
+        if first == 3 || second == 3 || first == second || byte >> 7 != 0 {
+            return None;
+        }
+        let sign = |bit: u8| if byte >> bit & 1 == 1 { -1 } else { 1 };
+        Some(Self {
+            source: [first, second, 3 - first - second],
+            sign: [sign(4), sign(5), sign(6)],
+            translation: [0; 3],
+        })
+    }
+
+    pub(super) fn with_translation(self, translation: [i32; 3]) -> Self {
+        Self {
+            translation: translation.map(i64::from),
+            ..self
+        }
+    }
+
+    /// Rotates, without translating.
+    #[inline]
+    fn rotate(&self, v: [i64; 3]) -> [i64; 3] {
+        std::array::from_fn(|row| self.sign[row] * v[usize::from(self.source[row])])
+    }
+
+    /// First `inner`, then `self`. `None` where the translation leaves 62 bits.
+    pub(super) fn after(&self, inner: &Self) -> Option<Self> {
+        let moved = self.rotate(inner.translation);
+        let mut translation = [0; 3];
+        for axis in 0..3 {
+            let sum = moved[axis].checked_add(self.translation[axis])?;
+            if sum.unsigned_abs() >> 62 != 0 {
+                return None;
+            }
+            translation[axis] = sum;
+        }
+        Some(Self {
+            source: std::array::from_fn(|row| inner.source[usize::from(self.source[row])]),
+            sign: std::array::from_fn(|row| {
+                self.sign[row] * inner.sign[usize::from(self.source[row])]
+            }),
+            translation,
+        })
+    }
+
+    /// Where a voxel of a model of this size comes to lie.
+    ///
+    /// MagicaVoxel turns a model about the lattice point `floor(size / 2)`, so a
+    /// voxel's centre lies half a voxel off the axes and stays so. In half voxels
+    /// all is whole: the centre is `2 (p - floor(size / 2)) + 1`, odd, rotation only
+    /// permutes and negates, and halving an odd number downwards gives the cell.
+    #[inline]
+    pub(super) fn place(&self, position: [i64; 3], size: [u32; 3]) -> [i64; 3] {
+        let center: [i64; 3] =
+            std::array::from_fn(|axis| 2 * (position[axis] - i64::from(size[axis] / 2)) + 1);
+        let turned = self.rotate(center);
+        std::array::from_fn(|axis| (turned[axis] >> 1) + self.translation[axis])
+    }
+}
+
+/// The fault of a rotation that is none.
+pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
+    Fault::new(
+        format!("{part}, attribute _r"),
+        offset,
+        "a rotation: bits 0-1 and 2-3 two different axes of 0, 1, 2, bits 4-6 signs",
+        value.to_string(),
+        "the file is damaged or its exporter is at fault; open it in MagicaVoxel and save it again",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all() -> Vec<(u8, Transform)> {
+        (0..=255)
+            .filter_map(|byte| Some((byte, Transform::from_rotation_byte(byte)?)))
+            .collect()
+    }
+
+    #[test]
+    fn forty_eight_rotation_bytes_are_valid() {
+        assert_eq!(all().len(), 48);
+    }
+
+    #[test]
+    fn the_formats_own_example() {
+        // R = ( 0 1 0 / 0 0 -1 / -1 0 0 ), byte (1<<0)|(2<<2)|(0<<4)|(1<<5)|(1<<6).
+        let r = Transform::from_rotation_byte(1 | 2 << 2 | 1 << 5 | 1 << 6).unwrap();
+        assert_eq!(r.rotate([10, 20, 30]), [20, -30, -10]);
+    }
+
+    #[test]
+    fn matrices_agree_with_dot_vox() {
+        for (byte, ours) in all() {
+            let columns = dot_vox::Rotation::from_byte(byte).to_cols_array_2d();
+            for (axis, column) in columns.iter().enumerate() {
+                let mut unit = [0i64; 3];
+                unit[axis] = 1;
+                let ours = ours.rotate(unit);
+                assert_eq!(ours.map(|c| c as f32), *column, "byte {byte}, axis {axis}");
+            }
+        }
+    }
+
+    #[test]
+    fn composition_is_one_after_the_other() {
+        for (_, a) in all() {
+            for (_, b) in all() {
+                let a = a.with_translation([3, -5, 70]);
+                let b = b.with_translation([-11, 2, 9]);
+                let both = a.after(&b).unwrap();
+                for p in [[0, 0, 0], [1, 2, 3], [-7, 0, 12]] {
+                    // Size 0 has its pivot at the origin, so `place` is the bare transform of a cell.
+                    let apart = a.place(b.place(p, [0; 3]), [0; 3]);
+                    assert_eq!(both.place(p, [0; 3]), apart);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn placement_by_hand() {
+        // No rotation: the pivot of 4 is 2, of 5 is 2.
+        let still = Transform::IDENTITY.with_translation([10, 20, 30]);
+        assert_eq!(still.place([0, 0, 0], [4, 5, 1]), [8, 18, 30]);
+        // A quarter turn about z, x' = -y, y' = x, byte 1 | 0 << 2 | 1 << 4 = 17, of a
+        // 4 x 2 x 1 slab: x 0..4 becomes y -2..2, y 0..2 becomes x 1..-1 downwards.
+        let turn = Transform::from_rotation_byte(17).unwrap();
+        assert_eq!(turn.place([0, 0, 0], [4, 2, 1]), [0, -2, 0]);
+        assert_eq!(turn.place([3, 0, 0], [4, 2, 1]), [0, 1, 0]);
+        assert_eq!(turn.place([0, 1, 0], [4, 2, 1]), [-1, -2, 0]);
+        // Mirrored in x, odd size 3: centres -1/2, 1/2, 3/2 become 1/2, -1/2, -3/2.
+        let mirror = Transform::from_rotation_byte(1 << 2 | 1 << 4).unwrap();
+        let xs = [0, 1, 2].map(|x| mirror.place([x, 0, 0], [3, 1, 1])[0]);
+        assert_eq!(xs, [0, -1, -2]);
+    }
+}

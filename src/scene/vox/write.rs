@@ -1,0 +1,231 @@
+//! Voxels to a `.vox` file: models of at most 256 a side under a scene graph.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use super::quantize;
+use crate::graph::Voxel;
+
+/// Largest side of a model; a voxel's coordinate is one byte.
+const MODEL_SIDE: i32 = 256;
+
+/// Position inside a block, then colour.
+type Stored = ([u8; 3], [u8; 3]);
+
+/// Collects voxels and writes them as `.vox`.
+///
+/// Space is cut into blocks of 256 voxels a side at multiples of 256; each block that holds a voxel
+/// becomes a model as small as its voxels allow, placed by the scene graph so
+/// that every voxel keeps its index, negative ones too. A voxel given twice
+/// counts as it was given last. Up to 255 colours are kept exactly; more are
+/// reduced by median cut. Normals are not kept: the format has none.
+///
+/// Memory: 6 bytes a voxel and the file's own size.
+#[derive(Debug, Default)]
+pub struct VoxWriter {
+    blocks: BTreeMap<[i32; 3], Vec<Stored>>,
+}
+
+/// What a [`VoxWriter`] wrote.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VoxWritten {
+    /// Voxels in the file.
+    pub voxels: u64,
+    /// Models in the file.
+    pub models: u32,
+    /// Different colours that were given.
+    pub colors_given: usize,
+    /// Colours in the palette, at most 255.
+    pub colors_kept: usize,
+}
+
+impl VoxWriter {
+    /// Nothing yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes one voxel.
+    pub fn add(&mut self, voxel: Voxel) {
+        let block = voxel.index.map(|i| i.div_euclid(MODEL_SIDE));
+        // The remainder by 256 is a byte.
+        let local = voxel.index.map(|i| i.rem_euclid(MODEL_SIDE) as u8);
+        self.blocks
+            .entry(block)
+            .or_default()
+            .push((local, voxel.color));
+    }
+
+    /// Writes all voxels taken.
+    ///
+    /// # Errors
+    /// What `out` reports, and [`io::ErrorKind::InvalidInput`] where the file
+    /// would exceed the 4 GiB that the format can count.
+    pub fn write(mut self, out: &mut dyn Write) -> io::Result<VoxWritten> {
+        if self.blocks.is_empty() {
+            // MagicaVoxel expects a model, even if there is nothing in it.
+            self.blocks.insert([0; 3], Vec::new());
+        }
+        let mut histogram = BTreeMap::new();
+        for stored in self.blocks.values_mut() {
+            keep_last(stored);
+            for (_, color) in stored.iter() {
+                *histogram.entry(*color).or_insert(0u64) += 1;
+            }
+        }
+        let (palette, index_of) = quantize::palette(&histogram);
+        let written = VoxWritten {
+            voxels: histogram.values().sum(),
+            models: count(self.blocks.len())?,
+            colors_given: histogram.len(),
+            colors_kept: palette.len(),
+        };
+        let mut children = Vec::new();
+        let mut translations = Vec::new();
+        for (block, stored) in self.blocks {
+            let (low, size) = bounds(&stored);
+            chunk(&mut children, b"SIZE", &size.map(u32::to_le_bytes).concat())?;
+            let mut content = Vec::with_capacity(4 + 4 * stored.len());
+            content.extend(count(stored.len())?.to_le_bytes());
+            for (position, color) in &stored {
+                content.extend((0..3).map(|axis| position[axis] - low[axis]));
+                content.push(index_of[color]);
+            }
+            chunk(&mut children, b"XYZI", &content)?;
+            // Undoes the reader's pivot, floor(size / 2).
+            translations.push([0, 1, 2].map(|axis| {
+                i64::from(block[axis]) * i64::from(MODEL_SIDE)
+                    + i64::from(low[axis])
+                    + i64::from(size[axis] / 2)
+            }));
+        }
+        scene_graph(&mut children, &translations)?;
+        let mut rgba = [[0u8; 4]; 256];
+        for (slot, [r, g, b]) in rgba.iter_mut().zip(palette) {
+            *slot = [r, g, b, 255];
+        }
+        chunk(&mut children, b"RGBA", rgba.as_flattened())?;
+        out.write_all(b"VOX ")?;
+        out.write_all(&150u32.to_le_bytes())?;
+        out.write_all(b"MAIN")?;
+        out.write_all(&0u32.to_le_bytes())?;
+        out.write_all(&count(children.len())?.to_le_bytes())?;
+        out.write_all(&children)?;
+        Ok(written)
+    }
+}
+
+/// Sorts by position and keeps the last of several voxels at one.
+fn keep_last(stored: &mut Vec<Stored>) {
+    stored.reverse();
+    stored.sort_by_key(|([x, y, z], _)| [*z, *y, *x]);
+    stored.dedup_by_key(|(position, _)| *position);
+}
+
+/// Lowest position of a block's voxels, and the size that holds them; 1 where there are none.
+fn bounds(stored: &[Stored]) -> ([u8; 3], [u32; 3]) {
+    let mut low = [u8::MAX; 3];
+    let mut high = [0u8; 3];
+    for (position, _) in stored {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(position[axis]);
+            high[axis] = high[axis].max(position[axis]);
+        }
+    }
+    if stored.is_empty() {
+        return ([0; 3], [1; 3]);
+    }
+    (
+        low,
+        [0, 1, 2].map(|axis| u32::from(high[axis] - low[axis]) + 1),
+    )
+}
+
+/// A root, a group under it, and a transform and a shape for every model.
+fn scene_graph(out: &mut Vec<u8>, translations: &[[i64; 3]]) -> io::Result<()> {
+    let models = count(translations.len())?;
+    transform_node(out, 0, 1, None)?;
+    let mut group = Node::new(1);
+    group.number(models);
+    for model in 0..models {
+        group.number(2 + 2 * model);
+    }
+    chunk(out, b"nGRP", &group.content)?;
+    for (model, translation) in (0..models).zip(translations) {
+        transform_node(out, 2 + 2 * model, 3 + 2 * model, Some(*translation))?;
+        let mut shape = Node::new(3 + 2 * model);
+        shape.number(1);
+        shape.number(model);
+        shape.number(0);
+        chunk(out, b"nSHP", &shape.content)?;
+    }
+    Ok(())
+}
+
+fn transform_node(
+    out: &mut Vec<u8>,
+    id: u32,
+    child: u32,
+    translation: Option<[i64; 3]>,
+) -> io::Result<()> {
+    let mut node = Node::new(id);
+    node.number(child);
+    node.number(u32::MAX);
+    // The root is on no layer.
+    node.number(if translation.is_some() { 0 } else { u32::MAX });
+    node.number(1);
+    match translation {
+        None => node.number(0),
+        Some([x, y, z]) => {
+            node.number(1);
+            node.string("_t");
+            node.string(&format!("{x} {y} {z}"));
+        }
+    }
+    chunk(out, b"nTRN", &node.content)
+}
+
+/// The content of a scene node, as it grows.
+struct Node {
+    content: Vec<u8>,
+}
+
+impl Node {
+    /// A node without attributes.
+    fn new(id: u32) -> Self {
+        let mut node = Self {
+            content: Vec::new(),
+        };
+        node.number(id);
+        node.number(0);
+        node
+    }
+
+    fn number(&mut self, number: u32) {
+        self.content.extend(number.to_le_bytes());
+    }
+
+    fn string(&mut self, text: &str) {
+        // Texts here are a few dozen bytes.
+        self.number(text.len() as u32);
+        self.content.extend(text.as_bytes());
+    }
+}
+
+fn chunk(out: &mut Vec<u8>, id: &[u8; 4], content: &[u8]) -> io::Result<()> {
+    out.extend(id);
+    out.extend(count(content.len())?.to_le_bytes());
+    out.extend(0u32.to_le_bytes());
+    out.extend(content);
+    Ok(())
+}
+
+fn count(number: usize) -> io::Result<u32> {
+    u32::try_from(number).map_err(|_| {
+        io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "the scene is too large for .vox, which counts bytes in 32 bits; write .ply instead",
+        )
+    })
+}

@@ -1,0 +1,426 @@
+//! PLY clouds: every encoding and type, clear refusals, a second opinion, and the writer.
+
+mod input_support;
+
+use std::io::Cursor;
+
+use input_support::{damage, message, read, read_plain};
+use ply_rs_bw::parser::Parser;
+use ply_rs_bw::ply::{DefaultElement, Property};
+use proptest::prelude::*;
+use shiftvox::graph::{Silent, Voxel};
+use shiftvox::scene::{FileKind, ReadOptions, SceneError, read_voxels_from, write_ply};
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Encoding {
+    Ascii,
+    Little,
+    Big,
+}
+
+const ENCODINGS: [Encoding; 3] = [Encoding::Ascii, Encoding::Little, Encoding::Big];
+
+/// A body of numbers by columns of (type, name), for any encoding.
+fn cloud(encoding: Encoding, columns: &[(&str, &str)], rows: &[Vec<f64>]) -> Vec<u8> {
+    let name = match encoding {
+        Encoding::Ascii => "ascii",
+        Encoding::Little => "binary_little_endian",
+        Encoding::Big => "binary_big_endian",
+    };
+    let mut text = format!(
+        "ply\nformat {name} 1.0\ncomment made here\nelement vertex {}\n",
+        rows.len()
+    );
+    for (kind, name) in columns {
+        text += &format!("property {kind} {name}\n");
+    }
+    let mut bytes = (text + "end_header\n").into_bytes();
+    for row in rows {
+        if encoding == Encoding::Ascii {
+            let words: Vec<String> = row.iter().map(f64::to_string).collect();
+            bytes.extend((words.join(" ") + "\n").bytes());
+            continue;
+        }
+        for ((kind, _), value) in columns.iter().zip(row) {
+            let mut number = match *kind {
+                "char" => (*value as i8).to_le_bytes().to_vec(),
+                "uchar" | "uint8" => (*value as u8).to_le_bytes().to_vec(),
+                "short" => (*value as i16).to_le_bytes().to_vec(),
+                "ushort" => (*value as u16).to_le_bytes().to_vec(),
+                "int" | "int32" => (*value as i32).to_le_bytes().to_vec(),
+                "uint" => (*value as u32).to_le_bytes().to_vec(),
+                "float" | "float32" => (*value as f32).to_le_bytes().to_vec(),
+                _ => value.to_le_bytes().to_vec(),
+            };
+            if encoding == Encoding::Big {
+                number.reverse();
+            }
+            bytes.extend(number);
+        }
+    }
+    bytes
+}
+
+fn positions(kind: &'static str) -> Vec<(&'static str, &'static str)> {
+    vec![(kind, "x"), (kind, "y"), (kind, "z")]
+}
+
+#[test]
+fn positions_of_every_type() {
+    for encoding in ENCODINGS {
+        for kind in [
+            "char", "short", "int", "int32", "float", "float32", "double",
+        ] {
+            let bytes = cloud(encoding, &positions(kind), &[vec![-7.0, 0.0, 100.0]]);
+            assert_eq!(
+                read_plain(&bytes),
+                [([-7, 0, 100], [200; 3])],
+                "{encoding:?} {kind}"
+            );
+        }
+        for kind in ["uchar", "uint8", "ushort", "uint"] {
+            let bytes = cloud(encoding, &positions(kind), &[vec![250.0, 3.0, 0.0]]);
+            assert_eq!(
+                read_plain(&bytes),
+                [([250, 3, 0], [200; 3])],
+                "{encoding:?} {kind}"
+            );
+        }
+    }
+}
+
+#[test]
+fn colours_by_any_name_and_in_any_place() {
+    let names = [
+        ["red", "green", "blue"],
+        ["diffuse_red", "diffuse_green", "diffuse_blue"],
+        ["r", "g", "b"],
+    ];
+    for encoding in ENCODINGS {
+        for [r, g, b] in names {
+            let columns = [
+                ("uchar", b),
+                ("float", "x"),
+                ("uchar", "alpha"),
+                ("uchar", r),
+                ("float", "y"),
+                ("uchar", g),
+                ("float", "z"),
+            ];
+            let bytes = cloud(
+                encoding,
+                &columns,
+                &[vec![3.0, 10.0, 0.0, 1.0, 20.0, 2.0, 30.0]],
+            );
+            assert_eq!(
+                read_plain(&bytes),
+                [([10, 20, 30], [1, 2, 3])],
+                "{encoding:?} {r}"
+            );
+        }
+        let mut columns = positions("int");
+        columns.extend([("float", "red"), ("float", "green"), ("float", "blue")]);
+        let bytes = cloud(encoding, &columns, &[vec![0.0, 0.0, 0.0, 0.0, 0.5, 1.0]]);
+        let expected = if encoding == Encoding::Ascii {
+            [0, 128, 1]
+        } else {
+            [0, 128, 255]
+        };
+        // In text, 0 and 1 are written as whole numbers, which are bytes.
+        assert_eq!(read_plain(&bytes), [([0; 3], expected)]);
+    }
+}
+
+#[test]
+fn normals_are_packed() {
+    let mut columns = positions("int");
+    columns.extend([("float", "nx"), ("float", "ny"), ("float", "nz")]);
+    let rows = [
+        vec![0.0, 0.0, 0.0, 0.0, 0.0, 2.0],
+        vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    ];
+    let (voxels, info) = read(
+        &cloud(Encoding::Little, &columns, &rows),
+        &ReadOptions::default(),
+    )
+    .unwrap();
+    assert!(info.has_normals && !info.has_colors);
+    assert_eq!(info.kind, FileKind::Ply);
+    assert!(voxels[0].normal.is_some());
+    assert_eq!(voxels[1].normal, None);
+}
+
+#[test]
+fn other_elements_and_lists_are_passed_over() {
+    let text = b"ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement camera 2\r\nproperty float a\r\nelement vertex 2\r\nproperty list uchar int near\r\nproperty int x\r\nproperty int y\r\nproperty int z\r\nelement face 0\r\nproperty list uchar int vertex_indices\r\nend_header\r\n1\r\n2\r\n2 8 9 1 2 3\r\n\r\n0 4 5 6";
+    assert_eq!(
+        read_plain(text),
+        [([1, 2, 3], [200; 3]), ([4, 5, 6], [200; 3])]
+    );
+    let mut binary = b"ply\nformat binary_big_endian 1.0\nelement camera 1\nproperty list uchar short a\nproperty float b\nelement tag 2\nproperty uchar a\nelement vertex 1\nproperty list int double w\nproperty char x\nproperty char y\nproperty char z\nend_header\n".to_vec();
+    binary.extend([2, 0, 1, 0, 2, 0, 0, 0, 0, 7, 7, 0, 0, 0, 1]);
+    binary.extend([0; 8]);
+    binary.extend([1, 2, 255]);
+    assert_eq!(read_plain(&binary), [([1, 2, -1], [200; 3])]);
+}
+
+#[test]
+fn meshes_are_told_from_clouds() {
+    let text = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let error = read(text, &ReadOptions::default()).unwrap_err();
+    assert!(
+        matches!(
+            error,
+            SceneError::Mesh {
+                kind: FileKind::Ply,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    for mesh in [
+        &b"glTF\x02\0\0\0"[..],
+        b"solid a\n",
+        b"# x\nv 0 0 0\n",
+        b"{\"asset\":{}}",
+    ] {
+        assert!(
+            message(mesh).contains("meshes are not supported yet"),
+            "{}",
+            message(mesh)
+        );
+    }
+}
+
+#[test]
+fn messages_say_where_and_what() {
+    let int = positions("int");
+    let float = positions("float");
+    let mut colored = int.clone();
+    colored.extend([("int", "red"), ("int", "green"), ("int", "blue")]);
+    let header = |lines: &str| format!("ply\nformat ascii 1.0\n{lines}end_header\n").into_bytes();
+    let xyz = "element vertex 2\nproperty int x\nproperty int y\nproperty int z\n";
+    let mut cut = cloud(Encoding::Little, &int, &[vec![1.0, 2.0, 3.0]]);
+    cut.pop();
+    let cases = [
+        (
+            cloud(
+                Encoding::Little,
+                &float,
+                &[vec![0.0; 3], vec![1.0, 0.5, 2.0]],
+            ),
+            "vertex 1, property y at byte 145: expected a whole number, the voxel's index, found 0.5; only clouds whose positions are voxel indices",
+        ),
+        (
+            cloud(Encoding::Ascii, &float, &[vec![0.0, f64::NAN, 0.0]]),
+            "found NaN",
+        ),
+        (
+            cloud(Encoding::Little, &float, &[vec![f64::INFINITY, 0.0, 0.0]]),
+            "found inf",
+        ),
+        (
+            cloud(Encoding::Ascii, &int, &[vec![3e9, 0.0, 0.0]]),
+            "fit 32 bits with sign, found x = 3000000000",
+        ),
+        (
+            cloud(
+                Encoding::Big,
+                &colored,
+                &[vec![0.0, 0.0, 0.0, 256.0, 0.0, 0.0]],
+            ),
+            "property red at byte",
+        ),
+        (
+            cut,
+            "vertex 0 at byte 135: expected as many vertices as the header says, found the end of the file",
+        ),
+        (header(xyz), "vertex 0 at byte"),
+        (
+            [header(xyz), b"1 2 3\n1 2\n".to_vec()].concat(),
+            "vertex 1 at byte 100: expected a number for property z, found the end of the line",
+        ),
+        ([header(xyz), b"1 2 x\n".to_vec()].concat(), "found \"x\""),
+        (
+            [header(xyz), b"1 2 3 4\n".to_vec()].concat(),
+            "found \"4\" after them",
+        ),
+        (
+            header("element vertex many\n"),
+            "header at byte 21: expected \"element NAME COUNT\" with a whole number, found \"element vertex m",
+        ),
+        (
+            header("property int x\n"),
+            "a line \"element\" before the first property",
+        ),
+        (
+            header("element vertex 1\nproperty word x\n"),
+            "types char to double",
+        ),
+        (
+            header("element vertex 1\nproperty list float int x\n"),
+            "types char to double",
+        ),
+        (header("element face 0\n"), "expected an element \"vertex\""),
+        (
+            header("element vertex 1\nproperty int x\n"),
+            "the properties x, y and z",
+        ),
+        (
+            header("elephant\n"),
+            "format, element, property, comment or end_header",
+        ),
+        (b"ply\nend_header\n".to_vec(), "a line \"format ... 1.0\""),
+        (
+            b"ply\nformat ascii 2.0\n".to_vec(),
+            "found \"format ascii 2.0\"",
+        ),
+        (
+            b"ply\nformat utf8 1.0\n".to_vec(),
+            "binary_little_endian or binary_big_endian",
+        ),
+        (
+            b"ply\nformat ascii 1.0\n".to_vec(),
+            "the line \"end_header\", found the end of the file",
+        ),
+        (
+            [b"ply\n".to_vec(), vec![b'x'; 5_000]].concat(),
+            "lines of at most 4096 bytes",
+        ),
+    ];
+    for (bytes, part) in cases {
+        let text = message(&bytes);
+        assert!(text.contains(part), "\n{text}\nlacks\n{part}");
+    }
+}
+
+#[test]
+fn counts_of_the_header_are_not_believed() {
+    let huge = u64::MAX;
+    for format in ["ascii", "binary_little_endian"] {
+        let text = format!(
+            "ply\nformat {format} 1.0\nelement nothing {huge}\nelement a {huge}\nproperty double b\nelement vertex {huge}\nproperty int x\nproperty int y\nproperty int z\nend_header\n"
+        );
+        assert!(message(text.as_bytes()).contains("found the end of the file"));
+        let lists = format!(
+            "ply\nformat {format} 1.0\nelement vertex {huge}\nproperty list uint double w\nproperty int x\nproperty int y\nproperty int z\nend_header\n\u{7f}\u{7f}\u{7f}\u{7f}"
+        );
+        assert!(read(lists.as_bytes(), &ReadOptions::default()).is_err());
+    }
+}
+
+#[test]
+fn binary_truncations_are_errors_and_damage_never_panics() {
+    let mut columns = positions("short");
+    columns.extend([("uchar", "red"), ("uchar", "green"), ("uchar", "blue")]);
+    for encoding in ENCODINGS {
+        let bytes = cloud(
+            encoding,
+            &columns,
+            &vec![vec![-5.0, 6.0, 7.0, 8.0, 9.0, 10.0]; 3],
+        );
+        // In text, the last number may lose digits, or the last line its end, unseen.
+        let sure = bytes.len() - if encoding == Encoding::Ascii { 2 } else { 0 };
+        for length in 0..sure {
+            assert!(
+                read(&bytes[..length], &ReadOptions::default()).is_err(),
+                "{encoding:?} {length}"
+            );
+        }
+        for seed in 0..20_000 {
+            let mut damaged = bytes.clone();
+            damage(&mut damaged, seed);
+            let _ = read_voxels_from(
+                &damaged,
+                "damaged",
+                &ReadOptions::default(),
+                &mut |_| (),
+                &Silent,
+            );
+        }
+    }
+}
+
+fn as_f64(property: &Property) -> f64 {
+    match property {
+        Property::Char(v) => f64::from(*v),
+        Property::UChar(v) => f64::from(*v),
+        Property::Short(v) => f64::from(*v),
+        Property::UShort(v) => f64::from(*v),
+        Property::Int(v) => f64::from(*v),
+        Property::UInt(v) => f64::from(*v),
+        Property::Float(v) => f64::from(*v),
+        Property::Double(v) => *v,
+        _ => panic!("a list"),
+    }
+}
+
+fn voxel() -> impl Strategy<Value = Voxel> {
+    (
+        prop::array::uniform3(-500_000i32..500_000),
+        any::<[u8; 3]>(),
+    )
+        .prop_map(|(index, color)| Voxel {
+            index,
+            color,
+            normal: None,
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn ply_rs_agrees(
+        rows in prop::collection::vec(prop::collection::vec(0..120i32, 6..=6), 0..30),
+        encoding in prop::sample::select(ENCODINGS.to_vec()),
+        kinds in prop::collection::vec(
+            prop::sample::select(vec!["char", "uchar", "short", "ushort", "int", "uint", "float", "double"]), 3..=3),
+    ) {
+        let mut columns: Vec<(&str, &str)> = kinds.iter().copied().zip(["x", "y", "z"]).collect();
+        columns.extend([("uchar", "red"), ("uchar", "green"), ("uchar", "blue")]);
+        let rows: Vec<Vec<f64>> =
+            rows.into_iter().map(|row| row.into_iter().map(f64::from).collect()).collect();
+        let bytes = cloud(encoding, &columns, &rows);
+        let theirs = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(&bytes)).unwrap();
+        let theirs: Vec<_> = theirs.payload.get("vertex").into_iter().flatten().map(|vertex| {
+            let value = |name: &str| as_f64(vertex.get(name).unwrap());
+            (["x", "y", "z"].map(|n| value(n) as i32), ["red", "green", "blue"].map(|n| value(n) as u8))
+        }).collect();
+        prop_assert_eq!(read_plain(&bytes), theirs);
+    }
+
+    #[test]
+    fn the_writer_keeps_every_voxel(
+        voxels in prop::collection::vec(voxel(), 0..100),
+        directions in prop::collection::vec(prop::array::uniform3(-1.0f64..1.0), 100),
+        normals in any::<bool>(),
+    ) {
+        // Normals come from a cloud, as their packing is the reader's own.
+        let mut columns = positions("int");
+        columns.extend([("double", "nx"), ("double", "ny"), ("double", "nz")]);
+        let rows: Vec<Vec<f64>> = voxels.iter().zip(&directions)
+            .map(|(v, d)| v.index.map(f64::from).into_iter().chain(*d).collect()).collect();
+        let (packed, _) = read(&cloud(Encoding::Little, &columns, &rows), &ReadOptions::default()).unwrap();
+        let voxels: Vec<Voxel> = voxels.iter().zip(&packed)
+            .map(|(v, p)| Voxel { normal: if normals { p.normal } else { None }, ..*v }).collect();
+        let mut file = Cursor::new(Vec::new());
+        let count = write_ply(&mut file, voxels.iter().copied(), normals).unwrap();
+        prop_assert_eq!(count, voxels.len() as u64);
+        let bytes = file.into_inner();
+        let (again, info) = read(&bytes, &ReadOptions::default()).unwrap();
+        prop_assert_eq!(info.has_normals, normals);
+        prop_assert_eq!(again.len(), voxels.len());
+        for (a, v) in again.iter().zip(&voxels) {
+            prop_assert_eq!((a.index, a.color), (v.index, v.color));
+            // Some directions have two packings, so directions are compared.
+            let same = match (a.normal, v.normal) {
+                (Some(a), Some(v)) => a.decode().unwrap().dot(v.decode().unwrap()) > 1.0 - 1e-9,
+                (a, v) => a == v,
+            };
+            prop_assert!(same, "{:?} {:?}", a, v);
+        }
+        let theirs = Parser::<DefaultElement>::new().read_ply(&mut Cursor::new(&bytes)).unwrap();
+        prop_assert_eq!(theirs.payload.get("vertex").map_or(0, Vec::len), voxels.len());
+    }
+}

@@ -1,0 +1,287 @@
+//! Real `.vox` files: counts, positions, palettes, twins, and agreement with `dot_vox`.
+
+#![allow(clippy::unwrap_used, reason = "test helpers may panic")]
+
+mod input_support;
+
+use std::collections::BTreeSet;
+
+use dot_vox::{DotVoxData, Rotation, SceneNode};
+use input_support::{Plain, read, read_plain, shared, shared_path, shipped};
+use shiftvox::graph::Silent;
+use shiftvox::scene::{OutOfBounds, ReadOptions, SceneError, read_voxels};
+
+const TWINS: [&str; 5] = ["black", "castle", "church", "clock", "dragon"];
+
+fn distinct(voxels: &[Plain]) -> usize {
+    voxels
+        .iter()
+        .map(|(index, _)| *index)
+        .collect::<BTreeSet<_>>()
+        .len()
+}
+
+/// Stored, handed on, different indices, models, nodes.
+fn counts(bytes: &[u8]) -> (u64, u64, usize, u32, u32) {
+    let (_, info) = read(bytes, &ReadOptions::default()).unwrap();
+    let plain = read_plain(bytes);
+    (
+        info.stored_voxels,
+        info.voxels,
+        distinct(&plain),
+        info.models,
+        info.nodes,
+    )
+}
+
+#[test]
+fn shipped_files_have_their_voxels() {
+    assert_eq!(counts(&shipped("sphere.vox")), (2_103, 2_103, 2_103, 1, 0));
+    assert_eq!(counts(&shipped("axes.vox")), (4_372, 12_452, 12_452, 4, 28));
+    assert_eq!(
+        counts(&shipped("extended.vox")),
+        (4_854, 4_854, 4_854, 6, 14)
+    );
+}
+
+#[test]
+fn tree_has_its_voxels() {
+    let Some(bytes) = shared("vox/tree.vox") else {
+        return;
+    };
+    // 428,739 are stored; the larger model is placed twice, so that 804,872 are handed on, at 768,068 different indices.
+    assert_eq!(counts(&bytes), (428_739, 804_872, 768_068, 2, 8));
+}
+
+#[test]
+fn voxelshop_files_have_their_voxels() {
+    for (name, voxels) in TWINS
+        .into_iter()
+        .zip([14_208, 2_628, 10_182, 1_728, 40_265])
+    {
+        for folder in ["fit_to_bb", "fit_to_size"] {
+            let Some(bytes) = shared(&format!("vox/voxelshop/{folder}/{name}.vox")) else {
+                return;
+            };
+            assert_eq!(
+                counts(&bytes),
+                (voxels, voxels, voxels as usize, 1, 0),
+                "{folder} {name}"
+            );
+        }
+    }
+}
+
+/// Moves voxels so that the lowest index is 0 along each axis, and sorts them.
+fn at_origin(mut voxels: Vec<Plain>) -> Vec<Plain> {
+    for axis in 0..3 {
+        let low = voxels
+            .iter()
+            .map(|(index, _)| index[axis])
+            .min()
+            .unwrap_or(0);
+        for (index, _) in &mut voxels {
+            index[axis] -= low;
+        }
+    }
+    voxels.sort_unstable();
+    voxels
+}
+
+#[test]
+fn unwrapped_files_equal_their_twins() {
+    for name in TWINS {
+        let Some(wrapped) = shared(&format!("vox/voxelshop/fit_to_bb/{name}.vox")) else {
+            return;
+        };
+        let Some(twin) = shared(&format!("vox/voxelshop/fit_to_size/{name}.vox")) else {
+            return;
+        };
+        assert_eq!(
+            at_origin(read_plain(&wrapped)),
+            at_origin(read_plain(&twin)),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn dragon_by_every_rule() {
+    let Some(bytes) = shared("vox/voxelshop/fit_to_bb/dragon.vox") else {
+        return;
+    };
+    let by = |oob| {
+        let options = ReadOptions {
+            oob,
+            ..ReadOptions::default()
+        };
+        read(&bytes, &options).map(|(_, info)| info)
+    };
+    let wrap = by(OutOfBounds::Wrap).unwrap();
+    assert_eq!(wrap.outside_size, 39_332);
+    assert_eq!(wrap.bounds, Some(([-53, -18, 0], [72, 38, 88])));
+    let keep = by(OutOfBounds::Keep).unwrap();
+    assert_eq!(
+        (keep.voxels, keep.bounds),
+        (40_265, Some(([0, 0, 0], [255, 255, 88])))
+    );
+    assert_eq!(by(OutOfBounds::Drop).unwrap().voxels, 40_265 - 39_332);
+    let refused = by(OutOfBounds::Error).unwrap_err().to_string();
+    assert!(
+        refused.contains("SIZE [20, 20, 20]") && refused.contains("--oob"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn not_a_vox_is_refused_by_its_first_bytes() {
+    let Some(path) = shared_path("vox/not_a.vox") else {
+        return;
+    };
+    let error = read_voxels(&path, &ReadOptions::default(), &mut |_| (), &Silent).unwrap_err();
+    assert!(matches!(error, SceneError::Unknown { .. }));
+    let text = error.to_string();
+    assert!(
+        text.contains("not_a.vox: not a known scene file: it begins with \"DOOD"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_file_reads_as_its_bytes_do() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/axes.vox");
+    let mut voxels = Vec::new();
+    let mut sink = |v: shiftvox::graph::Voxel| voxels.push((v.index, v.color));
+    read_voxels(&path, &ReadOptions::default(), &mut sink, &Silent).unwrap();
+    assert_eq!(voxels, read_plain(&shipped("axes.vox")));
+}
+
+#[test]
+fn a_missing_file_is_no_fault_of_its_content() {
+    let path = std::path::Path::new("/nowhere/at all.vox");
+    let error = read_voxels(path, &ReadOptions::default(), &mut |_| (), &Silent).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .starts_with("/nowhere/at all.vox: cannot open the file: ")
+    );
+    assert!(error.fault().is_none());
+}
+
+#[test]
+fn axes_by_hand() {
+    // From the file's nodes: group 3 at (0, 0, 131) holds model 0 at z -48, 0 and 48;
+    // group 11 at (0, 188, 20) holds model 1 at y -59, 1 and 59; group 19 at (173, 0, 20)
+    // holds model 2 at x -47, 1 and 47; model 3 stands at (0, 0, 16). Sizes 40, 40, 40
+    // and 32, so the pivots are 20 and 16.
+    let bytes = shipped("axes.vox");
+    let first_voxel_at = [56usize + 4, 3_764 + 16, 10_364 + 16, 16_324 + 16];
+    let read = read_plain(&bytes);
+    let placements: [(usize, i32, Vec<[i32; 3]>); 4] = [
+        (0, 20, vec![[0, 0, 131 - 48], [0, 0, 131], [0, 0, 131 + 48]]),
+        (
+            1,
+            20,
+            vec![[0, 188 - 59, 20], [0, 189, 20], [0, 188 + 59, 20]],
+        ),
+        (
+            2,
+            20,
+            vec![[173 - 47, 0, 20], [174, 0, 20], [173 + 47, 0, 20]],
+        ),
+        (3, 16, vec![[0, 0, 16]]),
+    ];
+    let counts = [920, 1_640, 1_480, 332];
+    let mut at = 0;
+    for (model, pivot, translations) in placements {
+        for translation in translations {
+            for i in 0..counts[model] {
+                // The offset of model 0's voxels: header 44, 12 bytes of chunk header, 4 of count.
+                let stored = &bytes[first_voxel_at[model] + 4 * i..][..3];
+                let expected = [0, 1, 2].map(|a| i32::from(stored[a]) - pivot + translation[a]);
+                assert_eq!(read[at].0, expected, "model {model}, voxel {i}");
+                at += 1;
+            }
+        }
+    }
+    assert_eq!(at, read.len());
+}
+
+/// All voxels of a file as `dot_vox` and floating point place them.
+fn by_dot_vox(data: &DotVoxData) -> Vec<Plain> {
+    let mut voxels = Vec::new();
+    if data.scenes.is_empty() {
+        for model in &data.models {
+            for v in &model.voxels {
+                let c = data.palette[usize::from(v.i)];
+                voxels.push(([v.x, v.y, v.z].map(i32::from), [c.r, c.g, c.b]));
+            }
+        }
+    } else {
+        walk(data, 0, Rotation::IDENTITY, [0.0; 3], &mut voxels);
+    }
+    voxels
+}
+
+fn turn(rotation: Rotation, v: [f32; 3]) -> [f32; 3] {
+    let columns = rotation.to_cols_array_2d();
+    [0, 1, 2].map(|row| (0..3).map(|column| columns[column][row] * v[column]).sum())
+}
+
+fn walk(data: &DotVoxData, node: u32, rotation: Rotation, at: [f32; 3], out: &mut Vec<Plain>) {
+    match &data.scenes[node as usize] {
+        SceneNode::Transform { frames, child, .. } => {
+            let frame = &frames[0];
+            let moved = frame
+                .position()
+                .map_or([0.0; 3], |p| [p.x as f32, p.y as f32, p.z as f32]);
+            let moved = turn(rotation, moved);
+            let inner = frame.orientation().unwrap_or(Rotation::IDENTITY);
+            let at = [0, 1, 2].map(|a| at[a] + moved[a]);
+            walk(data, *child, rotation * inner, at, out);
+        }
+        SceneNode::Group { children, .. } => {
+            for child in children {
+                walk(data, *child, rotation, at, out);
+            }
+        }
+        SceneNode::Shape { models, .. } => {
+            let model = &data.models[models[0].model_id as usize];
+            let pivot = [model.size.x / 2, model.size.y / 2, model.size.z / 2];
+            for v in &model.voxels {
+                let p = [v.x, v.y, v.z];
+                let p = [0, 1, 2].map(|a| f32::from(p[a]) + 0.5 - pivot[a] as f32);
+                let p = turn(rotation, p);
+                let c = data.palette[usize::from(v.i)];
+                let index = [0, 1, 2].map(|a| (p[a] + at[a]).floor() as i32);
+                out.push((index, [c.r, c.g, c.b]));
+            }
+        }
+    }
+}
+
+#[test]
+fn real_files_agree_with_dot_vox() {
+    let mut files: Vec<(String, Vec<u8>)> = ["sphere", "axes", "extended"]
+        .map(|name| (name.to_owned(), shipped(&format!("{name}.vox"))))
+        .to_vec();
+    let mut more = vec!["vox/tree.vox".to_owned()];
+    more.extend(TWINS.map(|name| format!("vox/voxelshop/fit_to_size/{name}.vox")));
+    files.extend(
+        more.into_iter()
+            .filter_map(|name| Some((name.clone(), shared(&name)?))),
+    );
+    for (name, bytes) in files {
+        let data = dot_vox::load_bytes(&bytes).unwrap();
+        assert!(read_plain(&bytes) == by_dot_vox(&data), "{name}");
+        let (_, info) = read(&bytes, &ReadOptions::default()).unwrap();
+        let palette: Vec<[u8; 4]> = data
+            .palette
+            .iter()
+            .take(255)
+            .map(|c| [c.r, c.g, c.b, c.a])
+            .collect();
+        assert_eq!(info.palette, palette, "{name}");
+        assert_eq!(info.nodes as usize, data.scenes.len(), "{name}");
+    }
+}

@@ -1,0 +1,561 @@
+//! `.vox` files made for the purpose: what is written is what is read, and damage never panics.
+
+#![allow(clippy::unwrap_used, reason = "test helpers may panic")]
+
+mod input_support;
+
+use input_support::{Attributes, Plain, VoxFile, damage, message, read, read_plain, shipped};
+use proptest::prelude::*;
+use shiftvox::graph::{Silent, Voxel};
+use shiftvox::scene::{OutOfBounds, ReadOptions, VoxWriter, read_voxels_from};
+
+/// Colours 1, 2, 3.
+const THREE: [[u8; 4]; 3] = [[10, 20, 30, 255], [40, 50, 60, 0], [70, 80, 90, 255]];
+
+#[test]
+fn a_bare_model_keeps_its_coordinates() {
+    let file = VoxFile::new()
+        .model([5, 6, 7], &[[4, 5, 6, 1], [0, 0, 0, 2]])
+        .palette(&THREE);
+    // Colour 2 has alpha 0, which means nothing.
+    assert_eq!(
+        read_plain(&file.bytes()),
+        [([4, 5, 6], [10, 20, 30]), ([0, 0, 0], [40, 50, 60])]
+    );
+}
+
+#[test]
+fn several_bare_models_are_all_read_or_one_of_them() {
+    let file = VoxFile::new()
+        .chunk(b"PACK", &2u32.to_le_bytes())
+        .model([2, 2, 2], &[[1, 1, 1, 1]])
+        .model([2, 2, 2], &[[0, 1, 0, 3]])
+        .palette(&THREE)
+        .bytes();
+    let both = vec![([1, 1, 1], [10, 20, 30]), ([0, 1, 0], [70, 80, 90])];
+    let (_, info) = read(&file, &ReadOptions::default()).unwrap();
+    assert!(info.warnings[0].contains("2 models and no scene graph"));
+    assert_eq!(read_plain(&file), both);
+    let only = |model| {
+        read(
+            &file,
+            &ReadOptions {
+                model: Some(model),
+                ..ReadOptions::default()
+            },
+        )
+    };
+    assert_eq!(only(1).unwrap().0[0].index, [0, 1, 0]);
+    assert!(
+        only(2)
+            .unwrap_err()
+            .to_string()
+            .contains("model 2, which was asked for")
+    );
+}
+
+#[test]
+fn palettes_missing_short_and_odd() {
+    let model = || VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1], [0, 0, 0, 4], [0, 0, 0, 255]]);
+    let colors = |file: VoxFile| {
+        read_plain(&file.bytes())
+            .iter()
+            .map(|v| v.1)
+            .collect::<Vec<_>>()
+    };
+    // MagicaVoxel's: index 1 is white, 4 the fourth step of blue, 255 the darkest grey.
+    let default = [[255, 255, 255], [255, 255, 102], [0x11, 0x11, 0x11]];
+    assert_eq!(colors(model()), default);
+    assert_eq!(
+        colors(model().palette(&THREE)),
+        [[10, 20, 30], default[1], default[2]]
+    );
+    let (_, info) = read(&model().palette(&THREE).bytes(), &ReadOptions::default()).unwrap();
+    assert!(info.warnings[0].contains("beyond the palette's 3 entries"));
+    let full: Vec<[u8; 4]> = (0..=255).map(|i| [i, 255 - i, 7, 9]).collect();
+    let expected = [[0, 255, 7], [3, 252, 7], [254, 1, 7]];
+    assert_eq!(colors(model().palette(&full)), expected);
+    assert_eq!(colors(model().palette(&full[..255])), expected);
+    assert!(message(&model().chunk(b"RGBA", &[0; 1022]).bytes()).contains("chunk RGBA"));
+    assert!(message(&model().chunk(b"RGBA", &[0; 1028]).bytes()).contains("1028 bytes"));
+    // The editor's order of the palette changes no colour.
+    let order: Vec<u8> = (0..=255u8).rev().collect();
+    assert_eq!(
+        colors(model().palette(&full).chunk(b"IMAP", &order)),
+        expected
+    );
+    assert!(message(&model().chunk(b"IMAP", &[0; 16]).bytes()).contains("256 bytes"));
+}
+
+#[test]
+fn colour_index_zero_is_no_voxel() {
+    let file = VoxFile::new()
+        .model([1, 1, 2], &[[0, 0, 0, 0], [0, 0, 1, 1]])
+        .bytes();
+    let (voxels, info) = read(&file, &ReadOptions::default()).unwrap();
+    assert_eq!((voxels.len(), info.stored_voxels), (1, 2));
+    assert!(info.warnings[0].contains("1 voxels have colour index 0"));
+}
+
+/// A model of one voxel under a root, a group and two transforms.
+fn two_places(first: Attributes<'_>, second: Attributes<'_>) -> VoxFile {
+    VoxFile::new()
+        .model([4, 2, 1], &[[3, 0, 0, 1]])
+        .transform(0, &[], 1, -1, &[&[]])
+        .group(1, &[2, 4])
+        .transform(2, &[], 3, 0, &[first])
+        .shape(3, &[(0, &[])])
+        .transform(4, &[], 5, 1, &[second])
+        .shape(5, &[(0, &[])])
+}
+
+fn places(file: &VoxFile, options: &ReadOptions) -> Vec<[i32; 3]> {
+    read(&file.bytes(), options)
+        .unwrap()
+        .0
+        .iter()
+        .map(|v| v.index)
+        .collect()
+}
+
+#[test]
+fn a_model_placed_twice_and_turned() {
+    // Pivot (2, 1, 0); the voxel's centre is (1.5, -0.5, 0.5). Byte 17 is x' = -y, y' = x.
+    let file = two_places(&[("_t", "10 20 30")], &[("_r", "17"), ("_t", "-100 0 5")]);
+    let expected = vec![[11, 19, 30], [-100, 1, 5]];
+    assert_eq!(places(&file, &ReadOptions::default()), expected);
+}
+
+#[test]
+fn hidden_nodes_and_layers_are_left_out_unless_asked_for() {
+    let layer = |file: VoxFile| {
+        file.layer(1, &[("_hidden", "1")])
+            .layer(0, &[("_hidden", "0")])
+    };
+    let file = layer(two_places(&[], &[("_t", "9 0 0")]));
+    assert_eq!(places(&file, &ReadOptions::default()), [[1, -1, 0]]);
+    let all = ReadOptions {
+        hidden: true,
+        ..ReadOptions::default()
+    };
+    assert_eq!(places(&file, &all), [[1, -1, 0], [10, -1, 0]]);
+    let (_, info) = read(&file.bytes(), &ReadOptions::default()).unwrap();
+    assert_eq!((info.instances, info.hidden_instances), (1, 1));
+    // A hidden node hides what is below it.
+    let file = VoxFile::new()
+        .model([1, 1, 1], &[[0, 0, 0, 1]])
+        .transform(0, &[("_hidden", "1")], 1, -1, &[&[]])
+        .group(1, &[2])
+        .transform(2, &[], 3, -1, &[&[]])
+        .shape(3, &[(0, &[])]);
+    assert!(places(&file, &ReadOptions::default()).is_empty());
+}
+
+#[test]
+fn frames_choose_transforms_and_models() {
+    let file = VoxFile::new()
+        .model([1, 1, 1], &[[0, 0, 0, 1]])
+        .model([3, 1, 1], &[[2, 0, 0, 1]])
+        .transform(
+            0,
+            &[],
+            1,
+            -1,
+            &[
+                &[("_t", "0 0 0"), ("_f", "0")],
+                &[("_t", "50 0 0"), ("_f", "10")],
+            ],
+        )
+        .shape(1, &[(0, &[("_f", "0")]), (1, &[("_f", "20")])]);
+    let at = |frame| {
+        places(
+            &file,
+            &ReadOptions {
+                frame,
+                ..ReadOptions::default()
+            },
+        )
+    };
+    assert_eq!(at(0), [[0, 0, 0]]);
+    assert_eq!(at(9), [[0, 0, 0]]);
+    assert_eq!(at(10), [[50, 0, 0]]);
+    assert_eq!(at(1000), [[51, 0, 0]]);
+}
+
+#[test]
+fn wrapped_voxels_turn_about_the_same_pivot() {
+    // 250 in a size of 4 is -6; centre -6 - 2 + 1/2 = -7.5 along x.
+    let file = |r| {
+        VoxFile::new()
+            .model([4, 2, 1], &[[250, 0, 0, 1]])
+            .transform(0, &[], 1, -1, &[&[("_r", r)]])
+            .shape(1, &[(0, &[])])
+    };
+    assert_eq!(places(&file("4"), &ReadOptions::default()), [[-8, -1, 0]]);
+    assert_eq!(places(&file("17"), &ReadOptions::default()), [[0, -8, 0]]);
+    let keep = ReadOptions {
+        oob: OutOfBounds::Keep,
+        ..ReadOptions::default()
+    };
+    assert_eq!(places(&file("4"), &keep), [[248, -1, 0]]);
+}
+
+#[test]
+fn messages_say_where_and_what() {
+    let good = two_places(&[], &[]).bytes();
+    let claims = |at: usize, value: u32| {
+        let mut bytes = good.clone();
+        bytes[at..at + 4].copy_from_slice(&value.to_le_bytes());
+        message(&bytes)
+    };
+    let cases = [
+        (
+            message(&good[..good.len() - 5]),
+            "test: chunk \"MAIN\" at byte 8: expected 0 bytes of content and",
+        ),
+        (
+            message(b"VOX "),
+            "test: file header at byte 0: expected \"VOX \" and a version (8 bytes), found \"VOX \"",
+        ),
+        (
+            claims(24, 4_000_000_000),
+            "chunk \"SIZE\" at byte 20: expected 4000000000 bytes of content",
+        ),
+        (
+            claims(56, 77),
+            "chunk XYZI at byte 56: expected a number of voxels that fits the chunk, at most 1, found 77",
+        ),
+        (
+            message(&VoxFile::new().bytes()),
+            "expected at least one model",
+        ),
+        (
+            message(&VoxFile::new().chunk(b"XYZI", &[0; 4]).bytes()),
+            "a chunk SIZE before each XYZI",
+        ),
+        (
+            message(&VoxFile::new().chunk(b"SIZE", &[0; 12]).bytes()),
+            "a chunk XYZI after each SIZE",
+        ),
+        (
+            message(&VoxFile::new().chunk(b"SIZE", &[0; 8]).bytes()),
+            "4 bytes of the size along z, found 0 bytes left",
+        ),
+        (
+            message(&two_places(&[("_r", "3")], &[]).bytes()),
+            "chunk nTRN (node 2), attribute _r",
+        ),
+        (
+            message(&two_places(&[("_r", "5")], &[]).bytes()),
+            "two different axes of 0, 1, 2, bits 4-6 signs, found 5",
+        ),
+        (
+            message(&two_places(&[("_t", "1 2")], &[]).bytes()),
+            "three whole numbers of 32 bits, found \"1 2\"",
+        ),
+        (
+            message(&two_places(&[("_t", "1 2 3 4")], &[]).bytes()),
+            "found \"1 2 3 4\"",
+        ),
+        (
+            message(&two_places(&[], &[]).shape(6, &[]).group(6, &[]).bytes()),
+            "the id of the chunk nSHP (node 6)",
+        ),
+    ];
+    for (text, part) in cases {
+        assert!(text.contains(part), "\n{text}\nlacks\n{part}");
+    }
+}
+
+#[test]
+fn broken_scene_graphs_are_refused() {
+    let model = || VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1]]);
+    let circle = model().transform(0, &[], 1, -1, &[&[]]).group(1, &[0]);
+    assert!(message(&circle.bytes()).contains("without circles, found node 0"));
+    let itself = model().group(0, &[0]);
+    assert!(message(&itself.bytes()).contains("chunk nGRP (node 0)"));
+    let orphan = model().transform(0, &[], 7, -1, &[&[]]);
+    assert!(message(&orphan.bytes()).contains("a node with id 7"));
+    let rootless = model().shape(3, &[(0, &[])]);
+    assert!(message(&rootless.bytes()).contains("the root has id 0"));
+    let wrong_model = model().shape(0, &[(1, &[])]);
+    let text = message(&wrong_model.bytes());
+    assert!(
+        text.contains("chunk nSHP (node 0) at byte") && text.contains("found model 1"),
+        "{text}"
+    );
+}
+
+#[test]
+fn shared_nodes_are_fine_until_they_multiply() {
+    let tower = |floors: u32| {
+        let mut file = VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1]]);
+        for floor in 0..floors {
+            file = file.group(floor, &[floor + 1, floor + 1]);
+        }
+        file.shape(floors, &[(0, &[])]).bytes()
+    };
+    assert_eq!(read_plain(&tower(5)).len(), 32);
+    let text = message(&tower(40));
+    assert!(text.contains("at most 1048576 placed nodes"), "{text}");
+}
+
+#[test]
+fn far_scenes_are_refused_as_too_large() {
+    let far = two_places(&[("_t", "-1048576 0 0")], &[("_t", "1048576 0 0")]).bytes();
+    let error = read(&far, &ReadOptions::default()).unwrap_err();
+    assert!(error.is_limit(), "{error}");
+    assert!(
+        error.to_string().contains("at least 2097153 along x"),
+        "{error}"
+    );
+    let near = two_places(&[("_t", "-1048575 0 0")], &[("_t", "1048575 0 0")]).bytes();
+    assert_eq!(read_plain(&near).len(), 2);
+    let beyond = two_places(&[("_t", "2147483647 0 0")], &[]).bytes();
+    let error = read(&beyond, &ReadOptions::default()).unwrap_err();
+    assert!(
+        error.is_limit() && error.to_string().contains("x = 2147483648"),
+        "{error}"
+    );
+}
+
+#[test]
+fn deep_scenes_do_not_exhaust_the_stack() {
+    let mut file = VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1]]);
+    for id in 0..20_000 {
+        file = file.transform(id, &[], id + 1, -1, &[&[("_t", "1 0 0")]]);
+    }
+    assert_eq!(
+        places(&file.shape(20_000, &[(0, &[])]), &ReadOptions::default()),
+        [[20_000, 0, 0]]
+    );
+}
+
+#[test]
+fn every_truncation_is_an_error() {
+    let small = two_places(&[("_t", "1 2 3")], &[("_r", "17")])
+        .layer(0, &[])
+        .palette(&THREE)
+        .bytes();
+    assert!(read(&small, &ReadOptions::default()).is_ok());
+    for length in 0..small.len() {
+        assert!(
+            read(&small[..length], &ReadOptions::default()).is_err(),
+            "{length}"
+        );
+    }
+}
+
+#[test]
+fn every_truncation_inside_the_main_chunk_is_an_error_or_a_scene() {
+    // The main chunk is made to fit, so that what it holds is cut and not the chunk itself.
+    let small = two_places(&[("_t", "1 2 3")], &[("_r", "17")])
+        .layer(0, &[])
+        .bytes();
+    for length in 20..small.len() {
+        let mut bytes = small[..length].to_vec();
+        bytes[16..20].copy_from_slice(&(length as u32 - 20).to_le_bytes());
+        let _ = read(&bytes, &ReadOptions::default());
+    }
+}
+
+#[test]
+fn damage_never_panics() {
+    let seeds = [
+        two_places(&[("_t", "1 2 3")], &[("_r", "17")])
+            .layer(0, &[])
+            .palette(&THREE)
+            .bytes(),
+        shipped("sphere.vox"),
+        shipped("extended.vox")[19_676..].to_vec(),
+    ];
+    let mut seed_of_nodes = VoxFile::new().model([1, 1, 1], &[[0, 0, 0, 1]]).bytes();
+    seed_of_nodes.extend(&seeds[2]);
+    let length = seed_of_nodes.len() as u32 - 20;
+    seed_of_nodes[16..20].copy_from_slice(&length.to_le_bytes());
+    for (file, rounds) in [
+        (&seeds[0], 40_000),
+        (&seeds[1], 4_000),
+        (&seed_of_nodes, 4_000),
+    ] {
+        for seed in 0..rounds {
+            let mut bytes = file.clone();
+            damage(&mut bytes, seed);
+            let _ = read_voxels_from(
+                &bytes,
+                "damaged",
+                &ReadOptions::default(),
+                &mut |_| (),
+                &Silent,
+            );
+        }
+    }
+}
+
+/// Where floating point puts a voxel, step by step up the scene graph.
+fn by_matrices(p: [u8; 3], size: [u32; 3], steps: &[(u8, [i32; 3])]) -> [i32; 3] {
+    let mut v: [f64; 3] = std::array::from_fn(|a| f64::from(p[a]) + 0.5 - f64::from(size[a] / 2));
+    for (rotation, translation) in steps {
+        let matrix = dot_vox::Rotation::from_byte(*rotation).to_cols_array_2d();
+        v = std::array::from_fn(|row| {
+            let turned: f64 = (0..3).map(|col| f64::from(matrix[col][row]) * v[col]).sum();
+            turned + f64::from(translation[row])
+        });
+    }
+    v.map(|x| x.floor() as i32)
+}
+
+fn rotation() -> impl Strategy<Value = u8> {
+    let axes = prop::sample::select(vec![1u8, 2, 4, 6, 8, 9]);
+    (axes, 0u8..8).prop_map(|(axes, signs)| axes | signs << 4)
+}
+
+fn placement() -> impl Strategy<Value = (u8, [i32; 3])> {
+    (rotation(), prop::array::uniform3(-5_000i32..5_000))
+}
+
+type Model = ([u32; 3], Vec<[u8; 4]>);
+
+fn model() -> impl Strategy<Value = Model> {
+    prop::array::uniform3(1u32..=256).prop_flat_map(|size| {
+        let coordinate = |n: u32| 0..=(n - 1) as u8;
+        let voxel = (
+            coordinate(size[0]),
+            coordinate(size[1]),
+            coordinate(size[2]),
+            1..=255u8,
+        )
+            .prop_map(|(x, y, z, c)| [x, y, z, c]);
+        (Just(size), prop::collection::vec(voxel, 0..40))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn written_scenes_read_back_exactly(
+        models in prop::collection::vec(model(), 1..4),
+        outer in placement(),
+        places in prop::collection::vec((any::<prop::sample::Index>(), placement(), placement()), 0..5),
+        palette in prop::collection::vec(any::<[u8; 4]>(), 255..=256),
+    ) {
+        let mut file = VoxFile::new();
+        for (size, voxels) in &models {
+            file = file.model(*size, voxels);
+        }
+        let texts = |(r, t): (u8, [i32; 3])| (r.to_string(), format!("{} {} {}", t[0], t[1], t[2]));
+        let (r, t) = texts(outer);
+        let ids: Vec<u32> = (0..places.len() as u32).map(|i| 2 + 3 * i).collect();
+        file = file
+            .transform(0, &[], 1, -1, &[&[("_r", &r), ("_t", &t)]])
+            .group(1, &ids);
+        let mut expected: Vec<Plain> = Vec::new();
+        for (id, (which, middle, inner)) in ids.iter().zip(&places) {
+            let number = which.index(models.len());
+            let (r, t) = texts(*middle);
+            file = file.transform(*id, &[], id + 1, 0, &[&[("_r", &r), ("_t", &t)]]);
+            let (r, t) = texts(*inner);
+            file = file
+                .transform(id + 1, &[], id + 2, 0, &[&[("_t", &t), ("_r", &r)]])
+                .shape(id + 2, &[(number as u32, &[])]);
+            let (size, voxels) = &models[number];
+            for [x, y, z, c] in voxels {
+                let [red, green, blue, _] = palette[usize::from(*c) - 1];
+                let index = by_matrices([*x, *y, *z], *size, &[*inner, *middle, outer]);
+                expected.push((index, [red, green, blue]));
+            }
+        }
+        prop_assert_eq!(read_plain(&file.palette(&palette).bytes()), expected);
+    }
+
+    #[test]
+    fn the_writer_keeps_every_voxel(
+        voxels in prop::collection::btree_map(
+            prop::array::uniform3(-700i32..700), any::<[u8; 3]>(), 0..200),
+    ) {
+        let mut writer = VoxWriter::new();
+        for (index, color) in &voxels {
+            // A voxel given twice counts as it was given last.
+            writer.add(Voxel { index: *index, color: [1, 2, 3], normal: None });
+            writer.add(Voxel { index: *index, color: *color, normal: None });
+        }
+        let mut bytes = Vec::new();
+        let written = writer.write(&mut bytes).unwrap();
+        prop_assert_eq!(written.voxels, voxels.len() as u64);
+        prop_assert_eq!(written.colors_given, written.colors_kept);
+        let mut read = read_plain(&bytes);
+        read.sort_unstable();
+        prop_assert_eq!(&read, &voxels.into_iter().collect::<Vec<_>>());
+        // dot_vox reads the same models.
+        let data = dot_vox::load_bytes(&bytes).unwrap();
+        prop_assert_eq!(data.models.iter().map(|m| m.voxels.len()).sum::<usize>(), read.len());
+        prop_assert_eq!(data.models.len(), written.models as usize);
+    }
+}
+
+#[test]
+fn real_files_survive_a_round_trip() {
+    for name in ["sphere.vox", "axes.vox", "extended.vox"] {
+        let (voxels, _) = read(&shipped(name), &ReadOptions::default()).unwrap();
+        let write = |voxels: &mut dyn Iterator<Item = Voxel>| {
+            let mut writer = VoxWriter::new();
+            voxels.for_each(|voxel| writer.add(voxel));
+            let mut bytes = Vec::new();
+            writer.write(&mut bytes).unwrap();
+            bytes
+        };
+        let bytes = write(&mut voxels.iter().copied());
+        let mut again = read_plain(&bytes);
+        again.sort_unstable();
+        let mut plain: Vec<Plain> = voxels.iter().map(|v| (v.index, v.color)).collect();
+        plain.sort_unstable();
+        assert!(again == plain, "{name}");
+        assert!(
+            bytes == write(&mut voxels.iter().rev().copied()),
+            "the order does not matter: {name}"
+        );
+    }
+}
+
+#[test]
+fn many_colours_are_reduced_to_255() {
+    let mut writer = VoxWriter::new();
+    for i in 0..4_000 {
+        let color = [
+            (i % 16 * 16) as u8,
+            (i / 16 % 16 * 16) as u8,
+            (i / 256 * 16) as u8,
+        ];
+        writer.add(Voxel {
+            index: [i, 0, -i],
+            color,
+            normal: None,
+        });
+    }
+    let mut bytes = Vec::new();
+    let written = writer.write(&mut bytes).unwrap();
+    assert_eq!(
+        (written.voxels, written.colors_given, written.colors_kept),
+        (4_000, 4_000, 255)
+    );
+    for (index, color) in read_plain(&bytes) {
+        let i = index[0];
+        let given = [
+            (i % 16 * 16) as u8,
+            (i / 16 % 16 * 16) as u8,
+            (i / 256 * 16) as u8,
+        ];
+        assert!(
+            (0..3).all(|c| given[c].abs_diff(color[c]) <= 40),
+            "{given:?} {color:?}"
+        );
+    }
+}
+
+#[test]
+fn nothing_is_a_scene_too() {
+    let mut bytes = Vec::new();
+    assert_eq!(VoxWriter::new().write(&mut bytes).unwrap().voxels, 0);
+    assert!(read_plain(&bytes).is_empty());
+}
