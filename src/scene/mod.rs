@@ -1,1 +1,3 @@
-//! Placeholder.
+//! Where voxels come from.
+
+pub mod generate;
