@@ -161,9 +161,9 @@ impl Exact {
             let side = 1i64 << (depth - level);
             let mut from = BigRational::from(BigInt::from(0));
             let mut to: Option<BigRational> = None;
-            for k in 0..3 {
-                let a = self.meets(direction, k, lo[k]);
-                let b = self.meets(direction, k, lo[k] + side);
+            for (k, &low) in lo.iter().enumerate() {
+                let a = self.meets(direction, k, low);
+                let b = self.meets(direction, k, low + side);
                 let (near, far) = if a < b { (a, b) } else { (b, a) };
                 if near > from {
                     from = near;
@@ -346,7 +346,7 @@ fn the_eye_is_where_the_set_up_says() {
             depth,
         );
         let exact = Exact::new(&setup);
-        for k in 0..3 {
+        for (k, &eye_k) in eye.iter().enumerate() {
             let at = BigRational::new(
                 exact.eye[k].clone() << setup.sub_levels,
                 exact.whole.clone(),
@@ -354,7 +354,7 @@ fn the_eye_is_where_the_set_up_says() {
             assert_eq!(at.floor().to_integer(), BigInt::from(setup.eye_floor[k]));
             assert_eq!(at.ceil().to_integer(), BigInt::from(setup.eye_ceil[k]));
             let unit = libm::ldexp(1.0, -(setup.sub_levels as i32));
-            let off = (setup.eye_floor[k] as f64 * unit - eye[k]).abs();
+            let off = (setup.eye_floor[k] as f64 * unit - eye_k).abs();
             // Half a unit of each clip coordinate, through a view of bounded shape.
             let allowed = 64.0 * libm::ldexp(1.0, -(setup.clip_frac as i32)) + unit;
             assert!(

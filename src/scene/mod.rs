@@ -14,6 +14,7 @@ use crate::graph::{Progress, Voxel};
 mod detect;
 mod emit;
 mod error;
+pub mod generate;
 mod npy;
 mod options;
 mod ply;

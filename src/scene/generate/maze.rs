@@ -1,0 +1,67 @@
+//! A perfect maze.
+
+use super::color::{gradient, palette};
+use super::hash::hash;
+use super::spec::Settings;
+use crate::graph::{Progress, Voxel};
+
+/// A floor with walls of `max(2, side / 16)` voxels on it. The plan is a grid
+/// of `2^depth - 1` squares a side: those with two odd coordinates are rooms,
+/// those with one may be doors. There is exactly one way between any two rooms.
+pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
+    let side = (1i32 << settings.depth) - 1;
+    let top = ((side + 1) / 16).max(2);
+    progress.begin("generating maze", top as u64 + 1);
+    let open = plan(settings.depth, settings.seed);
+    for z in 0..=top {
+        for y in 0..side {
+            for x in 0..side {
+                let index = [x, y, z];
+                let color = if z == 0 {
+                    palette(2)
+                } else if open[(y * side + x) as usize] {
+                    continue;
+                } else {
+                    gradient(index, side)
+                };
+                sink(Voxel {
+                    index,
+                    color,
+                    normal: None,
+                });
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+}
+
+/// Which squares of the plan are open, row by row: from room to random
+/// unvisited neighbour, and back where there is none.
+fn plan(depth: u32, seed: u32) -> Vec<bool> {
+    let side = (1i32 << depth) - 1;
+    let square = |x: i32, y: i32| (y * side + x) as usize;
+    let mut open = vec![false; (side * side) as usize];
+    open[square(1, 1)] = true;
+    let mut path = vec![(1, 1)];
+    let mut steps = 0u32;
+    while let Some(&(x, y)) = path.last() {
+        let unvisited: Vec<(i32, i32)> = [(1, 0), (-1, 0), (0, 1), (0, -1)]
+            .into_iter()
+            .filter(|(dx, dy)| {
+                let (x, y) = (x + 2 * dx, y + 2 * dy);
+                (0..side).contains(&x) && (0..side).contains(&y) && !open[square(x, y)]
+            })
+            .collect();
+        if unvisited.is_empty() {
+            path.pop();
+            continue;
+        }
+        let (dx, dy) = unvisited[hash(steps, 0, seed) as usize % unvisited.len()];
+        steps += 1;
+        open[square(x + dx, y + dy)] = true;
+        open[square(x + 2 * dx, y + 2 * dy)] = true;
+        path.push((x + 2 * dx, y + 2 * dy));
+    }
+    open
+}

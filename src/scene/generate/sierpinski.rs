@@ -1,0 +1,28 @@
+//! Sierpinski's tetrahedron: the smallest graph with a cycle.
+
+use super::spec::Settings;
+use crate::graph::{Graph, PackedNormal, Placement, Topology};
+
+/// The octants that are filled: no two share a face.
+const OCTANTS: [u8; 4] = [0b000, 0b011, 0b101, 0b110];
+const COLOR: [u8; 3] = [226, 174, 88];
+
+/// One node whose children 0, 3, 5 and 6 are itself.
+pub(super) fn graph(settings: &Settings) -> Graph {
+    Graph {
+        depth: settings.depth,
+        root: 0,
+        topology: vec![Topology {
+            first: 0,
+            mask: OCTANTS.iter().fold(0, |mask, octant| mask | 1 << octant),
+            reserved: [0; 3],
+        }]
+        .into(),
+        links: vec![0; OCTANTS.len()].into(),
+        color: vec![COLOR].into(),
+        normal: vec![PackedNormal::default()].into(),
+        level_start: Vec::new(),
+        voxels: 4u64.saturating_pow(settings.depth),
+        placement: Placement::default(),
+    }
+}

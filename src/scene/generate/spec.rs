@@ -1,0 +1,320 @@
+//! A scene in a line of text: `gen:terrain,depth=10,seed=1`.
+
+use std::fmt;
+
+use super::list::{GENERATORS, Generator, Key, Shape};
+use crate::graph::{Graph, GraphView, Progress, Voxel};
+
+/// What every spec begins with.
+pub const PREFIX: &str = "gen:";
+
+/// A scene that can be generated: a generator and its settings, all in range.
+#[derive(Debug, Clone, Copy)]
+pub struct Spec {
+    generator: &'static Generator,
+    settings: Settings,
+}
+
+/// The numbers of a spec; a key that the generator does not take is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Settings {
+    /// Levels of the scene (iterations for `menger`).
+    pub depth: u32,
+    /// Which of the random scenes.
+    pub seed: u32,
+    /// Filled voxels, percent.
+    pub density: u32,
+}
+
+/// Why a line is no spec.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum SpecError {
+    /// It does not begin with [`PREFIX`].
+    #[error("a generated scene is written gen:NAME,key=value,...; `{0}` does not begin with gen:")]
+    Prefix(String),
+    /// There is no such generator.
+    #[error("there is no generator `{name}`; there are {}", names())]
+    Generator {
+        /// The name given.
+        name: String,
+    },
+    /// The generator takes no such key.
+    #[error("{generator} has no key `{key}`; it takes {}", keys(generator))]
+    Key {
+        /// The generator.
+        generator: &'static str,
+        /// The key given.
+        key: String,
+    },
+    /// A setting that is not `key=value`.
+    #[error("`{0}` is not of the form key=value")]
+    Form(String),
+    /// A key given twice.
+    #[error("{0} is given twice")]
+    Twice(Key),
+    /// A value that is not a whole number within the generator's range.
+    #[error("{key} of {generator} must be a whole number from {least} to {most}, not `{value}`")]
+    Value {
+        /// The generator.
+        generator: &'static str,
+        /// The key.
+        key: Key,
+        /// The value given.
+        value: String,
+        /// Least value.
+        least: u32,
+        /// Greatest value.
+        most: u32,
+    },
+}
+
+fn names() -> String {
+    let names: Vec<&str> = GENERATORS.iter().map(|g| g.name).collect();
+    names.join(", ")
+}
+
+fn keys(generator: &str) -> String {
+    let found = GENERATORS.iter().find(|g| g.name == generator);
+    let keys = found.map_or(&[][..], |g| g.keys);
+    let list: Vec<String> = keys
+        .iter()
+        .map(|k| {
+            format!(
+                "{} ({} to {}, default {})",
+                k.key, k.least, k.most, k.default
+            )
+        })
+        .collect();
+    list.join(", ")
+}
+
+impl Settings {
+    fn of(&self, key: Key) -> u32 {
+        match key {
+            Key::Depth => self.depth,
+            Key::Seed => self.seed,
+            Key::Density => self.density,
+        }
+    }
+
+    fn set(&mut self, key: Key, value: u32) {
+        match key {
+            Key::Depth => self.depth = value,
+            Key::Seed => self.seed = value,
+            Key::Density => self.density = value,
+        }
+    }
+}
+
+impl Spec {
+    /// Reads a spec; keys left out have the generator's defaults.
+    ///
+    /// # Errors
+    /// When the text is no spec; the message says what there is instead.
+    pub fn parse(text: &str) -> Result<Self, SpecError> {
+        let body = text
+            .strip_prefix(PREFIX)
+            .ok_or_else(|| SpecError::Prefix(text.to_owned()))?;
+        let mut parts = body.split(',').map(str::trim);
+        let name = parts.next().unwrap_or_default();
+        let generator = GENERATORS
+            .iter()
+            .find(|generator| generator.name == name)
+            .ok_or_else(|| SpecError::Generator {
+                name: name.to_owned(),
+            })?;
+        let mut settings = Settings::default();
+        for range in generator.keys {
+            settings.set(range.key, range.default);
+        }
+        let mut given = Vec::new();
+        for part in parts {
+            let (key, value) = part
+                .split_once('=')
+                .ok_or_else(|| SpecError::Form(part.to_owned()))?;
+            let (key, value) = (key.trim(), value.trim());
+            let range = generator
+                .keys
+                .iter()
+                .find(|range| range.key.name() == key)
+                .ok_or_else(|| SpecError::Key {
+                    generator: generator.name,
+                    key: key.to_owned(),
+                })?;
+            if given.contains(&range.key) {
+                return Err(SpecError::Twice(range.key));
+            }
+            given.push(range.key);
+            let number = value
+                .parse()
+                .ok()
+                .filter(|number| (range.least..=range.most).contains(number))
+                .ok_or_else(|| SpecError::Value {
+                    generator: generator.name,
+                    key: range.key,
+                    value: value.to_owned(),
+                    least: range.least,
+                    most: range.most,
+                })?;
+            settings.set(range.key, number);
+        }
+        Ok(Self {
+            generator,
+            settings,
+        })
+    }
+
+    /// The generator.
+    #[must_use]
+    pub fn generator(&self) -> &'static Generator {
+        self.generator
+    }
+
+    /// The generator's settings.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        self.settings
+    }
+
+    /// The scene as a graph, where it is one with cycles; else `None`, and
+    /// [`Self::voxels`] gives it.
+    #[must_use]
+    pub fn linked(&self) -> Option<Graph> {
+        match self.generator.shape {
+            Shape::Voxels(_) => None,
+            Shape::Linked(make) => Some(make(&self.settings)),
+        }
+    }
+
+    /// Gives every voxel of the scene once, always in the same order.
+    ///
+    /// File indices are 0 or more. A cyclic scene is walked through: at depth
+    /// 30 that takes years, so ask [`Self::linked`] first.
+    pub fn voxels(&self, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
+        match self.generator.shape {
+            Shape::Voxels(make) => make(&self.settings, sink, progress),
+            Shape::Linked(make) => {
+                let graph = make(&self.settings);
+                progress.begin("walking the graph", 0);
+                walk(&graph.view(), &graph.color, graph.root, 0, [0; 3], sink);
+                progress.end();
+            }
+        }
+    }
+}
+
+/// The finest voxels below a node that has no solid above the finest level.
+fn walk(
+    graph: &GraphView<'_>,
+    color: &[[u8; 3]],
+    node: u32,
+    level: u32,
+    index: [i32; 3],
+    sink: &mut dyn FnMut(Voxel),
+) {
+    if level == graph.depth {
+        sink(Voxel {
+            index,
+            color: color[node as usize],
+            normal: None,
+        });
+        return;
+    }
+    for octant in 0..8u8 {
+        if let Some(child) = graph.child(node, octant) {
+            let bits = [octant >> 2 & 1, octant >> 1 & 1, octant & 1];
+            let child_index = [0, 1, 2].map(|k| index[k] << 1 | i32::from(bits[k]));
+            walk(graph, color, child, level + 1, child_index, sink);
+        }
+    }
+}
+
+/// The canonical spec: every key of the generator, whether given or not.
+impl fmt::Display for Spec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{PREFIX}{}", self.generator.name)?;
+        for key in Key::ALL {
+            if self.generator.range(key).is_some() {
+                write!(f, ",{key}={}", self.settings.of(key))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PartialEq for Spec {
+    fn eq(&self, other: &Self) -> bool {
+        self.generator.name == other.generator.name && self.settings == other.settings
+    }
+}
+
+impl Eq for Spec {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn message(text: &str) -> String {
+        match Spec::parse(text) {
+            Ok(spec) => panic!("{text} is read as {spec}"),
+            Err(error) => error.to_string(),
+        }
+    }
+
+    #[test]
+    fn a_spec_prints_canonically_and_reads_back() {
+        for (text, canonical) in [
+            ("gen:terrain", "gen:terrain,depth=10,seed=1"),
+            (
+                "gen:terrain,seed=7, depth=12",
+                "gen:terrain,depth=12,seed=7",
+            ),
+            ("gen:menger,depth=3", "gen:menger,depth=3"),
+            ("gen:random,seed=2", "gen:random,depth=6,density=10,seed=2"),
+            ("gen:sierpinski", "gen:sierpinski,depth=30"),
+        ] {
+            let spec = Spec::parse(text).expect(text);
+            assert_eq!(spec.to_string(), canonical);
+            assert_eq!(Spec::parse(canonical), Ok(spec));
+        }
+    }
+
+    #[test]
+    fn errors_say_what_there_is() {
+        assert!(message("terrain").contains("does not begin with gen:"));
+        assert_eq!(
+            message("gen:hills"),
+            "there is no generator `hills`; there are checker, maze, menger, random, shell, \
+             sierpinski, sphere, terrain, truss, wires"
+        );
+        assert!(message("gen:").contains("there is no generator ``"));
+        assert_eq!(
+            message("gen:menger,sead=3"),
+            "menger has no key `sead`; it takes depth (1 to 8, default 5)"
+        );
+        assert!(message("gen:menger,seed=3").contains("no key `seed`"));
+        assert_eq!(
+            message("gen:menger,depth=9"),
+            "depth of menger must be a whole number from 1 to 8, not `9`"
+        );
+        for value in ["", "-1", "1.5", "x", "99999999999999999999"] {
+            assert!(message(&format!("gen:terrain,depth={value}")).contains("whole number"));
+        }
+        assert_eq!(
+            message("gen:menger,depth=3,depth=4"),
+            "depth is given twice"
+        );
+        assert!(message("gen:menger,deep").contains("key=value"));
+        assert!(message("gen:menger,").contains("key=value"));
+    }
+
+    #[test]
+    fn generators_are_in_order_and_their_defaults_in_range() {
+        assert!(GENERATORS.is_sorted_by_key(|g| g.name));
+        for generator in GENERATORS {
+            for range in generator.keys {
+                assert!((range.least..=range.most).contains(&range.default));
+            }
+        }
+    }
+}
