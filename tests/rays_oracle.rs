@@ -259,6 +259,35 @@ fn random_graphs_from_random_cameras() {
     assert!(drawn > 500, "only {drawn} samples show anything");
 }
 
+/// Coarse clip vectors, oblong pictures, several samples a pixel, a scene of one voxel.
+#[test]
+fn coarse_views_are_exact_for_their_own_integers() {
+    let mut dice = Dice(6);
+    let mut drawn = 0;
+    let mut views = 0;
+    while views < 60 {
+        let depth = dice.roll(4) as u32;
+        let graph = random_graph(&mut dice, depth);
+        let side = f64::from(1u32 << depth);
+        let eye = [(); 3].map(|()| dice.real(-side, 2.0 * side));
+        let target = [(); 3].map(|()| dice.real(0.0, side));
+        let mut camera = camera(eye, target, [0.3, -0.2, 1.0], dice.real(40.0, 100.0), 9);
+        camera.height = 1 + dice.roll(9) as u32;
+        let options = SetupOptions {
+            bits: 16 + dice.roll(20) as u32,
+            frac: Some(dice.roll(6) as u32),
+            aa_log2: dice.roll(2) as u32,
+            ..SetupOptions::default()
+        };
+        // Some of these views have no volume left.
+        if let Ok(setup) = FrameSetup::new(&camera, &Placement::default(), depth, &options) {
+            drawn += assert_exact(&graph, &setup);
+            views += 1;
+        }
+    }
+    assert!(drawn > 500, "only {drawn} samples show anything");
+}
+
 /// Eyes on faces, edges and corners of cells, looking along an axis with 90
 /// degrees: every ray through a corner, an edge or along a face is met.
 #[test]
