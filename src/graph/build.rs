@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
-use super::{Graph, PackedNormal, Placement, Progress, Topology, Voxel, morton};
+use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
 
 /// Longest side of the bounding box of a set of voxels.
 pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
@@ -183,7 +183,8 @@ impl Builder {
         if self.options.normals == Normals::FromSurface {
             let finest = tree.level_start[depth as usize] as usize;
             Estimate {
-                topology: &tree.topology,
+                mask: &tree.mask,
+                first: &tree.first,
                 level_start: &tree.level_start,
                 depth,
                 centre: extent.map(|side| side as f64 / 2.0),
@@ -198,7 +199,8 @@ impl Builder {
         Ok(Graph {
             depth,
             root: 0,
-            topology: tree.topology.into(),
+            mask: tree.mask.into(),
+            first: tree.first.into(),
             links: Vec::new().into(),
             color: tree.color.into(),
             normal: tree.normal.into(),
@@ -262,7 +264,8 @@ fn sort(records: &mut Vec<Record>, min: [i32; 3]) {
 /// The graph's arrays while they are made.
 struct Tree {
     depth: u32,
-    topology: Vec<Topology>,
+    mask: Vec<u8>,
+    first: Vec<u32>,
     color: Vec<[u8; 3]>,
     normal: Vec<PackedNormal>,
     level_start: Vec<u32>,
@@ -287,7 +290,8 @@ impl Tree {
             normal[inner + i] = record.normal;
         }
 
-        let mut topology = vec![Topology::default(); inner];
+        let mut mask = vec![0u8; inner];
+        let mut first = vec![0u32; inner];
         // The next node of each level.
         let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
         let mut before = None;
@@ -297,10 +301,10 @@ impl Tree {
                 if level > 0 {
                     let parent = next[level as usize - 1] as usize - 1;
                     let octant = key >> (3 * (depth - level)) & 7;
-                    topology[parent].mask |= 1 << octant;
+                    mask[parent] |= 1 << octant;
                 }
                 if level < depth {
-                    topology[next[level as usize] as usize].first = next[level as usize + 1];
+                    first[next[level as usize] as usize] = next[level as usize + 1];
                 }
                 next[level as usize] += 1;
             }
@@ -309,7 +313,8 @@ impl Tree {
         progress.end();
         Ok(Self {
             depth,
-            topology,
+            mask,
+            first,
             color,
             normal,
             level_start,
@@ -325,8 +330,8 @@ impl Tree {
             sum.add_voxel(self.color[at], self.normal[at]);
             return sum;
         }
-        let Topology { first, mask, .. } = self.topology[at];
-        for child in first..first + mask.count_ones() {
+        let first = self.first[at];
+        for child in first..first + self.mask[at].count_ones() {
             if level + 1 == self.depth {
                 sum.add_voxel(self.color[child as usize], self.normal[child as usize]);
             } else {
