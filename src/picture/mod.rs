@@ -6,7 +6,6 @@
 
 mod color;
 mod hash;
-mod normal;
 pub mod npy;
 #[cfg(feature = "png")]
 pub mod png;

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::color::{Light, Linear};
-use super::normal;
 use super::sight::Sight;
 use super::{Background, NO_DEPTH, Picture, Shading};
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
@@ -167,7 +166,7 @@ impl<'f> Resolver<'f> {
         let (node, voxel) = (self.frame.node[at], self.frame.voxel[at]);
         let meeting = self.sight.meet(x, y, voxel);
         let packed = self.graph.normal.get(node as usize).copied();
-        let normal = normal::decode(packed.unwrap_or(PackedNormal(0))).unwrap_or(meeting.face);
+        let normal = packed.and_then(PackedNormal::decode).unwrap_or(meeting.face);
         if let Some(pixel) = pixel {
             pixel.depth = meeting.depth as f32;
             pixel.normal = normal.as_vec3().to_array();

@@ -68,12 +68,7 @@ impl Sight {
         let (corner, side) = self.cube(voxel);
         // The ray is eye + t * direction, where t is the depth W.
         let eye = -(self.to_object * corner);
-        let direction = self.to_object
-            * DVec3::new(
-                f64::from(2 * x + 1) / self.root_doubled,
-                f64::from(2 * y + 1) / self.root_doubled,
-                1.0,
-            );
+        let direction = self.direction(x, y);
         let (enter, exit, axis) = slabs(eye, direction, side);
         let hit = exit >= 0.0 && enter - exit <= GRAZE * exit;
         if hit && enter > 0.0 {
@@ -96,6 +91,16 @@ impl Sight {
             depth: depth * self.depth_unit,
             face: facing(eye - DVec3::splat(side / 2.0)),
         }
+    }
+
+    /// The object direction of a sample's ray along which `W` grows by one.
+    fn direction(&self, x: u32, y: u32) -> DVec3 {
+        self.to_object
+            * DVec3::new(
+                f64::from(2 * x + 1) / self.root_doubled,
+                f64::from(2 * y + 1) / self.root_doubled,
+                1.0,
+            )
     }
 
     /// Clip vector of a voxel's lowest corner, exact before it is rounded to
