@@ -28,7 +28,12 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
     };
     let engine_args = EngineArgs::default();
     let bounds = Bounds::of(&scene.graph);
-    let camera = CameraArgs::default().camera(&bounds, scene.up, (SIDE, SIDE), 0.0);
+    let view = CameraArgs {
+        azimuth: Some(30.0),
+        elevation: Some(14.0),
+        ..CameraArgs::default()
+    };
+    let camera = view.camera(&bounds, scene.up, (SIDE, SIDE), 0.0);
     let drawn = draw(&scene, &camera, &engine_args, &picture_args, 1)?;
     let counter = engines::count_operations(&engine_args, &scene.graph.view(), &drawn.setup)?;
     outputs::write(&drawn.picture, Path::new(PICTURE), &[], true)?;

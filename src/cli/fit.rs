@@ -40,13 +40,15 @@ impl Up {
     }
 }
 
-/// An axis-aligned box in world units.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// An axis-aligned box in world units, and points in it that enclose the object.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
     /// Lowest corner.
     pub low: DVec3,
     /// Highest corner.
     pub high: DVec3,
+    /// Points whose hull holds all voxels.
+    pub hull: Vec<DVec3>,
 }
 
 impl Bounds {
@@ -79,11 +81,102 @@ impl Bounds {
             DVec3::from_array(placement.world_origin)
                 + DVec3::new(index(0), index(1), index(2)) * placement.voxel_size
         };
+        let mut hull: Vec<DVec3> = coarse_corners(graph).into_iter().map(world).collect();
+        let (low, high) = (world(low), world(high));
+        for point in &mut hull {
+            *point = point.clamp(low, high);
+        }
+        Self { low, high, hull }
+    }
+
+    /// A box alone.
+    #[must_use]
+    pub fn of_box(low: DVec3, high: DVec3) -> Self {
+        let corner = |i: u32| {
+            let pick = |bit: u32, k: usize| if i >> bit & 1 == 1 { high[k] } else { low[k] };
+            DVec3::new(pick(2, 0), pick(1, 1), pick(0, 2))
+        };
         Self {
-            low: world(low),
-            high: world(high),
+            low,
+            high,
+            hull: (0..8).map(corner).collect(),
         }
     }
+
+    /// The bounds of the object turned all the way around the up axis, so
+    /// that a fitted distance is the same from all sides.
+    #[must_use]
+    pub fn revolved(&self, up: Up) -> Self {
+        let centre = (self.low + self.high) / 2.0;
+        let axis = up.axis();
+        let side = axis.cross(up.front());
+        let mut rings: Vec<(f64, f64)> = self
+            .hull
+            .iter()
+            .map(|&point| {
+                let offset = point - centre;
+                let height = offset.dot(axis);
+                (height, (offset - axis * height).length())
+            })
+            .collect();
+        rings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        // The widest of each height stands for the others.
+        rings.dedup_by_key(|ring| ring.0);
+        let turns =
+            (0..RING_POINTS).map(|i| sin_cos(360.0 * f64::from(i) / f64::from(RING_POINTS)));
+        let hull = turns
+            .flat_map(|(sin, cos)| {
+                let outward = up.front() * cos + side * sin;
+                let ring =
+                    move |&(height, radius): &(f64, f64)| centre + axis * height + outward * radius;
+                rings.iter().map(ring).collect::<Vec<_>>()
+            })
+            .collect();
+        Self {
+            hull,
+            ..self.clone()
+        }
+    }
+}
+
+/// Points of a ring around the up axis.
+const RING_POINTS: u32 = 72;
+/// Level of the nodes whose corners enclose an object.
+const HULL_LEVEL: u32 = 5;
+
+/// The corners, in object coordinates, of all nodes at a coarse level.
+fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
+    let view = graph.view();
+    let level = HULL_LEVEL.min(graph.depth);
+    let side = 1i64 << (graph.depth - level);
+    let across = (1usize << level) + 1;
+    let mut is_corner = vec![false; across * across * across];
+    let mut open = vec![(graph.root, 0, [0usize; 3])];
+    while let Some((node, at_level, at)) = open.pop() {
+        let mask = view.mask(node);
+        if at_level == level || mask == 0 {
+            // A leaf above the level has only its own corners.
+            let span = 1usize << (level - at_level);
+            for corner in 0..8usize {
+                let place = |k: usize| at[k] * span + span * (corner >> (2 - k) & 1);
+                is_corner[(place(0) * across + place(1)) * across + place(2)] = true;
+            }
+            continue;
+        }
+        for octant in 0..8u8 {
+            if let Some(child) = view.child(node, octant) {
+                let half = |k: usize| at[k] * 2 + usize::from(octant >> (2 - k) & 1);
+                open.push((child, at_level + 1, [half(0), half(1), half(2)]));
+            }
+        }
+    }
+    (0..is_corner.len())
+        .filter(|&i| is_corner[i])
+        .map(|i| {
+            let place = [i / (across * across), i / across % across, i % across];
+            place.map(|p| p as i64 * side)
+        })
+        .collect()
 }
 
 /// Looks only at nodes that may widen the box.
@@ -151,13 +244,13 @@ pub fn fit(
     let camera_right = camera_up.cross(towards_eye);
 
     let centre = (bounds.low + bounds.high) / 2.0;
-    let half = (bounds.high - bounds.low) / 2.0;
     let slope_up = libm::tan(fov_degrees * (std::f64::consts::PI / 360.0)) * FILL;
     let slope_right = slope_up * f64::from(width) / f64::from(height);
-    let distance = (0..8u32)
-        .map(|corner| {
-            let sign = |bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
-            let offset = half * DVec3::new(sign(2), sign(1), sign(0));
+    let distance = bounds
+        .hull
+        .iter()
+        .map(|&point| {
+            let offset = point - centre;
             let across = (offset.dot(camera_right).abs() / slope_right)
                 .max(offset.dot(camera_up).abs() / slope_up);
             across + offset.dot(towards_eye)
@@ -204,10 +297,7 @@ mod tests {
     use super::*;
 
     fn cube() -> Bounds {
-        Bounds {
-            low: DVec3::splat(0.0),
-            high: DVec3::splat(10.0),
-        }
+        Bounds::of_box(DVec3::splat(0.0), DVec3::splat(10.0))
     }
 
     fn eye(azimuth: f64, elevation: f64, up: Up) -> DVec3 {
@@ -223,6 +313,22 @@ mod tests {
         assert_eq!(eye(0.0, 90.0, Up::Z), DVec3::Z);
         assert_eq!(eye(0.0, 0.0, Up::Y), DVec3::Z);
         assert_eq!(eye(90.0, 0.0, Up::Y), DVec3::X);
+    }
+
+    #[test]
+    fn a_revolved_object_is_seen_from_the_same_distance_all_around() {
+        let bounds = Bounds::of_box(DVec3::ZERO, DVec3::new(10.0, 4.0, 7.0)).revolved(Up::Z);
+        let distance = |azimuth: f64| {
+            let direction = Direction {
+                azimuth,
+                elevation: 20.0,
+            };
+            let camera = fit(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
+            (camera.eye - camera.target).length()
+        };
+        for turn in [5.0, 45.0, 90.0, 210.0] {
+            assert!((distance(turn) - distance(0.0)).abs() < 1e-3, "{turn}");
+        }
     }
 
     #[test]

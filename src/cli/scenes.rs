@@ -116,8 +116,9 @@ impl From<OpenError> for CliError {
         };
         let failure = Self::new(kind, &error);
         match error {
-            OpenError::Scene(SceneError::Io { .. }) => failure
-                .advise("scenes are files or generators such as gen:terrain,depth=10,seed=1"),
+            OpenError::Scene(SceneError::Io { .. }) => {
+                failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
+            }
             OpenError::TooMany { .. } => failure.advise("ask for fewer levels"),
             _ => failure,
         }

@@ -78,8 +78,8 @@ pub(super) fn run(
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
     }
     let scene = open(name, &args.scene, console)?;
-    // One box for all frames: the distance may differ, the object does not jump.
-    let bounds = Bounds::of(&scene.graph);
+    // One distance for all frames, so that the object does not breathe.
+    let bounds = Bounds::of(&scene.graph).revolved(scene.up);
     let mut times = Vec::new();
     let mut results = Vec::new();
     console.progress().begin("drawing", u64::from(args.frames));

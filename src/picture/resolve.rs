@@ -5,6 +5,8 @@ use rayon::prelude::*;
 use super::color::{Light, Linear};
 use super::sight::Sight;
 use super::{Background, NO_DEPTH, Picture, Shading};
+use glam::DVec3;
+
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::{Graph, PackedNormal};
 use crate::project::FrameSetup;
@@ -166,7 +168,9 @@ impl<'f> Resolver<'f> {
         let (node, voxel) = (self.frame.node[at], self.frame.voxel[at]);
         let meeting = self.sight.meet(x, y, voxel);
         let packed = self.graph.normal.get(node as usize).copied();
-        let normal = packed.and_then(PackedNormal::decode).unwrap_or(meeting.face);
+        let normal = packed
+            .and_then(PackedNormal::decode)
+            .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
         if let Some(pixel) = pixel {
             pixel.depth = meeting.depth as f32;
             pixel.normal = normal.as_vec3().to_array();
@@ -201,5 +205,19 @@ impl<'f> Resolver<'f> {
         let mean = sum.map(|channel| (channel + seen / 2) / seen);
         let [r, g, b] = self.linear.encode(mean);
         [r, g, b, alpha as u8]
+    }
+}
+
+/// Cosine above which a normal is taken to point away from the eye.
+const AWAY: f64 = 0.25;
+
+/// A normal turned to the side from which it is seen. A thin wall has two
+/// sides and one normal; the rounded corners of a solid, whose normals lean
+/// away by a little, keep theirs.
+fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
+    if normal.dot(ray) > AWAY {
+        -normal
+    } else {
+        normal
     }
 }

@@ -31,6 +31,8 @@ pub(super) struct Meeting {
     pub(super) depth: f64,
     /// Outward normal of the face that is seen.
     pub(super) face: DVec3,
+    /// Unit direction of the sample's ray.
+    pub(super) ray: DVec3,
 }
 
 impl Sight {
@@ -77,6 +79,7 @@ impl Sight {
             return Meeting {
                 depth: enter * self.depth_unit,
                 face,
+                ray: direction.normalize_or_zero(),
             };
         }
         let depth = if hit {
@@ -90,6 +93,7 @@ impl Sight {
         Meeting {
             depth: depth * self.depth_unit,
             face: facing(eye - DVec3::splat(side / 2.0)),
+            ray: direction.normalize_or_zero(),
         }
     }
 

@@ -136,8 +136,13 @@ pub fn open_bytes(
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
-    let info =
-        super::read_voxels_from(bytes, name, &options.read, &mut |v| gathered.push(v), progress)?;
+    let info = super::read_voxels_from(
+        bytes,
+        name,
+        &options.read,
+        &mut |v| gathered.push(v),
+        progress,
+    )?;
     Ok(Opened {
         graph: gathered.finish(name, progress)?,
         format: info.kind.to_string(),

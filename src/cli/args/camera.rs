@@ -1,6 +1,7 @@
 //! The camera, by coordinates or by name.
 
 use clap::{Args, ValueEnum};
+use glam::DVec3;
 
 use super::{Point, Setting};
 use crate::cli::fit::{Bounds, DEFAULT_FOV, Direction, Up, fit};
@@ -83,7 +84,7 @@ pub struct CameraArgs {
 
 impl CameraArgs {
     /// The camera for an object, turned by `turn` degrees around the up axis
-    /// where the view is a fitted one.
+    /// through the point that it looks at.
     #[must_use]
     pub fn camera(
         &self,
@@ -94,10 +95,16 @@ impl CameraArgs {
     ) -> Camera {
         let fov_degrees = self.fov.unwrap_or(DEFAULT_FOV);
         if let (Some(eye), Some(target)) = (self.eye, self.target) {
+            let camera_up = self.up.map_or(up.axis(), |point| point.0);
+            let turned = |v: DVec3| turned_about(v, camera_up, turn);
             return Camera {
-                eye: eye.0,
+                eye: if turn == 0.0 {
+                    eye.0
+                } else {
+                    target.0 + turned(eye.0 - target.0)
+                },
                 target: target.0,
-                up: self.up.map_or(up.axis(), |point| point.0),
+                up: camera_up,
                 fov_degrees,
                 width,
                 height,
@@ -156,6 +163,17 @@ impl CameraArgs {
         );
         settings
     }
+}
+
+/// A vector turned about an axis by so many degrees.
+fn turned_about(v: DVec3, axis: DVec3, degrees: f64) -> DVec3 {
+    let Some(axis) = axis.try_normalize() else {
+        return v;
+    };
+    let radians = degrees * (std::f64::consts::PI / 180.0);
+    let along = axis * axis.dot(v);
+    let across = v - along;
+    along + across * libm::cos(radians) + axis.cross(across) * libm::sin(radians)
 }
 
 /// A camera as settings: eye, target, up and field of view.
