@@ -406,6 +406,10 @@ impl<P: Probe> Datapath<P> {
     /// One step of a restoring divide for a quotient bit of weight
     /// `2^place`: `divisor << place` is taken away if it fits. The shifted
     /// divisor is wires into a subtractor of `place` bits more than the word.
+    ///
+    /// `0 <= remainder` and `0 < divisor` must hold (else the quotient is of
+    /// no use). A divisor shifted by 63 or more is larger than any remainder.
+    /// Returns the new remainder and the quotient's bit.
     #[inline(always)]
     pub fn divide_integer_step(
         &mut self,
@@ -414,10 +418,10 @@ impl<P: Probe> Datapath<P> {
         place: u32,
     ) -> (Word, bool) {
         if P::ENABLED {
-            let bits = self.width::<Word>() + place;
+            let bits = self.width::<Word>().saturating_add(place);
             self.probe.op(OpClass::DivideStep, bits, self.place, 1);
         }
-        let shifted = i128::from(divisor.0) << place;
+        let shifted = i128::from(divisor.0) << place.min(63);
         let left = i128::from(remainder.0) - shifted;
         if left >= 0 {
             (Word(left as i64), true)

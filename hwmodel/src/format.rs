@@ -12,9 +12,25 @@ pub const MAX_BITS: u32 = 64;
 ///
 /// Values run from `-2^(bits-1)` to `2^(bits-1) - 1` units of `2^-frac`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Fields")]
 pub struct Format {
     bits: u32,
     frac: u32,
+}
+
+/// A format as a file has it, before it is checked.
+#[derive(Deserialize)]
+struct Fields {
+    bits: u32,
+    frac: u32,
+}
+
+impl TryFrom<Fields> for Format {
+    type Error = FormatError;
+
+    fn try_from(fields: Fields) -> Result<Self, FormatError> {
+        Self::new(fields.bits, fields.frac)
+    }
 }
 
 /// Why a pair of numbers is no word format.

@@ -1,0 +1,236 @@
+//! The machine computes with words alone.
+//!
+//! A `Word` has no operators and no way to a number but `to_host()`, so an
+//! operation that no probe sees has to call that first, or work on something
+//! that never was a word. Both are looked for in the machine's sources:
+//! every line with `to_host()`, and every line that multiplies or divides,
+//! has to be on a list here that says why it may.
+//!
+//! What this test can not see: comparing two words with `<` or `==`, or
+//! adding and shifting plain numbers. Those are for reviews.
+
+use std::fs;
+use std::path::Path;
+
+/// A line that may stand in a file, and why.
+struct Allowed {
+    file: &'static str,
+    line: &'static str,
+    reason: &'static str,
+}
+
+const fn allowed(file: &'static str, line: &'static str, reason: &'static str) -> Allowed {
+    Allowed { file, line, reason }
+}
+
+const TO_HOST: [Allowed; 3] = [
+    allowed(
+        "constants.rs",
+        "near_crossing: Word::from_host(near.to_host() >> NEAR_CROSSING_SHIFT),",
+        "a constant of the frame, made by the host before the first record",
+    ),
+    allowed(
+        "size.rs",
+        "Some(position.to_host() as u32)",
+        "a finished sample position becomes an address",
+    ),
+    allowed(
+        "walk.rs",
+        "let voxel = min.to_host() >> self.constants.sub_levels;",
+        "the voxel's number in the picture: what is shown, not what is computed with",
+    ),
+];
+
+const PRODUCTS: [Allowed; 17] = [
+    allowed(
+        "constants.rs",
+        "i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])",
+        "the host's cross products of frame constants, before the first record",
+    ),
+    allowed(
+        "constants.rs",
+        "let (i, j) = ((k + 1) % 3, (k + 2) % 3);",
+        INDEX,
+    ),
+    allowed(
+        "draw.rs",
+        "let at = sample.y as usize * self.frame.width as usize + sample.x as usize;",
+        "where a sample lies in the host's memory",
+    ),
+    allowed(
+        "draw.rs",
+        "let (x, y) = ((at % width) as u32, (at / width) as u32);",
+        HEAT,
+    ),
+    allowed(
+        "draw.rs",
+        "let samples = f64::from(1u32 << below) * f64::from(1u32 << below);",
+        HEAT,
+    ),
+    allowed(
+        "draw.rs",
+        "f64::from(heat[self.fill.address(quad)]) / samples",
+        HEAT,
+    ),
+    allowed(
+        "fit.rs",
+        "let across = u8::from(x.low) * 0b0101 | u8::from(x.high) * 0b1010;",
+        "one bit led to two places: wires",
+    ),
+    allowed(
+        "fit.rs",
+        "let down = u8::from(y.low) * 0b0011 | u8::from(y.high) * 0b1100;",
+        "one bit led to two places: wires",
+    ),
+    allowed(
+        "fit.rs",
+        "let bisector = i64::from(2 * column + 1) << below;",
+        HALF_SAMPLES,
+    ),
+    allowed("lattice.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
+    allowed("lattice.rs", "let at = 3 * j + k;", INDEX),
+    allowed("lattice.rs", "let at = 9 * i + k;", INDEX),
+    allowed("lattice.rs", "let at = 9 * i + 3 * j;", INDEX),
+    allowed(
+        "lattice.rs",
+        "pool[9 * (i + a) + 3 * (j + b) + k + c]",
+        INDEX,
+    ),
+    allowed(
+        "planes.rs",
+        "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
+        INDEX,
+    ),
+    allowed(
+        "planes.rs",
+        "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
+        INDEX,
+    ),
+    allowed(
+        "strips.rs",
+        "let middle = |column: u32| Word::from_host(i64::from(2 * column + 1) << (below + frac));",
+        HALF_SAMPLES,
+    ),
+];
+
+const INDEX: &str = "which wire, known when the machine is built";
+const HEAT: &str = "the heat map: measured by the host after the last record";
+const HALF_SAMPLES: &str = "a node's number with a one after it: wires";
+
+/// The machine's sources: file name and text, tests left out.
+fn sources() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/machine");
+    let mut sources: Vec<_> = fs::read_dir(&folder)
+        .expect("the machine's folder")
+        .map(|entry| entry.expect("an entry").path())
+        .map(|path| {
+            let is_source = path.extension().is_some_and(|e| e == "rs");
+            assert!(is_source, "{} is not looked at", path.display());
+            let name = path.file_name().expect("a name").to_string_lossy();
+            let text = fs::read_to_string(&path).expect("a source");
+            (name.into_owned(), text)
+        })
+        .collect();
+    sources.sort();
+    sources
+}
+
+/// Lines of code that hold what `is_wanted` looks for: file and line, without
+/// indentation and comments.
+fn lines(sources: &[(String, String)], is_wanted: impl Fn(&str) -> bool) -> Vec<(String, String)> {
+    let code = |line: &str| line.split("//").next().unwrap_or("").trim().to_owned();
+    sources
+        .iter()
+        .flat_map(|(file, text)| text.lines().map(move |line| (file.clone(), code(line))))
+        .filter(|(_, line)| is_wanted(line))
+        .collect()
+}
+
+/// Whether a line multiplies, divides or takes a remainder. `cargo fmt` puts
+/// a space on either side of a binary operator, and none after a dereference;
+/// where it breaks a line, the operator comes first.
+fn has_product(line: &str) -> bool {
+    let operators = [" * ", " / ", " % ", " *= ", " /= ", " %= "];
+    let methods = [
+        "_mul",
+        "_div",
+        "_rem",
+        "mul_",
+        "div_",
+        "rem_",
+        ".mul(",
+        ".div(",
+        ".rem(",
+        ".pow(",
+        ".product(",
+    ];
+    // The host's names of divide steps are no divisions by the host.
+    let plain = line
+        .replace("divide_integer_step", "")
+        .replace("divide_step", "");
+    let padded = format!(" {plain} ");
+    operators.iter().any(|o| padded.contains(o)) || methods.iter().any(|m| plain.contains(m))
+}
+
+fn check(found: &[(String, String)], list: &[Allowed]) {
+    for entry in list {
+        assert!(!entry.reason.is_empty());
+    }
+    let mut expected: Vec<_> = list
+        .iter()
+        .map(|entry| (entry.file.to_owned(), entry.line.to_owned()))
+        .collect();
+    for line in found {
+        let at = expected.iter().position(|e| e == line);
+        let Some(at) = at else {
+            panic!(
+                "{}: `{}` takes numbers past the datapath, or stands there once \
+                 more than allowed; if it has a good reason, write it down here",
+                line.0, line.1
+            );
+        };
+        expected.swap_remove(at);
+    }
+    assert!(
+        expected.is_empty(),
+        "allowed, but not there any more: {expected:?}"
+    );
+}
+
+#[test]
+fn words_are_read_by_the_host_alone() {
+    check(
+        &lines(&sources(), |line| line.contains("to_host")),
+        &TO_HOST,
+    );
+}
+
+#[test]
+fn nothing_is_multiplied_but_indices_and_constants() {
+    check(&lines(&sources(), has_product), &PRODUCTS);
+}
+
+/// The search itself finds what it looks for.
+#[test]
+fn products_are_recognised() {
+    for line in [
+        "let a = b * c;",
+        "* c",
+        "a /= 2;",
+        "let r = a % 3;",
+        "a.wrapping_mul(b)",
+        "a.rem_euclid(b)",
+        "a.pow(2)",
+        "std::ops::Mul::mul(a, b).div_ceil(3)",
+    ] {
+        assert!(has_product(line), "{line}");
+    }
+    for line in [
+        "*v = dp.select(right, beyond, doubled);",
+        "let (a, b) = (*x, &*y);",
+        "let (rest, bit) = dp.divide_step(remainder, w, false);",
+        "use super::fit::*;",
+    ] {
+        assert!(!has_product(line), "{line}");
+    }
+}
