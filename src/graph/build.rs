@@ -5,16 +5,13 @@
 //! node of level `l` begins wherever the first `3 l` bits of the key change:
 //! one scan counts the nodes of each level, a second one writes them.
 
-use std::cmp::Reverse;
-
 use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
+pub use super::records::MAX_SIDE;
+use super::records::{Record, Records};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
-
-/// Longest side of the bounding box of a set of voxels.
-pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -58,39 +55,15 @@ pub enum BuildError {
     Placement,
 }
 
-/// A pushed voxel: 20 bytes.
-#[derive(Debug, Clone, Copy)]
-struct Record {
-    /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
-    /// halves, because eight-byte alignment would cost four bytes.
-    key_high: u32,
-    key_low: u32,
-    /// Order of pushing.
-    sequence: u32,
-    color: [u8; 3],
-    normal: PackedNormal,
-}
-
-impl Record {
-    fn key(&self) -> u64 {
-        u64::from(self.key_high) << 32 | u64::from(self.key_low)
-    }
-
-    fn set_key(&mut self, key: u64) {
-        self.key_high = (key >> 32) as u32;
-        self.key_low = key as u32;
-    }
-}
-
 /// Collects voxels and makes a graph of them.
 ///
-/// Holds 20 bytes for each voxel pushed (a growing `Vec` may reserve twice
-/// that; see [`Builder::reserve`]). [`Builder::finish`] sorts in place and
-/// needs the output and about a byte a voxel besides.
+/// Holds 20 bytes for each voxel pushed, and room for at most two million
+/// more. [`Builder::finish`] sorts in place and needs the output besides:
+/// about 29 bytes a voxel for a surface, at the most (`spec/graph.md`).
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
-    records: Vec<Record>,
+    records: Records,
     min: [i32; 3],
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
@@ -103,16 +76,17 @@ impl Builder {
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
-            records: Vec::new(),
+            records: Records::default(),
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
         }
     }
 
-    /// Makes room for so many voxels more.
+    /// Makes room for so many voxels more. Worth while where the number is
+    /// known: they are then never moved before they are sorted.
     pub fn reserve(&mut self, voxels: usize) {
-        self.records.reserve_exact(voxels);
+        self.records.reserve(voxels);
     }
 
     /// Voxels pushed so far, repeated ones included.
@@ -131,23 +105,15 @@ impl Builder {
     pub fn push(&mut self, voxel: Voxel) {
         // NO_NODE is not a node, hence `<`.
         if self.pushed < u64::from(u32::MAX) {
-            let mut packed = 0u64;
             for axis in 0..3 {
                 let index = voxel.index[axis];
                 self.min[axis] = self.min[axis].min(index);
                 self.max[axis] = self.max[axis].max(index);
-                let low_bits = u64::from(index as u32) & (MAX_SIDE - 1);
-                packed |= low_bits << (axis as u32 * morton::MAX_BITS);
             }
-            let mut record = Record {
-                key_high: 0,
-                key_low: 0,
-                sequence: self.pushed as u32,
-                color: voxel.color,
-                normal: voxel.normal.unwrap_or(PackedNormal::NONE),
-            };
-            record.set_key(packed);
-            self.records.push(record);
+            let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
+            let sequence = self.pushed as u32;
+            self.records
+                .push(Record::new(voxel.index, sequence, voxel.color, normal));
         }
         self.pushed += 1;
     }
@@ -161,7 +127,7 @@ impl Builder {
     /// # Errors
     /// When there are no voxels, too many, or too far apart: see [`BuildError`].
     pub fn finish(
-        mut self,
+        self,
         placement_world: ([f64; 3], f64),
         progress: &dyn Progress,
     ) -> Result<Graph, BuildError> {
@@ -175,11 +141,10 @@ impl Builder {
         let depth = longest.next_power_of_two().trailing_zeros();
 
         progress.begin("sort voxels", 0);
-        let min = self.min;
-        sort(&mut self.records, min);
+        let records = self.records.sorted(self.min);
         progress.end();
 
-        let mut tree = Tree::build(self.records, depth, progress)?;
+        let mut tree = Tree::build(records, depth, progress)?;
         if self.options.normals == Normals::FromSurface {
             let finest = tree.level_start[depth as usize] as usize;
             Estimate {
@@ -216,7 +181,7 @@ impl Builder {
 
     /// Sides of the bounding box, voxels.
     fn extent(&self) -> Result<[u64; 3], BuildError> {
-        if self.records.is_empty() {
+        if self.is_empty() {
             return Err(BuildError::Empty);
         }
         if self.pushed > self.records.len() as u64 {
@@ -243,22 +208,6 @@ impl Extend<Voxel> for Builder {
             self.push(voxel);
         }
     }
-}
-
-/// Sorts by Morton key from the lowest corner, and keeps the last pushed of
-/// those at one index.
-fn sort(records: &mut Vec<Record>, min: [i32; 3]) {
-    records.par_iter_mut().for_each(|record| {
-        let packed = record.key();
-        // The extent is at most 2^21, so the low bits tell the distance.
-        let at = [0, 1, 2].map(|axis| {
-            let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
-            low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)
-        });
-        record.set_key(morton::key(at));
-    });
-    records.par_sort_unstable_by_key(|record| (record.key(), Reverse(record.sequence)));
-    records.dedup_by_key(|record| record.key());
 }
 
 /// The graph's arrays while they are made.

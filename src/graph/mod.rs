@@ -8,6 +8,7 @@ mod morton;
 mod normal;
 mod normals;
 mod progress;
+mod records;
 mod store;
 pub mod validate;
 mod voxel;
