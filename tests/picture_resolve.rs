@@ -11,7 +11,8 @@ fn graph(placement: Placement) -> Graph {
     Graph {
         depth: 2,
         root: 0,
-        topology: Vec::new().into(),
+        mask: Vec::new().into(),
+        first: Vec::new().into(),
         links: Vec::new().into(),
         color: vec![[255, 0, 0], [0, 255, 0], [0, 0, 255]].into(),
         normal: vec![
