@@ -448,7 +448,7 @@ fn check_clip_fit(name: &str, setup: &FrameSetup, turn: &Turn, [numbers, min_max
 fn the_view_from_within_costs_the_same() {
     let walls = |[x, y, z]: [i32; 3]| x == 0 || y == 15 || z == 0;
     let graph = octree(4, &walls);
-    let camera = camera([7.3, 5.1, 8.6], [2.0, 16.0, 3.0], 64);
+    let camera = camera([7.3, 5.1, 8.6], [2.0, 16.0, 3.0], 16);
     for (cage, halvings, adds) in [(CageKind::Corners, 19, 0), (CageKind::Frame, 3, 7)] {
         let setup = setup(&graph, &camera, &options(cage, 0.25));
         let bits = setup.format.bits();
