@@ -4,6 +4,7 @@
 
 pub mod frame;
 pub mod graph;
+pub mod lab;
 pub mod machine;
 pub mod measure;
 pub mod picture;

@@ -1,2 +1,7 @@
 //! The `shiftvox` command.
-fn main() {}
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    shiftvox::cli::main()
+}

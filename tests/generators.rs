@@ -371,7 +371,7 @@ fn the_cyclic_scene_is_one_node() {
     let spec = Spec::parse("gen:sierpinski").expect("a spec");
     let graph = spec.linked().expect("a graph with a cycle");
     assert_eq!((graph.len(), graph.depth, graph.voxels), (1, 30, 1 << 60));
-    assert_eq!((graph.topology.len(), graph.normal.len()), (1, 1));
+    assert_eq!((graph.mask.len(), graph.normal.len()), (1, 1));
     let view = graph.view();
     let children: Vec<u8> = (0..8)
         .filter(|&octant| view.child(0, octant) == Some(0))

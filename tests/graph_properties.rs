@@ -48,7 +48,11 @@ fn seen(graph: &Graph) -> BTreeMap<[i64; 3], ([u8; 3], PackedNormal)> {
 fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
     (
         (graph.depth, graph.root, graph.voxels, graph.placement),
-        (graph.topology.to_vec(), graph.links.to_vec()),
+        (
+            graph.mask.to_vec(),
+            graph.first.to_vec(),
+            graph.links.to_vec(),
+        ),
         (graph.color.to_vec(), graph.normal.to_vec()),
         graph.level_start.clone(),
     )
@@ -198,10 +202,10 @@ fn averages_are_over_finest_voxels_in_linear_light() {
 }
 
 #[test]
-fn one_voxel_is_a_root_without_topology() {
+fn one_voxel_is_a_root_without_children() {
     let graph = build(&[at([i32::MIN, 7, i32::MAX])]);
     assert_eq!((graph.depth, graph.len(), graph.voxels), (0, 1, 1));
-    assert!(graph.topology.is_empty());
+    assert!(graph.mask.is_empty() && graph.first.is_empty());
     assert_eq!(
         graph.placement.origin_index,
         [i64::from(i32::MIN), 7, i64::from(i32::MAX)]
@@ -432,14 +436,19 @@ fn impossible_links_are_refused() {
 #[test]
 fn validate_names_what_is_broken() {
     type Break = fn(&mut Graph);
-    fn topology(graph: &mut Graph, change: impl Fn(&mut Vec<shiftvox::graph::Topology>)) {
-        let mut entries = graph.topology.to_vec();
+    fn first(graph: &mut Graph, change: impl Fn(&mut Vec<u32>)) {
+        let mut entries = graph.first.to_vec();
         change(&mut entries);
-        graph.topology = entries.into();
+        graph.first = entries.into();
+    }
+    fn mask(graph: &mut Graph, change: impl Fn(&mut Vec<u8>)) {
+        let mut entries = graph.mask.to_vec();
+        change(&mut entries);
+        graph.mask = entries.into();
     }
     let tree = build(&solid(6, |p| p.x + p.y < 6.0));
     let (dag, _) = merge(&tree, MergeBy::Shape, &Silent);
-    let breaks: [(&str, Break); 14] = [
+    let breaks: [(&str, Break); 16] = [
         ("depth", |g| g.depth = 31),
         ("root", |g| g.root = g.len() as u32),
         ("normal", |g| g.normal = g.normal[1..].to_vec().into()),
@@ -450,10 +459,15 @@ fn validate_names_what_is_broken() {
         ("level_start", |g| g.level_start[1] = 2),
         ("level_start", |g| *g.level_start.last_mut().unwrap() += 1),
         ("level_start", |g| g.level_start.truncate(2)),
-        ("topology", |g| topology(g, |t| t[1].first = u32::MAX)),
-        ("topology", |g| topology(g, |t| t[1].reserved[2] = 1)),
-        ("topology", |g| topology(g, |t| t[0].first += 1)),
-        ("topology", |g| topology(g, |t| t.push(t[0]))),
+        ("first", |g| first(g, |entries| entries[1] = u32::MAX)),
+        ("first", |g| first(g, |entries| entries[0] += 1)),
+        ("first", |g| first(g, |entries| entries.push(1))),
+        ("first", |g| first(g, |entries| entries.truncate(2))),
+        ("mask", |g| {
+            first(g, |entries| entries.push(0));
+            mask(g, |masks| masks.push(0));
+        }),
+        ("mask", |g| g.mask = vec![0; g.len() + 1].into()),
     ];
     for graph in [&tree, &dag] {
         for (i, (array, change)) in breaks.iter().enumerate() {
@@ -465,6 +479,11 @@ fn validate_names_what_is_broken() {
             assert_eq!(invalid.array, *array, "change {i}: {invalid}");
         }
     }
+    // A child less: in a tree, the list of the node after it begins too late.
+    let mut broken = tree.clone();
+    mask(&mut broken, |masks| masks[1] &= masks[1] - 1);
+    let invalid = broken.validate().unwrap_err();
+    assert_eq!((invalid.array, invalid.index), ("first", 2));
     let mut broken = dag.clone();
     let mut links = dag.links.to_vec();
     links[3] = dag.len() as u32;

@@ -46,7 +46,11 @@ fn small_graphs() -> Vec<Graph> {
 fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
     (
         (graph.depth, graph.root, graph.voxels, graph.placement),
-        (graph.topology.to_vec(), graph.links.to_vec()),
+        (
+            graph.mask.to_vec(),
+            graph.first.to_vec(),
+            graph.links.to_vec(),
+        ),
         (graph.color.to_vec(), graph.normal.to_vec()),
         graph.level_start.clone(),
     )
@@ -183,7 +187,7 @@ fn seal(bytes: &mut [u8]) {
     let get = |bytes: &[u8], at: usize| {
         u64::from_le_bytes(bytes[at..at + 8].try_into().unwrap()) as usize
     };
-    for entry in [128, 160, 192, 224] {
+    for entry in [128, 160, 192, 224, 256] {
         let (offset, length) = (get(bytes, entry + 8), get(bytes, entry + 16));
         if let Some(section) = offset
             .checked_add(length)
@@ -247,13 +251,13 @@ fn messages_say_where_what_and_what_to_do() {
         message.contains("scene.vxg: section header, byte 0: expected the signature"),
         "{message}"
     );
-    // A child list that leaves the nodes, under checksums that fit.
-    bytes[512..516].copy_from_slice(&1000u32.to_le_bytes());
+    // The root's child list, in the second section, leaves the nodes, under checksums that fit.
+    bytes[576..580].copy_from_slice(&1000u32.to_le_bytes());
     seal(&mut bytes);
     fs::write(&path, &bytes).unwrap();
     let message = vxg::verify(&path).unwrap_err().to_string();
     assert!(
-        message.contains("section TOPO, byte 512: expected children"),
+        message.contains("section FRST, byte 576: expected children"),
         "{message}"
     );
     assert!(message.contains("copy it again"), "{message}");

@@ -5,32 +5,30 @@ use glam::DVec3;
 use num_bigint::{BigInt, Sign};
 use num_rational::BigRational;
 use shiftvox::frame::{Frame, NO_NODE, NO_VOXEL};
-use shiftvox::graph::{Graph, GraphView, Placement, Topology};
+use shiftvox::graph::{Graph, GraphView, Placement};
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
 /// A linked graph from child lists of `(octant, node)`; colours are of no concern.
 fn linked(depth: u32, children: &[Vec<(u8, u32)>]) -> Graph {
     let mut links = Vec::new();
-    let topology: Vec<Topology> = children
+    let (mask, first): (Vec<u8>, Vec<u32>) = children
         .iter()
         .map(|list| {
             let first = links.len() as u32;
             let mut list = list.clone();
             list.sort_unstable();
             links.extend(list.iter().map(|&(_, node)| node));
-            Topology {
-                first,
-                mask: list.iter().fold(0, |mask, &(octant, _)| mask | 1 << octant),
-                reserved: [0; 3],
-            }
+            let mask = list.iter().fold(0, |mask, &(octant, _)| mask | 1 << octant);
+            (mask, first)
         })
-        .collect();
+        .unzip();
     let nodes = children.len();
     Graph {
         depth,
         root: 0,
-        topology: topology.into(),
+        mask: mask.into(),
+        first: first.into(),
         links: links.into(),
         color: vec![[0; 3]; nodes].into(),
         normal: vec![Default::default(); nodes].into(),
@@ -232,7 +230,7 @@ fn assert_exact(graph: &Graph, setup: &FrameSetup) -> usize {
                 all.len(),
                 setup.eye_floor,
                 setup.edge_clip,
-                &graph.topology[..],
+                (&graph.mask[..], &graph.first[..]),
                 &graph.links[..]
             );
         }

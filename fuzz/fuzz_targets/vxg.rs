@@ -25,7 +25,7 @@ fn seal(bytes: &mut [u8]) {
     }
     let length = (bytes.len() as u64).to_le_bytes();
     bytes[16..24].copy_from_slice(&length);
-    for entry in [128, 160, 192, 224] {
+    for entry in [128, 160, 192, 224, 256] {
         let (offset, length) = (u64_at(bytes, entry + 8), u64_at(bytes, entry + 16));
         let end = offset.saturating_add(length);
         if let Some(section) = bytes.get(offset..end) {

@@ -273,6 +273,13 @@ impl<P: Probe> Datapath<P> {
         a.raw() <= b.raw()
     }
 
+    /// `a == b`.
+    #[inline(always)]
+    pub fn equal<T: Number>(&mut self, a: T, b: T) -> bool {
+        self.note::<T>(OpClass::Compare);
+        a.raw() == b.raw()
+    }
+
     /// `a < 0`: the sign bit.
     #[inline(always)]
     pub fn is_negative<T: Number>(&mut self, a: T) -> bool {

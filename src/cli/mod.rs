@@ -1,1 +1,132 @@
-//! Placeholder.
+//! The command line: one file per verb, and what verbs share.
+//!
+//! stdout is data, stderr everything else. Nothing here computes.
+
+pub mod args;
+pub mod compare;
+mod config;
+mod console;
+pub mod convert;
+mod demo;
+mod drawing;
+mod engines;
+pub mod error;
+pub mod fit;
+pub mod generate;
+pub mod info;
+mod manual;
+mod outputs;
+pub mod render;
+mod report;
+mod scenes;
+pub mod turntable;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::{ArgAction, Parser, Subcommand};
+
+use console::Console;
+use error::{CliError, Kind};
+
+/// Draws voxel files with nothing but adders and shifts.
+///
+/// With no verb it draws the bundled scene, writes it to out/demo.png and says
+/// what that took. Scenes are .vox, .ply, .vxg files or meshes, told by their
+/// content, or generators such as gen:terrain,depth=10,seed=1.
+///
+/// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
+/// comparison or an expectation failed, 4 bad input, 5 a limit is exceeded.
+#[derive(Debug, Parser)]
+#[command(name = "shiftvox", version, max_term_width = 100)]
+pub struct Cli {
+    #[command(flatten)]
+    common: CommonArgs,
+    #[command(subcommand)]
+    verb: Option<Verb>,
+}
+
+/// Flags of every verb.
+#[derive(Debug, clap::Args)]
+#[command(next_help_heading = "Common")]
+struct CommonArgs {
+    /// No notes and no progress; errors are still told
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// More notes
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
+    /// Results as JSON on stdout
+    #[arg(long, global = true)]
+    json: bool,
+    /// Threads, 0 for all; never changes a bit of output
+    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// TOML file with flags by their long names; flags on the command line come first
+    #[arg(long, global = true, value_name = "FILE")]
+    config: Option<std::path::PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Verb {
+    /// Draw a picture of each scene
+    Render(Box<render::RenderArgs>),
+    /// Draw many frames around a scene
+    Turntable(Box<turntable::TurntableArgs>),
+    /// Say what is in a scene
+    Info(info::InfoArgs),
+    /// Convert a scene to another format
+    Convert(convert::ConvertArgs),
+    /// Make a scene and write it
+    Generate(generate::GenerateArgs),
+    /// Compare two pictures or two .npy buffers
+    Compare(compare::CompareArgs),
+    /// Print the completions of a shell
+    Completions(manual::CompletionsArgs),
+    /// Print the manual page
+    Man(manual::ManArgs),
+}
+
+/// Runs the program on the process's arguments.
+#[must_use]
+pub fn main() -> ExitCode {
+    let result = run(std::env::args_os().collect());
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            if error.kind != Kind::Pipe {
+                eprintln!("shiftvox: {error}");
+            }
+            error.exit_code()
+        }
+    }
+}
+
+fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
+    let (command_line, scenes) = config::expand(command_line)?;
+    let cli = match Cli::try_parse_from(command_line) {
+        Ok(cli) => cli,
+        Err(error) => {
+            let code = error.exit_code();
+            // Help and version go to stdout, errors to stderr; a closed pipe is nobody's fault.
+            let _ = error.print();
+            std::process::exit(code);
+        }
+    };
+    let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(cli.common.threads)
+        .build_global()
+        .map_err(|e| CliError::new(Kind::Run, format!("cannot start the threads: {e}")))?;
+    match cli.verb {
+        None => demo::run(&console),
+        Some(Verb::Render(args)) => render::run(&args, scenes, &console),
+        Some(Verb::Turntable(args)) => turntable::run(&args, scenes, &console),
+        Some(Verb::Info(args)) => info::run(&args, scenes, &console),
+        Some(Verb::Convert(args)) => convert::run(&args, &console),
+        Some(Verb::Generate(args)) => generate::run(&args, &console),
+        Some(Verb::Compare(args)) => compare::run(&args, &console),
+        Some(Verb::Completions(args)) => manual::completions(&args),
+        Some(Verb::Man(args)) => manual::man(&args),
+    }
+}

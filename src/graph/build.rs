@@ -5,16 +5,13 @@
 //! node of level `l` begins wherever the first `3 l` bits of the key change:
 //! one scan counts the nodes of each level, a second one writes them.
 
-use std::cmp::Reverse;
-
 use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
-use super::{Graph, PackedNormal, Placement, Progress, Topology, Voxel, morton};
-
-/// Longest side of the bounding box of a set of voxels.
-pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+pub use super::records::MAX_SIDE;
+use super::records::{Record, Records};
+use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -58,39 +55,15 @@ pub enum BuildError {
     Placement,
 }
 
-/// A pushed voxel: 20 bytes.
-#[derive(Debug, Clone, Copy)]
-struct Record {
-    /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
-    /// halves, because eight-byte alignment would cost four bytes.
-    key_high: u32,
-    key_low: u32,
-    /// Order of pushing.
-    sequence: u32,
-    color: [u8; 3],
-    normal: PackedNormal,
-}
-
-impl Record {
-    fn key(&self) -> u64 {
-        u64::from(self.key_high) << 32 | u64::from(self.key_low)
-    }
-
-    fn set_key(&mut self, key: u64) {
-        self.key_high = (key >> 32) as u32;
-        self.key_low = key as u32;
-    }
-}
-
 /// Collects voxels and makes a graph of them.
 ///
-/// Holds 20 bytes for each voxel pushed (a growing `Vec` may reserve twice
-/// that; see [`Builder::reserve`]). [`Builder::finish`] sorts in place and
-/// needs the output and about a byte a voxel besides.
+/// Holds 20 bytes for each voxel pushed, and room for at most two million
+/// more. [`Builder::finish`] sorts in place and needs the output besides:
+/// about 29 bytes a voxel for a surface, at the most (`spec/graph.md`).
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
-    records: Vec<Record>,
+    records: Records,
     min: [i32; 3],
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
@@ -103,16 +76,17 @@ impl Builder {
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
-            records: Vec::new(),
+            records: Records::default(),
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
         }
     }
 
-    /// Makes room for so many voxels more.
+    /// Makes room for so many voxels more. Worth while where the number is
+    /// known: they are then never moved before they are sorted.
     pub fn reserve(&mut self, voxels: usize) {
-        self.records.reserve_exact(voxels);
+        self.records.reserve(voxels);
     }
 
     /// Voxels pushed so far, repeated ones included.
@@ -131,23 +105,15 @@ impl Builder {
     pub fn push(&mut self, voxel: Voxel) {
         // NO_NODE is not a node, hence `<`.
         if self.pushed < u64::from(u32::MAX) {
-            let mut packed = 0u64;
             for axis in 0..3 {
                 let index = voxel.index[axis];
                 self.min[axis] = self.min[axis].min(index);
                 self.max[axis] = self.max[axis].max(index);
-                let low_bits = u64::from(index as u32) & (MAX_SIDE - 1);
-                packed |= low_bits << (axis as u32 * morton::MAX_BITS);
             }
-            let mut record = Record {
-                key_high: 0,
-                key_low: 0,
-                sequence: self.pushed as u32,
-                color: voxel.color,
-                normal: voxel.normal.unwrap_or(PackedNormal::NONE),
-            };
-            record.set_key(packed);
-            self.records.push(record);
+            let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
+            let sequence = self.pushed as u32;
+            self.records
+                .push(Record::new(voxel.index, sequence, voxel.color, normal));
         }
         self.pushed += 1;
     }
@@ -161,7 +127,7 @@ impl Builder {
     /// # Errors
     /// When there are no voxels, too many, or too far apart: see [`BuildError`].
     pub fn finish(
-        mut self,
+        self,
         placement_world: ([f64; 3], f64),
         progress: &dyn Progress,
     ) -> Result<Graph, BuildError> {
@@ -175,15 +141,15 @@ impl Builder {
         let depth = longest.next_power_of_two().trailing_zeros();
 
         progress.begin("sort voxels", 0);
-        let min = self.min;
-        sort(&mut self.records, min);
+        let records = self.records.sorted(self.min);
         progress.end();
 
-        let mut tree = Tree::build(self.records, depth, progress)?;
+        let mut tree = Tree::build(records, depth, progress)?;
         if self.options.normals == Normals::FromSurface {
             let finest = tree.level_start[depth as usize] as usize;
             Estimate {
-                topology: &tree.topology,
+                mask: &tree.mask,
+                first: &tree.first,
                 level_start: &tree.level_start,
                 depth,
                 centre: extent.map(|side| side as f64 / 2.0),
@@ -198,7 +164,8 @@ impl Builder {
         Ok(Graph {
             depth,
             root: 0,
-            topology: tree.topology.into(),
+            mask: tree.mask.into(),
+            first: tree.first.into(),
             links: Vec::new().into(),
             color: tree.color.into(),
             normal: tree.normal.into(),
@@ -214,7 +181,7 @@ impl Builder {
 
     /// Sides of the bounding box, voxels.
     fn extent(&self) -> Result<[u64; 3], BuildError> {
-        if self.records.is_empty() {
+        if self.is_empty() {
             return Err(BuildError::Empty);
         }
         if self.pushed > self.records.len() as u64 {
@@ -243,26 +210,11 @@ impl Extend<Voxel> for Builder {
     }
 }
 
-/// Sorts by Morton key from the lowest corner, and keeps the last pushed of
-/// those at one index.
-fn sort(records: &mut Vec<Record>, min: [i32; 3]) {
-    records.par_iter_mut().for_each(|record| {
-        let packed = record.key();
-        // The extent is at most 2^21, so the low bits tell the distance.
-        let at = [0, 1, 2].map(|axis| {
-            let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
-            low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)
-        });
-        record.set_key(morton::key(at));
-    });
-    records.par_sort_unstable_by_key(|record| (record.key(), Reverse(record.sequence)));
-    records.dedup_by_key(|record| record.key());
-}
-
 /// The graph's arrays while they are made.
 struct Tree {
     depth: u32,
-    topology: Vec<Topology>,
+    mask: Vec<u8>,
+    first: Vec<u32>,
     color: Vec<[u8; 3]>,
     normal: Vec<PackedNormal>,
     level_start: Vec<u32>,
@@ -287,7 +239,8 @@ impl Tree {
             normal[inner + i] = record.normal;
         }
 
-        let mut topology = vec![Topology::default(); inner];
+        let mut mask = vec![0u8; inner];
+        let mut first = vec![0u32; inner];
         // The next node of each level.
         let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
         let mut before = None;
@@ -297,10 +250,10 @@ impl Tree {
                 if level > 0 {
                     let parent = next[level as usize - 1] as usize - 1;
                     let octant = key >> (3 * (depth - level)) & 7;
-                    topology[parent].mask |= 1 << octant;
+                    mask[parent] |= 1 << octant;
                 }
                 if level < depth {
-                    topology[next[level as usize] as usize].first = next[level as usize + 1];
+                    first[next[level as usize] as usize] = next[level as usize + 1];
                 }
                 next[level as usize] += 1;
             }
@@ -309,7 +262,8 @@ impl Tree {
         progress.end();
         Ok(Self {
             depth,
-            topology,
+            mask,
+            first,
             color,
             normal,
             level_start,
@@ -325,8 +279,8 @@ impl Tree {
             sum.add_voxel(self.color[at], self.normal[at]);
             return sum;
         }
-        let Topology { first, mask, .. } = self.topology[at];
-        for child in first..first + mask.count_ones() {
+        let first = self.first[at];
+        for child in first..first + self.mask[at].count_ones() {
             if level + 1 == self.depth {
                 sum.add_voxel(self.color[child as usize], self.normal[child as usize]);
             } else {

@@ -1,6 +1,6 @@
 //! Small graphs made by hand, cyclic ones among them.
 
-use super::{Graph, MAX_DEPTH, PackedNormal, Placement, Topology};
+use super::{Graph, MAX_DEPTH, PackedNormal, Placement};
 
 /// Collects nodes whose children may be any nodes: earlier ones, later ones,
 /// themselves.
@@ -127,13 +127,12 @@ impl LinkedGraph {
             let root = self.root;
             return Err(LinkedError::Root { root, nodes });
         }
-        let mut topology = Vec::with_capacity(nodes);
+        let mut masks = Vec::with_capacity(nodes);
+        let mut firsts = Vec::with_capacity(nodes);
         let mut links = Vec::new();
         for (number, node) in self.nodes.iter().enumerate() {
-            let mut entry = Topology {
-                first: links.len() as u32,
-                ..Topology::default()
-            };
+            let mut mask = 0u8;
+            firsts.push(links.len() as u32);
             for (octant, child) in node.children.iter().enumerate() {
                 let Some(child) = *child else { continue };
                 if child as usize >= nodes {
@@ -144,15 +143,16 @@ impl LinkedGraph {
                         nodes,
                     });
                 }
-                entry.mask |= 1 << octant;
+                mask |= 1 << octant;
                 links.push(child);
             }
-            topology.push(entry);
+            masks.push(mask);
         }
         let mut graph = Graph {
             depth: self.depth,
             root: self.root,
-            topology: topology.into(),
+            mask: masks.into(),
+            first: firsts.into(),
             links: links.into(),
             color: self
                 .nodes

@@ -15,7 +15,7 @@ use std::hash::{BuildHasherDefault, Hash};
 
 use xxhash_rust::xxh3::Xxh3Default;
 
-use super::{Graph, Progress, Topology};
+use super::{Graph, Progress};
 
 /// When two nodes are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -104,7 +104,7 @@ fn classes_by_level(graph: &Graph, by: MergeBy) -> Vec<u32> {
     let mut class = vec![0; graph.len()];
     for pair in graph.level_start.windows(2).rev() {
         let nodes = pair[0]..pair[1].min(class.len() as u32);
-        if pair[0] as usize >= graph.topology.len() {
+        if pair[0] as usize >= graph.mask.len() {
             let mut known = Map::default();
             for node in nodes {
                 class[node as usize] = number(&mut known, attributes(graph, node, by));
@@ -155,7 +155,8 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     let mut renamed = vec![ABSENT; classes];
     let mut chosen = vec![graph.root];
     let mut links = Vec::new();
-    let mut topology = Vec::new();
+    let mut masks = Vec::new();
+    let mut firsts = Vec::new();
     let mut level_start = vec![0u32];
     let mut level_end = 1;
     if let Some(&root_class) = class.get(graph.root as usize)
@@ -173,10 +174,8 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
             }
             level_end = chosen.len();
         }
-        let mut entry = Topology {
-            first: links.len() as u32,
-            ..Topology::default()
-        };
+        let mut mask = 0u8;
+        let first = links.len() as u32;
         // In a sound graph the finest level has no children anyway.
         let finest = ordered && level_start.len() > graph.depth as usize;
         let children = if finest {
@@ -191,27 +190,25 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
                 *name = chosen.len() as u32;
                 chosen.push(child);
             }
-            entry.mask |= 1 << octant;
+            mask |= 1 << octant;
             links.push(*name);
         }
-        if entry.mask == 0 {
-            entry.first = 0;
-        }
-        topology.push(entry);
+        masks.push(mask);
+        firsts.push(if mask == 0 { 0 } else { first });
         next += 1;
     }
-    let has_children = |entry: &Topology| entry.mask != 0;
-    topology.truncate(
-        topology
-            .iter()
-            .rposition(has_children)
-            .map_or(0, |last| last + 1),
-    );
-    topology.shrink_to_fit();
+    let last_inner = masks.iter().rposition(|&mask| mask != 0);
+    let inner = last_inner.map_or(0, |last| last + 1);
+    masks.truncate(inner);
+    masks.shrink_to_fit();
+    firsts.truncate(inner);
+    firsts.shrink_to_fit();
+    links.shrink_to_fit();
     let mut merged = Graph {
         depth: graph.depth,
         root: 0,
-        topology: topology.into(),
+        mask: masks.into(),
+        first: firsts.into(),
         links: links.into(),
         color: chosen
             .iter()

@@ -8,6 +8,7 @@ mod morton;
 mod normal;
 mod normals;
 mod progress;
+mod records;
 mod store;
 pub mod validate;
 mod voxel;
@@ -25,18 +26,6 @@ pub use walk::Cell;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
-
-/// Which children a node has, and where they are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, bytemuck::Pod, bytemuck::Zeroable)]
-#[repr(C)]
-pub struct Topology {
-    /// Where the children begin: a node in a tree, an entry of `links` in a linked graph.
-    pub first: u32,
-    /// Bit `c` is set where child `c = x << 2 | y << 1 | z` exists. No bit: a solid leaf.
-    pub mask: u8,
-    /// Zero.
-    pub reserved: [u8; 3],
-}
 
 /// Where the object lies in the file's indices and in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,8 +55,9 @@ pub struct PackedNormal(pub u16);
 
 /// A voxel graph.
 ///
-/// Nodes `0..topology.len()` may have children; nodes from there up to
-/// `color.len()` are voxels of the finest level, which need no topology. A
+/// Nodes `0..mask.len()` may have children; nodes from there up to
+/// `color.len()` are voxels of the finest level, which need neither mask nor
+/// child list. Five bytes a node, five more for one that may have children. A
 /// node without children is solid and, as in the paper (section 2.2), points
 /// to itself. A node that is reached at level `depth` is a voxel, whatever
 /// children it has: that is what ends a cyclic graph.
@@ -77,8 +67,12 @@ pub struct Graph {
     pub depth: u32,
     /// The node of the object.
     pub root: u32,
-    /// Children of the inner nodes.
-    pub topology: Store<Topology>,
+    /// Which children an inner node has: bit `c` is set where child
+    /// `c = x << 2 | y << 1 | z` exists. No bit: a solid leaf.
+    pub mask: Store<u8>,
+    /// Where an inner node's children begin: a node in a tree, an entry of
+    /// `links` in a linked graph. As long as `mask`; of no meaning where that is 0.
+    pub first: Store<u32>,
     /// Child lists of a linked graph; empty in a plain tree, where the
     /// children of a node are `first`, `first + 1`, ... in octant order.
     pub links: Store<u32>,
@@ -136,7 +130,8 @@ impl Graph {
     #[must_use]
     pub fn bytes(&self) -> u64 {
         let sizes = [
-            size_of_val::<[Topology]>(&self.topology),
+            size_of_val::<[u8]>(&self.mask),
+            size_of_val::<[u32]>(&self.first),
             size_of_val::<[u32]>(&self.links),
             size_of_val::<[[u8; 3]]>(&self.color),
             size_of_val::<[PackedNormal]>(&self.normal),
@@ -151,7 +146,8 @@ impl Graph {
         GraphView {
             depth: self.depth,
             root: self.root,
-            topology: &self.topology,
+            mask: &self.mask,
+            first: &self.first,
             links: &self.links,
         }
     }
@@ -164,8 +160,10 @@ pub struct GraphView<'g> {
     pub depth: u32,
     /// The node of the object.
     pub root: u32,
-    /// Children of the inner nodes.
-    pub topology: &'g [Topology],
+    /// Children of the inner nodes, one bit each.
+    pub mask: &'g [u8],
+    /// Where the children of the inner nodes begin.
+    pub first: &'g [u32],
     /// Child lists of a linked graph, or empty.
     pub links: &'g [u32],
 }
@@ -175,7 +173,7 @@ impl GraphView<'_> {
     #[inline]
     #[must_use]
     pub fn mask(&self, node: u32) -> u8 {
-        self.topology.get(node as usize).map_or(0, |t| t.mask)
+        self.mask.get(node as usize).copied().unwrap_or(0)
     }
 
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
@@ -187,13 +185,14 @@ impl GraphView<'_> {
     #[inline]
     #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {
-        let topology = self.topology.get(node as usize)?;
-        if topology.mask >> octant & 1 == 0 {
+        let mask = self.mask(node);
+        if mask >> octant & 1 == 0 {
             return None;
         }
-        let before = topology.mask & ((1u8 << octant) - 1);
+        let before = mask & ((1u8 << octant) - 1);
+        let first = *self.first.get(node as usize)?;
         // Wraps only in a damaged file, where one wrong place is as good as another.
-        let slot = topology.first.wrapping_add(before.count_ones());
+        let slot = first.wrapping_add(before.count_ones());
         if self.links.is_empty() {
             Some(slot)
         } else {

@@ -38,12 +38,12 @@ impl Graph {
     ///
     /// - `depth` at most [`MAX_DEPTH`]; placement finite, voxel size above 0;
     /// - as many normals as colours, at least one, fewer than `u32::MAX`; no
-    ///   more topology than nodes; the root among the nodes;
+    ///   more masks than nodes; an entry of `first` for each mask; the root among the nodes;
     /// - child lists within `links`, or within the nodes where there are no
-    ///   links; links within the nodes; reserved bytes zero;
+    ///   links; links within the nodes;
     /// - stored level by level: levels follow each other without gap, none
     ///   empty, the root is the first node and the only one of its level, the
-    ///   finest level has no topology, children are of the level below; in a
+    ///   finest level has no masks, children are of the level below; in a
     ///   tree, each node is the child of exactly one, in order;
     /// - `voxels` is what counting gives.
     ///
@@ -52,7 +52,7 @@ impl Graph {
     pub fn validate(&self) -> Result<(), Invalid> {
         self.validate_shape()?;
         self.validate_levels()?;
-        self.validate_topology()?;
+        self.validate_children()?;
         let counted = self.count_voxels();
         check(self.voxels == counted, "voxels", 0, || {
             format!(
@@ -74,8 +74,12 @@ impl Graph {
         check(self.normal.len() == nodes, "normal", 0, || {
             format!("{nodes} normals, one a node, not {}", self.normal.len())
         })?;
-        check(self.topology.len() <= nodes, "topology", 0, || {
-            format!("at most {nodes} entries, not {}", self.topology.len())
+        let masks = self.mask.len();
+        check(masks <= nodes, "mask", 0, || {
+            format!("at most {nodes} masks, not {masks}")
+        })?;
+        check(self.first.len() == masks, "first", 0, || {
+            format!("{masks} entries, one a mask, not {}", self.first.len())
         })?;
         check(self.links.len() <= u32::MAX as usize, "links", 0, || {
             format!("at most {} links, not {}", u32::MAX, self.links.len())
@@ -122,13 +126,13 @@ impl Graph {
             format!("{}, the number of nodes, not {last}", self.len())
         })?;
         let finest = starts[entries - 2] as usize;
-        check(self.topology.len() <= finest, "topology", finest, || {
-            "no topology of the finest level".to_owned()
+        check(self.mask.len() <= finest, "mask", finest, || {
+            "no masks of the finest level".to_owned()
         })
     }
 
     /// Every child list and every link.
-    fn validate_topology(&self) -> Result<(), Invalid> {
+    fn validate_children(&self) -> Result<(), Invalid> {
         let nodes = self.len() as u64;
         let linked = !self.links.is_empty();
         for (index, &link) in self.links.iter().enumerate() {
@@ -144,26 +148,22 @@ impl Graph {
         let mut level = 0;
         // In a tree stored level by level: the next node that has no parent yet.
         let mut orphan = 1u64;
-        for (index, entry) in self.topology.iter().enumerate() {
-            let expect = |holds, what: &dyn Fn() -> String| check(holds, "topology", index, what);
-            expect(entry.reserved == [0; 3], &|| {
-                format!("reserved bytes 0, not {:?}", entry.reserved)
-            })?;
-            let first = u64::from(entry.first);
-            let end = first + u64::from(entry.mask.count_ones());
-            if entry.mask != 0 {
-                expect(end <= slots, &|| {
-                    format!("children before {slots}, not {first}..{end}")
-                })?;
+        let lists = self.mask.iter().zip(self.first.iter()).enumerate();
+        for (index, (&mask, &first)) in lists {
+            if mask == 0 {
+                continue;
             }
+            let expect = |holds, what: &dyn Fn() -> String| check(holds, "first", index, what);
+            let first = u64::from(first);
+            let end = first + u64::from(mask.count_ones());
+            expect(end <= slots, &|| {
+                format!("children before {slots}, not {first}..{end}")
+            })?;
             if self.level_start.is_empty() {
                 continue;
             }
             while self.level_start[level + 1] as usize <= index {
                 level += 1;
-            }
-            if entry.mask == 0 {
-                continue;
             }
             let below =
                 u64::from(self.level_start[level + 1])..u64::from(self.level_start[level + 2]);
@@ -184,8 +184,8 @@ impl Graph {
             }
         }
         if !self.level_start.is_empty() && !linked {
-            let last = self.topology.len();
-            check(orphan == nodes, "topology", last, || {
+            let last = self.first.len();
+            check(orphan == nodes, "first", last, || {
                 format!("each of {nodes} nodes to have a parent, not only {orphan}")
             })?;
         }

@@ -51,6 +51,13 @@ pub(super) trait Lattice: Copy + std::fmt::Debug {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Corners([Word; 8]);
 
+#[cfg(test)]
+impl Corners {
+    pub(super) fn corners(&self) -> [Word; 8] {
+        self.0
+    }
+}
+
 impl Lattice for Corners {
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
         let [x, y, z] = edges;

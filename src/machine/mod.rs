@@ -26,6 +26,8 @@ mod size;
 mod strips;
 mod to_screen;
 mod verdict;
+#[cfg(test)]
+pub(crate) mod vertices;
 mod walk;
 
 use hwmodel::{NoProbe, Overflow, Probe};

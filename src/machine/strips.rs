@@ -2,7 +2,9 @@
 //! outline is the intersection of three strips, one along each edge
 //! direction (`SPEC.md`, "Strips").
 //!
-//! The products that a strip needs are made by shifts and adds over the ten
+//! All voxels of a level that changed to screen space together have the same
+//! edges, so the shape of the outline is kept for the next voxel. The
+//! products that a strip needs are made by shifts and adds over the ten
 //! bits of its normal. Normals are rounded, so strips are taken wide enough
 //! to hold all eight vertices, and the box cuts off what that adds.
 
@@ -17,17 +19,78 @@ use crate::frame::QuadNode;
 /// Bits of a strip's normal, without sign.
 const NORMAL_BITS: u32 = 10;
 
-/// `low <= gx x + gy y + c <= high`, in half units of the last place.
+/// What a strip has of the edges alone: `low <= gx x + gy y <= high` relative
+/// to the voxel's lowest corner, in half units of the last place.
 #[derive(Debug, Clone, Copy)]
-struct Strip {
+struct Shape {
     gx: Word,
     gy: Word,
     /// `|gx| + |gy|`.
     slope: WideWord,
-    /// The function's value in the middle of the node.
-    value: WideWord,
     low: WideWord,
     high: WideWord,
+}
+
+/// The shapes of the three strips of the voxel drawn last, and its edges.
+#[derive(Debug, Default)]
+pub(super) struct Shapes {
+    last: Option<([[Word; 3]; 2], [Shape; 3])>,
+}
+
+impl Shapes {
+    /// The shapes for these edges (along x and y of the picture): those of the last voxel if it had the same.
+    fn of<P: Probe>(&mut self, dp: &mut Datapath<P>, edges: [[Word; 3]; 2]) -> [Shape; 3] {
+        if let Some((last, shapes)) = &self.last {
+            let mut pairs = edges.iter().flatten().zip(last.iter().flatten());
+            if pairs.all(|(&new, &old)| dp.equal(new, old)) {
+                return *shapes;
+            }
+        }
+        let shapes = [0, 1, 2].map(|j| Shape::new(dp, edges, j));
+        self.last = Some((edges, shapes));
+        shapes
+    }
+}
+
+impl Shape {
+    /// The strip along edge `j`.
+    fn new<P: Probe>(dp: &mut Datapath<P>, [x, y]: [[Word; 3]; 2], j: usize) -> Self {
+        let (normal_x, normal_y) = normal(dp, x[j], y[j]);
+        let gx = dp.neg(normal_y);
+        let gy = normal_x;
+        let mut low = WideWord::ZERO;
+        let mut high = WideWord::ZERO;
+        for k in 0..3 {
+            let across = along(dp, [gx, gy], [x[k], y[k]]);
+            let across = dp.shl(across, 1);
+            let below = dp.min(across, WideWord::ZERO);
+            let above = dp.max(across, WideWord::ZERO);
+            low = dp.add(low, below);
+            high = dp.add(high, above);
+        }
+        Self {
+            gx,
+            gy,
+            slope: slope(dp, gx, gy),
+            low,
+            high,
+        }
+    }
+}
+
+/// `gx x + gy y`.
+fn along<P: Probe>(dp: &mut Datapath<P>, [gx, gy]: [Word; 2], [x, y]: [Word; 2]) -> WideWord {
+    let along_x = times(dp, gx, x);
+    let along_y = times(dp, gy, y);
+    dp.add(along_x, along_y)
+}
+
+/// A strip relative to a quadtree node.
+#[derive(Debug, Clone, Copy)]
+struct Strip {
+    shape: Shape,
+    /// The function's value in the middle of the node.
+    value: WideWord,
     /// Whether all samples of the node are inside.
     settled: bool,
 }
@@ -63,15 +126,15 @@ impl Strip {
             return Cover::All;
         }
         // Samples lie within (2^below - 1) half samples of the middle.
-        let most = dp.shl(self.slope, below + frac);
-        let half = dp.shl(self.slope, frac);
+        let most = dp.shl(self.shape.slope, below + frac);
+        let half = dp.shl(self.shape.slope, frac);
         let reach = dp.sub(most, half);
         let greatest = dp.add(self.value, reach);
         let least = dp.sub(self.value, reach);
-        if dp.lt(greatest, self.low) || dp.lt(self.high, least) {
+        if dp.lt(greatest, self.shape.low) || dp.lt(self.shape.high, least) {
             return Cover::None;
         }
-        self.settled = dp.le(self.low, least) && dp.le(greatest, self.high);
+        self.settled = dp.le(self.shape.low, least) && dp.le(greatest, self.shape.high);
         if self.settled {
             Cover::All
         } else {
@@ -84,7 +147,10 @@ impl Strip {
             return *self;
         }
         let mut value = self.value;
-        for (g, positive) in [(self.gx, quadrant & 1 != 0), (self.gy, quadrant & 2 != 0)] {
+        for (g, positive) in [
+            (self.shape.gx, quadrant & 1 != 0),
+            (self.shape.gy, quadrant & 2 != 0),
+        ] {
             let g = dp.widen(g);
             let step = dp.shl(g, places);
             value = if positive {
@@ -101,6 +167,7 @@ impl StripSilhouette {
     pub(super) fn new<P: Probe, L: Lattice>(
         dp: &mut Datapath<P>,
         constants: &Constants,
+        shapes: &mut Shapes,
         quad: QuadNode,
         pose: &Screen<L>,
     ) -> Self {
@@ -115,42 +182,16 @@ impl StripSilhouette {
         let (middle_x, middle_y) = (middle(quad.x), middle(quad.y));
         let from_corner_x = dp.sub(middle_x, corner_x);
         let from_corner_y = dp.sub(middle_y, corner_y);
-        let strip = |dp: &mut Datapath<P>, j: usize| {
-            let (normal_x, normal_y) = normal(dp, edges_x[j], edges_y[j]);
-            let gx = dp.neg(normal_y);
-            let gy = normal_x;
-            let function = |dp: &mut Datapath<P>, x: Word, y: Word| {
-                let along_x = times(dp, gx, x);
-                let along_y = times(dp, gy, y);
-                dp.add(along_x, along_y)
-            };
-            let mut low = WideWord::ZERO;
-            let mut high = WideWord::ZERO;
-            for k in 0..3 {
-                let across = function(dp, edges_x[k], edges_y[k]);
-                let across = dp.shl(across, 1);
-                let below = dp.min(across, WideWord::ZERO);
-                let above = dp.max(across, WideWord::ZERO);
-                low = dp.add(low, below);
-                high = dp.add(high, above);
-            }
-            let value = function(dp, from_corner_x, from_corner_y);
-            let slope = slope(dp, gx, gy);
-            Strip {
-                gx,
-                gy,
-                slope,
-                value,
-                low,
-                high,
-                settled: false,
-            }
-        };
+        let strips = shapes.of(dp, [edges_x, edges_y]).map(|shape| Strip {
+            shape,
+            value: along(dp, [shape.gx, shape.gy], [from_corner_x, from_corner_y]),
+            settled: false,
+        });
         let one = Word::from_host(1);
         let strips = [
-            strip(dp, 0),
-            strip(dp, 1),
-            strip(dp, 2),
+            strips[0],
+            strips[1],
+            strips[2],
             side_strip(dp, [one, Word::ZERO], middle_x, pose.x_span),
             side_strip(dp, [Word::ZERO, one], middle_y, pose.y_span),
         ];
@@ -198,12 +239,14 @@ fn side_strip<P: Probe>(
     let high = dp.widen(high);
     let high = dp.shl(high, 1);
     Strip {
-        gx,
-        gy,
-        slope: WideWord::from_host(1),
+        shape: Shape {
+            gx,
+            gy,
+            slope: WideWord::from_host(1),
+            low,
+            high,
+        },
         value: dp.widen(middle),
-        low,
-        high,
         settled: false,
     }
 }

@@ -10,7 +10,7 @@ use super::lattice::Lattice;
 use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
-use super::strips::StripSilhouette;
+use super::strips::{Shapes, StripSilhouette};
 use super::verdict::Verdict;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
@@ -37,6 +37,7 @@ pub(super) fn run<P: Probe, L: Lattice>(
         graph,
         canvas: Canvas::new(fill, frame, heat),
         stack: Vec::new(),
+        shapes: Shapes::default(),
         counts: Counts::default(),
     };
     walk.push_object();
@@ -99,6 +100,7 @@ pub(super) struct Walk<'a, P: Probe, L> {
     graph: &'a GraphView<'a>,
     canvas: Canvas<'a>,
     stack: Vec<Record<L>>,
+    shapes: Shapes,
     pub(super) counts: Counts,
 }
 
@@ -317,8 +319,13 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                     .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
             }
             Pose::Screen(screen) => {
-                let outline =
-                    StripSilhouette::new(&mut self.dp, &self.constants, record.quad, screen);
+                let outline = StripSilhouette::new(
+                    &mut self.dp,
+                    &self.constants,
+                    &mut self.shapes,
+                    record.quad,
+                    screen,
+                );
                 self.canvas
                     .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
             }

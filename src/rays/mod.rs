@@ -83,7 +83,7 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &View, frame: &mut Frame)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::graph::{Placement, Topology};
+    use crate::graph::Placement;
     use crate::project::{Camera, SetupOptions};
 
     fn set_up(eye: [f64; 3], depth: u32) -> FrameSetup {
@@ -108,15 +108,11 @@ mod tests {
     #[test]
     fn both_widths_of_number_draw_the_same() {
         // Sierpinski's tetrahedron.
-        let topology = [Topology {
-            first: 0,
-            mask: 0b0110_1001,
-            reserved: [0; 3],
-        }];
         let graph = GraphView {
             depth: 4,
             root: 0,
-            topology: &topology,
+            mask: &[0b0110_1001],
+            first: &[0],
             links: &[0; 4],
         };
         for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]] {

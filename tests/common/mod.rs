@@ -5,28 +5,25 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
-use shiftvox::graph::{Graph, PackedNormal, Placement, Topology};
+use shiftvox::graph::{Graph, PackedNormal, Placement};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 
 /// A graph from each node's children by octant; a node without any is a leaf.
 pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
-    let mut topology = Vec::new();
+    let mut masks = Vec::new();
+    let mut firsts = Vec::new();
     let mut links = Vec::new();
     for children in nodes {
-        let mut mask = 0;
-        let first = links.len() as u32;
+        let mut mask = 0u8;
+        firsts.push(links.len() as u32);
         for (octant, child) in children.iter().enumerate() {
             if let Some(child) = child {
                 mask |= 1 << octant;
                 links.push(*child);
             }
         }
-        topology.push(Topology {
-            first,
-            mask,
-            reserved: [0; 3],
-        });
+        masks.push(mask);
     }
     if links.is_empty() {
         links.push(0);
@@ -39,7 +36,8 @@ pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
             .collect::<Vec<_>>()
             .into(),
         normal: vec![PackedNormal(0); nodes.len()].into(),
-        topology: topology.into(),
+        mask: masks.into(),
+        first: firsts.into(),
         links: links.into(),
         level_start: Vec::new(),
         voxels: 0,

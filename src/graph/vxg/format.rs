@@ -1,6 +1,6 @@
 //! The layout of a `.vxg` file: `spec/graph.md`, "The .vxg file".
 //!
-//! A header of 512 bytes, then four sections, each aligned to 64 bytes with
+//! A header of 512 bytes, then five sections, each aligned to 64 bytes with
 //! zeros between. All numbers are little-endian.
 
 use crate::graph::MAX_DEPTH;
@@ -14,7 +14,7 @@ pub(super) const HEADER_BYTES: usize = 512;
 /// Sections begin at multiples of this.
 pub(super) const ALIGNMENT: u64 = 64;
 /// Sections of a file.
-pub(super) const SECTIONS: usize = 4;
+pub(super) const SECTIONS: usize = 5;
 
 /// Where things are in the header.
 pub(super) mod at {
@@ -30,7 +30,7 @@ pub(super) mod at {
     pub(in super::super) const LEVELS: usize = 96;
     pub(in super::super) const SECTION_COUNT: usize = 100;
     pub(in super::super) const SECTIONS: usize = 128;
-    pub(in super::super) const LEVEL_START: usize = 256;
+    pub(in super::super) const LEVEL_START: usize = 288;
     pub(in super::super) const CHECKSUM: usize = 504;
 }
 
@@ -55,10 +55,16 @@ pub(super) struct Kind {
 /// The sections, in the order in which they are stored.
 pub(super) const KINDS: [Kind; SECTIONS] = [
     Kind {
-        tag: *b"TOPO",
-        name: "TOPO",
-        array: "topology",
-        item_bytes: 8,
+        tag: *b"MASK",
+        name: "MASK",
+        array: "mask",
+        item_bytes: 1,
+    },
+    Kind {
+        tag: *b"FRST",
+        name: "FRST",
+        array: "first",
+        item_bytes: 4,
     },
     Kind {
         tag: *b"LINK",

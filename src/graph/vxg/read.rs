@@ -14,7 +14,7 @@ use super::format::{
     at, layout,
 };
 use super::map::map;
-use crate::graph::{Graph, Invalid, PackedNormal, Placement, Store, Topology};
+use crate::graph::{Graph, Invalid, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).
 #[must_use]
@@ -239,6 +239,7 @@ impl Header {
             Store::Mapped(Arc::clone(map), range(1)),
             Store::Mapped(Arc::clone(map), range(2)),
             Store::Mapped(Arc::clone(map), range(3)),
+            Store::Mapped(Arc::clone(map), range(4)),
             path,
         )
     }
@@ -247,25 +248,18 @@ impl Header {
     fn graph_owned(&self, bytes: &[u8], path: &Path) -> Result<Graph, VxgError> {
         // `Header::read` has seen that the sections are within the file.
         let section = |i: usize| self.sections[i].of(bytes);
-        let topology = section(0).as_chunks::<8>().0.iter().map(|entry| {
-            let [a, b, c, d, mask, reserved @ ..] = *entry;
-            Topology {
-                first: u32::from_le_bytes([a, b, c, d]),
-                mask,
-                reserved,
-            }
-        });
-        let links = section(1)
-            .as_chunks()
-            .0
-            .iter()
-            .map(|&l| u32::from_le_bytes(l));
-        let normal = section(3).as_chunks().0.iter();
+        let numbers = |i: usize| -> Store<u32> {
+            let items = section(i).as_chunks().0.iter();
+            let numbers: Vec<u32> = items.map(|&item| u32::from_le_bytes(item)).collect();
+            numbers.into()
+        };
+        let normal = section(4).as_chunks().0.iter();
         let normal = normal.map(|&n| PackedNormal(u16::from_le_bytes(n)));
         self.graph(
-            topology.collect::<Vec<_>>().into(),
-            links.collect::<Vec<_>>().into(),
-            section(2).as_chunks().0.to_vec().into(),
+            section(0).to_vec().into(),
+            numbers(1),
+            numbers(2),
+            section(3).as_chunks().0.to_vec().into(),
             normal.collect::<Vec<_>>().into(),
             path,
         )
@@ -273,7 +267,8 @@ impl Header {
 
     fn graph(
         &self,
-        topology: Store<Topology>,
+        mask: Store<u8>,
+        first: Store<u32>,
         links: Store<u32>,
         color: Store<[u8; 3]>,
         normal: Store<PackedNormal>,
@@ -282,7 +277,8 @@ impl Header {
         let graph = Graph {
             depth: self.depth,
             root: self.root,
-            topology,
+            mask,
+            first,
             links,
             color,
             normal,

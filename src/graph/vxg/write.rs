@@ -10,7 +10,7 @@ use super::error::VxgError;
 use super::format::{
     HEADER_BYTES, KINDS, MAGIC, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION, at, layout,
 };
-use crate::graph::{Graph, PackedNormal, Topology};
+use crate::graph::{Graph, PackedNormal};
 
 /// Writes a graph to a file.
 ///
@@ -86,8 +86,8 @@ pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
 
 fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
     let contents = sections(graph);
-    let (offsets, file_bytes) = layout([0, 1, 2, 3].map(|i: usize| contents[i].len() as u64));
-    let table: [Section; SECTIONS] = [0, 1, 2, 3].map(|i: usize| Section {
+    let (offsets, file_bytes) = layout(std::array::from_fn(|i| contents[i].len() as u64));
+    let table: [Section; SECTIONS] = std::array::from_fn(|i| Section {
         offset: offsets[i],
         bytes: contents[i].len() as u64,
         checksum: xxh3_64(&contents[i]),
@@ -109,18 +109,16 @@ fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
 fn sections(graph: &Graph) -> [Cow<'_, [u8]>; SECTIONS] {
     if cfg!(target_endian = "little") {
         return [
-            Cow::Borrowed(bytemuck::cast_slice::<Topology, u8>(&graph.topology)),
+            Cow::Borrowed(&graph.mask),
+            Cow::Borrowed(bytemuck::cast_slice::<u32, u8>(&graph.first)),
             Cow::Borrowed(bytemuck::cast_slice::<u32, u8>(&graph.links)),
             Cow::Borrowed(graph.color.as_flattened()),
             Cow::Borrowed(bytemuck::cast_slice::<PackedNormal, u8>(&graph.normal)),
         ];
     }
-    let topology = graph.topology.iter().flat_map(|entry| {
-        let [a, b, c, d] = entry.first.to_le_bytes();
-        [a, b, c, d, entry.mask, 0, 0, 0]
-    });
     [
-        Cow::Owned(topology.collect()),
+        Cow::Borrowed(&graph.mask),
+        Cow::Owned(graph.first.iter().flat_map(|f| f.to_le_bytes()).collect()),
         Cow::Owned(graph.links.iter().flat_map(|l| l.to_le_bytes()).collect()),
         Cow::Borrowed(graph.color.as_flattened()),
         Cow::Owned(

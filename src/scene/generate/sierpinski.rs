@@ -1,7 +1,7 @@
 //! Sierpinski's tetrahedron: the smallest graph with a cycle.
 
 use super::spec::Settings;
-use crate::graph::{Graph, PackedNormal, Placement, Topology};
+use crate::graph::{Graph, PackedNormal, Placement};
 
 /// The octants that are filled: no two share a face.
 const OCTANTS: [u8; 4] = [0b000, 0b011, 0b101, 0b110];
@@ -12,12 +12,8 @@ pub(super) fn graph(settings: &Settings) -> Graph {
     Graph {
         depth: settings.depth,
         root: 0,
-        topology: vec![Topology {
-            first: 0,
-            mask: OCTANTS.iter().fold(0, |mask, octant| mask | 1 << octant),
-            reserved: [0; 3],
-        }]
-        .into(),
+        mask: vec![OCTANTS.iter().fold(0, |mask, octant| mask | 1 << octant)].into(),
+        first: vec![0].into(),
         links: vec![0; OCTANTS.len()].into(),
         color: vec![COLOR].into(),
         normal: vec![PackedNormal::default()].into(),

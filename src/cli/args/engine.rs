@@ -1,0 +1,176 @@
+//! The engine and what it computes with.
+
+use clap::{Args, ValueEnum};
+use hwmodel::Overflow;
+
+use super::{Setting, Tolerance, word};
+use crate::project::{CageKind, Coverage, SetupOptions};
+
+/// Which engine draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum EngineName {
+    /// The same bits as the machine, as fast as the processor goes.
+    Fast,
+    /// The paper's loop in machine words: adders and shifts.
+    #[default]
+    Machine,
+    /// The exact reference: what each sample's centre sees.
+    Rays,
+}
+
+/// How a record holds its projected vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CageName {
+    /// Eight corners (the paper).
+    Corners,
+    /// One corner and three edges.
+    Frame,
+}
+
+/// Which pixels a voxel draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum CoverageName {
+    /// The pixel in which its whole box lies (the paper).
+    Any,
+    /// The pixel that holds its centre.
+    Center,
+    /// Every pixel whose centre lies inside its outline.
+    Exact,
+}
+
+/// What a result that does not fit a word becomes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum OverflowName {
+    /// An error that names operation, stage and record.
+    #[default]
+    Trap,
+    /// Its lowest bits.
+    Wrap,
+    /// The nearest word.
+    Saturate,
+}
+
+/// Which instructions the fast engine uses. Never changes a bit of output.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Isa {
+    /// The best that the processor has.
+    #[default]
+    Auto,
+    /// Plain Rust.
+    Scalar,
+    /// AVX2.
+    Avx2,
+    /// AVX-512.
+    Avx512,
+}
+
+/// The engine and what it computes with.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Engine")]
+pub struct EngineArgs {
+    /// Engine that draws
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineName,
+    /// How a record holds its projected vertices [default: frame]
+    #[arg(long, value_enum, conflicts_with = "paper")]
+    pub cage: Option<CageName>,
+    /// Largest deviation in pixels at which a record may change from clip to screen space:
+    /// 0 never, inf at once [default: 0.0625]
+    #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
+    pub tolerance: Option<Tolerance>,
+    /// Which pixels a voxel draws [default: exact]
+    #[arg(long, value_enum, conflicts_with = "paper")]
+    pub coverage: Option<CoverageName>,
+    /// As the paper has it: --cage corners --tolerance inf --coverage any
+    #[arg(long)]
+    pub paper: bool,
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]
+    #[arg(long, value_name = "PX")]
+    pub lod: Option<f64>,
+    /// Width of a machine word in bits, 16 to 64 [default: 64]
+    #[arg(long, value_name = "BITS")]
+    pub bits: Option<u32>,
+    /// Fraction bits of a word [default: as many as the frame leaves room for]
+    #[arg(long, value_name = "BITS")]
+    pub frac: Option<u32>,
+    /// What a result that does not fit a word becomes
+    #[arg(long, value_enum, default_value_t)]
+    pub overflow: OverflowName,
+    /// Instructions of the fast engine; never changes a bit of output
+    #[arg(long, value_enum, default_value_t)]
+    pub isa: Isa,
+}
+
+impl EngineArgs {
+    /// The set-up's options, at so many samples per pixel and axis (as a power of two).
+    #[must_use]
+    pub fn options(&self, aa_log2: u32) -> SetupOptions {
+        let paper = SetupOptions {
+            cage: CageKind::Corners,
+            tolerance_px: f64::INFINITY,
+            coverage: Coverage::Any,
+            ..SetupOptions::default()
+        };
+        let base = if self.paper {
+            paper
+        } else {
+            SetupOptions::default()
+        };
+        SetupOptions {
+            bits: self.bits.unwrap_or(base.bits),
+            frac: self.frac,
+            cage: self.cage.map_or(base.cage, |cage| match cage {
+                CageName::Corners => CageKind::Corners,
+                CageName::Frame => CageKind::Frame,
+            }),
+            tolerance_px: self.tolerance.map_or(base.tolerance_px, |t| t.0),
+            coverage: self.coverage.map_or(base.coverage, |rule| match rule {
+                CoverageName::Any => Coverage::Any,
+                CoverageName::Center => Coverage::Center,
+                CoverageName::Exact => Coverage::Exact,
+            }),
+            lod_px: self.lod.unwrap_or(base.lod_px),
+            aa_log2,
+        }
+    }
+
+    /// What the datapath does with a result that does not fit.
+    #[must_use]
+    pub fn overflow(&self) -> Overflow {
+        match self.overflow {
+            OverflowName::Trap => Overflow::Trap,
+            OverflowName::Wrap => Overflow::Wrap,
+            OverflowName::Saturate => Overflow::Saturate,
+        }
+    }
+
+    /// Every setting, for a configuration file.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        let options = self.options(0);
+        let (cage, coverage) = match (options.cage, options.coverage) {
+            (CageKind::Corners, c) => (CageName::Corners, c),
+            (CageKind::Frame, c) => (CageName::Frame, c),
+        };
+        let coverage = match coverage {
+            Coverage::Any => CoverageName::Any,
+            Coverage::Center => CoverageName::Center,
+            Coverage::Exact => CoverageName::Exact,
+        };
+        let mut settings = vec![
+            ("engine", word(&self.engine)),
+            ("cage", word(&cage)),
+            (
+                "tolerance",
+                Tolerance(options.tolerance_px).to_string().into(),
+            ),
+            ("coverage", word(&coverage)),
+            ("lod", options.lod_px.into()),
+            ("bits", i64::from(options.bits).into()),
+            ("overflow", word(&self.overflow)),
+            ("isa", word(&self.isa)),
+        ];
+        settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
+        settings
+    }
+}

@@ -1,0 +1,61 @@
+//! The demo: the bundled scene, its picture, and what drawing it took.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::{CameraArgs, EngineArgs, PictureArgs, Size, camera_line};
+use super::console::Console;
+use super::drawing::draw;
+use super::error::CliError;
+use super::fit::Bounds;
+use super::{engines, outputs, report, scenes};
+use crate::picture;
+
+/// The demo's own picture: the only file that it replaces without being told to.
+const PICTURE: &str = "out/demo.png";
+/// Pixels a side.
+const SIDE: u32 = 1024;
+
+pub(super) fn run(console: &Console) -> Result<(), CliError> {
+    let scene = scenes::demo(console.progress())?;
+    let picture_args = PictureArgs {
+        size: Some(Size {
+            width: SIDE,
+            height: SIDE,
+        }),
+        ..PictureArgs::default()
+    };
+    let engine_args = EngineArgs::default();
+    let bounds = Bounds::of(&scene.graph);
+    let view = CameraArgs {
+        azimuth: Some(30.0),
+        elevation: Some(14.0),
+        ..CameraArgs::default()
+    };
+    let camera = view.camera(&bounds, scene.up, (SIDE, SIDE), 0.0);
+    let drawn = draw(&scene, &camera, &engine_args, &picture_args, 1)?;
+    let counter = engines::count_operations(&engine_args, &scene.graph.view(), &drawn.setup)?;
+    outputs::write(&drawn.picture, Path::new(PICTURE), &[], true)?;
+    let hash = picture::hash(&drawn.picture);
+    if console.json {
+        let mut result = report::drawn(&scene, &camera, &drawn, Some(&hash));
+        result["output"] = json!(PICTURE);
+        result["operations"] = json!(counter.ops());
+        return console.document(&report::document("demo", result));
+    }
+    let time = drawn.times_ms.first().copied().unwrap_or(0.0);
+    console.data(format!(
+        "{} voxels in {} nodes, {SIDE} x {SIDE} pixels, drawn in {time:.1} ms\n\n{}\n\n\
+         {} operations, none of them a multiplication or a division; widest word {} bits\n\
+         camera   {}\n\
+         hash     {hash}\n\
+         picture  {PICTURE}",
+        report::grouped(scene.graph.voxels),
+        report::grouped(scene.graph.len() as u64),
+        report::counts(&counter),
+        report::grouped(counter.ops()),
+        counter.widest(),
+        camera_line(&camera),
+    ))
+}

@@ -1,0 +1,197 @@
+//! `info`: what is in a scene.
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::args::{CameraArgs, SceneArgs, camera_line};
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::fit::Bounds;
+use super::render::{choose_scenes, open};
+use super::report::{self, grouped};
+use super::scenes::{self, Scene};
+use crate::graph::Graph;
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    scene: SceneArgs,
+}
+
+/// Tells of all scenes; a scene that fails is told and does not stop the others.
+pub(super) fn run(
+    args: &InfoArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    let names = choose_scenes(&args.scenes, from_config)?;
+    let mut results = Vec::new();
+    let mut first_failure = None;
+    for name in &names {
+        match open(name, &args.scene, console) {
+            Ok(scene) if console.json => results.push(describe(&scene)),
+            Ok(scene) => console.data(tell(&scene, names.len() > 1))?,
+            Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+            Err(error) => {
+                console.error(&error);
+                results.push(json!({ "scene": name, "error": error.message }));
+                first_failure.get_or_insert(error.kind);
+            }
+        }
+    }
+    if console.json {
+        console.document(&report::document("info", json!({ "scenes": results })))?;
+    }
+    match first_failure {
+        None => Ok(()),
+        Some(kind) => Err(CliError::new(
+            kind,
+            "not all scenes could be read; see above",
+        )),
+    }
+}
+
+/// What is said of a scene, in numbers.
+struct Facts {
+    low: [i64; 3],
+    high: [i64; 3],
+    levels: Vec<(u64, u128)>,
+    bytes: u64,
+    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape.
+    gains: [f64; 2],
+    colors: usize,
+    camera_line: String,
+}
+
+impl Facts {
+    fn of(scene: &Scene) -> Self {
+        let graph = &scene.graph;
+        let (low, high) = Bounds::in_voxels(graph).unwrap_or(([0; 3], [0; 3]));
+        let origin = graph.placement.origin_index;
+        let file = |corner: [i64; 3]| [0, 1, 2].map(|k| corner[k] + origin[k]);
+        let camera = CameraArgs::default().camera(&Bounds::of(graph), scene.up, (512, 512), 0.0);
+        Self {
+            low: file(low),
+            high: file(high),
+            levels: scenes::levels(graph),
+            bytes: graph.bytes(),
+            gains: scenes::merge_gains(graph),
+            colors: distinct_leaf_colors(graph),
+            camera_line: camera_line(&camera),
+        }
+    }
+
+    fn size(&self) -> [i64; 3] {
+        [0, 1, 2].map(|k| self.high[k] - self.low[k])
+    }
+
+    fn bytes_per_voxel(&self, graph: &Graph) -> f64 {
+        self.bytes as f64 / graph.voxels.max(1) as f64
+    }
+}
+
+fn describe(scene: &Scene) -> Value {
+    let facts = Facts::of(scene);
+    let graph = &scene.graph;
+    let levels: Vec<Value> = facts
+        .levels
+        .iter()
+        .enumerate()
+        .map(|(level, &(nodes, in_tree))| {
+            let in_tree = u64::try_from(in_tree).unwrap_or(u64::MAX);
+            json!({ "level": level, "nodes": nodes, "nodes_in_tree": in_tree })
+        })
+        .collect();
+    json!({
+        "scene": scene.source,
+        "format": scene.format,
+        "index_low": facts.low,
+        "index_high": facts.high,
+        "size": facts.size(),
+        "voxel_size_world": graph.placement.voxel_size,
+        "depth": graph.depth,
+        "voxels": graph.voxels,
+        "nodes": graph.len(),
+        "levels": levels,
+        "bytes": facts.bytes,
+        "bytes_per_voxel": facts.bytes_per_voxel(graph),
+        "dag_gain": facts.gains[0],
+        "dag_gain_by_shape": facts.gains[1],
+        "palette_entries": scene.palette,
+        "colors": facts.colors,
+        "camera": facts.camera_line,
+        "warnings": scene.warnings,
+        "load_ms": scene.load_ms,
+    })
+}
+
+fn tell(scene: &Scene, several: bool) -> String {
+    let facts = Facts::of(scene);
+    let graph = &scene.graph;
+    let [x, y, z] = facts.size();
+    let palette = scene
+        .palette
+        .map_or_else(|| "none".to_owned(), |n| format!("{n} entries"));
+    let lines = [
+        ("scene", scene.source.clone()),
+        ("format", scene.format.clone()),
+        ("size", format!("{x} x {y} x {z} voxels")),
+        (
+            "indices",
+            format!("{:?} up to, not including, {:?}", facts.low, facts.high),
+        ),
+        ("depth", format!("{} levels below the root", graph.depth)),
+        ("voxels", grouped(graph.voxels)),
+        ("nodes", grouped(graph.len() as u64)),
+        (
+            "memory",
+            format!(
+                "{} bytes, {:.2} a voxel",
+                grouped(facts.bytes),
+                facts.bytes_per_voxel(graph)
+            ),
+        ),
+        (
+            "DAG gain",
+            format!(
+                "{:.2} when equal subtrees are merged, {:.2} by shape alone",
+                facts.gains[0], facts.gains[1]
+            ),
+        ),
+        ("palette", palette),
+        (
+            "colours",
+            format!("{} different", grouped(facts.colors as u64)),
+        ),
+        ("camera", facts.camera_line.clone()),
+    ];
+    let rows = facts.levels.iter().enumerate();
+    let rows = rows
+        .map(|(level, &(nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)])
+        .collect();
+    let head = ["level", "nodes", "in a tree"].map(String::from).into();
+    let levels = report::table(head, rows);
+    let text: Vec<String> = lines
+        .iter()
+        .map(|(name, value)| format!("{name:<9} {value}"))
+        .collect();
+    let gap = if several { "\n" } else { "" };
+    format!("{}\n\n{levels}{gap}", text.join("\n"))
+}
+
+/// Different colours of the nodes without children.
+fn distinct_leaf_colors(graph: &Graph) -> usize {
+    let view = graph.view();
+    let mut seen = vec![0u64; (1 << 24) / 64];
+    for (node, &[r, g, b]) in graph.color.iter().enumerate() {
+        if view.mask(node as u32) == 0 {
+            let color = usize::from(r) << 16 | usize::from(g) << 8 | usize::from(b);
+            seen[color / 64] |= 1 << (color % 64);
+        }
+    }
+    seen.iter().map(|word| word.count_ones() as usize).sum()
+}

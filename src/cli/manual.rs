@@ -1,0 +1,51 @@
+//! Completions and manual pages.
+
+use std::io::{self, Write};
+
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use super::Cli;
+use super::error::CliError;
+
+/// The shell to complete in.
+#[derive(Debug, Args)]
+pub(super) struct CompletionsArgs {
+    /// Shell
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Which page.
+#[derive(Debug, Args)]
+pub(super) struct ManArgs {
+    /// Verb whose page is wanted; none: the program's own
+    verb: Option<String>,
+}
+
+pub(super) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
+    let mut script = Vec::new();
+    clap_complete::generate(args.shell, &mut Cli::command(), "shiftvox", &mut script);
+    print(&script)
+}
+
+pub(super) fn man(args: &ManArgs) -> Result<(), CliError> {
+    let mut command = Cli::command();
+    command.build();
+    if let Some(verb) = &args.verb {
+        command = command
+            .find_subcommand(verb)
+            .cloned()
+            .ok_or_else(|| CliError::usage(format!("there is no verb `{verb}`")))?;
+    }
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command).render(&mut page)?;
+    print(&page)
+}
+
+fn print(bytes: &[u8]) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    out.write_all(bytes)?;
+    out.flush()?;
+    Ok(())
+}

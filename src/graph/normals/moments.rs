@@ -1,0 +1,180 @@
+//! Moments of a voxel's neighbourhood, and the normal that they tell.
+
+use glam::DVec3;
+
+use super::brick::Window;
+use crate::graph::PackedNormal;
+
+/// Weight of a voxel by its distance along an axis, -2 to 2.
+const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
+/// Mass of half a neighbourhood. A wall of two voxels has it; a flat face
+/// has five eighths of a full one.
+const HALF_MASS: i32 = 8 * 8 * 8 / 2;
+/// Mass of a voxel alone.
+const LONE_MASS: i32 = 2 * 2 * 2;
+/// A centre of mass at least this far off, in voxels, tells the normal by
+/// itself: 0.8 is a flat face, 0.5 a wall of two.
+const ONE_SIDED: f64 = 0.6;
+/// How much the centre of mass, in voxels, has to say about which side of a
+/// wall is out, against the middle of the object.
+const OFFSET_SHARE: f64 = 0.25;
+
+/// Mass, first and second moments of a row of five voxels, by its bits.
+const ROW_MOMENTS: [[i32; 3]; 32] = {
+    let mut table = [[0; 3]; 32];
+    let mut bits = 0;
+    while bits < 32 {
+        let mut place = 0;
+        while place < 5 {
+            if bits >> place & 1 == 1 {
+                let distance = place as i32 - 2;
+                table[bits][0] += WEIGHT[place];
+                table[bits][1] += WEIGHT[place] * distance;
+                table[bits][2] += WEIGHT[place] * distance * distance;
+            }
+            place += 1;
+        }
+        bits += 1;
+    }
+    table
+};
+
+/// Moments of the filled part of a voxel's neighbourhood, about the voxel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Moments {
+    mass: i32,
+    first: [i32; 3],
+    /// xx, yy, zz, xy, xz, yz.
+    second: [i32; 6],
+}
+
+impl Moments {
+    /// Of the voxel at a place of the brick, 0 to 3 along each axis.
+    #[inline]
+    pub(super) fn around(rows: &Window, [x, y, z]: [usize; 3]) -> Self {
+        let mut sum = Self::default();
+        for (k, weight_z) in WEIGHT.iter().enumerate() {
+            let mut plane = [0i32; 6];
+            for (j, weight_y) in WEIGHT.iter().enumerate() {
+                let [mass, mx, mxx] = ROW_MOMENTS[usize::from(rows[z + k][y + j] >> x & 31)];
+                let dy = j as i32 - 2;
+                plane[0] += weight_y * mass;
+                plane[1] += weight_y * mx;
+                plane[2] += weight_y * dy * mass;
+                plane[3] += weight_y * mxx;
+                plane[4] += weight_y * dy * dy * mass;
+                plane[5] += weight_y * dy * mx;
+            }
+            let [mass, mx, my, mxx, myy, mxy] = plane.map(|moment| moment * weight_z);
+            let dz = k as i32 - 2;
+            sum.mass += mass;
+            sum.first[0] += mx;
+            sum.first[1] += my;
+            sum.first[2] += dz * mass;
+            sum.second[0] += mxx;
+            sum.second[1] += myy;
+            sum.second[2] += dz * dz * mass;
+            sum.second[3] += mxy;
+            sum.second[4] += dz * mx;
+            sum.second[5] += dz * my;
+        }
+        sum
+    }
+
+    /// The normal; `outward` says which side of a thin wall is preferred.
+    pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
+        if self.mass <= LONE_MASS {
+            return PackedNormal::NONE;
+        }
+        let mass = f64::from(self.mass);
+        let mean = DVec3::from_array(self.first.map(f64::from)) / mass;
+        if self.mass > HALF_MASS || mean.length_squared() >= ONE_SIDED * ONE_SIDED {
+            return PackedNormal::encode(-mean);
+        }
+        let thin = thinnest(&self.second.map(|moment| f64::from(moment) / mass), mean);
+        let hint = outward.normalize_or_zero() - mean * OFFSET_SHARE;
+        let turned = thin.map(|column| column.dot(hint));
+        let direction = DVec3::from_array(turned);
+        if direction.length() > 0.02 {
+            return PackedNormal::encode(direction);
+        }
+        // The hint lies in the wall: either side is as good.
+        let longest = thin
+            .into_iter()
+            .max_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        let either = longest.unwrap_or(DVec3::ZERO);
+        let up = either.z + 1e-3 * (either.y + 1e-3 * either.x);
+        PackedNormal::encode(if up < 0.0 { -either } else { either })
+    }
+}
+
+/// A projection to the directions of least variance, by columns (symmetric).
+///
+/// The adjugate of the covariance has the same axes, its largest value at
+/// the covariance's least; squaring it five times leaves hardly anything
+/// else. Where two variances are equally least, it projects to their plane.
+fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
+    // Keeps the adjugate of a straight row of voxels from vanishing.
+    const FLOOR: f64 = 1e-3;
+    let xx = second[0] - mean.x * mean.x + FLOOR;
+    let yy = second[1] - mean.y * mean.y + FLOOR;
+    let zz = second[2] - mean.z * mean.z + FLOOR;
+    let xy = second[3] - mean.x * mean.y;
+    let xz = second[4] - mean.x * mean.z;
+    let yz = second[5] - mean.y * mean.z;
+    let a = DVec3::new(xx, xy, xz);
+    let b = DVec3::new(xy, yy, yz);
+    let c = DVec3::new(xz, yz, zz);
+    let mut columns = [b.cross(c), c.cross(a), a.cross(b)];
+    for squaring in 0..6 {
+        let trace = columns[0].x + columns[1].y + columns[2].z;
+        // Variances are above the floor, so the trace is above zero.
+        let scale = 1.0 / trace;
+        columns = columns.map(|column| column * scale);
+        if squaring < 5 {
+            let [u, v, w] = columns;
+            columns = columns.map(|column| u * column.x + v * column.y + w * column.z);
+        }
+    }
+    columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::brick::MORTON_TO_XYZ;
+    use super::*;
+
+    #[test]
+    fn moments_match_a_plain_sum() {
+        let mut state = 1u64;
+        let mut rows = [[0u8; 8]; 8];
+        for row in rows.iter_mut().flatten() {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            *row = (state >> 56) as u8;
+        }
+        for at in MORTON_TO_XYZ {
+            let mut plain = Moments::default();
+            for (dx, dy, dz) in (0..125).map(|i| (i / 25 - 2, i / 5 % 5 - 2, i % 5 - 2)) {
+                let place = |k: usize, d: i32| (at[k] as i32 + d + 2) as usize;
+                if rows[place(2, dz)][place(1, dy)] >> place(0, dx) & 1 == 0 {
+                    continue;
+                }
+                let weight = [dx, dy, dz]
+                    .map(|d| WEIGHT[(d + 2) as usize])
+                    .iter()
+                    .product::<i32>();
+                plain.mass += weight;
+                for (sum, d) in plain.first.iter_mut().zip([dx, dy, dz]) {
+                    *sum += weight * d;
+                }
+                let products = [dx * dx, dy * dy, dz * dz, dx * dy, dx * dz, dy * dz];
+                for (sum, product) in plain.second.iter_mut().zip(products) {
+                    *sum += weight * product;
+                }
+            }
+            assert_eq!(Moments::around(&rows, at), plain);
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Pushed voxels, until they are sorted.
+//!
+//! How many will come is often unknown. A `Vec` that grows holds the old and
+//! the new copy while it moves, three times its contents at worst, where the
+//! system cannot move pages instead. So voxels are kept in pieces, which
+//! become one array when all are there, each let go as soon as it is copied.
+
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::{PackedNormal, morton};
+
+/// Longest side of the bounding box of a set of voxels.
+pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+
+/// Voxels in a piece, the first included; only one that was reserved has
+/// more. 40 MB: allocators return blocks of that size to the system at once.
+const PIECE: usize = 1 << 21;
+
+/// A pushed voxel: 20 bytes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record {
+    /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
+    /// halves, because eight-byte alignment would cost four bytes.
+    key_high: u32,
+    key_low: u32,
+    /// Order of pushing.
+    sequence: u32,
+    pub(super) color: [u8; 3],
+    pub(super) normal: PackedNormal,
+}
+
+impl Record {
+    /// A voxel as it is pushed: the `sequence`-th, at a file index.
+    pub(super) fn new(
+        index: [i32; 3],
+        sequence: u32,
+        color: [u8; 3],
+        normal: PackedNormal,
+    ) -> Self {
+        let mut packed = 0u64;
+        for (axis, index) in (0u32..).zip(index) {
+            let low_bits = u64::from(index as u32) & (MAX_SIDE - 1);
+            packed |= low_bits << (axis * morton::MAX_BITS);
+        }
+        let record = Self {
+            key_high: 0,
+            key_low: 0,
+            sequence,
+            color,
+            normal,
+        };
+        record.with_key(packed)
+    }
+
+    /// The Morton key, once sorted.
+    pub(super) fn key(&self) -> u64 {
+        u64::from(self.key_high) << 32 | u64::from(self.key_low)
+    }
+
+    fn with_key(self, key: u64) -> Self {
+        Self {
+            key_high: (key >> 32) as u32,
+            key_low: key as u32,
+            ..self
+        }
+    }
+
+    /// With the Morton key from the lowest corner in place of the index.
+    fn placed(&self, min: [i32; 3]) -> Self {
+        let packed = self.key();
+        // The extent is at most 2^21, so the low bits tell the distance.
+        let at = [0, 1, 2].map(|axis| {
+            let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
+            low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)
+        });
+        self.with_key(morton::key(at))
+    }
+}
+
+/// All voxels pushed, 20 bytes each, and at most a piece's room besides.
+#[derive(Debug, Default)]
+pub(super) struct Records {
+    /// None is empty, but for a last one that was reserved.
+    pieces: Vec<Vec<Record>>,
+}
+
+impl Records {
+    /// Voxels held.
+    pub(super) fn len(&self) -> usize {
+        self.pieces.iter().map(Vec::len).sum()
+    }
+
+    /// Makes room for so many more in one piece, which then need not be copied.
+    pub(super) fn reserve(&mut self, more: usize) {
+        let room = self.pieces.last().map_or(0, |p| p.capacity() - p.len());
+        // Less than a piece comes by itself.
+        if more <= room.max(PIECE) {
+            return;
+        }
+        if let Some(last) = self.pieces.last_mut() {
+            last.shrink_to_fit();
+        }
+        self.pieces.retain(|piece| !piece.is_empty());
+        self.pieces.push(Vec::with_capacity(more));
+    }
+
+    /// Adds a voxel.
+    pub(super) fn push(&mut self, record: Record) {
+        match self.pieces.last_mut() {
+            Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
+            // The first grows from little: most objects in tests are small.
+            None => self.pieces.push(vec![record]),
+            Some(_) => {
+                let mut piece = Vec::with_capacity(PIECE);
+                piece.push(record);
+                self.pieces.push(piece);
+            }
+        }
+    }
+
+    /// Sorts by Morton key from the lowest corner, and keeps the last pushed
+    /// of those at one index.
+    pub(super) fn sorted(self, min: [i32; 3]) -> Vec<Record> {
+        let mut sorted = self.in_one(min);
+        sorted.par_sort_unstable_by_key(|record| (record.key(), Reverse(record.sequence)));
+        sorted.dedup_by_key(|record| record.key());
+        sorted
+    }
+
+    /// All voxels in one array, with their Morton keys. A piece's memory goes
+    /// back as the array's pages are first written, so both together hold
+    /// each voxel once and one piece twice.
+    fn in_one(mut self, min: [i32; 3]) -> Vec<Record> {
+        if self.pieces.len() == 1
+            && let Some(mut only) = self.pieces.pop()
+        {
+            only.par_iter_mut()
+                .for_each(|record| *record = record.placed(min));
+            return only;
+        }
+        let mut all = Vec::with_capacity(self.len());
+        for piece in self.pieces {
+            all.par_extend(piece.par_iter().map(|record| record.placed(min)));
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Voxel `i` of a row that runs through all axes.
+    fn record(i: u32) -> Record {
+        let index = [i % 100, i / 100 % 200, i / 20_000].map(|c| c as i32 - 50);
+        Record::new(index, i, [(i & 255) as u8; 3], PackedNormal::NONE)
+    }
+
+    #[test]
+    fn a_record_is_twenty_bytes() {
+        assert_eq!(size_of::<Record>(), 20);
+    }
+
+    #[test]
+    fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
+        let count = 2 * PIECE + 1000;
+        let mut grown = Records::default();
+        let mut reserved = Records::default();
+        reserved.push(record(0));
+        reserved.reserve(count - 1);
+        for i in 0..count as u32 {
+            // The last of each thousand lies where the first does.
+            let index = if i % 1000 == 999 { i - 999 } else { i };
+            let mut pushed = record(index);
+            pushed.sequence = i;
+            grown.push(pushed);
+            if i > 0 {
+                reserved.push(pushed);
+            }
+            let room: usize = grown.pieces.iter().map(Vec::capacity).sum();
+            assert!(
+                room <= grown
+                    .len()
+                    .next_power_of_two()
+                    .min(grown.len() + PIECE)
+                    .max(4)
+            );
+        }
+        assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
+        assert_eq!((reserved.len(), reserved.pieces.len()), (count, 2));
+        let grown = grown.sorted([-50; 3]);
+        let reserved = reserved.sorted([-50; 3]);
+        assert_eq!(grown.len(), count - count / 1000);
+        assert!(grown.is_sorted_by_key(Record::key));
+        let parts = |r: &Record| (r.key(), r.sequence, r.color);
+        assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
+        // The last pushed stays.
+        assert_eq!(grown[0].sequence, 999);
+    }
+
+    #[test]
+    fn small_reservations_leave_no_small_pieces() {
+        let mut records = Records::default();
+        for i in 0..5000 {
+            records.reserve(1);
+            records.push(record(i));
+        }
+        assert_eq!((records.len(), records.pieces.len()), (5000, 1));
+        records.reserve(PIECE + 1);
+        records.reserve(PIECE + 2);
+        records.push(record(5000));
+        assert_eq!((records.len(), records.pieces.len()), (5001, 2));
+    }
+}

@@ -1,0 +1,4 @@
+//! Experiments: what the renderer's rules cost and what they do to a picture.
+//! Each gives plain data and a table. What was found: `spec/lab.md`.
+
+pub mod vertex_error;

@@ -1,0 +1,166 @@
+//! Colours: shading, the background, linear light and the box filter.
+
+use std::fmt;
+use std::str::FromStr;
+
+use glam::DVec3;
+
+/// How a voxel's colour depends on where it looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Shading {
+    /// Not at all: the colour as the file has it.
+    Flat,
+    /// Lambert's law under a key light that moves with the camera, over an
+    /// ambient floor.
+    #[default]
+    Lambert,
+}
+
+/// What is behind the object.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Background {
+    /// Nothing: transparent pixels.
+    None,
+    /// A colour, sRGB.
+    Color([u8; 3]),
+}
+
+impl Default for Background {
+    fn default() -> Self {
+        Self::Color([236, 239, 244])
+    }
+}
+
+impl FromStr for Background {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "none" {
+            return Ok(Self::None);
+        }
+        let wrong =
+            || format!("`{text}` is no background: write R,G,B with 0 to 255 each, or none");
+        let parts: Vec<u8> = text
+            .split(',')
+            .map(|part| part.trim().parse::<u8>())
+            .collect::<Result<_, _>>()
+            .map_err(|_| wrong())?;
+        parts.try_into().map(Self::Color).map_err(|_| wrong())
+    }
+}
+
+impl fmt::Display for Background {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => f.write_str("none"),
+            Self::Color([r, g, b]) => write!(f, "{r},{g},{b}"),
+        }
+    }
+}
+
+/// The key light in the camera's right, up and back: over the left shoulder,
+/// so that the three faces of a box seen from a corner differ in brightness.
+const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
+/// Light that comes from everywhere, of 256.
+const AMBIENT: u32 = 64;
+
+/// Light of a direction: a share of 256.
+pub(super) struct Light {
+    /// Towards the key light; `None`: everything is lit in full.
+    key: Option<DVec3>,
+}
+
+impl Light {
+    /// The light of a shading, given the camera's right, up and back.
+    pub(super) fn new(shading: Shading, axes: [DVec3; 3]) -> Self {
+        let key = KEY_LIGHT.normalize();
+        Self {
+            key: (shading == Shading::Lambert)
+                .then(|| axes[0] * key.x + axes[1] * key.y + axes[2] * key.z),
+        }
+    }
+
+    /// The share of 256 of its colour that a surface shows.
+    pub(super) fn on(&self, normal: DVec3) -> u32 {
+        let Some(key) = self.key else { return 256 };
+        let cosine = normal.dot(key).clamp(0.0, 1.0);
+        AMBIENT + (cosine * f64::from(256 - AMBIENT) + 0.5) as u32
+    }
+}
+
+/// Linear light of the sRGB bytes, both ways, by tables.
+pub(crate) struct Linear {
+    /// Linear light of each byte, 0..=65535, rising.
+    of: [u16; 256],
+    /// For each byte but the last, twice the light midway to the next.
+    doubled_midpoint: [u32; 255],
+}
+
+impl Linear {
+    pub(crate) fn new() -> Self {
+        let mut of = [0; 256];
+        for (byte, entry) in of.iter_mut().enumerate() {
+            *entry = (to_linear(byte as f64 / 255.0) * 65535.0 + 0.5) as u16;
+        }
+        let doubled_midpoint = std::array::from_fn(|i| u32::from(of[i]) + u32::from(of[i + 1]));
+        Self {
+            of,
+            doubled_midpoint,
+        }
+    }
+
+    /// Linear light of a colour, 0..=65535 a channel.
+    pub(crate) fn decode(&self, color: [u8; 3]) -> [u32; 3] {
+        color.map(|byte| u32::from(self.of[usize::from(byte)]))
+    }
+
+    /// The colour whose linear light is nearest; of two the brighter.
+    pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
+        light.map(|value| {
+            self.doubled_midpoint
+                .partition_point(|&midpoint| midpoint <= 2 * value) as u8
+        })
+    }
+}
+
+/// Linear light, 0..=1, of an sRGB value, 0..=1 (IEC 61966-2-1).
+fn to_linear(value: f64) -> f64 {
+    if value <= 0.040_45 {
+        value / 12.92
+    } else {
+        libm::pow((value + 0.055) / 1.055, 2.4)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_survives_linear_light() {
+        let linear = Linear::new();
+        for byte in 0..=255 {
+            let color = [byte, 255 - byte, byte / 2];
+            assert_eq!(linear.encode(linear.decode(color)), color);
+        }
+        assert_eq!(linear.encode([0, 65535, 40_000]), [0, 255, 205]);
+    }
+
+    #[test]
+    fn backgrounds() {
+        assert_eq!("none".parse(), Ok(Background::None));
+        assert_eq!("1, 2,255".parse(), Ok(Background::Color([1, 2, 255])));
+        for bad in ["", "1,2", "1,2,256", "1,2,3,4", "red"] {
+            assert!(bad.parse::<Background>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn light_stays_between_ambient_and_full() {
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        let light = Light::new(Shading::Lambert, axes);
+        assert_eq!(light.on(KEY_LIGHT.normalize()), 256);
+        assert_eq!(light.on(-KEY_LIGHT), AMBIENT);
+        assert_eq!(Light::new(Shading::Flat, axes).on(DVec3::X), 256);
+    }
+}

@@ -1,0 +1,197 @@
+//! `.npy` files, format 1.0: what NumPy's `save` and `load` use.
+//!
+//! Only what pictures need: little-endian `u1`, `i4` and `f4`, C order, up to
+//! three dimensions.
+
+/// The numbers of an array.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Values {
+    /// Unsigned bytes.
+    U8(Vec<u8>),
+    /// Signed 32-bit integers.
+    I32(Vec<i32>),
+    /// 32-bit floating point numbers.
+    F32(Vec<f32>),
+}
+
+/// An array and its shape, slowest dimension first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    /// Lengths: rows, columns, and entries of a pixel where it has several.
+    pub shape: Vec<usize>,
+    /// The numbers, row by row.
+    pub values: Values,
+}
+
+/// Why bytes are no array that pictures use.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NpyError {
+    /// Not the format, or damaged.
+    #[error("byte {offset}: expected {expected}, found {found}")]
+    Format {
+        /// Where, from the file's beginning.
+        offset: usize,
+        /// What should be there.
+        expected: &'static str,
+        /// What is there.
+        found: String,
+    },
+    /// Numbers of another type.
+    #[error("the array's type is `{0}`; expected '|u1', '<i4' or '<f4' in C order")]
+    Type(String),
+    /// Shape and length of the file do not fit together.
+    #[error("the header promises {expected} bytes of numbers, the file has {found}")]
+    Length {
+        /// Bytes that the shape asks for.
+        expected: usize,
+        /// Bytes after the header.
+        found: usize,
+    },
+}
+
+const MAGIC: &[u8; 6] = b"\x93NUMPY";
+/// Magic, version and header length.
+const PREFIX: usize = 10;
+
+/// Whether a file begins like a `.npy` file.
+#[must_use]
+pub fn is_npy(beginning: &[u8]) -> bool {
+    beginning.starts_with(MAGIC)
+}
+
+/// The bytes of a `.npy` file.
+#[must_use]
+pub fn encode(array: &Array) -> Vec<u8> {
+    let kind = match array.values {
+        Values::U8(_) => "|u1",
+        Values::I32(_) => "<i4",
+        Values::F32(_) => "<f4",
+    };
+    let lengths: Vec<String> = array.shape.iter().map(ToString::to_string).collect();
+    // A tuple of one keeps its comma.
+    let comma = if lengths.len() == 1 { "," } else { "" };
+    let mut header = format!(
+        "{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}{comma}), }}",
+        lengths.join(", ")
+    );
+    // The numbers begin at a multiple of 64.
+    while (PREFIX + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut bytes = MAGIC.to_vec();
+    bytes.extend([1, 0]);
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.as_bytes());
+    match &array.values {
+        Values::U8(values) => bytes.extend(values),
+        Values::I32(values) => bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
+        Values::F32(values) => bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
+    }
+    bytes
+}
+
+/// Reads a `.npy` file's bytes.
+///
+/// # Errors
+/// See [`NpyError`]. Nothing is allocated that the bytes do not justify.
+pub fn decode(bytes: &[u8]) -> Result<Array, NpyError> {
+    let wrong = |offset, expected, found: &[u8]| NpyError::Format {
+        offset,
+        expected,
+        found: found.escape_ascii().to_string(),
+    };
+    if !is_npy(bytes) {
+        let found = &bytes[..bytes.len().min(6)];
+        return Err(wrong(0, "the magic \\x93NUMPY", found));
+    }
+    let (header_start, header_length) = match bytes.get(6..12) {
+        Some(&[1, _, a, b, ..]) => (PREFIX, usize::from(u16::from_le_bytes([a, b]))),
+        Some(&[2 | 3, _, a, b, c, d]) => (12, u32::from_le_bytes([a, b, c, d]) as usize),
+        Some(found) => return Err(wrong(6, "version 1, 2 or 3", &found[..2])),
+        None => return Err(wrong(6, "a header", &[])),
+    };
+    let data_start = header_start.saturating_add(header_length);
+    let header = bytes
+        .get(header_start..data_start)
+        .and_then(|text| std::str::from_utf8(text).ok())
+        .ok_or_else(|| wrong(header_start, "a header in text, within the file", &[]))?;
+    let kind = quoted_after(header, "'descr'").unwrap_or_default();
+    if !header.contains("'fortran_order': False") {
+        return Err(NpyError::Type(format!("{kind}, not in C order")));
+    }
+    let shape = shape_of(header)
+        .ok_or_else(|| wrong(header_start, "a shape of numbers", header.as_bytes()))?;
+    let data = &bytes[data_start..];
+    let size = if kind == "|u1" { 1 } else { 4 };
+    let expected = shape
+        .iter()
+        .try_fold(size, |product: usize, &n| product.checked_mul(n))
+        .unwrap_or(usize::MAX);
+    if expected != data.len() {
+        return Err(NpyError::Length {
+            expected,
+            found: data.len(),
+        });
+    }
+    let (words, _) = data.as_chunks::<4>();
+    let values = match kind {
+        "|u1" => Values::U8(data.to_vec()),
+        "<i4" => Values::I32(words.iter().map(|&w| i32::from_le_bytes(w)).collect()),
+        "<f4" => Values::F32(words.iter().map(|&w| f32::from_le_bytes(w)).collect()),
+        other => return Err(NpyError::Type(other.to_owned())),
+    };
+    Ok(Array { shape, values })
+}
+
+fn quoted_after<'t>(header: &'t str, key: &str) -> Option<&'t str> {
+    header.split_once(key)?.1.split('\'').nth(1)
+}
+
+fn shape_of(header: &str) -> Option<Vec<usize>> {
+    let tuple = header.split_once("'shape'")?.1.split_once('(')?.1;
+    tuple
+        .split_once(')')?
+        .0
+        .split(',')
+        .map(str::trim)
+        .filter(|length| !length.is_empty())
+        .map(|length| length.parse().ok())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrays_come_back() {
+        for values in [
+            Values::U8(vec![1, 2, 3, 4, 5, 6]),
+            Values::I32(vec![-1, 2, i32::MIN, 4, 5, 6]),
+            Values::F32(vec![0.5, f32::INFINITY, -1.0, 4.0, 5.0, 6.0]),
+        ] {
+            let shape = vec![1, 2, 3];
+            let array = Array { shape, values };
+            let bytes = encode(&array);
+            assert_eq!(bytes.iter().position(|&b| b == b'\n'), Some(127));
+            assert_eq!(decode(&bytes), Ok(array));
+        }
+    }
+
+    #[test]
+    fn damage_is_an_error() {
+        let array = Array {
+            shape: vec![2],
+            values: Values::I32(vec![1, 2]),
+        };
+        let bytes = encode(&array);
+        for length in 0..bytes.len() {
+            assert!(decode(&bytes[..length]).is_err(), "{length}");
+        }
+        let mut huge = bytes.clone();
+        let at = huge.windows(4).position(|w| w == b"(2,)").unwrap();
+        huge.splice(at..at + 4, *b"(99999999999999999999,)");
+        assert!(decode(&huge).is_err());
+    }
+}

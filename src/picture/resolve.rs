@@ -1,0 +1,223 @@
+//! Samples become pixels.
+
+use rayon::prelude::*;
+
+use super::color::{Light, Linear};
+use super::sight::Sight;
+use super::{Background, NO_DEPTH, Picture, Shading};
+use glam::DVec3;
+
+use crate::frame::{Frame, NO_NODE, NO_VOXEL};
+use crate::graph::{Graph, PackedNormal};
+use crate::project::FrameSetup;
+
+/// Why a frame and its set-up make no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResolveError {
+    /// Frame and set-up differ in size.
+    #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
+    Size(u32, u32, u32, u32),
+    /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
+    #[error("the file index of a voxel is beyond 32 bits")]
+    Index,
+}
+
+/// One pixel of a [`Picture`].
+struct Pixel {
+    rgba: [u8; 4],
+    depth: f32,
+    normal: [f32; 3],
+    voxel: [i32; 4],
+    node: i32,
+    records: f32,
+}
+
+/// Makes the picture of a drawn frame.
+///
+/// Colours are averaged over all samples of a pixel, in linear light; the other
+/// buffers come from the sample right of and below the pixel's middle (the
+/// pixel's only one without anti-aliasing), records from all samples together.
+///
+/// # Errors
+/// When the frame is not of the set-up's size, or indices leave `i32`.
+pub fn resolve(
+    frame: &Frame,
+    graph: &Graph,
+    setup: &FrameSetup,
+    shading: Shading,
+    background: Background,
+) -> Result<Picture, ResolveError> {
+    if (frame.width, frame.height) != (setup.width, setup.height) {
+        return Err(ResolveError::Size(
+            frame.width,
+            frame.height,
+            setup.width,
+            setup.height,
+        ));
+    }
+    let aa = setup.options.aa_log2;
+    let (width, height) = (frame.width >> aa, frame.height >> aa);
+    let resolver = Resolver::new(frame, graph, setup, shading, background);
+    let pixels: Vec<Pixel> = (0..height)
+        .into_par_iter()
+        .flat_map_iter(|y| {
+            let resolver = &resolver;
+            (0..width).map(move |x| resolver.pixel(x, y))
+        })
+        .collect::<Result<_, _>>()?;
+    Ok(Picture {
+        width,
+        height,
+        rgba: pixels.iter().map(|p| p.rgba).collect(),
+        depth: pixels.iter().map(|p| p.depth).collect(),
+        normal: pixels.iter().map(|p| p.normal).collect(),
+        voxel: pixels.iter().map(|p| p.voxel).collect(),
+        node: pixels.iter().map(|p| p.node).collect(),
+        records: frame
+            .records
+            .is_some()
+            .then(|| pixels.iter().map(|p| p.records).collect()),
+    })
+}
+
+/// What all pixels of a picture share.
+struct Resolver<'f> {
+    frame: &'f Frame,
+    graph: &'f Graph,
+    sight: Sight,
+    light: Light,
+    linear: Linear,
+    /// Linear light of the background; `None`: transparent.
+    background: Option<[u32; 3]>,
+    origin_index: [i64; 3],
+    aa: u32,
+}
+
+impl<'f> Resolver<'f> {
+    fn new(
+        frame: &'f Frame,
+        graph: &'f Graph,
+        setup: &FrameSetup,
+        shading: Shading,
+        background: Background,
+    ) -> Self {
+        let sight = Sight::new(setup);
+        let light = Light::new(shading, sight.axes());
+        let linear = Linear::new();
+        let background = match background {
+            Background::None => None,
+            Background::Color(color) => Some(linear.decode(color)),
+        };
+        Self {
+            frame,
+            graph,
+            sight,
+            light,
+            linear,
+            background,
+            origin_index: setup.placement.origin_index,
+            aa: setup.options.aa_log2,
+        }
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> Result<Pixel, ResolveError> {
+        let side = 1u32 << self.aa;
+        let mut sum = [0u32; 3];
+        let mut seen = 0u32;
+        let mut records = 0.0;
+        let mut pixel = Pixel {
+            rgba: [0; 4],
+            depth: NO_DEPTH,
+            normal: [0.0; 3],
+            voxel: NO_VOXEL,
+            node: -1,
+            records: 0.0,
+        };
+        for j in 0..side {
+            for i in 0..side {
+                let (sx, sy) = (x * side + i, y * side + j);
+                let at = sy as usize * self.frame.width as usize + sx as usize;
+                if let Some(all) = &self.frame.records {
+                    records += all[at];
+                }
+                let light = if self.frame.node[at] == NO_NODE {
+                    self.background.unwrap_or([0; 3])
+                } else {
+                    seen += 1;
+                    let middle = (i, j) == (side >> 1, side >> 1);
+                    self.sample(sx, sy, at, middle.then_some(&mut pixel))?
+                };
+                for (sum, light) in sum.iter_mut().zip(light) {
+                    *sum += light;
+                }
+            }
+        }
+        pixel.rgba = self.mix(sum, seen);
+        pixel.records = records;
+        Ok(pixel)
+    }
+
+    /// Linear light of a drawn sample; fills in the pixel that it stands for.
+    fn sample(
+        &self,
+        x: u32,
+        y: u32,
+        at: usize,
+        pixel: Option<&mut Pixel>,
+    ) -> Result<[u32; 3], ResolveError> {
+        let (node, voxel) = (self.frame.node[at], self.frame.voxel[at]);
+        let meeting = self.sight.meet(x, y, voxel);
+        let packed = self.graph.normal.get(node as usize).copied();
+        let normal = packed
+            .and_then(PackedNormal::decode)
+            .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
+        if let Some(pixel) = pixel {
+            pixel.depth = meeting.depth as f32;
+            pixel.normal = normal.as_vec3().to_array();
+            for k in 0..3 {
+                let index = i64::from(voxel[k]) + self.origin_index[k];
+                pixel.voxel[k] = i32::try_from(index).map_err(|_| ResolveError::Index)?;
+            }
+            pixel.voxel[3] = voxel[3];
+            pixel.node = node as i32;
+        }
+        let color = self.graph.color.get(node as usize).copied();
+        let share = self.light.on(normal);
+        let light = self.linear.decode(color.unwrap_or_default());
+        Ok(light.map(|channel| (channel * share) >> 8))
+    }
+
+    /// The mean of a pixel's samples, of which `seen` show a voxel.
+    fn mix(&self, sum: [u32; 3], seen: u32) -> [u8; 4] {
+        let samples_log2 = 2 * self.aa;
+        let half = (1u32 << samples_log2) >> 1;
+        if self.background.is_some() {
+            // All samples count, so their number is a power of two.
+            let mean = sum.map(|channel| (channel + half) >> samples_log2);
+            let [r, g, b] = self.linear.encode(mean);
+            return [r, g, b, 255];
+        }
+        if seen == 0 {
+            return [0; 4];
+        }
+        let alpha = ((seen << 8) - seen + half) >> samples_log2;
+        // PNG stores colours that are not premultiplied: the host divides.
+        let mean = sum.map(|channel| (channel + seen / 2) / seen);
+        let [r, g, b] = self.linear.encode(mean);
+        [r, g, b, alpha as u8]
+    }
+}
+
+/// Cosine above which a normal is taken to point away from the eye.
+const AWAY: f64 = 0.25;
+
+/// A normal turned to the side from which it is seen. A thin wall has two
+/// sides and one normal; the rounded corners of a solid, whose normals lean
+/// away by a little, keep theirs.
+fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
+    if normal.dot(ray) > AWAY {
+        -normal
+    } else {
+        normal
+    }
+}

@@ -1,0 +1,197 @@
+//! Where a sample's ray meets the voxel that it sees.
+//!
+//! Host arithmetic in f64 with nothing but `+ - * /` and square roots, which
+//! IEEE 754 rounds correctly: the same bits on every machine.
+
+use glam::{DMat3, DVec3};
+
+use crate::project::FrameSetup;
+
+/// A ray that misses a cube by less than this share of the depth is a hit:
+/// `exact` draws on the outline itself, where f64 rounds either way.
+const GRAZE: f64 = 1e-9;
+
+/// The quantised view of a frame, in real numbers.
+pub(super) struct Sight {
+    origin: [i64; 3],
+    edge: [[i64; 3]; 3],
+    depth: u32,
+    /// Object direction of a clip direction.
+    to_object: DMat3,
+    depth_unit: f64,
+    /// Samples across the image root, doubled.
+    root_doubled: f64,
+    axes: [DVec3; 3],
+}
+
+/// What a sample sees of a voxel's cube.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Meeting {
+    /// View-axis depth in world units, 0 or more.
+    pub(super) depth: f64,
+    /// Outward normal of the face that is seen.
+    pub(super) face: DVec3,
+    /// Unit direction of the sample's ray.
+    pub(super) ray: DVec3,
+}
+
+impl Sight {
+    /// The view of a frame; the set-up has made sure that it has a volume.
+    pub(super) fn new(setup: &FrameSetup) -> Self {
+        let column = |k: usize| {
+            let edge = setup.edge_clip[k];
+            DVec3::new(edge[0] as f64, edge[1] as f64, edge[2] as f64)
+        };
+        let to_clip = DMat3::from_cols(column(0), column(1), column(2));
+        let to_object = inverse(&to_clip);
+        // Rows of the view: the gradients of X, Y and W over the object. W grows
+        // along the view axis; X and Y carry a share of W, which is taken out.
+        let rows = to_clip.transpose();
+        let forward = rows.z_axis.normalize();
+        let across = |row: DVec3| (row - forward * row.dot(forward)).normalize();
+        Self {
+            origin: setup.origin_clip,
+            edge: setup.edge_clip,
+            depth: setup.depth,
+            to_object,
+            depth_unit: setup.depth_unit_world(),
+            root_doubled: 2.0 * (1u64 << setup.levels) as f64,
+            axes: [across(rows.x_axis), -across(rows.y_axis), -forward],
+        }
+    }
+
+    /// World directions of the camera's right, up and back.
+    pub(super) fn axes(&self) -> [DVec3; 3] {
+        self.axes
+    }
+
+    /// Where the ray of sample `(x, y)` meets a voxel, given as in a frame.
+    pub(super) fn meet(&self, x: u32, y: u32, voxel: [i32; 4]) -> Meeting {
+        let (corner, side) = self.cube(voxel);
+        // The ray is eye + t * direction, where t is the depth W.
+        let eye = -(self.to_object * corner);
+        let direction = self.direction(x, y);
+        let (enter, exit, axis) = slabs(eye, direction, side);
+        let hit = exit >= 0.0 && enter - exit <= GRAZE * exit;
+        if hit && enter > 0.0 {
+            let mut face = DVec3::ZERO;
+            face[axis] = if direction[axis] > 0.0 { -1.0 } else { 1.0 };
+            return Meeting {
+                depth: enter * self.depth_unit,
+                face,
+                ray: direction.normalize_or_zero(),
+            };
+        }
+        let depth = if hit {
+            0.0
+        } else {
+            let to_centre = (0..3)
+                .map(|k| self.edge[k][2] as f64 * (side / 2.0))
+                .sum::<f64>();
+            (corner.z + to_centre).max(0.0)
+        };
+        Meeting {
+            depth: depth * self.depth_unit,
+            face: facing(eye - DVec3::splat(side / 2.0)),
+            ray: direction.normalize_or_zero(),
+        }
+    }
+
+    /// The object direction of a sample's ray along which `W` grows by one.
+    fn direction(&self, x: u32, y: u32) -> DVec3 {
+        self.to_object
+            * DVec3::new(
+                f64::from(2 * x + 1) / self.root_doubled,
+                f64::from(2 * y + 1) / self.root_doubled,
+                1.0,
+            )
+    }
+
+    /// Clip vector of a voxel's lowest corner, exact before it is rounded to
+    /// f64, and the voxel's side in finest voxels.
+    fn cube(&self, voxel: [i32; 4]) -> (DVec3, f64) {
+        let clip = |c: usize| {
+            let sum: i128 = (0..3)
+                .map(|k| i128::from(self.edge[k][c]) * i128::from(voxel[k]))
+                .sum();
+            (i128::from(self.origin[c]) + sum) as f64
+        };
+        let level = voxel[3].clamp(0, self.depth as i32) as u32;
+        let side = (1u64 << (self.depth - level)) as f64;
+        (DVec3::new(clip(0), clip(1), clip(2)), side)
+    }
+}
+
+/// The inverse by Cramer's rule.
+fn inverse(m: &DMat3) -> DMat3 {
+    let (a, b, c) = (m.x_axis, m.y_axis, m.z_axis);
+    let (bc, ca, ab) = (b.cross(c), c.cross(a), a.cross(b));
+    let determinant = a.dot(bc);
+    DMat3::from_cols(bc / determinant, ca / determinant, ab / determinant).transpose()
+}
+
+/// Where a ray enters and leaves the cube from 0 to `side`, and the axis whose
+/// face it enters by: of equal ones the first.
+fn slabs(eye: DVec3, direction: DVec3, side: f64) -> (f64, f64, usize) {
+    let (mut enter, mut exit, mut axis) = (f64::NEG_INFINITY, f64::INFINITY, 0);
+    for k in 0..3 {
+        if direction[k] == 0.0 {
+            if eye[k] < 0.0 || eye[k] > side {
+                return (f64::INFINITY, f64::NEG_INFINITY, k);
+            }
+            continue;
+        }
+        let at_low = -eye[k] / direction[k];
+        let at_high = (side - eye[k]) / direction[k];
+        if at_low.min(at_high) > enter {
+            enter = at_low.min(at_high);
+            axis = k;
+        }
+        exit = exit.min(at_low.max(at_high));
+    }
+    (enter, exit, axis)
+}
+
+/// The face most turned to the eye, which is `offset` away from the centre.
+fn facing(offset: DVec3) -> DVec3 {
+    let axis = (1..3).fold(0, |best, k| {
+        if offset[k].abs() > offset[best].abs() {
+            k
+        } else {
+            best
+        }
+    });
+    let mut face = DVec3::ZERO;
+    face[axis] = if offset[axis] < 0.0 { -1.0 } else { 1.0 };
+    face
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slabs_of_a_straight_ray() {
+        let eye = DVec3::new(0.5, -3.0, 0.5);
+        assert_eq!(slabs(eye, DVec3::Y, 2.0), (3.0, 5.0, 1));
+        let (enter, exit, _) = slabs(eye, DVec3::X, 2.0);
+        assert!(enter > exit, "a ray beside the cube misses it");
+    }
+
+    #[test]
+    fn inverse_undoes() {
+        let m = DMat3::from_cols(
+            DVec3::new(2.0, 1.0, 0.0),
+            DVec3::new(-1.0, 3.0, 0.5),
+            DVec3::new(4.0, 0.0, 5.0),
+        );
+        let v = DVec3::new(7.0, -2.0, 3.0);
+        assert!((inverse(&m) * (m * v) - v).length() < 1e-12);
+    }
+
+    #[test]
+    fn the_face_that_looks_at_the_eye() {
+        assert_eq!(facing(DVec3::new(1.0, -5.0, 2.0)), DVec3::NEG_Y);
+        assert_eq!(facing(DVec3::new(1.0, 1.0, 1.0)), DVec3::X);
+    }
+}

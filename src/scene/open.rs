@@ -1,0 +1,203 @@
+//! From what a user calls a scene to a graph: a generator's specification or
+//! a file of any known format.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::generate::{self, Spec, SpecError};
+use super::{DETECT_BYTES, FileKind, ReadOptions, SceneError, SceneInfo, detect, read_voxels};
+use crate::graph::{BuildError, BuildOptions, Builder, Graph, Progress, vxg};
+
+/// Most voxels that are gathered for one graph: ten gigabytes' worth.
+const MAX_VOXELS: u64 = 500_000_000;
+
+/// Graph files up to this size are checked in full when they are opened;
+/// larger ones are mapped, and only the pages that a picture needs are read.
+const VERIFY_BYTES: u64 = 256 << 20;
+
+/// How a scene is opened.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct OpenOptions {
+    /// How voxel files are read.
+    pub read: ReadOptions,
+}
+
+/// An open scene.
+#[derive(Debug)]
+pub struct Opened {
+    /// What to draw; not empty.
+    pub graph: Graph,
+    /// The format, in words.
+    pub format: String,
+    /// What a voxel file held beside its voxels.
+    pub info: Option<SceneInfo>,
+}
+
+/// Why a scene could not be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The specification names no scene.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+    /// The file could not be read, or holds no voxels that can be.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The file is a damaged graph.
+    #[error(transparent)]
+    Graph(#[from] vxg::VxgError),
+    /// The voxels make no graph.
+    #[error("{source_name}: {error}")]
+    Build {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with them.
+        error: BuildError,
+    },
+    /// More voxels than are gathered.
+    #[error("{source_name}: more than {MAX_VOXELS} voxels")]
+    TooMany {
+        /// The scene, as the user named it.
+        source_name: String,
+    },
+}
+
+impl OpenError {
+    /// Whether the input is sound and only too large.
+    #[must_use]
+    pub fn is_limit(&self) -> bool {
+        match self {
+            Self::TooMany { .. } => true,
+            Self::Build { error, .. } => !matches!(error, BuildError::Empty),
+            Self::Scene(error) => error.is_limit(),
+            Self::Spec(_) | Self::Graph(_) => false,
+        }
+    }
+}
+
+/// Opens a file, or makes the scene of a `gen:` specification.
+///
+/// # Errors
+/// See [`OpenError`].
+pub fn open(
+    source: &str,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    if source.starts_with(generate::PREFIX) {
+        return open_generated(source, progress);
+    }
+    let path = Path::new(source);
+    let refused = |action, error| {
+        OpenError::Scene(SceneError::Io {
+            file: source.to_owned(),
+            action,
+            source: error,
+        })
+    };
+    let mut beginning = Vec::new();
+    let file = File::open(path).map_err(|e| refused("open the file", e))?;
+    let length = file
+        .metadata()
+        .map_err(|e| refused("ask for the file's size", e))?
+        .len();
+    file.take(DETECT_BYTES as u64)
+        .read_to_end(&mut beginning)
+        .map_err(|e| refused("read the file", e))?;
+    if detect(&beginning) == Some(FileKind::Vxg) {
+        let graph = if length <= VERIFY_BYTES {
+            vxg::verify(path)?
+        } else {
+            vxg::open(path)?
+        };
+        return Ok(Opened {
+            graph,
+            format: FileKind::Vxg.to_string(),
+            info: None,
+        });
+    }
+    let mut gathered = Gathered::default();
+    let info = read_voxels(path, &options.read, &mut |v| gathered.push(v), progress)?;
+    Ok(Opened {
+        graph: gathered.finish(source, progress)?,
+        format: info.kind.to_string(),
+        info: Some(info),
+    })
+}
+
+/// Opens a voxel file that is held in memory.
+///
+/// # Errors
+/// See [`OpenError`].
+pub fn open_bytes(
+    bytes: &[u8],
+    name: &str,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    let mut gathered = Gathered::default();
+    let info = super::read_voxels_from(
+        bytes,
+        name,
+        &options.read,
+        &mut |v| gathered.push(v),
+        progress,
+    )?;
+    Ok(Opened {
+        graph: gathered.finish(name, progress)?,
+        format: info.kind.to_string(),
+        info: Some(info),
+    })
+}
+
+fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {
+    let spec = Spec::parse(source)?;
+    let graph = match spec.linked() {
+        Some(graph) => graph,
+        None => {
+            let mut gathered = Gathered::default();
+            spec.voxels(&mut |v| gathered.push(v), progress);
+            gathered.finish(source, progress)?
+        }
+    };
+    Ok(Opened {
+        graph,
+        format: "generated".to_owned(),
+        info: None,
+    })
+}
+
+/// Voxels on their way into a graph.
+struct Gathered {
+    builder: Builder,
+    too_many: bool,
+}
+
+impl Default for Gathered {
+    fn default() -> Self {
+        Self {
+            builder: Builder::new(BuildOptions::default()),
+            too_many: false,
+        }
+    }
+}
+
+impl Gathered {
+    fn push(&mut self, voxel: crate::graph::Voxel) {
+        if self.builder.len() >= MAX_VOXELS {
+            self.too_many = true;
+        } else {
+            self.builder.push(voxel);
+        }
+    }
+
+    fn finish(self, source: &str, progress: &dyn Progress) -> Result<Graph, OpenError> {
+        let source_name = source.to_owned();
+        if self.too_many {
+            return Err(OpenError::TooMany { source_name });
+        }
+        self.builder
+            .finish(([0.0; 3], 1.0), progress)
+            .map_err(|error| OpenError::Build { source_name, error })
+    }
+}

@@ -1,0 +1,231 @@
+//! Whole scenes for whole-picture tests: files and generators as graphs, and
+//! cameras that are drawn from a seed.
+#![expect(unreachable_pub, reason = "a module of several test crates")]
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use std::path::{Path, PathBuf};
+
+use glam::DVec3;
+use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
+use shiftvox::project::Camera;
+use shiftvox::scene::generate::Spec;
+use shiftvox::scene::{ReadOptions, read_voxels};
+
+/// The test data that are kept beside the repository, if they are there.
+pub fn shared_data() -> Option<PathBuf> {
+    let folder = std::env::var_os("SHIFTVOX_DATA").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data"),
+        PathBuf::from,
+    );
+    folder.is_dir().then_some(folder)
+}
+
+/// The `.vox` files that come with the repository, by name.
+pub fn shipped_files() -> Vec<PathBuf> {
+    vox_files(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data"))
+}
+
+/// All `.vox` files of a folder and the folders in it, sorted.
+pub fn vox_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder that can be listed") {
+            let path = entry.expect("a folder entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|e| e == "vox") {
+                files.push(path);
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+/// A voxel file as a graph, without normals, which no engine looks at; the
+/// importer's complaint where it is none.
+pub fn graph_of_file(path: &Path) -> Result<Graph, String> {
+    let mut builder = builder();
+    let read = ReadOptions::default();
+    read_voxels(path, &read, &mut |voxel| builder.push(voxel), &Silent)
+        .map_err(|error| error.to_string())?;
+    builder
+        .finish(([0.0; 3], 1.0), &Silent)
+        .map_err(|error| error.to_string())
+}
+
+/// A generator's scene as a graph, without normals.
+pub fn graph_of_spec(spec: &str) -> Graph {
+    let parsed = Spec::parse(spec).expect(spec);
+    if let Some(graph) = parsed.linked() {
+        return graph;
+    }
+    let mut builder = builder();
+    parsed.voxels(&mut |voxel| builder.push(voxel), &Silent);
+    builder.finish(([0.0; 3], 1.0), &Silent).expect(spec)
+}
+
+fn builder() -> Builder {
+    Builder::new(BuildOptions {
+        normals: Normals::None,
+    })
+}
+
+/// Lowest corner and side of a graph's cube, world units.
+pub fn cube(graph: &Graph) -> (DVec3, f64) {
+    let place = &graph.placement;
+    let origin = DVec3::from_array(place.origin_index.map(|c| c as f64));
+    (
+        DVec3::from_array(place.world_origin) + origin * place.voxel_size,
+        (1u64 << graph.depth) as f64 * place.voxel_size,
+    )
+}
+
+/// Numbers from a seed (SplitMix64): the same on every machine.
+#[derive(Debug, Clone)]
+pub struct Dice(u64);
+
+impl Dice {
+    /// The numbers that follow from a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// A number from `low` up to, not including, `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A whole number below `end`, which is above 0.
+    pub fn below(&mut self, end: u32) -> u32 {
+        (self.next() % u64::from(end)) as u32
+    }
+
+    /// A point of the cube `[low, high)^3`.
+    pub fn point(&mut self, low: f64, high: f64) -> DVec3 {
+        DVec3::new(
+            self.between(low, high),
+            self.between(low, high),
+            self.between(low, high),
+        )
+    }
+}
+
+/// A voxel that is there, found by a random way down the graph: its lowest
+/// corner in world units. A graph has one, or it would not have been built.
+pub fn any_voxel(graph: &Graph, dice: &mut Dice) -> DVec3 {
+    let mut at = DVec3::ZERO;
+    let mut node = graph.root;
+    let mut side = (1u64 << graph.depth) as f64;
+    for _ in 0..graph.depth {
+        side /= 2.0;
+        let children: Vec<(u32, u32)> = (0..8)
+            .filter_map(|octant| {
+                let child = graph.view().child(node, octant as u8)?;
+                Some((octant, child))
+            })
+            .collect();
+        // A solid leaf consists of all its voxels.
+        let (octant, child) = match children.len() {
+            0 => (dice.below(8), node),
+            n => children[dice.below(n as u32) as usize],
+        };
+        at += side
+            * DVec3::new(
+                f64::from(octant >> 2),
+                f64::from(octant >> 1 & 1),
+                f64::from(octant & 1),
+            );
+        node = child;
+    }
+    cube(graph).0 + at * graph.placement.voxel_size
+}
+
+/// Where the eye of a camera is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Outside the object's cube, up to one and a half sides away.
+    Outside,
+    /// Anywhere in the cube.
+    Inside,
+    /// Inside a voxel that is there.
+    Solid,
+    /// On a face of a voxel that is there.
+    VoxelFace,
+    /// On a corner of a voxel that is there.
+    VoxelCorner,
+    /// On a face of the object's cube.
+    CubeFace,
+}
+
+/// All places.
+pub const PLACES: [Place; 6] = [
+    Place::Outside,
+    Place::Inside,
+    Place::Solid,
+    Place::VoxelFace,
+    Place::VoxelCorner,
+    Place::CubeFace,
+];
+
+/// A camera with its eye at a place, looking at a voxel or, one time in
+/// four, from beside one along an axis, so that ties abound. `fov_degrees` 5 to 150.
+pub fn camera_at(place: Place, graph: &Graph, size: (u32, u32), dice: &mut Dice) -> Camera {
+    let (low, side) = cube(graph);
+    let voxel = graph.placement.voxel_size;
+    loop {
+        let axis = dice.below(3) as usize;
+        let end = f64::from(dice.below(2));
+        let mut eye = match place {
+            Place::Outside | Place::Inside | Place::CubeFace => low + dice.point(0.0, side),
+            Place::Solid | Place::VoxelFace => any_voxel(graph, dice) + dice.point(0.0, voxel),
+            Place::VoxelCorner => any_voxel(graph, dice) + voxel * dice.point(0.0, 2.0).floor(),
+        };
+        match place {
+            Place::Outside => {
+                let out = dice.between(0.02, 1.5) * side;
+                eye[axis] = low[axis] + end * side + (2.0 * end - 1.0) * out;
+            }
+            Place::VoxelFace => {
+                let from_low = ((eye[axis] - low[axis]) / voxel).floor() + end;
+                eye[axis] = low[axis] + from_low * voxel;
+            }
+            Place::CubeFace => eye[axis] = low[axis] + end * side,
+            Place::Inside | Place::Solid | Place::VoxelCorner => {}
+        }
+        let seen = any_voxel(graph, dice) + dice.point(0.0, voxel);
+        let target = if dice.below(4) == 0 {
+            let along = (0..3)
+                .max_by(|&a, &b| (seen - eye)[a].abs().total_cmp(&(seen - eye)[b].abs()))
+                .unwrap_or(axis);
+            eye + DVec3::AXES[along] * (seen - eye)[along]
+        } else {
+            seen
+        };
+        let forward = (target - eye).normalize_or_zero();
+        let camera = Camera {
+            eye,
+            target,
+            up: if forward.z.abs() > 0.9 {
+                DVec3::Y
+            } else {
+                DVec3::Z
+            },
+            fov_degrees: dice.between(5.0, 150.0),
+            width: size.0,
+            height: size.1,
+        };
+        if camera.axes().is_ok() {
+            return camera;
+        }
+    }
+}
