@@ -157,10 +157,10 @@ impl Turn {
     /// Children that exist: all of a solid's, else what the node's mask says.
     fn children(&self, graph: &Graph) -> u64 {
         let node = self.of(Stage::OnePixel).find_map(|event| match event {
-            Event::Read(Memory::Node, node) => Some(node as usize),
+            Event::Read(Memory::Node, node) => u32::try_from(node).ok(),
             _ => None,
         });
-        match node.map(|node| graph.topology[node].mask) {
+        match node.map(|node| graph.view().mask(node)) {
             Some(mask) if mask != 0 && self.level < graph.depth => u64::from(mask.count_ones()),
             _ => 8,
         }
