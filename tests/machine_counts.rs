@@ -157,10 +157,10 @@ impl Turn {
     /// Children that exist: all of a solid's, else what the node's mask says.
     fn children(&self, graph: &Graph) -> u64 {
         let node = self.of(Stage::OnePixel).find_map(|event| match event {
-            Event::Read(Memory::Node, node) => Some(node as usize),
+            Event::Read(Memory::Node, node) => u32::try_from(node).ok(),
             _ => None,
         });
-        match node.map(|node| graph.topology[node].mask) {
+        match node.map(|node| graph.view().mask(node)) {
             Some(mask) if mask != 0 && self.level < graph.depth => u64::from(mask.count_ones()),
             _ => 8,
         }
@@ -448,7 +448,7 @@ fn check_clip_fit(name: &str, setup: &FrameSetup, turn: &Turn, [numbers, min_max
 fn the_view_from_within_costs_the_same() {
     let walls = |[x, y, z]: [i32; 3]| x == 0 || y == 15 || z == 0;
     let graph = octree(4, &walls);
-    let camera = camera([7.3, 5.1, 8.6], [2.0, 16.0, 3.0], 64);
+    let camera = camera([7.3, 5.1, 8.6], [2.0, 16.0, 3.0], 16);
     for (cage, halvings, adds) in [(CageKind::Corners, 19, 0), (CageKind::Frame, 3, 7)] {
         let setup = setup(&graph, &camera, &options(cage, 0.25));
         let bits = setup.format.bits();

@@ -111,6 +111,7 @@ fn two_numbers<T: Host>(bits: u32, a: i64, b: i64) {
     check("select 0", bits, eb, |dp| dp.select(false, x, y));
     check_bit(&format!("{a} < {b}"), bits, a < b, |dp| dp.lt(x, y));
     check_bit(&format!("{a} <= {b}"), bits, a <= b, |dp| dp.le(x, y));
+    check_bit(&format!("{a} == {b}"), bits, a == b, |dp| dp.equal(x, y));
 }
 
 /// Operations that only words have.

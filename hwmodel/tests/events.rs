@@ -56,6 +56,7 @@ fn common_operations<T: Host + Number>(format_bits: u32) {
         assert_eq!(of(&|dp| _ = dp.shl(a, 99)), one(OpClass::Shift));
         assert_eq!(of(&|dp| _ = dp.lt(a, b)), one(OpClass::Compare));
         assert_eq!(of(&|dp| _ = dp.le(a, b)), one(OpClass::Compare));
+        assert_eq!(of(&|dp| _ = dp.equal(a, b)), one(OpClass::Compare));
         assert_eq!(of(&|dp| _ = dp.is_negative(a)), one(OpClass::Compare));
         assert_eq!(of(&|dp| _ = dp.is_positive(a)), one(OpClass::Compare));
         assert_eq!(of(&|dp| _ = dp.is_zero(a)), one(OpClass::Compare));
@@ -146,6 +147,7 @@ fn everything<P: Probe>(dp: &mut Datapath<P>) -> Vec<i64> {
     let bits = [
         dp.lt(a, b),
         dp.le(a, b),
+        dp.equal(a, b),
         dp.is_negative(a),
         dp.is_positive(a),
         dp.is_zero(a),
@@ -228,8 +230,9 @@ fn a_counter_adds_up_what_a_log_holds() {
     }
     assert_eq!(counter.reads(Memory::Node), 2);
     assert_eq!(counter.writes(Memory::Pixel), 2);
-    // By hand: each round has 21 calls that count, and a midpoint counts twice.
-    assert_eq!(counter.ops(), 2 * (12 - 1 + 1 + 5 + 3 + 1));
+    // By hand: each round has 12 calls that give words (a shift-in counts
+    // nothing, a midpoint twice), 6 compares, 3 logic and a bit length.
+    assert_eq!(counter.ops(), 2 * (12 - 1 + 1 + 6 + 3 + 1));
     assert_eq!(counter.records(), 2);
     assert_eq!(counter.widest(), 26, "the integer step at place 2");
 }
