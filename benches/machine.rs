@@ -1,0 +1,150 @@
+//! How long does the scalar machine take for a frame, by picture size, and
+//! what does counting cost? Recorded results: `docs/performance.md`.
+//!
+//! ```text
+//! cargo bench --bench machine
+//! ```
+
+#[path = "../tests/scenes/mod.rs"]
+mod scenes;
+
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Duration;
+
+use criterion::{
+    BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
+};
+use glam::DVec3;
+use hwmodel::count::Counter;
+use hwmodel::{NoProbe, Probe};
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::Machine;
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
+
+use scenes::{cube, graph_of_file, graph_of_spec, shared_data};
+
+const SIZES: [u32; 5] = [64, 128, 256, 512, 1024];
+
+/// A scene and from where it is seen, as parts of its cube's side.
+struct Subject {
+    name: &'static str,
+    graph: Graph,
+    eye: [f64; 3],
+    target: [f64; 3],
+}
+
+/// The cameras of terrain and sponge are those of the benchmark scenes.
+fn subjects() -> Vec<Subject> {
+    let (name, file) = shared_data()
+        .map(|data| ("tree.vox", data.join("vox/tree.vox")))
+        .filter(|(_, file)| file.exists())
+        .unwrap_or_else(|| {
+            let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+            ("extended.vox", data.join("extended.vox"))
+        });
+    vec![
+        Subject {
+            name: "terrain-9",
+            graph: graph_of_spec("gen:terrain,depth=9"),
+            eye: [1.6, -0.7, 1.25],
+            target: [0.5, 0.5, 0.3],
+        },
+        Subject {
+            name: "menger-4",
+            graph: graph_of_spec("gen:menger,depth=4"),
+            eye: [0.47, -0.95, 0.53],
+            target: [0.475, 0.5, 0.475],
+        },
+        Subject {
+            name,
+            graph: graph_of_file(&file).expect("a scene"),
+            eye: [1.1, -0.5, 0.8],
+            target: [0.5, 0.5, 0.4],
+        },
+    ]
+}
+
+fn set_up(subject: &Subject, size: u32, options: &SetupOptions) -> FrameSetup {
+    let (low, side) = cube(&subject.graph);
+    let camera = Camera {
+        eye: low + DVec3::from_array(subject.eye) * side,
+        target: low + DVec3::from_array(subject.target) * side,
+        up: DVec3::Z,
+        fov_degrees: 60.0,
+        width: size,
+        height: size,
+    };
+    let graph = &subject.graph;
+    FrameSetup::new(&camera, &graph.placement, graph.depth, options).expect("a frame")
+}
+
+fn paper() -> SetupOptions {
+    SetupOptions {
+        cage: CageKind::Corners,
+        tolerance_px: f64::INFINITY,
+        coverage: Coverage::Any,
+        ..SetupOptions::default()
+    }
+}
+
+/// One frame: clear and traverse.
+fn draw<P: Probe>(
+    machine: &mut Machine,
+    subject: &Subject,
+    setup: &FrameSetup,
+    frame: &mut Frame,
+    probe: P,
+) -> P {
+    let view = subject.graph.view();
+    let drawn = machine.render_probed(black_box(&view), setup, frame, probe);
+    drawn.expect("no overflow in 64 bits").1
+}
+
+fn by_size(criterion: &mut Criterion) {
+    for subject in subjects() {
+        for (settings, options) in [("default", SetupOptions::default()), ("paper", paper())] {
+            let mut group = criterion.benchmark_group(format!("{}/{settings}", subject.name));
+            group
+                .sample_size(10)
+                .sampling_mode(SamplingMode::Flat)
+                .warm_up_time(Duration::from_millis(300))
+                .measurement_time(Duration::from_secs(2));
+            for size in SIZES {
+                let setup = set_up(&subject, size, &options);
+                let mut frame = Frame::new(size, size, false);
+                let mut machine = Machine::default();
+                group.throughput(Throughput::Elements(u64::from(size) * u64::from(size)));
+                group.bench_function(BenchmarkId::from_parameter(size), |bencher| {
+                    bencher.iter(|| draw(&mut machine, &subject, &setup, &mut frame, NoProbe));
+                });
+            }
+        }
+    }
+}
+
+fn probes(criterion: &mut Criterion) {
+    let subject = &subjects()[1];
+    let setup = set_up(subject, 256, &SetupOptions::default());
+    let mut frame = Frame::new(256, 256, false);
+    let mut machine = Machine::default();
+    let mut group = criterion.benchmark_group("probe");
+    group
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(2));
+    group.bench_function("none", |bencher| {
+        bencher.iter(|| draw(&mut machine, subject, &setup, &mut frame, NoProbe));
+    });
+    group.bench_function("counter", |bencher| {
+        bencher.iter(|| {
+            let counter = Counter::new();
+            draw(&mut machine, subject, &setup, &mut frame, counter)
+        });
+    });
+    group.finish();
+}
+
+criterion_group!(benches, by_size, probes);
+criterion_main!(benches);
