@@ -9,9 +9,10 @@ use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
-pub use super::records::MAX_SIDE;
 use super::records::{Record, Records};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
+
+pub use super::records::MAX_SIDE;
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
