@@ -9,7 +9,7 @@
 //! (the machine draws on one thread), so that other work on the machine shows
 //! less; elsewhere they are wall times.
 
-#[path = "../tests/scenes/mod.rs"]
+#[path = "../tests/machine/scenes/mod.rs"]
 mod scenes;
 
 use std::hint::black_box;

@@ -8,14 +8,12 @@
 //!
 //! and say in the commit why which lines changed.
 
-mod scenes;
-
 use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use crate::scenes::*;
 use glam::DVec3;
-use scenes::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;

@@ -1,9 +1,7 @@
 //! With tolerance 0, exact coverage and no level of detail, the machine's
 //! voxels are the oracle's: no sample more, none less, none other.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use proptest::prelude::*;
 use shiftvox::frame::{Frame, NO_VOXEL};
 use shiftvox::graph::Graph;
@@ -22,8 +20,7 @@ fn exact(cage: CageKind) -> SetupOptions {
 
 fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays::default()
-        .render(&graph.view(), setup, &mut frame)
+    Rays.render(&graph.view(), setup, &mut frame)
         .expect("the oracle never fails");
     frame
 }
