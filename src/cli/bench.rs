@@ -25,8 +25,7 @@ enum Experiment {
 pub(super) fn run(args: &BenchArgs, console: &Console) -> Result<(), CliError> {
     match args.experiment {
         Experiment::VertexError => {
-            let table =
-                vertex_error::standard_table().map_err(|e| CliError::new(Kind::Run, e))?;
+            let table = vertex_error::standard_table().map_err(|e| CliError::new(Kind::Run, e))?;
             if console.json {
                 return console.document(&report::document(
                     "bench vertex-error",

@@ -84,6 +84,28 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Level of detail covers what the true picture covers, and more only
+    /// within its size of it.
+    #[test]
+    fn level_of_detail_loses_no_sample(
+        graph in any_octree(3, 0.15),
+        camera in any_camera(8.0, 1..40),
+        cage in any_cage(),
+        lod_px in prop_oneof![Just(0.5), Just(1.0), Just(4.0)],
+    ) {
+        let options = SetupOptions { lod_px, ..exact(cage) };
+        let setup = setup(&graph, &camera, &options);
+        let machine = draw(&graph, &setup);
+        let oracle = oracle(&graph, &setup);
+        for (at, (drawn, covered)) in machine.voxel.iter().zip(&oracle.voxel).enumerate() {
+            prop_assert!(drawn[3] >= 0 || covered[3] < 0, "sample {} is lost", at);
+        }
+    }
+}
+
 #[test]
 fn a_camera_on_a_face_and_on_a_corner() {
     let graph = octree(3, &|[x, y, z]| (x + 2 * y + 3 * z) % 4 == 0);
