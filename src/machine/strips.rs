@@ -85,22 +85,28 @@ fn along<P: Probe>(dp: &mut Datapath<P>, [gx, gy]: [Word; 2], [x, y]: [Word; 2])
     dp.add(along_x, along_y)
 }
 
-/// A strip relative to a quadtree node.
-#[derive(Debug, Clone, Copy)]
-struct Strip {
-    shape: Shape,
-    /// The function's value in the middle of the node.
-    value: WideWord,
-    /// Whether all samples of the node are inside.
-    settled: bool,
-}
-
-/// The silhouette of a screen-space voxel: three strips, and its box.
-#[derive(Debug, Clone)]
-pub(super) struct StripSilhouette {
-    strips: [Strip; 5],
+/// The five strips of a voxel's outline: one along each edge direction, and
+/// the two pairs of the box's sides.
+#[derive(Debug)]
+pub(super) struct Outline {
+    shapes: [Shape; STRIPS],
+    /// The functions' values in the middle of the voxel's quadtree node.
+    values: [WideWord; STRIPS],
     /// Fraction bits of screen positions.
     frac: u32,
+}
+
+/// Strips of an outline.
+const STRIPS: usize = 5;
+
+/// An outline relative to a quadtree node.
+#[derive(Debug, Clone)]
+pub(super) struct StripSilhouette<'o> {
+    outline: &'o Outline,
+    /// The functions' values in the middle of the node.
+    values: [WideWord; STRIPS],
+    /// Whether all samples of the node are inside, by strip.
+    settled: [bool; STRIPS],
 }
 
 /// `small * a` by shifts and adds; `|small| < 2^NORMAL_BITS`.
@@ -120,50 +126,59 @@ fn times<P: Probe>(dp: &mut Datapath<P>, small: Word, a: Word) -> WideWord {
     dp.select(negative, negated, sum)
 }
 
-impl Strip {
-    fn settle<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32, frac: u32) -> Cover {
-        if self.settled {
-            return Cover::All;
+impl Shape {
+    /// What a node has of the strip: `value` in its middle, `below` levels
+    /// above the samples.
+    fn cover<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        value: WideWord,
+        below: u32,
+        frac: u32,
+    ) -> Cover {
+        let (mut least, mut greatest) = (value, value);
+        if below > 0 {
+            // Samples lie within (2^below - 1) half samples of the middle.
+            let most = dp.shl(self.slope, below + frac);
+            let half = dp.shl(self.slope, frac);
+            let reach = dp.sub(most, half);
+            greatest = dp.add(value, reach);
+            least = dp.sub(value, reach);
         }
-        // Samples lie within (2^below - 1) half samples of the middle.
-        let most = dp.shl(self.shape.slope, below + frac);
-        let half = dp.shl(self.shape.slope, frac);
-        let reach = dp.sub(most, half);
-        let greatest = dp.add(self.value, reach);
-        let least = dp.sub(self.value, reach);
-        if dp.lt(greatest, self.shape.low) || dp.lt(self.shape.high, least) {
+        if dp.lt(greatest, self.low) || dp.lt(self.high, least) {
             return Cover::None;
         }
-        self.settled = dp.le(self.shape.low, least) && dp.le(greatest, self.shape.high);
-        if self.settled {
+        if dp.le(self.low, least) && dp.le(greatest, self.high) {
             Cover::All
         } else {
             Cover::Some
         }
     }
 
-    fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, places: u32) -> Self {
-        if self.settled {
-            return *self;
-        }
-        let mut value = self.value;
-        for (g, positive) in [
-            (self.shape.gx, quadrant & 1 != 0),
-            (self.shape.gy, quadrant & 2 != 0),
-        ] {
-            let g = dp.widen(g);
-            let step = dp.shl(g, places);
-            value = if positive {
-                dp.add(value, step)
-            } else {
-                dp.sub(value, step)
-            };
-        }
-        Self { value, ..*self }
+    /// The value in the middle of a quadrant, `2^places` half units away from
+    /// the node's along x and y.
+    fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        value: WideWord,
+        quadrant: u8,
+        places: u32,
+    ) -> WideWord {
+        [(self.gx, quadrant & 1 != 0), (self.gy, quadrant & 2 != 0)]
+            .into_iter()
+            .fold(value, |value, (g, positive)| {
+                let g = dp.widen(g);
+                let step = dp.shl(g, places);
+                if positive {
+                    dp.add(value, step)
+                } else {
+                    dp.sub(value, step)
+                }
+            })
     }
 }
 
-impl StripSilhouette {
+impl Outline {
     pub(super) fn new<P: Probe, L: Lattice>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -182,20 +197,34 @@ impl StripSilhouette {
         let (middle_x, middle_y) = (middle(quad.x), middle(quad.y));
         let from_corner_x = dp.sub(middle_x, corner_x);
         let from_corner_y = dp.sub(middle_y, corner_y);
-        let strips = shapes.of(dp, [edges_x, edges_y]).map(|shape| Strip {
-            shape,
-            value: along(dp, [shape.gx, shape.gy], [from_corner_x, from_corner_y]),
-            settled: false,
-        });
-        let one = Word::from_host(1);
-        let strips = [
-            strips[0],
-            strips[1],
-            strips[2],
-            side_strip(dp, [one, Word::ZERO], middle_x, pose.x_span),
-            side_strip(dp, [Word::ZERO, one], middle_y, pose.y_span),
+        let [a, b, c] = shapes.of(dp, [edges_x, edges_y]);
+        let value = |dp: &mut Datapath<P>, shape: &Shape| {
+            along(dp, [shape.gx, shape.gy], [from_corner_x, from_corner_y])
+        };
+        let values = [
+            value(dp, &a),
+            value(dp, &b),
+            value(dp, &c),
+            dp.widen(middle_x),
+            dp.widen(middle_y),
         ];
-        Self { strips, frac }
+        let one = Word::from_host(1);
+        let across = sides(dp, [one, Word::ZERO], pose.x_span);
+        let down = sides(dp, [Word::ZERO, one], pose.y_span);
+        Self {
+            shapes: [a, b, c, across, down],
+            values,
+            frac,
+        }
+    }
+
+    /// The outline relative to the voxel's own quadtree node.
+    pub(super) fn silhouette(&self) -> StripSilhouette<'_> {
+        StripSilhouette {
+            outline: self,
+            values: self.values,
+            settled: [false; STRIPS],
+        }
     }
 }
 
@@ -228,37 +257,32 @@ fn slope<P: Probe>(dp: &mut Datapath<P>, gx: Word, gy: Word) -> WideWord {
 }
 
 /// One pair of the box's sides.
-fn side_strip<P: Probe>(
-    dp: &mut Datapath<P>,
-    [gx, gy]: [Word; 2],
-    middle: Word,
-    (low, high): (Word, Word),
-) -> Strip {
+fn sides<P: Probe>(dp: &mut Datapath<P>, [gx, gy]: [Word; 2], (low, high): (Word, Word)) -> Shape {
     let low = dp.widen(low);
     let low = dp.shl(low, 1);
     let high = dp.widen(high);
     let high = dp.shl(high, 1);
-    Strip {
-        shape: Shape {
-            gx,
-            gy,
-            slope: WideWord::from_host(1),
-            low,
-            high,
-        },
-        value: dp.widen(middle),
-        settled: false,
+    Shape {
+        gx,
+        gy,
+        slope: WideWord::from_host(1),
+        low,
+        high,
     }
 }
 
-impl Silhouette for StripSilhouette {
+impl Silhouette for StripSilhouette<'_> {
     fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
-        for strip in &mut self.strips {
-            match strip.settle(dp, below, self.frac) {
+        for i in 0..STRIPS {
+            if self.settled[i] {
+                continue;
+            }
+            let shape = &self.outline.shapes[i];
+            match shape.cover(dp, self.values[i], below, self.outline.frac) {
                 Cover::None => return Cover::None,
                 Cover::Some => all = false,
-                Cover::All => {}
+                Cover::All => self.settled[i] = true,
             }
         }
         if all { Cover::All } else { Cover::Some }
@@ -266,10 +290,14 @@ impl Silhouette for StripSilhouette {
 
     fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, below: u32) -> Self {
         // From a node's middle to a quadrant's: 2^(below - 1) half samples.
-        let places = below - 1 + self.frac;
-        Self {
-            strips: std::array::from_fn(|i| self.strips[i].quadrant(dp, quadrant, places)),
-            frac: self.frac,
+        let places = below - 1 + self.outline.frac;
+        let mut inner = self.clone();
+        for i in 0..STRIPS {
+            if !self.settled[i] {
+                let shape = &self.outline.shapes[i];
+                inner.values[i] = shape.in_quadrant(dp, self.values[i], quadrant, places);
+            }
         }
+        inner
     }
 }

@@ -10,7 +10,7 @@ use super::lattice::Lattice;
 use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
-use super::strips::{Shapes, StripSilhouette};
+use super::strips::{Outline, Shapes};
 use super::verdict::Verdict;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
@@ -319,15 +319,20 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                     .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
             }
             Pose::Screen(screen) => {
-                let outline = StripSilhouette::new(
+                let outline = Outline::new(
                     &mut self.dp,
                     &self.constants,
                     &mut self.shapes,
                     record.quad,
                     screen,
                 );
-                self.canvas
-                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
+                self.canvas.draw_outline(
+                    &mut self.dp,
+                    record.quad,
+                    outline.silhouette(),
+                    record.node,
+                    seen,
+                );
             }
         }
     }
