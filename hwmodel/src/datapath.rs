@@ -305,14 +305,14 @@ impl<P: Probe> Datapath<P> {
     #[inline(always)]
     pub fn min<T: Number>(&mut self, a: T, b: T) -> T {
         self.note::<T>(OpClass::MinMax);
-        a.min(b)
+        if a.raw() <= b.raw() { a } else { b }
     }
 
     /// The larger of two words.
     #[inline(always)]
     pub fn max<T: Number>(&mut self, a: T, b: T) -> T {
         self.note::<T>(OpClass::MinMax);
-        a.max(b)
+        if a.raw() >= b.raw() { a } else { b }
     }
 
     /// `a` where the bit is set, else `b`.
@@ -341,6 +341,16 @@ impl<P: Probe> Datapath<P> {
     pub fn bit_length(&mut self, a: Word) -> u32 {
         self.note::<Word>(OpClass::Logic);
         64 - a.0.unsigned_abs().leading_zeros()
+    }
+
+    /// The longer of two bit lengths: a comparison of short numbers.
+    #[inline(always)]
+    pub fn longer(&mut self, a: u32, b: u32) -> u32 {
+        if P::ENABLED {
+            // Lengths run to 64: seven bits.
+            self.probe.op(OpClass::MinMax, 7, self.place, 1);
+        }
+        a.max(b)
     }
 
     /// Bitwise and of two short vectors of `bits` bits.

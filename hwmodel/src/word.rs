@@ -19,6 +19,10 @@
 /// let a = hwmodel::Word::from_host(6);
 /// let _ = a % a; // nor reduced
 /// ```
+/// ```compile_fail,E0369
+/// let a = hwmodel::Word::from_host(6);
+/// let _ = a < a; // nor compared where no probe sees it
+/// ```
 /// ```compile_fail,E0599
 /// let mut dp = hwmodel::Datapath::new(
 ///     hwmodel::Format::new(32, 8).unwrap(),
@@ -28,7 +32,7 @@
 /// let a = hwmodel::Word::from_host(6);
 /// let _ = dp.mul(a, a); // the datapath has no multiplier either
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(transparent)]
 pub struct Word(pub(crate) i64);
 
@@ -63,7 +67,7 @@ impl Word {
 /// let plane = hwmodel::WideWord::from_host(6);
 /// let _ = dp.add(position, plane);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[repr(transparent)]
 pub struct WideWord(pub(crate) i64);
 
@@ -95,7 +99,7 @@ mod sealed {
 pub(crate) use sealed::Raw;
 
 /// [`Word`] or [`WideWord`]: what the datapath works on.
-pub trait Number: Raw + Ord {}
+pub trait Number: Raw {}
 
 impl Raw for Word {
     const WIDE: bool = false;

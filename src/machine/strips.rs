@@ -232,7 +232,7 @@ impl Outline {
 fn normal<P: Probe>(dp: &mut Datapath<P>, x: Word, y: Word) -> (Word, Word) {
     let length_x = dp.bit_length(x);
     let length_y = dp.bit_length(y);
-    let places = length_x.max(length_y).saturating_sub(NORMAL_BITS);
+    let places = dp.longer(length_x, length_y).saturating_sub(NORMAL_BITS);
     // Towards zero, so that no component reaches 2^NORMAL_BITS.
     let mut part = |v: Word| {
         let negative = dp.is_negative(v);
