@@ -3,6 +3,7 @@
 //! stdout is data, stderr everything else. Nothing here computes.
 
 pub mod args;
+mod bench;
 pub mod compare;
 mod config;
 mod console;
@@ -32,7 +33,7 @@ use error::{CliError, Kind};
 /// Draws voxel files with nothing but adders and shifts.
 ///
 /// With no verb it draws the bundled scene, writes it to out/demo.png and says
-/// what that took. Scenes are .vox, .ply, .vxg files or meshes, told by their
+/// what that took. Scenes are .vox, .ply, .npy and .vxg files, told by their
 /// content, or generators such as gen:terrain,depth=10,seed=1.
 ///
 /// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
@@ -81,6 +82,8 @@ enum Verb {
     Generate(generate::GenerateArgs),
     /// Compare two pictures or two .npy buffers
     Compare(compare::CompareArgs),
+    /// Run an experiment
+    Bench(bench::BenchArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
     /// Print the manual page
@@ -126,6 +129,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Convert(args)) => convert::run(&args, &console),
         Some(Verb::Generate(args)) => generate::run(&args, &console),
         Some(Verb::Compare(args)) => compare::run(&args, &console),
+        Some(Verb::Bench(args)) => bench::run(&args, &console),
         Some(Verb::Completions(args)) => manual::completions(&args),
         Some(Verb::Man(args)) => manual::man(&args),
     }

@@ -127,9 +127,7 @@ impl Constants {
                     cross(setup.origin_clip, setup.edge_clip[k]).map(|c| dp.load_wide(clamp(c)));
             }
         }
-        let gap = exact
-            && setup.lod_limit.is_none()
-            && (setup.grow_shift.is_none() || options.tolerance_px <= 0.4375);
+        let gap = exact && (setup.grow_shift.is_none() || options.tolerance_px <= 0.4375);
         Self {
             coverage: options.coverage,
             levels: setup.levels,

@@ -23,8 +23,8 @@ struct Halves {
 /// The four quadrants (`y << 1 | x`) that halves along x and y leave. Four
 /// gates on the comparators' outputs, a part of the 4-bit and that follows.
 fn quadrants(x: Halves, y: Halves) -> u8 {
-    let across = u8::from(x.low) * 0b0101 | u8::from(x.high) * 0b1010;
-    let down = u8::from(y.low) * 0b0011 | u8::from(y.high) * 0b1100;
+    let across = (u8::from(x.low) * 0b0101) | (u8::from(x.high) * 0b1010);
+    let down = (u8::from(y.low) * 0b0011) | (u8::from(y.high) * 0b1100);
     across & down
 }
 
@@ -97,7 +97,8 @@ pub(super) fn clip<P: Probe, L: Lattice>(
             break;
         };
         let to = clip_in_quadrant(dp, pose, quadrant, far);
-        if !inside && !(near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w)) {
+        let leaves_little = inside || near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w);
+        if !leaves_little {
             // Too far outside: coordinates would grow beyond the word.
             break;
         }

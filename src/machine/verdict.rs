@@ -123,15 +123,9 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
     }
 
-    /// Leaves are drawn by their silhouettes, what level of detail stops by its centre.
+    /// A solid, by nature or by level of detail, is drawn by its silhouette.
     fn verdict_exact(&mut self, record: &mut Record<L>) -> Verdict {
-        let by_detail = self.constants.lod_limit.is_some();
-        if !self.crosses_near(record) && self.is_small(record, Limit::LevelOfDetail) {
-            if by_detail && self.is_small(record, Limit::Sample) {
-                return Verdict::DrawCentre;
-            }
-            record.solid = true;
-        }
+        self.take_for_solid(record);
         if record.solid {
             Verdict::DrawSolid
         } else {

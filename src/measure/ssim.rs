@@ -11,13 +11,16 @@ const SIGMA: f64 = 1.5;
 const C1: f64 = (0.01 * 255.0) * (0.01 * 255.0);
 const C2: f64 = (0.03 * 255.0) * (0.03 * 255.0);
 
+/// Local means of a plane, one for each window.
+type Mean = Box<dyn Fn(&[f64]) -> Vec<f64>>;
+
 /// Mean structural similarity of two luma planes, values 0..=255; 1 for empty ones.
 pub(super) fn ssim(width: usize, height: usize, a: &[f64], b: &[f64]) -> f64 {
     if a.is_empty() {
         return 1.0;
     }
     let product = |p: &[f64], q: &[f64]| p.iter().zip(q).map(|(x, y)| x * y).collect::<Vec<_>>();
-    let mean: Box<dyn Fn(&[f64]) -> Vec<f64>> = if width < WINDOW || height < WINDOW {
+    let mean: Mean = if width < WINDOW || height < WINDOW {
         Box::new(|plane| vec![plane.iter().sum::<f64>() / plane.len() as f64])
     } else {
         Box::new(move |plane| blur(width, height, plane))

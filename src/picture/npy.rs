@@ -75,7 +75,7 @@ pub fn encode(array: &Array) -> Vec<u8> {
         lengths.join(", ")
     );
     // The numbers begin at a multiple of 64.
-    while (PREFIX + header.len() + 1) % 64 != 0 {
+    while !(PREFIX + header.len() + 1).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');

@@ -34,7 +34,7 @@ pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), StoreErro
     write_with(path, overwrite, |file| file.write_all(bytes))
 }
 
-/// As [`write`], with the bytes coming from a closure.
+/// As [`write()`], with the bytes coming from a closure.
 ///
 /// # Errors
 /// See [`StoreError`].

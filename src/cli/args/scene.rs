@@ -25,17 +25,12 @@ pub struct SceneArgs {
     /// Voxels outside a .vox model's SIZE (VoxelShop writes them, modulo 256)
     #[arg(long, value_enum, default_value_t)]
     pub oob: OutOfBoundsName,
-    /// Levels at which a mesh is voxelised: 2^N voxels along its longest side [default: 8]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=16))]
-    pub depth: Option<u32>,
 }
 
 impl SceneArgs {
     /// Every setting, for a configuration file.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
-        let mut settings = vec![("oob", word(&self.oob))];
-        settings.extend(self.depth.map(|depth| ("depth", i64::from(depth).into())));
-        settings
+        vec![("oob", word(&self.oob))]
     }
 }

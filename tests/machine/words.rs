@@ -79,12 +79,12 @@ const PRODUCTS: [Allowed; 17] = [
     ),
     allowed(
         "fit.rs",
-        "let across = u8::from(x.low) * 0b0101 | u8::from(x.high) * 0b1010;",
+        "let across = (u8::from(x.low) * 0b0101) | (u8::from(x.high) * 0b1010);",
         "one bit led to two places: wires",
     ),
     allowed(
         "fit.rs",
-        "let down = u8::from(y.low) * 0b0011 | u8::from(y.high) * 0b1100;",
+        "let down = (u8::from(y.low) * 0b0011) | (u8::from(y.high) * 0b1100);",
         "one bit led to two places: wires",
     ),
     allowed(

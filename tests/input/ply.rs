@@ -1,10 +1,8 @@
 //! PLY clouds: every encoding and type, clear refusals, a second opinion, and the writer.
 
-mod input_support;
-
 use std::io::Cursor;
 
-use input_support::{damage, message, read, read_plain};
+use crate::input_support::{damage, message, read, read_plain};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 use proptest::prelude::*;

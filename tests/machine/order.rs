@@ -1,9 +1,7 @@
 //! Occlusion order (paper, 3.2): proved for every position of the eye, and
 //! seen at work on random graphs.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;

@@ -1,9 +1,7 @@
 //! Properties of the machine's rules: cages agree, rejection does not show,
 //! nothing has holes, every input ends, narrow words trap.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use hwmodel::{Overflow, Probe};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;

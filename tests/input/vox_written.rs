@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "test helpers may panic")]
 
-mod input_support;
-
-use input_support::{Attributes, Plain, VoxFile, damage, message, read, read_plain, shipped};
+use crate::input_support::{
+    Attributes, Plain, VoxFile, damage, message, read, read_plain, shipped,
+};
 use proptest::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
 use shiftvox::scene::{OutOfBounds, ReadOptions, VoxWriter, read_voxels_from};

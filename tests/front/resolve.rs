@@ -45,7 +45,7 @@ fn setup(placement: &Placement, side: u32, aa_log2: u32) -> FrameSetup {
         aa_log2,
         ..SetupOptions::default()
     };
-    FrameSetup::new(&camera, placement, 2, &options).unwrap()
+    FrameSetup::new(&camera, placement, 2, &options).expect("a frame")
 }
 
 fn see(frame: &mut Frame, x: u32, y: u32, node: u32, voxel: [i32; 4]) {

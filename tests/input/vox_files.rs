@@ -2,12 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "test helpers may panic")]
 
-mod input_support;
-
 use std::collections::BTreeSet;
 
+use crate::input_support::{Plain, read, read_plain, shared, shared_path, shipped};
 use dot_vox::{DotVoxData, Rotation, SceneNode};
-use input_support::{Plain, read, read_plain, shared, shared_path, shipped};
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OutOfBounds, ReadOptions, SceneError, read_voxels};
 

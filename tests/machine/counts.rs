@@ -35,11 +35,9 @@
 //! position is divided for once, bit by bit, in a stage of its own; nothing
 //! is ever multiplied.
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::*;
+use crate::common::*;
 use hwmodel::count::Counter;
 use hwmodel::{Memory, NoProbe, OpClass, Place, Probe, Stage};
 use shiftvox::frame::Frame;

@@ -2,11 +2,9 @@
 //! exact coverage and no level of detail draws what the oracle draws: in
 //! every sample the same voxel and the same node, none extra, none missing.
 
-mod scenes;
-
 use std::time::Instant;
 
-use scenes::*;
+use crate::scenes::*;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;

@@ -1,9 +1,7 @@
 //! With tolerance 0, exact coverage and no level of detail, the machine's
 //! voxels are the oracle's: no sample more, none less, none other.
 
-mod common;
-
-use common::*;
+use crate::common::*;
 use proptest::prelude::*;
 use shiftvox::frame::{Frame, NO_VOXEL};
 use shiftvox::graph::Graph;
@@ -22,8 +20,7 @@ fn exact(cage: CageKind) -> SetupOptions {
 
 fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays::default()
-        .render(&graph.view(), setup, &mut frame)
+    Rays.render(&graph.view(), setup, &mut frame)
         .expect("the oracle never fails");
     frame
 }
@@ -84,6 +81,28 @@ proptest! {
         cage in any_cage(),
     ) {
         check(&solid(2), &camera, cage)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Level of detail covers what the true picture covers, and more only
+    /// within its size of it.
+    #[test]
+    fn level_of_detail_loses_no_sample(
+        graph in any_octree(3, 0.15),
+        camera in any_camera(8.0, 1..40),
+        cage in any_cage(),
+        lod_px in prop_oneof![Just(0.5), Just(1.0), Just(4.0)],
+    ) {
+        let options = SetupOptions { lod_px, ..exact(cage) };
+        let setup = setup(&graph, &camera, &options);
+        let machine = draw(&graph, &setup);
+        let oracle = oracle(&graph, &setup);
+        for (at, (drawn, covered)) in machine.voxel.iter().zip(&oracle.voxel).enumerate() {
+            prop_assert!(drawn[3] >= 0 || covered[3] < 0, "sample {} is lost", at);
+        }
     }
 }
 

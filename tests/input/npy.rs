@@ -1,8 +1,6 @@
 //! Numpy arrays: every type, both orders, every version, clear refusals.
 
-mod input_support;
-
-use input_support::{damage, message, read, read_plain};
+use crate::input_support::{damage, message, read, read_plain};
 use shiftvox::graph::Silent;
 use shiftvox::scene::{FileKind, ReadOptions, read_voxels_from};
 
