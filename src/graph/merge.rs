@@ -8,7 +8,8 @@
 //!
 //! Nodes of the result are numbered in the order in which a walk by levels
 //! from the root meets them, so the root is node 0, and nodes and children that
-//! a render meets together lie together. A graph stored level by level stays so.
+//! a render meets together lie together. A graph stored level by level stays so,
+//! unless nothing led to the nodes of its finest levels.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hash};
@@ -226,7 +227,11 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     };
     if ordered {
         level_start.push(merged.len() as u32);
-        merged.level_start = level_start;
+        // Nodes that nothing leads to are left out. If a level had no others, it is
+        // empty now, which the level table cannot say; the graph is as sound without.
+        if level_start.len() == graph.depth as usize + 2 {
+            merged.level_start = level_start;
+        }
     }
     merged
 }

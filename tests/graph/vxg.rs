@@ -196,6 +196,28 @@ fn child_lists_that_are_missing_read_as_no_children() {
     }
 }
 
+/// Only a node that nothing leads to is on the finest level of this file, so
+/// merging empties that level. Found by the fuzz target `vxg`.
+#[test]
+fn merging_away_a_whole_level_leaves_a_sound_graph() {
+    let file = include_bytes!("../data/regressions/merge_unreachable_level.vxg");
+    let graph = vxg::from_bytes(file).unwrap();
+    assert!(graph.is_level_ordered());
+    for by in [MergeBy::Shape, MergeBy::ShapeAndAttributes] {
+        let (merged, _) = merge(&graph, by, &Silent);
+        merged.validate().unwrap();
+        let cells = |graph: &Graph| {
+            let cells = graph.voxels();
+            cells.map(|c| (c.corner, c.level)).collect::<Vec<_>>()
+        };
+        assert_eq!(cells(&merged), cells(&graph));
+        assert_eq!(
+            parts(&vxg::from_bytes(&bytes_of(&merged)).unwrap()),
+            parts(&merged)
+        );
+    }
+}
+
 /// Puts right checksums on damaged contents: what an attacker would do.
 fn seal(bytes: &mut [u8]) {
     let get = |bytes: &[u8], at: usize| {
