@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::args::{Aov, EngineArgs, PictureArgs};
 use super::engines;
-use super::error::CliError;
+use super::error::{CliError, Kind};
 use super::scenes::Scene;
 use crate::frame::Frame;
 use crate::picture::{Picture, resolve};
@@ -22,6 +22,9 @@ pub(super) struct Drawn {
     pub(super) resolve_ms: f64,
 }
 
+/// Most samples of a picture: about nine gigabytes with all that is made of them.
+const MAX_SAMPLES: u64 = 1 << 27;
+
 /// Draws a scene `repeat` times (at least once) and makes the picture.
 pub(super) fn draw(
     scene: &Scene,
@@ -31,6 +34,15 @@ pub(super) fn draw(
     repeat: u32,
 ) -> Result<Drawn, CliError> {
     let graph = &scene.graph;
+    let samples =
+        u64::from(camera.width) * u64::from(camera.height) << (2 * picture_args.aa_log2());
+    if samples > MAX_SAMPLES {
+        return Err(CliError::new(
+            Kind::Limit,
+            format!("a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"),
+        )
+        .advise("ask for a smaller --size, or fewer samples with --aa"));
+    }
     let options = engine_args.options(picture_args.aa_log2());
     let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
     let mut engine = engines::engine(engine_args)?;

@@ -32,7 +32,7 @@ use error::{CliError, Kind};
 
 /// Draws voxel files with nothing but adders and shifts.
 ///
-/// With no verb it draws the bundled scene, writes it to out/demo.png and says
+/// With no verb it draws the bundled scene, writes it to out/demo.png (replacing an older one) and says
 /// what that took. Scenes are .vox, .ply, .npy and .vxg files, told by their
 /// content, or generators such as gen:terrain,depth=10,seed=1.
 ///
@@ -61,8 +61,9 @@ struct CommonArgs {
     #[arg(long, global = true)]
     json: bool,
     /// Threads, 0 for all; never changes a bit of output
-    #[arg(long, global = true, value_name = "N", default_value_t = 0)]
-    threads: usize,
+    #[arg(long, global = true, value_name = "N", default_value_t = 0,
+          value_parser = clap::value_parser!(u16).range(0..=1024))]
+    threads: u16,
     /// TOML file with flags by their long names; flags on the command line come first
     #[arg(long, global = true, value_name = "FILE")]
     config: Option<std::path::PathBuf>,
@@ -118,7 +119,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
     };
     let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
     rayon::ThreadPoolBuilder::new()
-        .num_threads(cli.common.threads)
+        .num_threads(usize::from(cli.common.threads))
         .build_global()
         .map_err(|e| CliError::new(Kind::Run, format!("cannot start the threads: {e}")))?;
     match cli.verb {

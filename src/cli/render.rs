@@ -68,6 +68,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = choose_scenes(&args.scenes, from_config)?;
     check(args, names.len())?;
+    check_distinct(args, &names)?;
     let mut results = Vec::new();
     let mut resolved = None;
     let mut first_failure: Option<CliError> = None;
@@ -153,6 +154,24 @@ fn check(args: &RenderArgs, scenes: usize) -> Result<(), CliError> {
     }
     if let Some(outdir) = &args.out.outdir {
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
+    }
+    Ok(())
+}
+
+/// Refuses two scenes whose pictures would have one name.
+fn check_distinct(args: &RenderArgs, names: &[String]) -> Result<(), CliError> {
+    let mut taken = std::collections::HashMap::new();
+    for name in names {
+        let Some(path) = output_path(args, &scenes::stem(name)) else {
+            continue;
+        };
+        if let Some(other) = taken.insert(path.clone(), name) {
+            return Err(CliError::usage(format!(
+                "{other} and {name} would both be drawn to {}",
+                path.display()
+            ))
+            .advise("draw them into different folders, one after the other"));
+        }
     }
     Ok(())
 }

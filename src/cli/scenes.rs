@@ -246,7 +246,9 @@ pub(super) fn merge_gains(graph: &Graph) -> [f64; 2] {
     [MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain())
 }
 
-fn stem(source: &str) -> String {
+/// A scene's name without folder and ending, for `{stem}`.
+#[must_use]
+pub(super) fn stem(source: &str) -> String {
     if is_spec(source) {
         let name = source.trim_start_matches(scene::generate::PREFIX);
         return name.replace([',', '=', '/', '\\'], "-");

@@ -27,10 +27,12 @@ pub enum CameraError {
     #[error("the camera has a coordinate that is not a finite number")]
     NotFinite,
     /// Eye and target coincide.
-    #[error("the camera's eye and target are the same point")]
+    #[error("the camera's eye and target are the same point, or too far apart for numbers")]
     NoDirection,
     /// The up direction is zero or lies along the view axis.
-    #[error("the camera's up direction is zero or lies along the view axis")]
+    #[error(
+        "the camera's up direction is zero or lies along the view axis; give another, such as 0,1,0"
+    )]
     NoUp,
     /// Field of view outside 0..180 degrees.
     #[error("the field of view must lie between 0 and 180 degrees, not {0}")]

@@ -1,6 +1,6 @@
 //! Memory of generated scenes: bytes a voxel of the graph, and the peak while building.
 //!
-//! `cargo test --release --test graph_scale -- --ignored --nocapture` builds the largest terrain
+//! `cargo test --release --test graph scale -- --ignored --nocapture` builds the largest terrain
 //! and prints its peak (Linux only: resident memory is read from `/proc/self/status`).
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
@@ -46,7 +46,7 @@ const SCENES: [(&str, f64); 10] = [
     ("gen:wires", 16.0),
 ];
 
-/// `cargo test --release --test graph_scale bytes -- --nocapture` prints the table of `spec/graph.md`.
+/// `cargo test --release --test graph scale bytes -- --nocapture` prints the table of `spec/graph.md`.
 #[test]
 fn bytes_a_voxel_of_each_generator() {
     for (spec, limit) in SCENES {

@@ -1,6 +1,6 @@
 //! Time and memory of a surface of a million voxels; the time is printed, not judged.
 //!
-//! `cargo test --release --test graph_speed -- --ignored --nocapture` takes the larger ones too.
+//! `cargo test --release --test graph speed -- --ignored --nocapture` takes the larger ones too.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 use std::time::Instant;

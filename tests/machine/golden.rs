@@ -3,7 +3,7 @@
 //! number of threads. After a change that is meant to show:
 //!
 //! ```text
-//! SHIFTVOX_BLESS=1 cargo test --release --test golden
+//! SHIFTVOX_BLESS=1 cargo test --release --test machine golden
 //! ```
 //!
 //! and say in the commit why which lines changed.
@@ -302,7 +302,7 @@ fn pictures_are_the_golden_ones() {
     assert!(
         changed.is_empty(),
         "these pictures changed; if that is meant, run \
-         SHIFTVOX_BLESS=1 cargo test --release --test golden\n{}",
+         SHIFTVOX_BLESS=1 cargo test --release --test machine golden\n{}",
         changed.join("\n")
     );
 }
