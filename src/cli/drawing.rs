@@ -35,7 +35,7 @@ pub(super) fn draw(
 ) -> Result<Drawn, CliError> {
     let graph = &scene.graph;
     let samples =
-        u64::from(camera.width) * u64::from(camera.height) << (2 * picture_args.aa_log2());
+        (u64::from(camera.width) * u64::from(camera.height)) << (2 * picture_args.aa_log2());
     if samples > MAX_SAMPLES {
         return Err(CliError::new(
             Kind::Limit,
