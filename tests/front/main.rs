@@ -1,4 +1,5 @@
 //! The command line and the pictures it writes.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod buffers;
 mod manners;

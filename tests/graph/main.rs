@@ -1,4 +1,5 @@
 //! The voxel graph and its file.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod properties;
 mod scale;

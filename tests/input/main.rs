@@ -1,4 +1,5 @@
 //! Voxel files and generators.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod generators;
 mod input_support;

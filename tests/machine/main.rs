@@ -1,4 +1,5 @@
 //! The machine and the oracle: order, exactness, rules, counts, golden pictures.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod common;
 mod counts;
