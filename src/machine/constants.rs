@@ -55,6 +55,11 @@ pub(super) struct Constants {
     pub(super) near_crossing: Word,
     /// By level; `None`: never.
     pub(super) screen_depth: Vec<Option<Word>>,
+    /// By level, least depth of a clip-space node that is a solid by level of
+    /// detail; `None`: none is.
+    pub(super) lod_depth: Vec<Option<Word>>,
+    /// Fraction bits of strips beyond those that their levels need.
+    pub(super) strip_guard: u32,
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     pub(super) positive: bool,
@@ -94,15 +99,14 @@ impl Constants {
         let origin = setup.origin_clip.map(|c| word(c, scale));
         let edges =
             [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(setup.edge_clip[k][c], scale + setup.depth)));
-        let screen_depth = setup
-            .screen_depth
-            .iter()
-            .map(|&w| {
+        let depths = |depths: &[i64]| -> Vec<Option<Word>> {
+            let depth = |&w: &i64| {
                 let scaled = i128::from(w) << scale;
                 let reachable = w != i64::MAX && scaled <= i128::from(setup.format.max());
                 reachable.then(|| Word::from_host(clamp(scaled)))
-            })
-            .collect();
+            };
+            depths.iter().map(depth).collect()
+        };
         // Beyond the object all eyes compare alike, so a far one is brought near.
         let far = 1i64 << (setup.depth + setup.sub_levels);
         let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, far + 1)));
@@ -152,7 +156,9 @@ impl Constants {
             least_size_screen: Word::from_host(LEAST_SIZE),
             near,
             near_crossing: Word::from_host(near.to_host() >> NEAR_CROSSING_SHIFT),
-            screen_depth,
+            screen_depth: depths(&setup.screen_depth),
+            lod_depth: depths(&setup.lod_depth),
+            strip_guard: setup.strip_guard,
             eye_floor: eye(setup.eye_floor),
             eye_ceil: eye(setup.eye_ceil),
             positive: setup.positive,

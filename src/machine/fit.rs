@@ -10,6 +10,7 @@ use hwmodel::{Datapath, Memory, Probe, Stage, WideWord, Word};
 use super::constants::{Constants, Margin};
 use super::lattice::Lattice;
 use super::record::{Clip, Planes, Screen};
+use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -370,6 +371,106 @@ pub(super) fn screen<P: Probe, L: Lattice>(
         quad = quad.quadrant(quadrant);
     }
     Some(Place { quad, inside })
+}
+
+/// Fits a voxel of octree level `level` in its lattice, and makes its place
+/// relative to the node found. `None`: rejected.
+pub(super) fn strips<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &Fill<'_>,
+    place: &Place,
+    (subtree, level): (&Subtree, u32),
+    pose: &mut Strips,
+) -> Option<Place> {
+    dp.stage(Stage::QuadtreeFit);
+    let half_widths = [ACROSS, DOWN].map(|f| subtree.half_width(dp, f, level));
+    let mut quad = place.quad;
+    let inside = place.inside
+        || match strips_border(dp, constants, subtree, half_widths, quad, pose) {
+            Border::Outside => return None,
+            Border::Across => false,
+            Border::Inside => true,
+        };
+    loop {
+        let below = constants.levels - quad.level;
+        let overlapped = strips_quadrants(dp, subtree, half_widths, below, pose);
+        if fill.rejects(dp, quad, overlapped) {
+            return None;
+        }
+        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
+            break;
+        };
+        *pose = subtree.in_quadrant(dp, pose, quadrant, below);
+        quad = quad.quadrant(quadrant);
+    }
+    Some(Place { quad, inside })
+}
+
+/// The quadrants of a node `below` levels above the samples of which a box
+/// holds samples.
+pub(super) fn strips_quadrants<P: Probe>(
+    dp: &mut Datapath<P>,
+    subtree: &Subtree,
+    half_widths: [WideWord; 2],
+    below: u32,
+    pose: &Strips,
+) -> u8 {
+    let mut halves = |function: usize| {
+        let high = half_widths[function - ACROSS];
+        let low = dp.neg(high);
+        let value = pose.value[function];
+        if below == 0 {
+            let both = dp.le(low, value) && dp.le(value, high);
+            return Halves {
+                low: both,
+                high: both,
+            };
+        }
+        // The last sample of the near half, and the first of the far half.
+        let one = subtree.box_step(dp, function, 0);
+        let half = subtree.box_step(dp, function, below - 1);
+        let far = dp.add(value, half);
+        let near = dp.sub(far, one);
+        Halves {
+            low: dp.le(low, near),
+            high: dp.le(far, high),
+        }
+    };
+    quadrants(halves(ACROSS), halves(DOWN))
+}
+
+/// A box against the samples of a node that is cut by the picture's border.
+fn strips_border<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    subtree: &Subtree,
+    half_widths: [WideWord; 2],
+    quad: QuadNode,
+    pose: &Strips,
+) -> Border {
+    let below = constants.levels - quad.level;
+    let mut inside = true;
+    for function in [ACROSS, DOWN] {
+        let high = half_widths[function - ACROSS];
+        let first = pose.value[function];
+        let one = subtree.box_step(dp, function, 0);
+        let all = subtree.box_step(dp, function, below);
+        let after = dp.add(first, all);
+        let before = dp.sub(first, one);
+        let last = dp.sub(after, one);
+        let low = dp.neg(high);
+        if dp.lt(last, low) || dp.lt(high, first) {
+            return Border::Outside;
+        }
+        // Neither the sample before the first nor the one after the last is held.
+        inside &= dp.lt(before, low) && dp.lt(high, after);
+    }
+    if inside {
+        Border::Inside
+    } else {
+        Border::Across
+    }
 }
 
 /// A position on the picture in half samples, as a screen-space word: wires.

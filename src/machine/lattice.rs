@@ -23,6 +23,9 @@ pub(super) trait Lattice: Copy + std::fmt::Debug {
     /// The middle of the lowest and the highest corner, rounded down.
     fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word;
 
+    /// The eight vertices, in Morton order.
+    fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8];
+
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
@@ -47,6 +50,19 @@ pub(super) trait Lattice: Copy + std::fmt::Debug {
     ) -> Self;
 }
 
+/// The eight vertices, in Morton order, of a corner and three edges: seven adds.
+#[inline]
+fn parallelepiped<P: Probe>(dp: &mut Datapath<P>, corner: Word, [x, y, z]: [Word; 3]) -> [Word; 8] {
+    let mut v = [corner; 8];
+    v[4] = dp.add(v[0], x);
+    v[2] = dp.add(v[0], y);
+    v[6] = dp.add(v[4], y);
+    for low in [0, 2, 4, 6] {
+        v[low + 1] = dp.add(v[low], z);
+    }
+    v
+}
+
 /// Eight corners in Morton order (`x << 2 | y << 1 | z`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Corners([Word; 8]);
@@ -60,15 +76,7 @@ impl Corners {
 
 impl Lattice for Corners {
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
-        let [x, y, z] = edges;
-        let mut v = [corner; 8];
-        v[4] = dp.add(v[0], x);
-        v[2] = dp.add(v[0], y);
-        v[6] = dp.add(v[4], y);
-        for low in [0, 2, 4, 6] {
-            v[low + 1] = dp.add(v[low], z);
-        }
-        Self(v)
+        Self(parallelepiped(dp, corner, edges))
     }
 
     /// The paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 lattice made
@@ -126,6 +134,11 @@ impl Lattice for Corners {
     }
 
     #[inline]
+    fn vertices<P: Probe>(&self, _: &mut Datapath<P>) -> [Word; 8] {
+        self.0
+    }
+
+    #[inline]
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3] {
         [4, 2, 1].map(|end| dp.sub(self.0[end], self.0[0]))
     }
@@ -180,14 +193,7 @@ impl Lattice for Frame {
             let sign = Word::from_host(i64::from(dp.bit(edge, 63)));
             dp.midpoint(edge, sign)
         });
-        let mut corner = [self.corner; 8];
-        corner[4] = dp.add(corner[0], edges[0]);
-        corner[2] = dp.add(corner[0], edges[1]);
-        corner[6] = dp.add(corner[4], edges[1]);
-        for low in [0, 2, 4, 6] {
-            corner[low + 1] = dp.add(corner[low], edges[2]);
-        }
-        corner.map(|corner| Self { corner, edges })
+        parallelepiped(dp, self.corner, edges).map(|corner| Self { corner, edges })
     }
 
     #[inline]
@@ -209,6 +215,11 @@ impl Lattice for Frame {
         let xy = dp.add(x, y);
         let half = dp.midpoint(xy, z);
         dp.add(self.corner, half)
+    }
+
+    #[inline]
+    fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8] {
+        parallelepiped(dp, self.corner, self.edges)
     }
 
     #[inline]

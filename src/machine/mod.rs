@@ -36,9 +36,7 @@ use crate::frame::{FillVectors, Frame};
 use crate::graph::GraphView;
 use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
 
-/// Children by occlusion order, nearest first, for octant 000: exclusive-or
-/// with the octant bits gives the order for any eye (paper, 3.2).
-pub const OCCLUSION_ORDER: [u8; 8] = [7, 6, 5, 3, 4, 2, 1, 0];
+pub use crate::project::OCCLUSION_ORDER;
 
 /// How the machine works, beyond what the picture asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

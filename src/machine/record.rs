@@ -2,6 +2,7 @@
 
 use hwmodel::{WideWord, Word};
 
+use super::strips::Strips;
 use crate::frame::QuadNode;
 
 /// A voxel's projected vertices.
@@ -13,6 +14,9 @@ pub(super) enum Pose<L> {
     /// In screen space, an approximation; whole-picture samples with the
     /// format's fraction bits.
     Screen(Screen<L>),
+    /// In screen space under the exact rule: a place in the lattice of the
+    /// record that changed, relative to the record's quadtree node.
+    Strips(Strips),
 }
 
 /// Vertices in clip space.

@@ -1,301 +1,432 @@
-//! Silhouettes in screen space: where a voxel is a parallelepiped, its
-//! outline is the intersection of three strips, one along each edge
-//! direction (`SPEC.md`, "Strips").
+//! Silhouettes in screen space, under the exact rule (`SPEC.md`, "Strips").
 //!
-//! All voxels of a level that changed to screen space together have the same
-//! edges, so the shape of the outline is kept for the next voxel. The
-//! products that a strip needs are made by shifts and adds over the ten
-//! bits of its normal. Normals are rounded, so strips are taken wide enough
-//! to hold all eight vertices, and the box cuts off what that adds.
+//! Once a voxel has changed to screen space, it and all that is below it are
+//! one affine lattice. Its outline on the picture is the intersection of three
+//! strips, one along each edge, and its box is two more: five linear
+//! functions of the sample. A record holds the five functions' values at the
+//! first sample of its quadtree node, relative to its centre. Everything else
+//! is a constant of the lattice: what a sample adds, what a half edge adds, and
+//! half the width. Half edges are rounded once, for the finest level; at
+//! coarser levels they are shifted copies, so that children tile their parent
+//! without gap or overlap. The products that a lattice needs are made by
+//! shifts and adds, when it is made.
 
 use hwmodel::{Datapath, Probe, WideWord, Word};
 
 use super::constants::Constants;
-use super::lattice::Lattice;
-use super::record::Screen;
 use super::silhouette::{Cover, Silhouette};
-use crate::frame::QuadNode;
+use crate::project::STRIP_NORMAL_BITS;
 
-/// Bits of a strip's normal, without sign.
-const NORMAL_BITS: u32 = 10;
+/// Linear functions of an outline: three strips, the box across, the box down.
+pub(super) const FUNCTIONS: usize = 5;
+/// The function of the box across the picture.
+pub(super) const ACROSS: usize = 3;
+/// The function of the box down the picture.
+pub(super) const DOWN: usize = 4;
 
-/// What a strip has of the edges alone: `low <= gx x + gy y <= high` relative
-/// to the voxel's lowest corner, in half units of the last place.
+/// Fraction bits that a sum over eight vertices has beyond a position.
+const SUM_BITS: u32 = 3;
+/// Levels below a lattice's own whose rounding needs no further fraction bits.
+const FREE_LEVELS: u32 = 2;
+
+/// A projected voxel as its eight vertices have it on average.
 #[derive(Debug, Clone, Copy)]
-struct Shape {
-    gx: Word,
-    gy: Word,
-    /// `|gx| + |gy|`.
-    slope: WideWord,
-    low: WideWord,
-    high: WideWord,
+pub(super) struct Mean {
+    /// By coordinate, the sum of the vertices, relative to the quadtree
+    /// node's corner: units of `2^-(frac + 3)` samples.
+    pub(super) sum: [Word; 2],
+    /// By coordinate, then by axis: the sum over the four edges along it,
+    /// units of `2^-(frac + 2)` samples of an edge.
+    pub(super) edges: [[Word; 3]; 2],
 }
 
-/// The shapes of the three strips of the voxel drawn last, and its edges.
-#[derive(Debug, Default)]
-pub(super) struct Shapes {
-    last: Option<([[Word; 3]; 2], [Shape; 3])>,
+impl Mean {
+    /// The sum and the three sums of differences of eight vertices in Morton order.
+    pub(super) fn of<P: Probe>(dp: &mut Datapath<P>, vertices: [Word; 8]) -> (Word, [Word; 3]) {
+        // Pairs along z, then y, then x: 7 adds and 4 + 4 + 4 subtracts less those not wanted.
+        let z_sum: [Word; 4] =
+            std::array::from_fn(|i| dp.add(vertices[i << 1], vertices[i << 1 | 1]));
+        let z_edge: [Word; 4] =
+            std::array::from_fn(|i| dp.sub(vertices[i << 1 | 1], vertices[i << 1]));
+        let y_sum: [Word; 2] = std::array::from_fn(|i| dp.add(z_sum[i << 1], z_sum[i << 1 | 1]));
+        let y_edge: [Word; 2] = std::array::from_fn(|i| dp.sub(z_sum[i << 1 | 1], z_sum[i << 1]));
+        let sum = dp.add(y_sum[0], y_sum[1]);
+        let x = dp.sub(y_sum[1], y_sum[0]);
+        let y = dp.add(y_edge[0], y_edge[1]);
+        let z_low = dp.add(z_edge[0], z_edge[1]);
+        let z_high = dp.add(z_edge[2], z_edge[3]);
+        let z = dp.add(z_low, z_high);
+        (sum, [x, y, z])
+    }
 }
 
-impl Shapes {
-    /// The shapes for these edges (along x and y of the picture): those of the last voxel if it had the same.
-    fn of<P: Probe>(&mut self, dp: &mut Datapath<P>, edges: [[Word; 3]; 2]) -> [Shape; 3] {
-        if let Some((last, shapes)) = &self.last {
-            let mut pairs = edges.iter().flatten().zip(last.iter().flatten());
-            if pairs.all(|(&new, &old)| dp.equal(new, old)) {
-                return *shapes;
+/// What all records below a change to screen space have in common.
+#[derive(Debug, Clone)]
+pub(super) struct Subtree {
+    /// By function, what a step of one sample along x and y adds.
+    step: [[WideWord; 2]; FUNCTIONS],
+    /// By function, what half an edge along x, y, z adds, at the finest level.
+    half_edge: [[WideWord; 3]; FUNCTIONS],
+    /// By function, half the width of a voxel of the finest level.
+    half_width: [WideWord; FUNCTIONS],
+    /// Octree level of the finest voxels: solids, by nature or by level of detail.
+    finest: u32,
+}
+
+/// A record's place in its lattice.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Strips {
+    /// The functions' values at the first sample of the record's quadtree
+    /// node, relative to the record's centre.
+    pub(super) value: [WideWord; FUNCTIONS],
+}
+
+impl Subtree {
+    /// The lattice of a voxel of octree level `level`, and the voxel's place in it.
+    pub(super) fn new<P: Probe>(
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        level: u32,
+        mean: &Mean,
+    ) -> (Self, Strips) {
+        let levels = levels_below(dp, constants, level, mean);
+        let frac = constants.screen_frac;
+        let fine = levels.saturating_sub(FREE_LEVELS).min(frac) + constants.strip_guard;
+        // From products in units of 2^-(frac + 3) to units of 2^-fine.
+        let places = (frac + SUM_BITS) as i32 - fine as i32;
+        // The first sample's centre is half a sample from the node's corner.
+        let half_sample = dp.load(1i64 << (frac + SUM_BITS - 1));
+        let centre = mean.sum.map(|sum| dp.sub(sum, half_sample));
+
+        let mut step = [[WideWord::ZERO; 2]; FUNCTIONS];
+        let mut half_edge = [[WideWord::ZERO; 3]; FUNCTIONS];
+        let mut value = [WideWord::ZERO; FUNCTIONS];
+        for function in 0..FUNCTIONS {
+            let normal = Normal::of(dp, &mean.edges, function);
+            step[function] = normal.steps(dp).map(|step| dp.shl(step, fine));
+            let at_centre = normal.along(dp, centre);
+            let at_centre = shifted(dp, at_centre, places);
+            value[function] = dp.neg(at_centre);
+            for k in 0..3 {
+                // An edge sum has half the unit of a half edge: no further shift.
+                let edge = normal.along(dp, [mean.edges[0][k], mean.edges[1][k]]);
+                half_edge[function][k] = nearest(dp, edge, places + levels as i32);
             }
         }
-        let shapes = [0, 1, 2].map(|j| Shape::new(dp, edges, j));
-        self.last = Some((edges, shapes));
-        shapes
+        let half_width = half_edge.map(|[x, y, z]| {
+            let [x, y, z] = [x, y, z].map(|edge| magnitude(dp, edge));
+            let sum = dp.add(x, y);
+            dp.add(sum, z)
+        });
+        let subtree = Self {
+            step,
+            half_edge,
+            half_width,
+            finest: level + levels,
+        };
+        (subtree, Strips { value })
+    }
+
+    /// Octree level of the finest voxels.
+    pub(super) fn finest(&self) -> u32 {
+        self.finest
+    }
+
+    /// What a step of `2^places` samples adds to a function of the box.
+    pub(super) fn box_step<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        function: usize,
+        places: u32,
+    ) -> WideWord {
+        dp.shl(self.step[function][function - ACROSS], places)
+    }
+
+    /// Half the width of a voxel of octree level `level`.
+    pub(super) fn half_width<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        function: usize,
+        level: u32,
+    ) -> WideWord {
+        dp.shl(self.half_width[function], self.finest - level)
+    }
+
+    /// Whether a voxel of octree level `level` is no larger than a sample.
+    pub(super) fn at_most_a_sample<P: Probe>(&self, dp: &mut Datapath<P>, level: u32) -> bool {
+        [ACROSS, DOWN].into_iter().all(|function| {
+            let half = self.half_width(dp, function, level);
+            let width = dp.shl(half, 1);
+            let sample = self.box_step(dp, function, 0);
+            dp.le(width, sample)
+        })
+    }
+
+    /// The places of a record's eight children of octree level `level`, in Morton order.
+    pub(super) fn children<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        level: u32,
+        parent: &Strips,
+    ) -> [Strips; 8] {
+        let mut children = [*parent; 8];
+        for function in 0..FUNCTIONS {
+            let [x, y, z] = self.half_edge[function].map(|edge| dp.shl(edge, self.finest - level));
+            let value = parent.value[function];
+            // The value falls where the centre moves on: low children have more.
+            let by_x = [dp.add(value, x), dp.sub(value, x)];
+            for (i, &value) in by_x.iter().enumerate() {
+                let by_y = [dp.add(value, y), dp.sub(value, y)];
+                for (j, &value) in by_y.iter().enumerate() {
+                    children[i << 2 | j << 1].value[function] = dp.add(value, z);
+                    children[i << 2 | j << 1 | 1].value[function] = dp.sub(value, z);
+                }
+            }
+        }
+        children
+    }
+
+    /// A place relative to a quadrant of a node that is `below` levels above the samples.
+    pub(super) fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        place: &Strips,
+        quadrant: u8,
+        below: u32,
+    ) -> Strips {
+        Strips {
+            value: std::array::from_fn(|function| {
+                self.moved(dp, function, place.value[function], quadrant, below)
+            }),
+        }
+    }
+
+    /// A function's value at the first sample of a quadrant.
+    fn moved<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        function: usize,
+        value: WideWord,
+        quadrant: u8,
+        below: u32,
+    ) -> WideWord {
+        let mut moved = value;
+        for axis in 0..2 {
+            if quadrant >> axis & 1 != 0 {
+                let step = dp.shl(self.step[function][axis], below - 1);
+                moved = dp.add(moved, step);
+            }
+        }
+        moved
     }
 }
 
-impl Shape {
-    /// The strip along edge `j`.
-    fn new<P: Probe>(dp: &mut Datapath<P>, [x, y]: [[Word; 3]; 2], j: usize) -> Self {
-        let (normal_x, normal_y) = normal(dp, x[j], y[j]);
-        let gx = dp.neg(normal_y);
-        let gy = normal_x;
-        let mut low = WideWord::ZERO;
-        let mut high = WideWord::ZERO;
-        for k in 0..3 {
-            let across = along(dp, [gx, gy], [x[k], y[k]]);
-            let across = dp.shl(across, 1);
-            let below = dp.min(across, WideWord::ZERO);
-            let above = dp.max(across, WideWord::ZERO);
-            low = dp.add(low, below);
-            high = dp.add(high, above);
+/// Levels from a voxel to those that are no larger than the level of detail,
+/// or than what positions can part, or finest voxels.
+fn levels_below<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    level: u32,
+    mean: &Mean,
+) -> u32 {
+    let sizes = mean.edges.map(|edges| {
+        let [x, y, z] = edges.map(|edge| magnitude(dp, edge));
+        let sum = dp.add(x, y);
+        dp.add(sum, z)
+    });
+    let mut size = dp.max(sizes[0], sizes[1]);
+    let limit = dp.shl(constants.lod_limit_screen, SUM_BITS - 1);
+    let mut levels = 0;
+    while level + levels < constants.depth && dp.lt(limit, size) {
+        size = dp.shr(size, 1);
+        levels += 1;
+    }
+    levels
+}
+
+/// A function's gradient: a number of so many bits for each coordinate, or a
+/// whole sample's step across or down.
+enum Normal {
+    Strip([Word; 2]),
+    Box(usize),
+}
+
+impl Normal {
+    fn of<P: Probe>(dp: &mut Datapath<P>, edges: &[[Word; 3]; 2], function: usize) -> Self {
+        if function >= ACROSS {
+            return Self::Box(function - ACROSS);
         }
-        Self {
-            gx,
-            gy,
-            slope: slope(dp, gx, gy),
-            low,
-            high,
+        let (x, y) = direction(dp, edges[0][function], edges[1][function]);
+        let across = dp.neg(y);
+        Self::Strip([across, x])
+    }
+
+    /// What a step of a sample along x and y adds.
+    fn steps<P: Probe>(&self, dp: &mut Datapath<P>) -> [WideWord; 2] {
+        match self {
+            Self::Strip(normal) => normal.map(|g| dp.widen(g)),
+            Self::Box(axis) => std::array::from_fn(|a| {
+                WideWord::from_host(i64::from(a == *axis) << STRIP_NORMAL_BITS)
+            }),
+        }
+    }
+
+    /// The product with a vector.
+    fn along<P: Probe>(&self, dp: &mut Datapath<P>, [x, y]: [Word; 2]) -> WideWord {
+        match *self {
+            Self::Strip([gx, gy]) => {
+                let along_x = times(dp, gx, x);
+                let along_y = times(dp, gy, y);
+                dp.add(along_x, along_y)
+            }
+            Self::Box(axis) => {
+                let wide = dp.widen([x, y][axis]);
+                dp.shl(wide, STRIP_NORMAL_BITS)
+            }
         }
     }
 }
 
-/// `gx x + gy y`.
-fn along<P: Probe>(dp: &mut Datapath<P>, [gx, gy]: [Word; 2], [x, y]: [Word; 2]) -> WideWord {
-    let along_x = times(dp, gx, x);
-    let along_y = times(dp, gy, y);
-    dp.add(along_x, along_y)
+/// An edge's direction in [`STRIP_NORMAL_BITS`] bits; zero for an edge that is none.
+fn direction<P: Probe>(dp: &mut Datapath<P>, x: Word, y: Word) -> (Word, Word) {
+    let length_x = dp.bit_length(x);
+    let length_y = dp.bit_length(y);
+    let length = dp.longer(length_x, length_y);
+    // Towards zero, so that no component reaches 2^bits.
+    let mut part = |v: Word| {
+        let size = magnitude(dp, v);
+        let size = if length > STRIP_NORMAL_BITS {
+            dp.shr(size, length - STRIP_NORMAL_BITS)
+        } else {
+            dp.shl(size, STRIP_NORMAL_BITS - length)
+        };
+        let negative = dp.is_negative(v);
+        let negated = dp.neg(size);
+        dp.select(negative, negated, size)
+    };
+    if length == 0 {
+        return (x, y);
+    }
+    (part(x), part(y))
 }
 
-/// The five strips of a voxel's outline: one along each edge direction, and
-/// the two pairs of the box's sides.
-#[derive(Debug)]
-pub(super) struct Outline {
-    shapes: [Shape; STRIPS],
-    /// The functions' values in the middle of the voxel's quadtree node.
-    values: [WideWord; STRIPS],
-    /// Fraction bits of screen positions.
-    frac: u32,
-}
-
-/// Strips of an outline.
-const STRIPS: usize = 5;
-
-/// An outline relative to a quadtree node.
-#[derive(Debug, Clone)]
-pub(super) struct StripSilhouette<'o> {
-    outline: &'o Outline,
-    /// The functions' values in the middle of the node.
-    values: [WideWord; STRIPS],
-    /// Whether all samples of the node are inside, by strip.
-    settled: [bool; STRIPS],
-}
-
-/// `small * a` by shifts and adds; `|small| < 2^NORMAL_BITS`.
+/// `small * a` by shifts and adds; `|small| < 2^STRIP_NORMAL_BITS`.
 fn times<P: Probe>(dp: &mut Datapath<P>, small: Word, a: Word) -> WideWord {
-    let negative = dp.is_negative(small);
-    let negated = dp.neg(small);
-    let magnitude = dp.select(negative, negated, small);
+    let size = magnitude(dp, small);
     let a = dp.widen(a);
     let mut sum = WideWord::ZERO;
-    for place in 0..NORMAL_BITS {
+    for place in 0..STRIP_NORMAL_BITS {
         let part = dp.shl(a, place);
         let with = dp.add(sum, part);
-        let bit = dp.bit(magnitude, place);
+        let bit = dp.bit(size, place);
         sum = dp.select(bit, with, sum);
     }
+    let negative = dp.is_negative(small);
     let negated = dp.neg(sum);
     dp.select(negative, negated, sum)
 }
 
-impl Shape {
-    /// What a node has of the strip: `value` in its middle, `below` levels
-    /// above the samples.
-    fn cover<P: Probe>(
-        &self,
+fn magnitude<P: Probe, N: hwmodel::Number>(dp: &mut Datapath<P>, a: N) -> N {
+    let negated = dp.neg(a);
+    dp.max(a, negated)
+}
+
+/// `a >> places` rounded down, or to the left for negative `places`.
+fn shifted<P: Probe>(dp: &mut Datapath<P>, a: WideWord, places: i32) -> WideWord {
+    if places >= 0 {
+        dp.shr(a, places as u32)
+    } else {
+        dp.shl(a, places.unsigned_abs())
+    }
+}
+
+/// `a >> places` rounded to the nearest, halves up.
+fn nearest<P: Probe>(dp: &mut Datapath<P>, a: WideWord, places: i32) -> WideWord {
+    if places <= 0 {
+        return shifted(dp, a, places);
+    }
+    let most = shifted(dp, a, places - 1);
+    let up = dp.add(most, WideWord::from_host(1));
+    dp.shr(up, 1)
+}
+
+/// The outline of a voxel, relative to a quadtree node.
+#[derive(Debug, Clone)]
+pub(super) struct StripSilhouette<'s> {
+    subtree: &'s Subtree,
+    half_width: [WideWord; FUNCTIONS],
+    place: Strips,
+    /// Whether all samples of the node are inside, by function.
+    settled: [bool; FUNCTIONS],
+}
+
+impl<'s> StripSilhouette<'s> {
+    /// The outline of a voxel of octree level `level`, relative to its own quadtree node.
+    pub(super) fn new<P: Probe>(
         dp: &mut Datapath<P>,
-        value: WideWord,
-        below: u32,
-        frac: u32,
-    ) -> Cover {
+        subtree: &'s Subtree,
+        level: u32,
+        place: Strips,
+    ) -> Self {
+        Self {
+            subtree,
+            half_width: std::array::from_fn(|f| subtree.half_width(dp, f, level)),
+            place,
+            settled: [false; FUNCTIONS],
+        }
+    }
+
+    /// What a node `below` levels above the samples has of one strip.
+    fn cover_of<P: Probe>(&self, dp: &mut Datapath<P>, function: usize, below: u32) -> Cover {
+        let value = self.place.value[function];
         let (mut least, mut greatest) = (value, value);
         if below > 0 {
-            // Samples lie within (2^below - 1) half samples of the middle.
-            let most = dp.shl(self.slope, below + frac);
-            let half = dp.shl(self.slope, frac);
-            let reach = dp.sub(most, half);
-            greatest = dp.add(value, reach);
-            least = dp.sub(value, reach);
+            for step in self.subtree.step[function] {
+                // To the last sample: 2^below - 1 steps.
+                let all = dp.shl(step, below);
+                let to_last = dp.sub(all, step);
+                let under = dp.min(to_last, WideWord::ZERO);
+                let over = dp.max(to_last, WideWord::ZERO);
+                least = dp.add(least, under);
+                greatest = dp.add(greatest, over);
+            }
         }
-        if dp.lt(greatest, self.low) || dp.lt(self.high, least) {
+        let high = self.half_width[function];
+        let low = dp.neg(high);
+        if dp.lt(greatest, low) || dp.lt(high, least) {
             return Cover::None;
         }
-        if dp.le(self.low, least) && dp.le(greatest, self.high) {
+        if dp.le(low, least) && dp.le(greatest, high) {
             Cover::All
         } else {
             Cover::Some
         }
-    }
-
-    /// The value in the middle of a quadrant, `2^places` half units away from
-    /// the node's along x and y.
-    fn in_quadrant<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        value: WideWord,
-        quadrant: u8,
-        places: u32,
-    ) -> WideWord {
-        [(self.gx, quadrant & 1 != 0), (self.gy, quadrant & 2 != 0)]
-            .into_iter()
-            .fold(value, |value, (g, positive)| {
-                let g = dp.widen(g);
-                let step = dp.shl(g, places);
-                if positive {
-                    dp.add(value, step)
-                } else {
-                    dp.sub(value, step)
-                }
-            })
-    }
-}
-
-impl Outline {
-    pub(super) fn new<P: Probe, L: Lattice>(
-        dp: &mut Datapath<P>,
-        constants: &Constants,
-        shapes: &mut Shapes,
-        quad: QuadNode,
-        pose: &Screen<L>,
-    ) -> Self {
-        let frac = constants.screen_frac;
-        let below = constants.levels - quad.level;
-        let edges_x = pose.x.edges(dp);
-        let edges_y = pose.y.edges(dp);
-        // The node's middle, in half units: whole half samples.
-        let middle = |column: u32| Word::from_host(i64::from(2 * column + 1) << (below + frac));
-        let corner_x = dp.shl(pose.x.corner(), 1);
-        let corner_y = dp.shl(pose.y.corner(), 1);
-        let (middle_x, middle_y) = (middle(quad.x), middle(quad.y));
-        let from_corner_x = dp.sub(middle_x, corner_x);
-        let from_corner_y = dp.sub(middle_y, corner_y);
-        let [a, b, c] = shapes.of(dp, [edges_x, edges_y]);
-        let value = |dp: &mut Datapath<P>, shape: &Shape| {
-            along(dp, [shape.gx, shape.gy], [from_corner_x, from_corner_y])
-        };
-        let values = [
-            value(dp, &a),
-            value(dp, &b),
-            value(dp, &c),
-            dp.widen(middle_x),
-            dp.widen(middle_y),
-        ];
-        let one = Word::from_host(1);
-        let across = sides(dp, [one, Word::ZERO], pose.x_span);
-        let down = sides(dp, [Word::ZERO, one], pose.y_span);
-        Self {
-            shapes: [a, b, c, across, down],
-            values,
-            frac,
-        }
-    }
-
-    /// The outline relative to the voxel's own quadtree node.
-    pub(super) fn silhouette(&self) -> StripSilhouette<'_> {
-        StripSilhouette {
-            outline: self,
-            values: self.values,
-            settled: [false; STRIPS],
-        }
-    }
-}
-
-/// An edge's direction in `NORMAL_BITS` bits.
-fn normal<P: Probe>(dp: &mut Datapath<P>, x: Word, y: Word) -> (Word, Word) {
-    let length_x = dp.bit_length(x);
-    let length_y = dp.bit_length(y);
-    let places = dp.longer(length_x, length_y).saturating_sub(NORMAL_BITS);
-    // Towards zero, so that no component reaches 2^NORMAL_BITS.
-    let mut part = |v: Word| {
-        let negative = dp.is_negative(v);
-        let negated = dp.neg(v);
-        let magnitude = dp.select(negative, negated, v);
-        let small = dp.shr(magnitude, places);
-        let negated = dp.neg(small);
-        dp.select(negative, negated, small)
-    };
-    (part(x), part(y))
-}
-
-fn slope<P: Probe>(dp: &mut Datapath<P>, gx: Word, gy: Word) -> WideWord {
-    let mut magnitude = |g: Word| {
-        let negated = dp.neg(g);
-        dp.max(g, negated)
-    };
-    let x = magnitude(gx);
-    let y = magnitude(gy);
-    let sum = dp.add(x, y);
-    dp.widen(sum)
-}
-
-/// One pair of the box's sides.
-fn sides<P: Probe>(dp: &mut Datapath<P>, [gx, gy]: [Word; 2], (low, high): (Word, Word)) -> Shape {
-    let low = dp.widen(low);
-    let low = dp.shl(low, 1);
-    let high = dp.widen(high);
-    let high = dp.shl(high, 1);
-    Shape {
-        gx,
-        gy,
-        slope: WideWord::from_host(1),
-        low,
-        high,
     }
 }
 
 impl Silhouette for StripSilhouette<'_> {
     fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
-        for i in 0..STRIPS {
-            if self.settled[i] {
+        for function in 0..FUNCTIONS {
+            if self.settled[function] {
                 continue;
             }
-            let shape = &self.outline.shapes[i];
-            match shape.cover(dp, self.values[i], below, self.outline.frac) {
+            match self.cover_of(dp, function, below) {
                 Cover::None => return Cover::None,
                 Cover::Some => all = false,
-                Cover::All => self.settled[i] = true,
+                Cover::All => self.settled[function] = true,
             }
         }
         if all { Cover::All } else { Cover::Some }
     }
 
     fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, below: u32) -> Self {
-        // From a node's middle to a quadrant's: 2^(below - 1) half samples.
-        let places = below - 1 + self.outline.frac;
         let mut inner = self.clone();
-        for i in 0..STRIPS {
-            if !self.settled[i] {
-                let shape = &self.outline.shapes[i];
-                inner.values[i] = shape.in_quadrant(dp, self.values[i], quadrant, places);
+        for function in 0..FUNCTIONS {
+            if !self.settled[function] {
+                let value = self.place.value[function];
+                inner.place.value[function] =
+                    self.subtree.moved(dp, function, value, quadrant, below);
             }
         }
         inner

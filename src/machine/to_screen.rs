@@ -4,9 +4,10 @@
 use hwmodel::{Datapath, Probe, Stage, Word};
 
 use super::constants::Constants;
-use super::fit::{Place, shift};
+use super::fit::Place;
 use super::lattice::Lattice;
 use super::record::{Clip, Screen};
+use super::strips::Mean;
 use crate::project::setup::SCREEN_GUARD_SHIFT;
 
 /// Integer bits of a quotient: positions from -4 to 12 node widths.
@@ -14,25 +15,30 @@ const INTEGER_BITS: u32 = 4;
 /// What is added to a numerator to make it positive: `w << this`.
 const OFFSET_SHIFT: u32 = 2;
 
-/// The vertices in screen space, if the record may change at its level.
-pub(super) fn change<P: Probe, L: Lattice>(
+/// Whether a record may change at its level.
+pub(super) fn may_change<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     level: u32,
     place: &Place,
     pose: &Clip<L>,
-) -> Option<Screen<L>> {
-    let least = constants.screen_depth.get(level as usize).copied()??;
+) -> bool {
+    let Some(&Some(least)) = constants.screen_depth.get(level as usize) else {
+        return false;
+    };
     dp.stage(Stage::ToScreen);
-    if dp.lt(pose.w_min, least) {
-        return None;
-    }
-    if !place.inside && !within_guard(dp, constants, place, pose) {
-        return None;
-    }
-    let below = constants.levels - place.quad.level;
+    !dp.lt(pose.w_min, least) && (place.inside || within_guard(dp, constants, place, pose))
+}
+
+/// The vertices in screen space, of a record that may change.
+pub(super) fn change<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    place: &Place,
+    pose: &Clip<L>,
+) -> Screen<L> {
+    let bits = constants.levels - place.quad.level + constants.screen_frac;
     let mut along = |x: &L, column: u32| {
-        let bits = below + constants.screen_frac;
         // The node's left edge, less the numerators' offset.
         let edge = (i64::from(column) - (1 << OFFSET_SHIFT)) << bits;
         let edge = dp.load(edge);
@@ -43,12 +49,39 @@ pub(super) fn change<P: Probe, L: Lattice>(
     };
     let (x, x_span) = along(&pose.x, place.quad.x);
     let (y, y_span) = along(&pose.y, place.quad.y);
-    Some(Screen {
+    Screen {
         x,
         y,
         x_span,
         y_span,
-    })
+    }
+}
+
+/// The mean of the eight vertices in screen space, relative to the record's
+/// quadtree node, of a record that may change.
+pub(super) fn mean<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    place: &Place,
+    pose: &Clip<L>,
+) -> Mean {
+    let bits = constants.levels - place.quad.level + constants.screen_frac;
+    let w = pose.w.vertices(dp);
+    let offset = dp.load(1i64 << (OFFSET_SHIFT + bits));
+    let mut along = |x: &L| {
+        let x = x.vertices(dp);
+        let positions = std::array::from_fn(|i| {
+            let position = divide(dp, x[i], w[i], bits);
+            dp.sub(position, offset)
+        });
+        Mean::of(dp, positions)
+    };
+    let (x, x_edges) = along(&pose.x);
+    let (y, y_edges) = along(&pose.y);
+    Mean {
+        sum: [x, y],
+        edges: [x_edges, y_edges],
+    }
 }
 
 /// Whether the box leaves the picture by no more than the tolerance's bound
@@ -70,19 +103,27 @@ fn within_guard<P: Probe, L: Lattice>(
         return true;
     }
     [&pose.x, &pose.y].into_iter().all(|x| {
-        let from_left = x.zip(&pose.w, |x, w| {
-            let guard = shift(dp, w, places);
-            dp.add(x, guard)
-        });
+        // Numerators and guard times 2^places, so that nothing is rounded and
+        // the answer is the same whatever the node.
+        let from_left = x.zip(&pose.w, |x, w| beyond(dp, x, w, places));
         let (low, _) = from_left.span(dp);
-        let from_right = x.zip(&pose.w, |x, w| {
-            let guard = shift(dp, w, places);
-            let beyond = dp.add(w, guard);
-            dp.sub(x, beyond)
+        let to_right = x.zip(&pose.w, |x, w| {
+            let left_over = dp.sub(w, x);
+            beyond(dp, left_over, w, places)
         });
-        let (_, high) = from_right.span(dp);
-        !dp.is_negative(low) && !dp.is_positive(high)
+        let (high, _) = to_right.span(dp);
+        !dp.is_negative(low) && !dp.is_negative(high)
     })
+}
+
+/// The sign of `x + w / 2^places`: a multiple of it, exact.
+fn beyond<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, places: i32) -> Word {
+    let (x, w) = if places >= 0 {
+        (dp.shl(x, places as u32), w)
+    } else {
+        (x, dp.shl(w, places.unsigned_abs()))
+    };
+    dp.add(x, w)
 }
 
 /// `floor((x / w + 4) * 2^fraction_bits)` by a restoring divide.

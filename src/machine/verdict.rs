@@ -23,15 +23,6 @@ pub(super) enum Verdict {
     Subdivide,
 }
 
-/// Which size a record is held against.
-#[derive(Debug, Clone, Copy)]
-enum Limit {
-    /// One sample, less twice the tolerance.
-    Sample,
-    /// The level of detail, less its share of it.
-    LevelOfDetail,
-}
-
 impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// What is to become of a record. May find it solid by level of detail.
     pub(super) fn verdict(&mut self, record: &mut Record<L>) -> Verdict {
@@ -66,8 +57,10 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.is_rejecting()
             && record.quad.level < self.constants.levels
             && !self.crosses_near(record)
-            && self.is_small(record, Limit::Sample)
-            && self.first_open(record.quad, &record.pose).is_none()
+            && self.is_at_most_a_sample(record)
+            && self
+                .first_open(record.quad, record.level, &record.pose)
+                .is_none()
     }
 
     /// Whether a record lies across the near plane and hardly beyond it.
@@ -86,7 +79,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// Whether screen positions cannot part a record's vertices any more.
     fn is_least(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
-            Pose::Clip(_) => false,
+            Pose::Clip(_) | Pose::Strips(_) => false,
             Pose::Screen(screen) => {
                 size::screen_at_most(&mut self.dp, screen, self.constants.least_size_screen)
             }
@@ -116,7 +109,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// A voxel no larger than a sample is drawn at the sample of its centre.
     fn verdict_center(&mut self, record: &mut Record<L>) -> Verdict {
         self.take_for_solid(record);
-        if record.solid && !self.crosses_near(record) && self.is_small(record, Limit::Sample) {
+        if record.solid && !self.crosses_near(record) && self.is_at_most_a_sample(record) {
             Verdict::DrawCentre
         } else {
             Verdict::Subdivide
@@ -135,41 +128,45 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 
     /// Level of detail: a node with children that is small enough is a solid.
     fn take_for_solid(&mut self, record: &mut Record<L>) {
-        if !record.solid
-            && !self.crosses_near(record)
-            && self.is_small(record, Limit::LevelOfDetail)
-        {
-            record.solid = true;
+        if record.solid {
+            return;
         }
+        let c = &self.constants;
+        record.solid = match &record.pose {
+            Pose::Clip(clip) => c
+                .lod_depth
+                .get(record.level as usize)
+                .copied()
+                .flatten()
+                .is_some_and(|least| self.dp.le(least, clip.w_min)),
+            Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.lod_limit_screen),
+            Pose::Strips(_) => self
+                .subtree
+                .as_ref()
+                .is_some_and(|subtree| record.level >= subtree.finest()),
+        };
     }
 
     fn crosses_near(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
             Pose::Clip(clip) => self.dp.lt(clip.w_min, self.constants.near),
-            Pose::Screen(_) => false,
+            Pose::Screen(_) | Pose::Strips(_) => false,
         }
     }
 
-    fn is_small(&mut self, record: &Record<L>, limit: Limit) -> bool {
+    /// Whether a record is no larger than a sample, less twice the tolerance.
+    fn is_at_most_a_sample(&mut self, record: &Record<L>) -> bool {
         let c = &self.constants;
         match &record.pose {
             Pose::Clip(clip) => {
-                let limit = match limit {
-                    Limit::Sample => Some(&c.size_limit),
-                    Limit::LevelOfDetail => c.lod_limit.as_ref(),
-                };
-                limit.is_some_and(|limit| {
-                    let below = c.levels - record.quad.level;
-                    size::clip_at_most(&mut self.dp, clip, limit, below)
-                })
+                let below = c.levels - record.quad.level;
+                size::clip_at_most(&mut self.dp, clip, &c.size_limit, below)
             }
-            Pose::Screen(screen) => {
-                let limit = match limit {
-                    Limit::Sample => c.size_limit_screen,
-                    Limit::LevelOfDetail => c.lod_limit_screen,
-                };
-                size::screen_at_most(&mut self.dp, screen, limit)
-            }
+            Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.size_limit_screen),
+            Pose::Strips(_) => self
+                .subtree
+                .as_ref()
+                .is_some_and(|subtree| subtree.at_most_a_sample(&mut self.dp, record.level)),
         }
     }
 }

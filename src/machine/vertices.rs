@@ -34,7 +34,10 @@ pub(crate) fn screen_corners(
         inside: false,
     };
     let pose = Clip { x, y, w, w_min };
-    let changed = to_screen::change(&mut dp, &constants, exact_levels, &place, &pose)?;
+    if !to_screen::may_change(&mut dp, &constants, exact_levels, &place, &pose) {
+        return None;
+    }
+    let changed = to_screen::change(&mut dp, &constants, &place, &pose);
     let mut vertices = [changed.x, changed.y];
     for &octant in screen {
         vertices = vertices.map(|lattice| lattice.children(&mut dp)[usize::from(octant)]);

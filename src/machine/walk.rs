@@ -10,7 +10,8 @@ use super::lattice::Lattice;
 use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
-use super::strips::{Outline, Shapes};
+use super::strips::{ACROSS, DOWN, StripSilhouette, Strips, Subtree};
+use super::to_screen;
 use super::verdict::Verdict;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
@@ -37,7 +38,7 @@ pub(super) fn run<P: Probe, L: Lattice>(
         graph,
         canvas: Canvas::new(fill, frame, heat),
         stack: Vec::new(),
-        shapes: Shapes::default(),
+        subtree: None,
         counts: Counts::default(),
     };
     walk.push_object();
@@ -100,7 +101,9 @@ pub(super) struct Walk<'a, P: Probe, L> {
     graph: &'a GraphView<'a>,
     canvas: Canvas<'a>,
     stack: Vec<Record<L>>,
-    shapes: Shapes,
+    /// The lattice of the record that changed to screen space last, under the
+    /// exact rule. Depth first, so its records are done before the next change.
+    pub(super) subtree: Option<Subtree>,
     pub(super) counts: Counts,
 }
 
@@ -215,11 +218,9 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 quad: record.quad,
                 inside: record.inside,
             };
-            let changed =
-                super::to_screen::change(&mut self.dp, &self.constants, record.level, &place, clip);
-            if let Some(screen) = changed {
+            if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
-                record.pose = Pose::Screen(screen);
+                record.pose = self.changed(record.level, &place, clip);
             }
         }
 
@@ -239,17 +240,34 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
     }
 
+    /// A record's vertices after the change to screen space.
+    fn changed(&mut self, level: u32, place: &Place, clip: &Clip<L>) -> Pose<L> {
+        if self.constants.coverage != Coverage::Exact {
+            let screen = to_screen::change(&mut self.dp, &self.constants, place, clip);
+            return Pose::Screen(screen);
+        }
+        let mean = to_screen::mean(&mut self.dp, &self.constants, place, clip);
+        let (subtree, strips) = Subtree::new(&mut self.dp, &self.constants, level, &mean);
+        self.subtree = Some(subtree);
+        Pose::Strips(strips)
+    }
+
     /// Draws a record at every sample that its box overlaps.
     fn draw_box(&mut self, record: &Record<L>) {
         let seen = self.seen(record);
-        while let Some(sample) = self.first_open(record.quad, &record.pose) {
+        while let Some(sample) = self.first_open(record.quad, record.level, &record.pose) {
             self.canvas.draw(&mut self.dp, sample, record.node, seen);
         }
     }
 
     /// The first sample of a node that a box overlaps and that is not drawn
     /// yet. Unlike the fit it goes on where a box lies across a bisector.
-    pub(super) fn first_open(&mut self, quad: QuadNode, pose: &Pose<L>) -> Option<QuadNode> {
+    pub(super) fn first_open(
+        &mut self,
+        quad: QuadNode,
+        level: u32,
+        pose: &Pose<L>,
+    ) -> Option<QuadNode> {
         self.dp.stage(Stage::QuadtreeFit);
         let fill = &self.canvas.fill;
         self.dp.read(Memory::FillVector, fill.address(quad) as u64);
@@ -257,14 +275,22 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         if quad.level == self.constants.levels {
             return (open != 0).then_some(quad);
         }
+        let below = self.constants.levels - quad.level;
         let (overlapped, far) = match pose {
             Pose::Clip(clip) => {
                 let (overlapped, far) =
                     fit::clip_quadrants(&mut self.dp, &self.constants, quad, clip);
-                (overlapped, Some((clip, far)))
+                (overlapped, Some(far))
             }
             Pose::Screen(screen) => {
                 let overlapped = fit::screen_quadrants(&mut self.dp, &self.constants, quad, screen);
+                (overlapped, None)
+            }
+            Pose::Strips(strips) => {
+                let subtree = self.subtree.as_ref()?;
+                let widths = [ACROSS, DOWN].map(|f| subtree.half_width(&mut self.dp, f, level));
+                let overlapped =
+                    fit::strips_quadrants(&mut self.dp, subtree, widths, below, strips);
                 (overlapped, None)
             }
         };
@@ -272,11 +298,28 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         (0..4)
             .filter(|quadrant| candidates >> quadrant & 1 != 0)
             .find_map(|quadrant| {
-                let inner = far.map(|(clip, far)| {
-                    Pose::Clip(fit::clip_in_quadrant(&mut self.dp, clip, quadrant, far))
-                });
-                self.first_open(quad.quadrant(quadrant), inner.as_ref().unwrap_or(pose))
+                let inner = self.in_quadrant(pose, quadrant, below, far);
+                self.first_open(quad.quadrant(quadrant), level, &inner)
             })
+    }
+
+    /// A pose relative to a quadrant of its node; `far`: as [`fit::clip_quadrants`] has it.
+    fn in_quadrant(
+        &mut self,
+        pose: &Pose<L>,
+        quadrant: u8,
+        below: u32,
+        far: Option<[L; 2]>,
+    ) -> Pose<L> {
+        match (pose, far, &self.subtree) {
+            (Pose::Clip(clip), Some(far), _) => {
+                Pose::Clip(fit::clip_in_quadrant(&mut self.dp, clip, quadrant, far))
+            }
+            (Pose::Strips(strips), _, Some(subtree)) => {
+                Pose::Strips(subtree.in_quadrant(&mut self.dp, strips, quadrant, below))
+            }
+            _ => *pose,
+        }
     }
 
     /// Draws a record at the sample that holds its centre, if that is in the
@@ -294,6 +337,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             Pose::Screen(screen) => {
                 size::screen_sample(&mut self.dp, &self.constants, record, screen)
             }
+            // The exact rule draws no centres.
+            Pose::Strips(_) => None,
         };
         if let Some(sample) = sample {
             let seen = self.seen(record);
@@ -318,22 +363,14 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 self.canvas
                     .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
             }
-            Pose::Screen(screen) => {
-                let outline = Outline::new(
-                    &mut self.dp,
-                    &self.constants,
-                    &mut self.shapes,
-                    record.quad,
-                    screen,
-                );
-                self.canvas.draw_outline(
-                    &mut self.dp,
-                    record.quad,
-                    outline.silhouette(),
-                    record.node,
-                    seen,
-                );
+            Pose::Strips(strips) => {
+                let Some(subtree) = &self.subtree else { return };
+                let outline = StripSilhouette::new(&mut self.dp, subtree, record.level, *strips);
+                self.canvas
+                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
             }
+            // Only rules that draw single samples keep vertices in screen space.
+            Pose::Screen(_) => {}
         }
     }
 
@@ -375,6 +412,10 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 x: screen.x.children(&mut self.dp),
                 y: screen.y.children(&mut self.dp),
             },
+            Pose::Strips(strips) => {
+                let Some(subtree) = &self.subtree else { return };
+                Poses::Strips(subtree.children(&mut self.dp, record.level + 1, strips))
+            }
         };
         for &child in order.iter().rev() {
             let node = if record.solid {
@@ -460,6 +501,27 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &screen);
                 self.push_at(record(Pose::Screen(screen), parent.planes), found);
             }
+            Poses::Strips(strips) => {
+                let Some(subtree) = &self.subtree else { return };
+                let mut strips = strips[child];
+                let fill = Fill {
+                    vectors: self.canvas.fill,
+                    reject: self.options.reject_filled,
+                };
+                let place = Place {
+                    quad: parent.quad,
+                    inside: parent.inside,
+                };
+                let found = fit::strips(
+                    &mut self.dp,
+                    &self.constants,
+                    &fill,
+                    &place,
+                    (subtree, level),
+                    &mut strips,
+                );
+                self.push_at(record(Pose::Strips(strips), parent.planes), found);
+            }
         }
     }
 }
@@ -468,4 +530,5 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 enum Poses<L> {
     Clip { x: [L; 8], y: [L; 8], w: [L; 8] },
     Screen { x: [L; 8], y: [L; 8] },
+    Strips([Strips; 8]),
 }

@@ -1,9 +1,11 @@
 //! From a camera to the integers of a frame, and what engines have in common.
 
 pub mod camera;
+mod depths;
 pub mod engine;
 pub mod setup;
 
 pub use camera::{Camera, CameraError};
-pub use engine::{Engine, EngineError, Stats};
+pub use depths::STRIP_NORMAL_BITS;
+pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats};
 pub use setup::{CageKind, Coverage, FrameSetup, SetupError, SetupOptions};

@@ -17,6 +17,7 @@ use hwmodel::{Format, FormatError};
 use serde::{Deserialize, Serialize};
 
 use super::camera::{Axes, Camera, CameraError};
+use super::depths;
 use crate::graph::{MAX_DEPTH, Placement};
 
 /// Most fraction bits of a clip vector; more would not be seen.
@@ -25,6 +26,9 @@ const MAX_CLIP_FRAC: u32 = 30;
 const MAX_SUB_LEVELS: u32 = 24;
 /// Fraction bits of screen positions, unless the format or the user says otherwise.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
+/// Bits of a word beyond a screen position's fraction and the levels of the
+/// image: sign, guard, and sums of eight vertices.
+const SCREEN_HEADROOM_BITS: u32 = 5;
 /// Records whose box leaves the picture by more than this part of it do not
 /// change to screen space (as a shift: 2^-3).
 pub const SCREEN_GUARD_SHIFT: u32 = 3;
@@ -163,6 +167,13 @@ pub struct FrameSetup {
     /// By octree level, least depth `W` of a record that may change to screen
     /// space; `i64::MAX`: none may.
     pub screen_depth: Vec<i64>,
+    /// By octree level, least depth `W` of a clip-space node with children that
+    /// level of detail takes for a solid; `i64::MAX`: none is.
+    pub lod_depth: Vec<i64>,
+    /// Fraction bits of strips beyond those that their levels need.
+    pub strip_guard: u32,
+    /// Whether no word of a frame with these integers can overflow.
+    pub has_headroom: bool,
     /// What a clip-space box is widened by when it is tested against the
     /// quadtree, in samples, as a shift to the right (0 = one sample): the
     /// tolerance, rounded up to a power of two; `None`: nothing.
@@ -197,7 +208,7 @@ impl FrameSetup {
         let view = View::new(camera, &axes, placement, root_px_log2);
 
         let format = {
-            let room = options.bits.saturating_sub(levels + 5);
+            let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
             Format::new(options.bits, frac)?
         };
@@ -207,9 +218,9 @@ impl FrameSetup {
         };
         let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
         let (origin_clip, edge_clip) = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
-        if reach(&origin_clip, &edge_clip, depth).is_none() {
-            return Err(SetupError::OutOfRange);
-        }
+        let reach = reach(&origin_clip, &edge_clip, depth).ok_or(SetupError::OutOfRange)?;
+        let has_headroom = reach.fits(format, sub_levels)
+            && levels + format.frac() + SCREEN_HEADROOM_BITS <= options.bits;
 
         let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)
             .ok_or(SetupError::OutOfRange)?
@@ -219,7 +230,13 @@ impl FrameSetup {
             })?;
 
         let near = 1i64 << clip_frac.saturating_sub(4);
-        let bound = depth + sub_levels;
+        let levels_of = Levels {
+            depth,
+            bound: depth + sub_levels,
+            clip_frac,
+            near,
+        };
+        let strip_guard = depths::strip_guard(options.tolerance_px);
         Ok(Self {
             options: *options,
             width: camera.width << options.aa_log2,
@@ -235,11 +252,10 @@ impl FrameSetup {
             eye_floor: eye.floor,
             eye_ceil: eye.ceil,
             near,
-            screen_depth: (0..=bound)
-                .map(|level| {
-                    view.screen_depth(level, depth, options, clip_frac, format.frac(), near)
-                })
-                .collect(),
+            screen_depth: view.screen_depths(&levels_of, options, format.frac(), strip_guard),
+            lod_depth: view.lod_depths(&levels_of, options),
+            strip_guard,
+            has_headroom,
             grow_shift: grow_shift(options),
             size_limit: size_limit(options, 1.0).unwrap_or_default(),
             lod_limit: size_limit(options, options.lod_px),
@@ -252,6 +268,42 @@ impl FrameSetup {
     #[must_use]
     pub fn level_bound(&self) -> u32 {
         self.depth + self.sub_levels
+    }
+
+    /// Largest magnitude of a coordinate of a clip vector in the object.
+    #[must_use]
+    pub fn position_reach(&self) -> Option<i128> {
+        reach(&self.origin_clip, &self.edge_clip, self.depth).map(|reach| reach.position)
+    }
+
+    /// By octree level, least depth `W` of a record whose lattice, under the
+    /// exact rule, deviates from its projection by at most so many samples.
+    #[must_use]
+    pub fn lattice_depths(&self, deviation_px: f64) -> Vec<i64> {
+        let unit = libm::ldexp(1.0, -(self.clip_frac as i32));
+        let edges = depths::Edges {
+            edge: self
+                .edge_clip
+                .map(|e| DVec3::from_array(e.map(|c| c as f64 * unit))),
+            root_samples: libm::ldexp(1.0, self.levels as i32),
+        };
+        let levels = Levels {
+            depth: self.depth,
+            bound: self.depth,
+            clip_frac: self.clip_frac,
+            near: 1,
+        };
+        let allowed = deviation_px - self.lattice_rounding();
+        if allowed <= 0.0 {
+            return vec![i64::MAX; self.depth as usize + 1];
+        }
+        levels.scaled(edges.screen_depth(Coverage::Exact, allowed))
+    }
+
+    /// Most, in samples, by which rounding moves an outline of such a lattice.
+    #[must_use]
+    pub fn lattice_rounding(&self) -> f64 {
+        depths::rounding(Coverage::Exact, self.format.frac(), self.strip_guard)
     }
 
     /// World depth of one unit of `W`.
@@ -403,8 +455,7 @@ impl View {
             self.quantise(frac)
                 .and_then(|(origin, edge)| reach(&origin, &edge, depth))
                 .is_some_and(|reach| {
-                    reach.position << shift <= i128::from(format.max()) / 8
-                        && (!plane_too || reach.plane <= i128::from(format.wide().max()) / 8)
+                    reach.position_fits(format, shift) && (!plane_too || reach.plane_fits(format))
                 })
         };
         let plane_frac = (0..=MAX_CLIP_FRAC).rev().find(|&f| fits(f, 0, true));
@@ -417,47 +468,67 @@ impl View {
             .unwrap_or(0);
         split_fraction(plane_frac + room, plane_frac, coverage)
     }
+}
 
-    /// Least `W` at which a record of `level` deviates from its screen-space
-    /// cage by at most the tolerance: `SPEC.md`, "The change to screen space".
-    fn screen_depth(
-        &self,
-        level: u32,
-        depth: u32,
-        options: &SetupOptions,
-        frac: u32,
-        screen_frac: u32,
-        near: i64,
-    ) -> i64 {
-        if options.tolerance_px == 0.0 {
-            return i64::MAX;
-        }
-        if options.tolerance_px.is_infinite() {
-            return near;
-        }
-        // Quotients are rounded down: a corner and three edges, one unit each.
-        let rounding = 4.0 * libm::ldexp(1.0, -(screen_frac as i32));
-        let allowed = (options.tolerance_px - rounding) * (1.0 - 1e-6);
-        if allowed <= 0.0 {
-            return i64::MAX;
-        }
-        let guard = 1.0 / f64::from(1u32 << SCREEN_GUARD_SHIFT);
-        let depth_span: f64 = self.edge.iter().map(|e| e.z.abs()).sum();
-        let across = |axis: usize| -> f64 {
-            self.edge
-                .iter()
-                .map(|e| {
-                    let at = |x: f64| (e[axis] - x * e.z).abs();
-                    at(-guard).max(at(1.0 + guard))
-                })
-                .sum()
+/// The octree levels of a frame, and the unit of its depths.
+struct Levels {
+    /// Level of the finest voxels.
+    depth: u32,
+    /// Deepest level of a record.
+    bound: u32,
+    clip_frac: u32,
+    /// Least of all depths below.
+    near: i64,
+}
+
+impl Levels {
+    /// By level, the depth that is `unit` for a finest voxel, in clip units, rounded up.
+    fn scaled(&self, unit: f64) -> Vec<i64> {
+        let at = |level: u32| {
+            // A record's side in voxels, exact in f64.
+            let side = libm::ldexp(unit, self.depth as i32 - level as i32);
+            let depth = libm::ceil(libm::ldexp(side, self.clip_frac as i32));
+            to_i64(depth).map_or(i64::MAX, |w| w.max(self.near))
         };
-        let root_samples = f64::from(1u32 << (self.root_px_log2 + options.aa_log2));
-        let product = across(0).max(across(1)) * depth_span * root_samples;
-        // A record's side in voxels, exact in f64.
-        let side = libm::ldexp(1.0, depth as i32 - level as i32);
-        let least = libm::sqrt(product / allowed) * side;
-        to_i64(libm::ceil(libm::ldexp(least, frac as i32))).map_or(i64::MAX, |w| w.max(near))
+        (0..=self.bound).map(at).collect()
+    }
+}
+
+impl View {
+    fn edges(&self, options: &SetupOptions) -> depths::Edges {
+        depths::Edges {
+            edge: self.edge,
+            root_samples: f64::from(1u32 << (self.root_px_log2 + options.aa_log2)),
+        }
+    }
+
+    /// Least `W`, by level, at which a record deviates from its screen-space
+    /// cage by at most the tolerance: `SPEC.md`, "The change to screen space".
+    fn screen_depths(
+        &self,
+        levels: &Levels,
+        options: &SetupOptions,
+        screen_frac: u32,
+        strip_guard: u32,
+    ) -> Vec<i64> {
+        if options.tolerance_px.is_infinite() {
+            return vec![levels.near; levels.bound as usize + 1];
+        }
+        let rounding = depths::rounding(options.coverage, screen_frac, strip_guard);
+        let allowed = (options.tolerance_px - rounding) * (1.0 - 1e-6);
+        if options.tolerance_px == 0.0 || allowed <= 0.0 {
+            return vec![i64::MAX; levels.bound as usize + 1];
+        }
+        levels.scaled(self.edges(options).screen_depth(options.coverage, allowed))
+    }
+
+    /// Least `W`, by level, at which a node with children is no larger than
+    /// the level of detail, wherever in the picture.
+    fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
+        match size_limit(options, options.lod_px) {
+            Some(limit) => levels.scaled(self.edges(options).detail_depth(limit.value())),
+            None => vec![i64::MAX; levels.bound as usize + 1],
+        }
     }
 }
 
@@ -473,6 +544,22 @@ struct Reach {
     position: i128,
     /// Of a silhouette plane: the sum of its three coefficients.
     plane: i128,
+}
+
+impl Reach {
+    /// Whether positions leave headroom (bisector tests take `2X - W`, the
+    /// guard `8X + W`, the divide `X + 4W` and `8W`).
+    fn position_fits(&self, format: Format, shift: u32) -> bool {
+        self.position << shift <= i128::from(format.max()) / 16
+    }
+
+    fn plane_fits(&self, format: Format) -> bool {
+        self.plane <= i128::from(format.wide().max()) / 8
+    }
+
+    fn fits(&self, format: Format, sub_levels: u32) -> bool {
+        self.position_fits(format, sub_levels) && self.plane_fits(format)
+    }
 }
 
 /// The reach over the object's eight corners; intermediate vertices lie between.
