@@ -1,0 +1,370 @@
+//! The picture in the making: which samples are drawn, and what they show.
+//!
+//! One bit a sample, in words of 8 x 8 samples (tiles), and one bit a tile, in
+//! words of 8 x 8 tiles (blocks). So a few words tell whether anything can still
+//! be drawn in a window. What lies outside the picture is drawn from the start,
+//! as in the image quadtree. A square is what is no larger than a tile, anywhere.
+
+use crate::frame::NO_NODE;
+
+/// Samples along a tile's side, as a power of two.
+pub(super) const TILE_LOG2: u32 = 3;
+/// Samples along a block's side, as a power of two.
+pub(super) const BLOCK_LOG2: u32 = 6;
+/// A tile or block with everything drawn.
+const FULL: u64 = u64::MAX;
+/// The leftmost samples of a tile's eight rows.
+const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
+
+/// Samples from `left` to `right` and `top` to `bottom`, all included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) left: i32,
+    pub(super) top: i32,
+    pub(super) right: i32,
+    pub(super) bottom: i32,
+}
+
+impl Window {
+    /// Whether it has no sample.
+    #[inline(always)]
+    pub(super) fn is_empty(&self) -> bool {
+        self.left > self.right || self.top > self.bottom
+    }
+
+    /// What it has in common with another.
+    #[inline(always)]
+    pub(super) fn and(&self, other: &Self) -> Self {
+        Self {
+            left: self.left.max(other.left),
+            top: self.top.max(other.top),
+            right: self.right.min(other.right),
+            bottom: self.bottom.min(other.bottom),
+        }
+    }
+
+    /// The bits of a tile or block that lie in the window. `x`, `y`: the
+    /// window's unit that the word's first bit stands for.
+    #[inline(always)]
+    fn bits(&self, x: i32, y: i32) -> u64 {
+        let left = (self.left - x).max(0) as u32;
+        let right = (self.right - x).min(7) as u32;
+        let top = (self.top - y).max(0) as u32;
+        let bottom = (self.bottom - y).min(7) as u32;
+        // Each is in 0..8, since the word and the window overlap.
+        let row = ((0xffu64 << left) & 0xff) & (0xff >> (7 - right));
+        let rows = (FULL << (8 * top)) & (FULL >> (8 * (7 - bottom)));
+        row.wrapping_mul(LEFT_COLUMN) & rows
+    }
+
+    /// The window in units `2^places` times as large.
+    #[inline(always)]
+    fn coarser(&self, places: u32) -> Self {
+        Self {
+            left: self.left >> places,
+            top: self.top >> places,
+            right: self.right >> places,
+            bottom: self.bottom >> places,
+        }
+    }
+}
+
+/// Which samples of a band of the picture are drawn.
+#[derive(Debug)]
+pub(super) struct Fill<'p> {
+    /// The band's samples.
+    pub(super) bounds: Window,
+    grid: Grid,
+    part: FillPart<'p>,
+    /// Samples not drawn yet.
+    pub(super) open: u64,
+}
+
+/// The memory of a picture's fill, or a band's part of it.
+#[derive(Debug)]
+pub(super) struct FillPart<'p> {
+    /// One bit a sample, set where it is drawn; by tile.
+    tiles: &'p mut [u64],
+    /// One bit a tile, set where it is full; by block.
+    blocks: &'p mut [u64],
+}
+
+/// The memory of a picture's fill.
+#[derive(Debug, Default)]
+pub(super) struct FillMemory {
+    tiles: Vec<u64>,
+    blocks: Vec<u64>,
+}
+
+impl FillMemory {
+    /// Makes room for a picture; no more is allocated for the next of its size.
+    pub(super) fn resize(&mut self, grid: &Grid) {
+        let rows = grid.blocks_down;
+        self.tiles.resize(rows * grid.tiles_per_block_row(), 0);
+        self.blocks.resize(rows * grid.blocks_across, 0);
+    }
+
+    pub(super) fn part(&mut self) -> FillPart<'_> {
+        FillPart {
+            tiles: &mut self.tiles,
+            blocks: &mut self.blocks,
+        }
+    }
+}
+
+impl FillPart<'_> {
+    /// The first rows of blocks, and the others.
+    pub(super) fn split(self, grid: &Grid, rows: usize) -> (Self, Self) {
+        let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_per_block_row());
+        let (blocks, blocks_rest) = self.blocks.split_at_mut(rows * grid.blocks_across);
+        let part = |tiles, blocks| Self { tiles, blocks };
+        (part(tiles, blocks), part(tiles_rest, blocks_rest))
+    }
+}
+
+/// How many tiles and blocks a picture has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Grid {
+    pub(super) tiles_across: usize,
+    pub(super) blocks_across: usize,
+    pub(super) blocks_down: usize,
+}
+
+impl Grid {
+    /// The grid of a picture; whole blocks.
+    pub(super) fn new(width: u32, height: u32) -> Self {
+        let blocks = |samples: u32| (samples as usize).div_ceil(1 << BLOCK_LOG2);
+        Self {
+            tiles_across: blocks(width) << (BLOCK_LOG2 - TILE_LOG2),
+            blocks_across: blocks(width),
+            blocks_down: blocks(height),
+        }
+    }
+
+    fn tiles_per_block_row(&self) -> usize {
+        self.tiles_across << (BLOCK_LOG2 - TILE_LOG2)
+    }
+}
+
+/// The lowest columns of a tile, by number of columns.
+const COLUMNS: [u64; 9] = {
+    let mut masks = [0; 9];
+    let mut i = 0;
+    while i <= 8 {
+        masks[i] = (0xff >> (8 - i)) * LEFT_COLUMN;
+        i += 1;
+    }
+    masks
+};
+
+impl<'p> Fill<'p> {
+    /// An empty band. `bounds.top` is a multiple of a block's side.
+    pub(super) fn clear(grid: &Grid, bounds: Window, part: FillPart<'p>) -> Self {
+        let across = (bounds.right - bounds.left + 1) as u64;
+        let down = (bounds.bottom - bounds.top + 1) as u64;
+        let mut fill = Self {
+            bounds,
+            grid: *grid,
+            part,
+            open: across * down,
+        };
+        fill.part.tiles.fill(FULL);
+        fill.part.blocks.fill(FULL);
+        let tiles = bounds.coarser(TILE_LOG2);
+        for y in tiles.top..=tiles.bottom {
+            for x in tiles.left..=tiles.right {
+                let at = fill.tile_at(x, y);
+                fill.part.tiles[at] = !bounds.bits(x << TILE_LOG2, y << TILE_LOG2);
+                let (block, bit) = fill.block_of(x, y);
+                fill.part.blocks[block] &= !bit;
+            }
+        }
+        fill
+    }
+
+    /// Place of the tile in column `x` and row `y` of tiles.
+    #[inline(always)]
+    fn tile_at(&self, x: i32, y: i32) -> usize {
+        (y - (self.bounds.top >> TILE_LOG2)) as usize * self.grid.tiles_across + x as usize
+    }
+
+    /// Place of a tile's block, and its bit there.
+    #[inline(always)]
+    fn block_of(&self, x: i32, y: i32) -> (usize, u64) {
+        let row = ((y >> 3) - (self.bounds.top >> BLOCK_LOG2)) as usize;
+        let at = row * self.grid.blocks_across + (x >> 3) as usize;
+        (at, 1u64 << ((y & 7) << 3 | (x & 7)))
+    }
+
+    /// A tile's drawn samples. Beside the band everything is drawn.
+    #[inline(always)]
+    fn tile(&self, at: usize) -> u64 {
+        self.part.tiles.get(at).copied().unwrap_or(FULL)
+    }
+
+    /// The open samples of a square, eight bits a row.
+    #[inline(always)]
+    pub(super) fn open_in_square(&self, window: &Window) -> u64 {
+        let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
+        let (more_x, more_y) = (
+            (window.right - window.left) as u32,
+            (window.bottom - window.top) as u32,
+        );
+        let wanted = COLUMNS[more_x as usize & 7] << 1 | LEFT_COLUMN;
+        let wanted = wanted & (FULL >> (56 - 8 * more_y));
+        let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
+        if x + more_x < 8 && y + more_y < 8 {
+            return !self.tile(at) >> (8 * y + x) & wanted;
+        }
+        // Columns of two tiles above each other, then both side by side. A
+        // tile below or beside that the window does not reach is shifted out
+        // or masked.
+        let below = at + self.grid.tiles_across;
+        let column = |upper: usize, lower: usize| {
+            (!self.tile(upper) >> (8 * y)) | (!self.tile(lower) << 1 << (63 - 8 * y))
+        };
+        let left = column(at, below) >> x & COLUMNS[8 - x as usize];
+        let right = column(at + 1, below + 1) << 1 << (7 - x) & !COLUMNS[8 - x as usize];
+        (left | right) & wanted
+    }
+
+    /// Marks samples of a tile as drawn, which are open.
+    #[inline(always)]
+    fn mark_at(&mut self, at: usize, x: i32, y: i32, samples: u64) {
+        if samples == 0 {
+            return;
+        }
+        if let Some(tile) = self.part.tiles.get_mut(at) {
+            *tile |= samples;
+            if *tile == FULL {
+                let (block, bit) = self.block_of(x, y);
+                self.part.blocks[block] |= bit;
+            }
+        }
+    }
+
+    /// Marks open samples of a tile as drawn.
+    #[inline(always)]
+    pub(super) fn mark_tile(&mut self, x: i32, y: i32, samples: u64) {
+        self.open -= u64::from(samples.count_ones());
+        self.mark_at(self.tile_at(x, y), x, y, samples);
+    }
+
+    /// Marks open samples of a square as drawn.
+    #[inline(always)]
+    pub(super) fn mark_square(&mut self, window: &Window, samples: u64) {
+        let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
+        let (tile_x, tile_y) = (window.left >> TILE_LOG2, window.top >> TILE_LOG2);
+        self.open -= u64::from(samples.count_ones());
+        let at = self.tile_at(tile_x, tile_y);
+        let below = at + self.grid.tiles_across;
+        let left = samples << x & !COLUMNS[x as usize];
+        let right = samples >> 1 >> (7 - x) & COLUMNS[x as usize];
+        self.mark_at(at, tile_x, tile_y, left << (8 * y));
+        self.mark_at(at + 1, tile_x + 1, tile_y, right << (8 * y));
+        self.mark_at(below, tile_x, tile_y + 1, left >> 1 >> (63 - 8 * y));
+        self.mark_at(
+            below + 1,
+            tile_x + 1,
+            tile_y + 1,
+            right >> 1 >> (63 - 8 * y),
+        );
+    }
+
+    /// The samples of a tile that are in the window and not drawn.
+    #[inline(always)]
+    pub(super) fn open_in_tile(&self, x: i32, y: i32, window: &Window) -> u64 {
+        !self.tile(self.tile_at(x, y)) & window.bits(x << TILE_LOG2, y << TILE_LOG2)
+    }
+
+    /// Whether a tile that a window overlaps is not full.
+    #[inline(always)]
+    pub(super) fn has_open_tile(&self, window: &Window) -> bool {
+        let tiles = window.coarser(TILE_LOG2);
+        let blocks = window.coarser(BLOCK_LOG2);
+        if blocks.left == blocks.right && blocks.top == blocks.bottom {
+            let (at, _) = self.block_of(tiles.left, tiles.top);
+            let bits = tiles.bits(blocks.left << 3, blocks.top << 3);
+            return !self.part.blocks[at] & bits != 0;
+        }
+        let mut y = blocks.top;
+        while y <= blocks.bottom {
+            let mut x = blocks.left;
+            while x <= blocks.right {
+                let (at, _) = self.block_of(x << 3, y << 3);
+                if !self.part.blocks[at] & tiles.bits(x << 3, y << 3) != 0 {
+                    return true;
+                }
+                x += 1;
+            }
+            y += 1;
+        }
+        false
+    }
+
+    /// Whether there may be a sample to draw in a window that is not empty
+    /// and lies in the band. In windows larger than a tile, tiles that are
+    /// not full count as open.
+    #[inline(always)]
+    pub(super) fn is_open(&self, window: &Window) -> bool {
+        if window.right - window.left < 8 && window.bottom - window.top < 8 {
+            return self.open_in_square(window) != 0;
+        }
+        self.has_open_tile(window)
+    }
+}
+
+/// What the samples of a band show.
+#[derive(Debug)]
+pub(super) struct Pixels<'f> {
+    /// Samples a row.
+    pub(super) width: usize,
+    /// First row of the band.
+    pub(super) top: i32,
+    pub(super) node: &'f mut [u32],
+    /// Empty where voxels are not asked for.
+    pub(super) voxel: &'f mut [[i32; 4]],
+}
+
+impl Pixels<'_> {
+    /// Whether voxels are asked for.
+    #[inline(always)]
+    pub(super) fn wants_voxels(&self) -> bool {
+        !self.voxel.is_empty()
+    }
+
+    /// Place of a sample.
+    #[inline(always)]
+    pub(super) fn at(&self, x: i32, y: i32) -> usize {
+        (y - self.top) as usize * self.width + x as usize
+    }
+
+    /// Shows a node, and a voxel where asked for, at samples of the square
+    /// whose first sample is (x, y), eight bits a row.
+    #[inline(always)]
+    pub(super) fn show(&mut self, x: i32, y: i32, samples: u64, node: u32, voxel: [i32; 4]) {
+        let first = self.at(x, y);
+        let mut left = samples;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let at = first + (bit >> 3) * self.width + (bit & 7);
+            self.node[at] = node;
+            if self.wants_voxels() {
+                self.voxel[at] = voxel;
+            }
+        }
+    }
+
+    /// Forgets what was shown.
+    pub(super) fn clear(&mut self) {
+        self.node.fill(NO_NODE);
+        self.voxel.fill(crate::frame::NO_VOXEL);
+    }
+}
+
+/// The tiles that a window overlaps, as a window of tiles.
+#[inline(always)]
+pub(super) fn tiles_of(window: &Window) -> Window {
+    window.coarser(TILE_LOG2)
+}

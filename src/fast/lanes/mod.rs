@@ -1,0 +1,216 @@
+//! The few steps that work on many lanes at once, and the instruction sets
+//! that have them: a scalar twin that defines what they do, and faster ones
+//! that must equal it (tests at the end of this file).
+//!
+//! An instruction set is a value that can only be had where the processor has
+//! it. Whoever holds one may call its steps. The walk itself is compiled once
+//! for each set ([`Isa::clip`], [`Isa::screen`] and the others), so that the steps become a
+//! few instructions in the middle of it and not calls.
+
+mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub(super) use scalar::Scalar;
+#[cfg(target_arch = "x86_64")]
+pub(super) use x86::{Avx2, Avx512};
+
+use super::brick::{Coarse, Parts, Tables};
+use super::canvas::Window;
+use super::clip::ClipRecord;
+use super::screen::ScreenRecord;
+use super::subtree::{LANES, STRIPS, Subtree};
+use super::walk::{Bounds, Walk};
+
+/// An instruction set.
+pub(super) trait Isa: Copy + Send + Sync + 'static {
+    /// Its name, as `--isa` has it.
+    const NAME: &'static str;
+
+    /// A clip-space record's turn: [`super::clip::turn`] compiled for this set.
+    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord);
+
+    /// A screen-space record's turn: [`super::screen::turn`] compiled for this set.
+    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
+
+    /// Draws a node by samples: `brick::draw_node` compiled for this set.
+    fn brick(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    );
+
+    /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
+    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
+
+    /// Eight functions' values.
+    type Eight: Copy;
+
+    /// Takes eight values.
+    fn load(self, values: &[i32; LANES]) -> Self::Eight;
+
+    /// Lane by lane, `a + b`, modulo 2^32.
+    fn add(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+
+    /// Lane by lane, `a - b`, modulo 2^32.
+    fn sub(self, a: Self::Eight, b: Self::Eight) -> Self::Eight;
+
+    /// Lane by lane, `a + b times`, modulo 2^32.
+    fn plus_times(self, a: Self::Eight, b: Self::Eight, times: i32) -> Self::Eight;
+
+    /// Whether `0 <= a <= b` in all lanes; no lane of `b` is negative.
+    fn all_within(self, a: Self::Eight, b: Self::Eight) -> bool;
+
+    /// Whether `|a| > b` in any lane; no lane of `a` is `i32::MIN`.
+    fn any_beyond(self, a: Self::Eight, b: Self::Eight) -> bool;
+
+    /// The eight values.
+    fn store(self, values: Self::Eight) -> [i32; LANES];
+
+    /// Lane by lane, `-a`.
+    fn negative(self, a: Self::Eight) -> Self::Eight;
+
+    /// Lane by lane, `a + (b << places)`.
+    fn plus_shifted(self, a: Self::Eight, b: Self::Eight, places: u32) -> Self::Eight;
+
+    /// The samples that a box holds, cut to the band's, and whether there are
+    /// none: `(lane + bias) >> box bits` of the last four lanes, and the origin.
+    fn window(
+        self,
+        place: Self::Eight,
+        bias: &[i32; 4],
+        subtree: &Subtree,
+        bounds: &Bounds,
+    ) -> (Window, bool);
+
+    /// The samples `i` of a square for which `start + table[i]` is within
+    /// twice the half width for all three strips, modulo 2^16.
+    fn square_within(
+        self,
+        tables: &[[i16; 64]; STRIPS],
+        start: Self::Eight,
+        half_width: &[i32; LANES],
+    ) -> u64;
+
+    /// The lanes `i` with `byte - table[i] <= width`, modulo 2^8, without sign,
+    /// for all three strips; `byte` is a strip's value after its shift. `few`:
+    /// only the first 8 lanes are of interest.
+    fn strips_within(self, coarse: &Coarse, start: Self::Eight, few: bool) -> u64;
+
+    /// In byte `8 i + j`: `(2 children[i] >> shift) + (children[j] >> shift)`,
+    /// modulo 2^8. `few`: in byte `j` of the first eight `children[j] >> shift`.
+    fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool);
+
+    /// The lowest bytes spread to those bytes that `mask` has a bit for, in
+    /// order; `exist`: a byte of ones for each such bit.
+    fn spread(self, bytes: u64, mask: u8, exist: u64) -> u64;
+
+    /// Eight child masks, by octant, with children and masks in occlusion order.
+    fn masks_in_order(self, masks: u64, octant: u8) -> u64;
+
+    /// The lanes `i` with `start + table[i] <= width`, modulo 2^32, without sign.
+    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64;
+}
+
+#[cfg(all(test, target_arch = "x86_64"))]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// All steps of a set, and of the scalar twin, on the same numbers.
+    fn agrees<I: Isa>(isa: I, bytes: &[u8], words: &[i32], few: bool) {
+        let eight = |at: usize| -> [i32; LANES] { std::array::from_fn(|i| words[at + i]) };
+        let coarse = Coarse {
+            parts: std::array::from_fn(|t| std::array::from_fn(|i| bytes[64 * t + i])),
+            width: std::array::from_fn(|t| [bytes[320 + t]; 32]),
+            shift: std::array::from_fn(|t| i32::from(bytes[330 + t] & 31)),
+        };
+        let relevant = if few { 0xff } else { u64::MAX };
+        let start = eight(0);
+        assert_eq!(
+            isa.strips_within(&coarse, isa.load(&start), few) & relevant,
+            Scalar.strips_within(&coarse, start, few) & relevant
+        );
+        for shift in [0, 3, 17] {
+            let (mut mine, mut twin) = ([0; 64], [0; 64]);
+            let children: [i32; 8] = std::array::from_fn(|i| words[80 + i] >> 2);
+            isa.byte_table(&mut mine, &children, shift, few);
+            Scalar.byte_table(&mut twin, &children, shift, few);
+            let count = if few { 8 } else { 64 };
+            assert_eq!(mine[..count], twin[..count]);
+        }
+        for mask in [0, 0xff, bytes[360], bytes[361]] {
+            let exist = (0..8).fold(0u64, |all, bit| {
+                all | (u64::from(mask >> bit & 1) * 0xff) << (8 * bit)
+            });
+            let eight = u64::from_le_bytes(std::array::from_fn(|i| bytes[370 + i]));
+            assert_eq!(
+                isa.spread(eight, mask, exist),
+                Scalar.spread(eight, mask, exist)
+            );
+            for octant in 0..8 {
+                assert_eq!(
+                    isa.masks_in_order(eight, octant),
+                    Scalar.masks_in_order(eight, octant)
+                );
+            }
+        }
+        let wide: [i32; 64] = std::array::from_fn(|i| words[16 + i]);
+        assert_eq!(
+            isa.within_wide(&wide, words[90], words[91] as u32),
+            Scalar.within_wide(&wide, words[90], words[91] as u32)
+        );
+        // Sums and products are seen through comparisons with the twin's.
+        let (a, b, times) = (eight(0), eight(8), words[92]);
+        let pairs = [
+            (isa.add(isa.load(&a), isa.load(&b)), Scalar.add(a, b)),
+            (isa.sub(isa.load(&a), isa.load(&b)), Scalar.sub(a, b)),
+            (
+                isa.plus_times(isa.load(&a), isa.load(&b), times),
+                Scalar.plus_times(a, b, times),
+            ),
+        ];
+        for (mine, twin) in pairs {
+            assert!(!isa.any_beyond(isa.sub(mine, isa.load(&twin)), isa.load(&[0; LANES])));
+        }
+        let near: [i32; LANES] = std::array::from_fn(|i| a[i] >> 1);
+        let limit: [i32; LANES] = std::array::from_fn(|i| (b[i] >> 1).abs() | 0x2000_0000);
+        assert_eq!(
+            isa.any_beyond(isa.load(&near), isa.load(&limit)),
+            Scalar.any_beyond(near, limit)
+        );
+        assert_eq!(
+            isa.all_within(isa.load(&near), isa.load(&limit)),
+            Scalar.all_within(near, limit)
+        );
+        for lane in 0..LANES {
+            let mut one = [0; LANES];
+            one[lane] = 5;
+            assert!(isa.all_within(isa.load(&one), isa.load(&[5; LANES])));
+            assert!(!isa.all_within(isa.load(&one), isa.load(&[4; LANES])));
+            one[lane] = -5;
+            assert!(!isa.all_within(isa.load(&one), isa.load(&[5; LANES])));
+            assert!(isa.any_beyond(isa.load(&one), isa.load(&[4; LANES])));
+            assert!(!isa.any_beyond(isa.load(&one), isa.load(&[5; LANES])));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn all_sets_agree_with_the_scalar_twin(
+            bytes in proptest::collection::vec(any::<u8>(), 400),
+            words in proptest::collection::vec(any::<i32>(), 100),
+            few in any::<bool>(),
+        ) {
+            if let Some(isa) = Avx2::detect() {
+                agrees(isa, &bytes, &words, few);
+            }
+            if let Some(isa) = Avx512::detect() {
+                agrees(isa, &bytes, &words, few);
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! The scalar twin: plain Rust, on any processor.
+
+use super::Isa;
+use crate::fast::brick::{self, Coarse, Parts, Tables};
+use crate::fast::canvas::Window;
+use crate::fast::clip::{self, ClipRecord};
+use crate::fast::screen::{self, ScreenRecord};
+use crate::fast::subtree::{LANES, STRIPS, Subtree};
+use crate::fast::walk::{Bounds, Walk};
+
+/// No instructions but those that every processor of the target has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scalar;
+
+impl Isa for Scalar {
+    const NAME: &'static str = "scalar";
+
+    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
+        clip::turn(walk, record);
+    }
+
+    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+        screen::turn(walk, subtree, record);
+    }
+
+    fn brick(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        brick::draw_node(walk, subtree, record, octant, parts);
+    }
+
+    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
+        tables.make_parts(self, subtree, left, octant);
+    }
+
+    type Eight = [i32; LANES];
+
+    #[inline(always)]
+    fn load(self, values: &[i32; LANES]) -> [i32; LANES] {
+        *values
+    }
+
+    #[inline(always)]
+    fn add(self, a: [i32; LANES], b: [i32; LANES]) -> [i32; LANES] {
+        std::array::from_fn(|i| a[i].wrapping_add(b[i]))
+    }
+
+    #[inline(always)]
+    fn sub(self, a: [i32; LANES], b: [i32; LANES]) -> [i32; LANES] {
+        std::array::from_fn(|i| a[i].wrapping_sub(b[i]))
+    }
+
+    #[inline(always)]
+    fn plus_times(self, a: [i32; LANES], b: [i32; LANES], times: i32) -> [i32; LANES] {
+        std::array::from_fn(|i| a[i].wrapping_add(b[i].wrapping_mul(times)))
+    }
+
+    #[inline(always)]
+    fn store(self, values: [i32; LANES]) -> [i32; LANES] {
+        values
+    }
+
+    #[inline(always)]
+    fn negative(self, a: [i32; LANES]) -> [i32; LANES] {
+        std::array::from_fn(|i| a[i].wrapping_neg())
+    }
+
+    #[inline(always)]
+    fn plus_shifted(self, a: [i32; LANES], b: [i32; LANES], places: u32) -> [i32; LANES] {
+        std::array::from_fn(|i| a[i].wrapping_add(b[i] << places))
+    }
+
+    #[inline(always)]
+    fn window(
+        self,
+        place: [i32; LANES],
+        bias: &[i32; 4],
+        subtree: &Subtree,
+        bounds: &Bounds,
+    ) -> (Window, bool) {
+        let [left, top, right, bottom]: [i32; 4] = std::array::from_fn(|i| {
+            let line = (place[4 + i].wrapping_add(bias[i]) >> subtree.box_bits) + subtree.origin[i];
+            line.max(bounds.least[i]).min(bounds.greatest[i])
+        });
+        let window = Window {
+            left,
+            top,
+            right,
+            bottom,
+        };
+        (window, window.is_empty())
+    }
+
+    #[inline(always)]
+    fn square_within(
+        self,
+        tables: &[[i16; 64]; STRIPS],
+        start: [i32; LANES],
+        half_width: &[i32; LANES],
+    ) -> u64 {
+        let mut samples = u64::MAX;
+        for f in 0..STRIPS {
+            let (start, width) = (start[f] as i16, 2 * half_width[f] as u16);
+            for (i, &entry) in tables[f].iter().enumerate() {
+                if start.wrapping_add(entry) as u16 > width {
+                    samples &= !(1 << i);
+                }
+            }
+        }
+        samples
+    }
+
+    #[inline(always)]
+    fn all_within(self, a: [i32; LANES], b: [i32; LANES]) -> bool {
+        a.iter().zip(&b).all(|(&a, &b)| a as u32 <= b as u32)
+    }
+
+    #[inline(always)]
+    fn any_beyond(self, a: [i32; LANES], b: [i32; LANES]) -> bool {
+        a.iter().zip(&b).any(|(a, b)| a.wrapping_abs() > *b)
+    }
+
+    #[inline(always)]
+    fn strips_within(self, coarse: &Coarse, start: [i32; LANES], few: bool) -> u64 {
+        let mut lanes = u64::MAX;
+        for f in 0..STRIPS {
+            let byte = (start[f] >> coarse.shift[f]) as u8;
+            let width = coarse.width[f][0];
+            let count = if few { 8 } else { 64 };
+            for (i, &entry) in coarse.parts[f].iter().enumerate().take(count) {
+                if byte.wrapping_sub(entry) > width {
+                    lanes &= !(1 << i);
+                }
+            }
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
+        brick::byte_table(table, children, shift, few);
+    }
+
+    #[inline(always)]
+    fn spread(self, bytes: u64, mask: u8, _: u64) -> u64 {
+        let mut rest = bytes;
+        let mut spread = 0;
+        for bit in 0..8 {
+            if mask >> bit & 1 != 0 {
+                spread |= (rest & 0xff) << (8 * bit);
+                rest >>= 8;
+            }
+        }
+        spread
+    }
+
+    #[inline(always)]
+    fn masks_in_order(self, masks: u64, octant: u8) -> u64 {
+        brick::masks_in_order(masks, octant)
+    }
+
+    #[inline(always)]
+    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
+        let mut lanes = 0;
+        for (i, &entry) in table.iter().enumerate() {
+            lanes |= u64::from(start.wrapping_add(entry) as u32 <= width) << i;
+        }
+        lanes
+    }
+}

@@ -1,0 +1,627 @@
+//! AVX2 and AVX-512, found at run time.
+
+use std::arch::x86_64::*;
+
+use super::Isa;
+use crate::fast::brick::{self, Coarse, ORDER_BYTES, Parts, Tables};
+use crate::fast::canvas::Window;
+use crate::fast::clip::{self, ClipRecord};
+use crate::fast::screen::{self, ScreenRecord};
+use crate::fast::subtree::{LANES, STRIPS, Subtree};
+use crate::fast::walk::{Bounds, Walk};
+
+/// AVX2 with the bit and fused multiply-add instructions of its time.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Avx2(());
+
+impl Avx2 {
+    /// The set, if the processor has it.
+    pub(crate) fn detect() -> Option<Self> {
+        let found = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2")
+            && is_x86_feature_detected!("lzcnt")
+            && is_x86_feature_detected!("popcnt");
+        found.then_some(Self(()))
+    }
+}
+
+/// Compiles the walk's turns for AVX2.
+mod avx2 {
+    use super::*;
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn brick(
+        walk: &mut Walk<'_, Avx2>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        brick::draw_node(walk, subtree, record, octant, parts);
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn tables(isa: Avx2, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
+        tables.make_parts(isa, subtree, left, octant);
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn clip(walk: &mut Walk<'_, Avx2>, record: &ClipRecord) {
+        clip::turn(walk, record);
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn screen(walk: &mut Walk<'_, Avx2>, subtree: &Subtree, record: &ScreenRecord) {
+        screen::turn(walk, subtree, record);
+    }
+}
+
+/// Steps on eight 32-bit lanes and on sixteen bytes, the same in both sets.
+///
+/// SAFETY of all: an [`Avx2`] or [`Avx512`] is only made where AVX2 was found,
+/// and only their steps call these. Loads are of as many entries as the array has.
+mod eight {
+    use super::*;
+
+    #[inline(always)]
+    pub(super) fn load(values: &[i32; LANES]) -> __m256i {
+        // SAFETY: see above.
+        unsafe { _mm256_loadu_si256(values.as_ptr().cast()) }
+    }
+
+    #[inline(always)]
+    pub(super) fn add(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see above.
+        unsafe { _mm256_add_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    pub(super) fn sub(a: __m256i, b: __m256i) -> __m256i {
+        // SAFETY: see above.
+        unsafe { _mm256_sub_epi32(a, b) }
+    }
+
+    #[inline(always)]
+    pub(super) fn plus_times(a: __m256i, b: __m256i, times: i32) -> __m256i {
+        // SAFETY: see above.
+        unsafe { _mm256_add_epi32(a, _mm256_mullo_epi32(b, _mm256_set1_epi32(times))) }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(values: __m256i) -> [i32; LANES] {
+        let mut array = [0; LANES];
+        // SAFETY: see above.
+        unsafe { _mm256_storeu_si256(array.as_mut_ptr().cast(), values) };
+        array
+    }
+
+    #[inline(always)]
+    pub(super) fn negative(a: __m256i) -> __m256i {
+        // SAFETY: see above.
+        unsafe { _mm256_sub_epi32(_mm256_setzero_si256(), a) }
+    }
+
+    #[inline(always)]
+    pub(super) fn plus_shifted(a: __m256i, b: __m256i, places: u32) -> __m256i {
+        // SAFETY: see above.
+        unsafe {
+            let places = _mm_cvtsi32_si128(places as i32);
+            _mm256_add_epi32(a, _mm256_sll_epi32(b, places))
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn window(
+        place: __m256i,
+        bias: &[i32; 4],
+        subtree: &Subtree,
+        bounds: &Bounds,
+    ) -> (Window, bool) {
+        let mut lines = [0i32; 4];
+        // SAFETY: see above.
+        let is_empty = unsafe {
+            let load = |lanes: &[i32; 4]| lanes.as_ptr().cast::<__m128i>();
+            let last = _mm256_extracti128_si256::<1>(place);
+            let bits = _mm_cvtsi32_si128(subtree.box_bits as i32);
+            let from_origin = _mm_sra_epi32(_mm_add_epi32(last, _mm_loadu_si128(load(bias))), bits);
+            let line = _mm_add_epi32(from_origin, _mm_loadu_si128(load(&subtree.origin)));
+            let line = _mm_max_epi32(line, _mm_loadu_si128(load(&bounds.least)));
+            let line = _mm_min_epi32(line, _mm_loadu_si128(load(&bounds.greatest)));
+            _mm_storeu_si128(lines.as_mut_ptr().cast(), line);
+            let others = _mm_shuffle_epi32::<0b01_00_11_10>(line);
+            let beyond = _mm_cmpgt_epi32(line, others);
+            _mm_movemask_ps(_mm_castsi128_ps(beyond)) & 0b11 != 0
+        };
+        let [left, top, right, bottom] = lines;
+        let window = Window {
+            left,
+            top,
+            right,
+            bottom,
+        };
+        (window, is_empty)
+    }
+
+    #[inline(always)]
+    pub(super) fn byte_table(table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
+        // SAFETY: see above; the stores are of 8 and of twice 32 bytes, and
+        // the table has 64.
+        unsafe {
+            let child = _mm256_loadu_si256(children.as_ptr().cast());
+            let shift = _mm_cvtsi32_si128(shift as i32);
+            // The lowest byte of each lane, in the lowest four bytes of each half.
+            let lowest = _mm256_setr_epi8(
+                0, 4, 8, 12, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, //
+                -1, -1, -1, -1, 0, 4, 8, 12, -1, -1, -1, -1, -1, -1, -1, -1,
+            );
+            let inner = _mm256_shuffle_epi8(_mm256_sra_epi32(child, shift), lowest);
+            let inner = _mm_or_si128(
+                _mm256_castsi256_si128(inner),
+                _mm256_extracti128_si256::<1>(inner),
+            );
+            if few {
+                _mm_storel_epi64(table.as_mut_ptr().cast(), inner);
+                return;
+            }
+            let doubled = _mm256_add_epi32(child, child);
+            let outer = _mm256_shuffle_epi8(_mm256_sra_epi32(doubled, shift), lowest);
+            let outer = _mm_or_si128(
+                _mm256_castsi256_si128(outer),
+                _mm256_extracti128_si256::<1>(outer),
+            );
+            let outer = _mm256_broadcastq_epi64(outer);
+            let inner = _mm256_broadcastq_epi64(inner);
+            // Bytes 0 to 3, and 4 to 7, eight times each.
+            let first = _mm256_setr_epi8(
+                0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, //
+                2, 2, 2, 2, 2, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3, 3,
+            );
+            let second = _mm256_add_epi8(first, _mm256_set1_epi8(4));
+            let low = _mm256_add_epi8(_mm256_shuffle_epi8(outer, first), inner);
+            let high = _mm256_add_epi8(_mm256_shuffle_epi8(outer, second), inner);
+            _mm256_storeu_si256(table.as_mut_ptr().cast(), low);
+            _mm256_storeu_si256(table.as_mut_ptr().add(32).cast(), high);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn spread(bytes: u64, exist: u64) -> u64 {
+        // SAFETY: see above; both sets have BMI2.
+        unsafe { _pdep_u64(bytes, exist) }
+    }
+
+    #[inline(always)]
+    pub(super) fn masks_in_order(masks: u64, octant: u8) -> u64 {
+        let [low, high, order] = &ORDER_BYTES[usize::from(octant & 7)];
+        // SAFETY: see above.
+        unsafe {
+            let nibble = _mm_set1_epi8(0x0f);
+            let bytes = _mm_cvtsi64_si128(masks as i64);
+            let lower = _mm_and_si128(bytes, nibble);
+            let upper = _mm_and_si128(_mm_srli_epi16::<4>(bytes), nibble);
+            let from_lower = _mm_shuffle_epi8(_mm_loadu_si128(low.as_ptr().cast()), lower);
+            let from_upper = _mm_shuffle_epi8(_mm_loadu_si128(high.as_ptr().cast()), upper);
+            let masks = _mm_or_si128(from_lower, from_upper);
+            let masks = _mm_shuffle_epi8(masks, _mm_loadu_si128(order.as_ptr().cast()));
+            _mm_cvtsi128_si64(masks) as u64
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn all_within(a: __m256i, b: __m256i) -> bool {
+        // SAFETY: see above.
+        unsafe {
+            let within = _mm256_cmpeq_epi32(_mm256_min_epu32(a, b), a);
+            _mm256_movemask_epi8(within) == -1
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn any_beyond(a: __m256i, b: __m256i) -> bool {
+        // SAFETY: see above.
+        unsafe {
+            let beyond = _mm256_cmpgt_epi32(_mm256_abs_epi32(a), b);
+            _mm256_testz_si256(beyond, beyond) == 0
+        }
+    }
+
+    /// The first sixteen lanes of a table.
+    #[inline(always)]
+    pub(super) fn sixteen(table: &[u8; 64], start: __m128i, width: &[u8; 32]) -> __m128i {
+        // SAFETY: see above.
+        unsafe {
+            let entries = _mm_loadu_si128(table.as_ptr().cast());
+            let value = _mm_sub_epi8(start, entries);
+            let width = _mm_loadu_si128(width.as_ptr().cast());
+            _mm_cmpeq_epi8(_mm_min_epu8(value, width), value)
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn bits(lanes: __m128i) -> u64 {
+        // SAFETY: see above.
+        unsafe { u64::from(_mm_movemask_epi8(lanes) as u32) }
+    }
+
+    /// The values of the three strips, cut to bytes, in the first bytes of vectors.
+    #[inline(always)]
+    pub(super) fn cut(coarse: &Coarse, start: __m256i) -> [__m128i; 3] {
+        // SAFETY: see above.
+        unsafe {
+            let low = _mm256_castsi256_si128(start);
+            let shift = _mm_loadu_si128(coarse.shift.as_ptr().cast());
+            let cut = _mm_srav_epi32(low, shift);
+            [cut, _mm_srli_si128::<4>(cut), _mm_srli_si128::<8>(cut)]
+        }
+    }
+
+    /// The first sixteen lanes within all three strips.
+    #[inline(always)]
+    pub(super) fn few_strips(coarse: &Coarse, start: __m256i) -> u64 {
+        let cut = cut(coarse, start);
+        // SAFETY: see above.
+        unsafe {
+            let mut lanes = _mm_set1_epi8(-1);
+            for f in 0..3 {
+                let start = _mm_broadcastb_epi8(cut[f]);
+                lanes = _mm_and_si128(lanes, sixteen(&coarse.parts[f], start, &coarse.width[f]));
+            }
+            bits(lanes)
+        }
+    }
+}
+
+/// 32 lanes of a comparison, as bytes of all ones.
+#[inline(always)]
+fn half_within(table: &[u8; 64], half: usize, start: __m256i, width: &[u8; 32]) -> __m256i {
+    // SAFETY: an `Avx2` is only made where AVX2 was found, and only its steps
+    // call this; the load is of 32 entries that the array has.
+    unsafe {
+        let entries = _mm256_loadu_si256(table.as_ptr().add(32 * half).cast());
+        let value = _mm256_sub_epi8(start, entries);
+        let width = _mm256_loadu_si256(width.as_ptr().cast());
+        _mm256_cmpeq_epi8(_mm256_min_epu8(value, width), value)
+    }
+}
+
+/// 64 lanes as bits.
+#[inline(always)]
+fn bits_of(low: __m256i, high: __m256i) -> u64 {
+    // SAFETY: as in `half_within`; no memory is touched.
+    unsafe {
+        u64::from(_mm256_movemask_epi8(low) as u32)
+            | u64::from(_mm256_movemask_epi8(high) as u32) << 32
+    }
+}
+
+/// What both sets do the same way.
+macro_rules! eight_lanes {
+    () => {
+        type Eight = __m256i;
+
+        #[inline(always)]
+        fn load(self, values: &[i32; LANES]) -> __m256i {
+            eight::load(values)
+        }
+
+        #[inline(always)]
+        fn add(self, a: __m256i, b: __m256i) -> __m256i {
+            eight::add(a, b)
+        }
+
+        #[inline(always)]
+        fn sub(self, a: __m256i, b: __m256i) -> __m256i {
+            eight::sub(a, b)
+        }
+
+        #[inline(always)]
+        fn plus_times(self, a: __m256i, b: __m256i, times: i32) -> __m256i {
+            eight::plus_times(a, b, times)
+        }
+
+        #[inline(always)]
+        fn store(self, values: __m256i) -> [i32; LANES] {
+            eight::store(values)
+        }
+
+        #[inline(always)]
+        fn negative(self, a: __m256i) -> __m256i {
+            eight::negative(a)
+        }
+
+        #[inline(always)]
+        fn plus_shifted(self, a: __m256i, b: __m256i, places: u32) -> __m256i {
+            eight::plus_shifted(a, b, places)
+        }
+
+        #[inline(always)]
+        fn window(
+            self,
+            place: __m256i,
+            bias: &[i32; 4],
+            subtree: &Subtree,
+            bounds: &Bounds,
+        ) -> (Window, bool) {
+            eight::window(place, bias, subtree, bounds)
+        }
+
+        #[inline(always)]
+        fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
+            eight::byte_table(table, children, shift, few);
+        }
+
+        #[inline(always)]
+        fn spread(self, bytes: u64, _: u8, exist: u64) -> u64 {
+            eight::spread(bytes, exist)
+        }
+
+        #[inline(always)]
+        fn masks_in_order(self, masks: u64, octant: u8) -> u64 {
+            eight::masks_in_order(masks, octant)
+        }
+
+        #[inline(always)]
+        fn all_within(self, a: __m256i, b: __m256i) -> bool {
+            eight::all_within(a, b)
+        }
+
+        #[inline(always)]
+        fn any_beyond(self, a: __m256i, b: __m256i) -> bool {
+            eight::any_beyond(a, b)
+        }
+    };
+}
+
+impl Isa for Avx2 {
+    const NAME: &'static str = "avx2";
+
+    fn brick(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx2::brick(walk, subtree, record, octant, parts) }
+    }
+
+    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx2::tables(self, tables, subtree, left, octant) }
+    }
+
+    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx2::clip(walk, record) }
+    }
+
+    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx2::screen(walk, subtree, record) }
+    }
+
+    eight_lanes!();
+
+    #[inline(always)]
+    fn square_within(
+        self,
+        tables: &[[i16; 64]; STRIPS],
+        start: __m256i,
+        half_width: &[i32; LANES],
+    ) -> u64 {
+        // SAFETY: `self` is only made where these features were found; the
+        // loads are of four times 16 entries, all that a table has.
+        unsafe {
+            let low = _mm256_castsi256_si128(start);
+            let starts = [low, _mm_srli_si128::<4>(low), _mm_srli_si128::<8>(low)];
+            let mut samples = [_mm256_set1_epi8(-1); 4];
+            for f in 0..STRIPS {
+                let start = _mm256_broadcastw_epi16(starts[f]);
+                let width = _mm256_set1_epi16(2 * half_width[f] as i16);
+                for part in 0..4 {
+                    let entries = _mm256_loadu_si256(tables[f].as_ptr().add(16 * part).cast());
+                    let value = _mm256_add_epi16(start, entries);
+                    let within = _mm256_cmpeq_epi16(_mm256_min_epu16(value, width), value);
+                    samples[part] = _mm256_and_si256(samples[part], within);
+                }
+            }
+            // Packing goes by halves: put the quarters back in order.
+            let low = _mm256_packs_epi16(samples[0], samples[1]);
+            let high = _mm256_packs_epi16(samples[2], samples[3]);
+            let low = _mm256_permute4x64_epi64::<0b11_01_10_00>(low);
+            bits_of(low, _mm256_permute4x64_epi64::<0b11_01_10_00>(high))
+        }
+    }
+
+    #[inline(always)]
+    fn strips_within(self, coarse: &Coarse, start: __m256i, few: bool) -> u64 {
+        if few {
+            return eight::few_strips(coarse, start);
+        }
+        let cut = eight::cut(coarse, start);
+        // SAFETY: as in `bytes_within`.
+        unsafe {
+            let mut low = _mm256_set1_epi8(-1);
+            let mut high = low;
+            for f in 0..3 {
+                let start = _mm256_broadcastb_epi8(cut[f]);
+                let (table, width) = (&coarse.parts[f], &coarse.width[f]);
+                low = _mm256_and_si256(low, half_within(table, 0, start, width));
+                high = _mm256_and_si256(high, half_within(table, 1, start, width));
+            }
+            bits_of(low, high)
+        }
+    }
+
+    #[inline(always)]
+    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
+        let mut lanes = 0u64;
+        for part in 0..8 {
+            // SAFETY: as in `sixteen`; the load is of 8 entries that the array has.
+            let eight = unsafe {
+                let entries = _mm256_loadu_si256(table.as_ptr().add(8 * part).cast());
+                let value = _mm256_add_epi32(_mm256_set1_epi32(start), entries);
+                let least = _mm256_min_epu32(value, _mm256_set1_epi32(width as i32));
+                let equal = _mm256_cmpeq_epi32(least, value);
+                _mm256_movemask_ps(_mm256_castsi256_ps(equal)) as u8
+            };
+            lanes |= u64::from(eight) << (8 * part);
+        }
+        lanes
+    }
+}
+
+/// AVX-512 with words and bytes, and all that AVX2 has.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Avx512(());
+
+impl Avx512 {
+    /// The set, if the processor has it.
+    pub(crate) fn detect() -> Option<Self> {
+        let found = Avx2::detect().is_some()
+            && is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl");
+        found.then_some(Self(()))
+    }
+}
+
+/// Compiles the walk's turns for AVX-512.
+mod avx512 {
+    use super::*;
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn brick(
+        walk: &mut Walk<'_, Avx512>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        brick::draw_node(walk, subtree, record, octant, parts);
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn tables(
+        isa: Avx512,
+        tables: &mut Tables,
+        subtree: &Subtree,
+        left: u32,
+        octant: u8,
+    ) {
+        tables.make_parts(isa, subtree, left, octant);
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn clip(walk: &mut Walk<'_, Avx512>, record: &ClipRecord) {
+        clip::turn(walk, record);
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn screen(walk: &mut Walk<'_, Avx512>, subtree: &Subtree, record: &ScreenRecord) {
+        screen::turn(walk, subtree, record);
+    }
+}
+
+impl Isa for Avx512 {
+    const NAME: &'static str = "avx512";
+
+    fn brick(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx512::brick(walk, subtree, record, octant, parts) }
+    }
+
+    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx512::tables(self, tables, subtree, left, octant) }
+    }
+
+    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx512::clip(walk, record) }
+    }
+
+    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx512::screen(walk, subtree, record) }
+    }
+
+    eight_lanes!();
+
+    #[inline(always)]
+    fn square_within(
+        self,
+        tables: &[[i16; 64]; STRIPS],
+        start: __m256i,
+        half_width: &[i32; LANES],
+    ) -> u64 {
+        // SAFETY: `self` is only made where these features were found; the
+        // loads are of twice 32 entries, all that a table has.
+        unsafe {
+            let low = _mm256_castsi256_si128(start);
+            let starts = [low, _mm_srli_si128::<4>(low), _mm_srli_si128::<8>(low)];
+            let (mut upper, mut lower) = (u32::MAX, u32::MAX);
+            for f in 0..STRIPS {
+                let start = _mm512_broadcastw_epi16(starts[f]);
+                let width = _mm512_set1_epi16(2 * half_width[f] as i16);
+                let table = tables[f].as_ptr();
+                let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.cast()));
+                upper = _mm512_mask_cmple_epu16_mask(upper, value, width);
+                let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.add(32).cast()));
+                lower = _mm512_mask_cmple_epu16_mask(lower, value, width);
+            }
+            u64::from(upper) | u64::from(lower) << 32
+        }
+    }
+
+    #[inline(always)]
+    fn strips_within(self, coarse: &Coarse, start: __m256i, few: bool) -> u64 {
+        if few {
+            return eight::few_strips(coarse, start);
+        }
+        let cut = eight::cut(coarse, start);
+        // SAFETY: as in `bytes_within`.
+        unsafe {
+            let mut lanes = u64::MAX;
+            for f in 0..3 {
+                let entries = _mm512_loadu_si512(coarse.parts[f].as_ptr().cast());
+                let value = _mm512_sub_epi8(_mm512_broadcastb_epi8(cut[f]), entries);
+                let width = _mm512_set1_epi8(coarse.width[f][0] as i8);
+                lanes = _mm512_mask_cmple_epu8_mask(lanes, value, width);
+            }
+            lanes
+        }
+    }
+
+    #[inline(always)]
+    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
+        // SAFETY: as in `within`, four times 16 entries.
+        unsafe {
+            let start = _mm512_set1_epi32(start);
+            let width = _mm512_set1_epi32(width as i32);
+            let mut lanes = 0u64;
+            for part in 0..4 {
+                let entries = _mm512_loadu_si512(table.as_ptr().add(16 * part).cast());
+                let within = _mm512_cmple_epu32_mask(_mm512_add_epi32(start, entries), width);
+                lanes |= u64::from(within) << (16 * part);
+            }
+            lanes
+        }
+    }
+}

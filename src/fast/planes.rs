@@ -1,0 +1,404 @@
+//! Exact silhouettes (`SPEC.md`, "Exact coverage"): in `f64` where its error
+//! bound decides, in 128-bit integers where it does not.
+//!
+//! The plane through the eye and the edge of direction j that starts at `A` has
+//! the normal `n = A x e_j`. With the sample as `q = (2x + 1, 2y + 1, 2^(R + 1))`
+//! its side is the sign of `n q`; a zero is decided as the machine does, by the
+//! signs of `n_X` and `n_Y`.
+
+use super::canvas::{BLOCK_LOG2, TILE_LOG2, Window};
+use super::lanes::Isa;
+use super::walk::Walk;
+use crate::project::FrameSetup;
+
+/// Relative error of a sum of at most nine products of rounded numbers, with
+/// room: each of the few operations in a row adds 2^-53.
+const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
+
+/// The integers of a frame that exact decisions need.
+#[derive(Debug, Clone)]
+pub(super) struct Exact {
+    origin: [i64; 3],
+    edge: [[i64; 3]; 3],
+    edge_float: [[f64; 3]; 3],
+    /// Planes through the eye, perpendicular to the axes.
+    axis: [[i128; 3]; 3],
+    positive: bool,
+    eye_floor: [i64; 3],
+    eye_ceil: [i64; 3],
+    /// The third coordinate of a sample.
+    unit: i64,
+}
+
+fn cross(a: [i64; 3], b: [i64; 3]) -> [i128; 3] {
+    let at = |i: usize, j: usize| {
+        i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
+    };
+    [at(1, 2), at(2, 0), at(0, 1)]
+}
+
+/// The sign of a plane at a sample; zero is decided by the plane's slope.
+fn side_of(plane: [i128; 3], sample: [i64; 3]) -> i8 {
+    let value: i128 = (0..3).map(|c| plane[c] * i128::from(sample[c])).sum();
+    for number in [value, plane[0], plane[1]] {
+        if number != 0 {
+            return if number > 0 { 1 } else { -1 };
+        }
+    }
+    0
+}
+
+fn float(v: [i64; 3]) -> [f64; 3] {
+    [v[0] as f64, v[1] as f64, v[2] as f64]
+}
+
+/// A product of vectors, and with the second's sizes instead what bounds its
+/// rounding error.
+#[inline(always)]
+fn dot(a: &[f64; 3], b: &[f64; 3], size: &[f64; 3]) -> (f64, f64) {
+    (
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2],
+        a[0].abs() * size[0] + a[1].abs() * size[1] + a[2].abs() * size[2],
+    )
+}
+
+impl Exact {
+    pub(super) fn new(setup: &FrameSetup) -> Self {
+        let edge = setup.edge_clip;
+        Self {
+            origin: setup.origin_clip,
+            edge,
+            edge_float: edge.map(|e| e.map(|c| c as f64)),
+            axis: [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3])),
+            positive: setup.positive,
+            eye_floor: setup.eye_floor,
+            eye_ceil: setup.eye_ceil,
+            unit: 1i64 << (setup.levels + 1),
+        }
+    }
+
+    /// The clip vector of a point of the object's lattice.
+    #[inline(always)]
+    fn at(&self, point: [i32; 3]) -> [i64; 3] {
+        let mut at = self.origin;
+        for k in 0..3 {
+            for c in 0..3 {
+                at[c] += i64::from(point[k]) * self.edge[k][c];
+            }
+        }
+        at
+    }
+
+    /// Whether the ray of a sample meets the inside of a cube that lies before the eye.
+    ///
+    /// By direction j, `n q = A (e_j x q)` for the four edges' starts `A`, the
+    /// corners of a parallelogram: the least and the greatest of the four are
+    /// what counts.
+    #[inline(always)]
+    pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
+        let corner = self.at(min);
+        let q = self.sample(sample);
+        let (base, q_float) = (float(corner), float(q));
+        let side_float = f64::from(side);
+        let mut is_certain = true;
+        for j in 0..3 {
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            let e = &self.edge_float[j];
+            let mut across = [0.0; 3];
+            let mut size = [0.0; 3];
+            for c in 0..3 {
+                let (a, b) = ((c + 1) % 3, (c + 2) % 3);
+                let (left, right) = (e[a] * q_float[b], e[b] * q_float[a]);
+                across[c] = left - right;
+                size[c] = left.abs() + right.abs();
+            }
+            let (value, most) = dot(&base, &across, &size);
+            let (along_k, most_k) = dot(&self.edge_float[k], &across, &size);
+            let (along_l, most_l) = dot(&self.edge_float[l], &across, &size);
+            let (along_k, along_l) = (along_k * side_float, along_l * side_float);
+            let doubt = (most + (most_k + most_l) * side_float) * RELATIVE_ERROR;
+            let least = value + along_k.min(0.0) + along_l.min(0.0);
+            let greatest = value + along_k.max(0.0) + along_l.max(0.0);
+            if least > doubt || greatest < -doubt {
+                return false;
+            }
+            is_certain &= least < -doubt && greatest > doubt;
+        }
+        is_certain || self.covers_exactly(corner, side, q)
+    }
+
+    /// [`Exact::covers`] in integers.
+    #[cold]
+    fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
+        (0..3).all(|j| {
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            let (mut positive, mut negative) = (false, false);
+            for vertex in 0..4 {
+                let mut at = corner;
+                for (axis, times) in [(k, vertex & 1), (l, vertex >> 1)] {
+                    for c in 0..3 {
+                        at[c] += self.edge[axis][c] * i64::from(side) * i64::from(times);
+                    }
+                }
+                let side = side_of(cross(at, self.edge[j]), sample);
+                positive |= side > 0;
+                negative |= side < 0;
+            }
+            positive && negative
+        })
+    }
+
+    fn sample(&self, [x, y]: [i32; 2]) -> [i64; 3] {
+        [2 * i64::from(x) + 1, 2 * i64::from(y) + 1, self.unit]
+    }
+
+    /// The silhouette of a cube.
+    pub(super) fn outline(&self, min: [i32; 3], side: i32, is_before_eye: bool) -> Outline {
+        let edges = [0, 1, 2].map(|j| {
+            let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+            [0, 1, 2, 3].map(|vertex| {
+                let mut at = min;
+                at[k] += (vertex & 1) * side;
+                at[l] += (vertex >> 1) * side;
+                self.plane(cross(self.at(at), self.edge[j]))
+            })
+        });
+        let front = if is_before_eye {
+            None
+        } else {
+            self.front(min, side)
+        };
+        Outline { edges, front }
+    }
+
+    /// The half of the rays that reach a cube which does not hold the eye:
+    /// along an axis on which the eye is outside it, rays go towards it.
+    fn front(&self, min: [i32; 3], side: i32) -> Option<(Plane, i8)> {
+        (0..3).find_map(|axis| {
+            let upwards = self.eye_ceil[axis] <= i64::from(min[axis]);
+            let downwards = i64::from(min[axis] + side) <= self.eye_floor[axis];
+            (upwards || downwards).then(|| {
+                let c: [i128; 3] = self.axis[axis];
+                let side = if upwards == self.positive { 1 } else { -1 };
+                (self.plane(c), side)
+            })
+        })
+    }
+
+    fn plane(&self, exact: [i128; 3]) -> Plane {
+        Plane {
+            exact,
+            float: [
+                exact[0] as f64,
+                exact[1] as f64,
+                exact[2] as f64 * self.unit as f64,
+            ],
+        }
+    }
+}
+
+/// A plane through the eye.
+#[derive(Debug, Clone, Copy)]
+struct Plane {
+    exact: [i128; 3],
+    /// `(2x + 1) [0] + (2y + 1) [1] + [2]`, rounded.
+    float: [f64; 3],
+}
+
+impl Plane {
+    /// The side that all samples of a window are on, or `None` where they may
+    /// be on both. 0: the plane is none.
+    fn side(&self, window: &Window) -> Option<i8> {
+        let [a, b, c] = self.float;
+        let odd = |i: i32| f64::from(i) * 2.0 + 1.0;
+        let (x0, x1) = (a * odd(window.left), a * odd(window.right));
+        let (y0, y1) = (b * odd(window.top), b * odd(window.bottom));
+        let least = x0.min(x1) + y0.min(y1) + c;
+        let greatest = x0.max(x1) + y0.max(y1) + c;
+        let most = x0.abs().max(x1.abs()) + y0.abs().max(y1.abs()) + c.abs();
+        let doubt = most * RELATIVE_ERROR;
+        if least > doubt {
+            Some(1)
+        } else if greatest < -doubt {
+            Some(-1)
+        } else if self.exact == [0; 3] {
+            Some(0)
+        } else {
+            None
+        }
+    }
+
+    fn side_of_sample(&self, exact: &Exact, x: i32, y: i32) -> i8 {
+        let [a, b, c] = self.float;
+        let x_part = a * (f64::from(x) * 2.0 + 1.0);
+        let y_part = b * (f64::from(y) * 2.0 + 1.0);
+        let value = x_part + y_part + c;
+        let doubt = (x_part.abs() + y_part.abs() + c.abs()) * RELATIVE_ERROR;
+        if value > doubt {
+            1
+        } else if value < -doubt {
+            -1
+        } else {
+            side_of(self.exact, exact.sample([x, y]))
+        }
+    }
+}
+
+/// A cube's silhouette.
+#[derive(Debug, Clone)]
+pub(super) struct Outline {
+    /// By direction, the planes of the four edges along it.
+    edges: [[Plane; 4]; 3],
+    /// For a cube beside the eye: a plane, and the side of it that sees the
+    /// cube and not its mirror image behind the eye.
+    front: Option<(Plane, i8)>,
+}
+
+/// What a window has of a silhouette.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cover {
+    None,
+    Some,
+    All,
+}
+
+impl Outline {
+    fn cover(&self, window: &Window) -> Cover {
+        let mut all = true;
+        for edges in &self.edges {
+            let (mut positive, mut negative, mut open) = (false, false, false);
+            for plane in edges {
+                match plane.side(window) {
+                    None => open = true,
+                    Some(side) => {
+                        positive |= side > 0;
+                        negative |= side < 0;
+                    }
+                }
+            }
+            if !(positive && negative) {
+                if !open {
+                    return Cover::None;
+                }
+                all = false;
+            }
+        }
+        match &self.front {
+            None => {}
+            Some((plane, wanted)) => match plane.side(window) {
+                None => all = false,
+                Some(side) if side == *wanted => {}
+                Some(_) => return Cover::None,
+            },
+        }
+        if all { Cover::All } else { Cover::Some }
+    }
+
+    fn covers(&self, exact: &Exact, x: i32, y: i32) -> bool {
+        let inside = self.edges.iter().all(|edges| {
+            let (mut positive, mut negative) = (false, false);
+            for plane in edges {
+                let side = plane.side_of_sample(exact, x, y);
+                positive |= side > 0;
+                negative |= side < 0;
+            }
+            positive && negative
+        });
+        inside
+            && self
+                .front
+                .as_ref()
+                .is_none_or(|(plane, side)| plane.side_of_sample(exact, x, y) == *side)
+    }
+
+    /// Draws all open samples of a window that the silhouette covers.
+    pub(super) fn draw<I: Isa>(
+        &self,
+        walk: &mut Walk<'_, I>,
+        window: &Window,
+        node: u32,
+        voxel: [i32; 4],
+    ) {
+        walk.counters.solids += 1;
+        let side = 1 << BLOCK_LOG2;
+        for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
+            for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
+                let (left, top) = (x << BLOCK_LOG2, y << BLOCK_LOG2);
+                let block = Window {
+                    left,
+                    top,
+                    right: left + side - 1,
+                    bottom: top + side - 1,
+                }
+                .and(window);
+                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
+                    continue;
+                }
+                let cover = if walk.switches.whole_blocks {
+                    self.cover(&block)
+                } else {
+                    Cover::Some
+                };
+                if cover != Cover::None {
+                    self.draw_block(walk, &block, cover, node, voxel);
+                }
+            }
+        }
+    }
+
+    fn draw_block<I: Isa>(
+        &self,
+        walk: &mut Walk<'_, I>,
+        block: &Window,
+        cover: Cover,
+        node: u32,
+        voxel: [i32; 4],
+    ) {
+        let side = 1 << TILE_LOG2;
+        for y in block.top >> TILE_LOG2..=block.bottom >> TILE_LOG2 {
+            for x in block.left >> TILE_LOG2..=block.right >> TILE_LOG2 {
+                let open = walk.fill.open_in_tile(x, y, block);
+                if open == 0 {
+                    continue;
+                }
+                let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
+                let tile = Window {
+                    left,
+                    top,
+                    right: left + side - 1,
+                    bottom: top + side - 1,
+                }
+                .and(block);
+                let cover = if cover == Cover::All {
+                    cover
+                } else {
+                    self.cover(&tile)
+                };
+                let samples = match cover {
+                    Cover::None => 0,
+                    Cover::All => open,
+                    Cover::Some => {
+                        let mut left_over = open;
+                        let mut covered = 0;
+                        while left_over != 0 {
+                            let bit = left_over.trailing_zeros() as i32;
+                            let sample = left_over & left_over.wrapping_neg();
+                            left_over ^= sample;
+                            walk.counters.exact_samples += 1;
+                            if self.covers(walk.exact, left + (bit & 7), top + (bit >> 3)) {
+                                covered |= sample;
+                            }
+                        }
+                        covered
+                    }
+                };
+                if samples != 0 {
+                    walk.counters.tiles_filled += u64::from(samples == u64::MAX);
+                    walk.counters.samples_drawn += u64::from(samples.count_ones());
+                    walk.pixels.show(left, top, samples, node, voxel);
+                    walk.fill.mark_tile(x, y, samples);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Records in screen space: places in the lattice of a subtree.
+
+use super::brick;
+use super::canvas::{TILE_LOG2, Window, tiles_of};
+use super::lanes::Isa;
+use super::subtree::{LANES, STRIPS, Subtree};
+use super::walk::{Walk, voxel_at};
+use crate::project::OCCLUSION_ORDER;
+
+/// A node in screen space whose turn has come.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ScreenRecord {
+    pub(super) node: u32,
+    /// Levels from here to the finest voxels of the subtree.
+    pub(super) left: u32,
+    /// Lowest corner, finest voxels of the object.
+    pub(super) min: [i32; 3],
+    /// The functions' values at its centre, relative to the subtree's origin.
+    pub(super) place: [i32; LANES],
+    /// The samples that its box holds.
+    pub(super) window: Window,
+    /// Where the window is no larger than a tile: its open samples, eight
+    /// bits a row. Else 0.
+    pub(super) open: u64,
+}
+
+/// What there is to draw in a window: its open samples where it is no larger
+/// than a tile, else 0; `None` if nothing is.
+#[inline(always)]
+fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window) -> Option<u64> {
+    if window.right - window.left < 8 && window.bottom - window.top < 8 {
+        let open = walk.fill.open_in_square(window);
+        if open == 0 && walk.switches.hidden {
+            walk.counters.skipped_hidden += 1;
+            return None;
+        }
+        return Some(open);
+    }
+    if walk.switches.hidden && !walk.fill.has_open_tile(window) {
+        walk.counters.skipped_hidden += 1;
+        return None;
+    }
+    Some(0)
+}
+
+/// Goes on with a record that just changed to screen space.
+#[inline(always)]
+pub(super) fn start<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    subtree: &Subtree,
+    node: u32,
+    left: u32,
+    min: [i32; 3],
+    place: [i32; LANES],
+) {
+    let bias = subtree.window_bias(left);
+    let at = walk.isa.load(&place);
+    let (window, is_empty) = walk.isa.window(at, &bias, subtree, &walk.bounds);
+    if is_empty && walk.switches.off_screen {
+        walk.counters.skipped_off_screen += 1;
+        return;
+    }
+    let Some(open) = open_in(walk, &window) else {
+        return;
+    };
+    let record = ScreenRecord {
+        node,
+        left,
+        min,
+        place,
+        window,
+        open,
+    };
+    step(walk, subtree, &record);
+}
+
+/// A record with something to draw: a solid, or a brick, or its turn.
+#[inline(always)]
+fn step<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+    if record.left == 0 {
+        draw_solid(walk, subtree, record);
+        return;
+    }
+    if record.left <= 2 && !subtree.is_coarse && brick::draw(walk, subtree, record) {
+        return;
+    }
+    walk.isa.screen(walk, subtree, record);
+}
+
+/// A record's turn: it is drawn, or its children have their turns, nearest first.
+#[inline(always)]
+pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+    walk.counters.screen_records += 1;
+    let mask = walk.graph.mask(record.node);
+    let first = walk.graph.first.get(record.node as usize).copied();
+    let (Some(first), true) = (first, mask != 0) else {
+        draw_solid(walk, subtree, record);
+        return;
+    };
+    let isa = walk.isa;
+    let half = (subtree.finest_side << record.left) / 2;
+    let octant = match subtree.octant {
+        Some(octant) => octant,
+        None => walk.view.octant(record.min, half),
+    };
+    let left = record.left - 1;
+    walk.counters.skipped_absent += u64::from(mask.count_zeros());
+    let bias = subtree.window_bias(left);
+    let parent = isa.load(&record.place);
+    let mut order = brick::in_order(octant, mask);
+    while order != 0 {
+        let child = octant ^ OCCLUSION_ORDER[order.trailing_zeros() as usize & 7];
+        order &= order - 1;
+        let offset = isa.load(&subtree.child[usize::from(child & 7)]);
+        let at = isa.plus_shifted(parent, offset, left);
+        let (window, is_empty) = isa.window(at, &bias, subtree, &walk.bounds);
+        if is_empty && walk.switches.off_screen {
+            walk.counters.skipped_off_screen += 1;
+            continue;
+        }
+        let Some(open) = open_in(walk, &window) else {
+            continue;
+        };
+        let before = mask & ((1u8 << (child & 7)) - 1);
+        let slot = first.wrapping_add(before.count_ones());
+        let mut min = record.min;
+        min[0] += i32::from(child >> 2 & 1) * half;
+        min[1] += i32::from(child >> 1 & 1) * half;
+        min[2] += i32::from(child & 1) * half;
+        let child = ScreenRecord {
+            node: brick::linked(walk.graph.links, slot),
+            left,
+            min,
+            place: isa.store(at),
+            window,
+            open,
+        };
+        step(walk, subtree, &child);
+    }
+}
+
+/// Draws a solid: the samples of its window that lie in its three strips.
+#[inline(always)]
+fn draw_solid<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+    if walk.view.search.is_some() {
+        let side = subtree.finest_side << record.left;
+        let outline = walk.exact.outline(record.min, side, true);
+        let voxel = voxel_at(record.min, subtree.finest - record.left);
+        outline.draw(walk, &record.window, record.node, voxel);
+        return;
+    }
+    if record.open == 0 || !draw_square(walk, subtree, record) {
+        draw_tiles(walk, subtree, record);
+    }
+}
+
+/// Draws a solid whose window is no larger than a tile, with sixteen bits a
+/// sample; `false` if those are too few.
+#[inline(always)]
+fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) -> bool {
+    walk.tables.make_square(subtree);
+    if !walk.tables.fits_square || record.left > 0 {
+        return false;
+    }
+    walk.counters.solids += 1;
+    let isa = walk.isa;
+    let window = &record.window;
+    let start = isa.sub(isa.load(&subtree.half_width), isa.load(&record.place));
+    let start = isa.plus_times(
+        start,
+        isa.load(&subtree.step[0]),
+        window.left - subtree.origin[0],
+    );
+    let start = isa.plus_times(
+        start,
+        isa.load(&subtree.step[1]),
+        window.top - subtree.origin[1],
+    );
+    let samples = record.open & isa.square_within(&walk.tables.square, start, &subtree.half_width);
+    if samples != 0 {
+        let voxel = voxel_at(record.min, subtree.finest);
+        walk.counters.samples_drawn += u64::from(samples.count_ones());
+        walk.pixels
+            .show(window.left, window.top, samples, record.node, voxel);
+        walk.fill.mark_square(window, samples);
+    }
+    true
+}
+
+/// Draws a solid of any size, tile by tile.
+#[inline(always)]
+fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+    walk.counters.solids += 1;
+    walk.tables.make_tile(subtree);
+    let window = &record.window;
+    let voxel = voxel_at(record.min, subtree.finest - record.left);
+    let tiles = tiles_of(window);
+    for y in tiles.top..=tiles.bottom {
+        for x in tiles.left..=tiles.right {
+            let mut samples = walk.fill.open_in_tile(x, y, window);
+            if samples == 0 {
+                continue;
+            }
+            let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
+            for f in 0..STRIPS {
+                let half = subtree.half_width[f] << record.left;
+                let first = subtree.step[0][f] * (left - subtree.origin[0])
+                    + subtree.step[1][f] * (top - subtree.origin[1])
+                    - record.place[f];
+                samples &=
+                    walk.isa
+                        .within_wide(&walk.tables.tile[f], first + half, 2 * half as u32);
+            }
+            if samples != 0 {
+                walk.counters.tiles_filled += u64::from(samples == u64::MAX);
+                walk.counters.samples_drawn += u64::from(samples.count_ones());
+                walk.pixels.show(left, top, samples, record.node, voxel);
+                walk.fill.mark_tile(x, y, samples);
+            }
+        }
+    }
+}

@@ -1,0 +1,28 @@
+//! What the engine skips, each skip to be switched off for measurements.
+
+/// Skips and short cuts. None changes a bit of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Switches {
+    /// Leave nodes of whose windows all samples are drawn.
+    pub hidden: bool,
+    /// Stop when the picture is full.
+    pub full: bool,
+    /// Leave nodes that are beside the picture or hold no sample.
+    pub off_screen: bool,
+    /// Take two levels, or one, in one step of 64 lanes.
+    pub bricks: bool,
+    /// Fill whole blocks of samples inside large solids.
+    pub whole_blocks: bool,
+}
+
+impl Default for Switches {
+    fn default() -> Self {
+        Self {
+            hidden: true,
+            full: true,
+            off_screen: true,
+            bricks: true,
+            whole_blocks: true,
+        }
+    }
+}
