@@ -1,4 +1,6 @@
 //! Experiments: what the renderer's rules cost and what they do to a picture.
 //! Each gives plain data and a table. What was found: `spec/lab.md`.
 
+pub mod bench;
+pub mod float_rays;
 pub mod vertex_error;

@@ -1,0 +1,202 @@
+//! `bench ablation`: what each technique is worth, by switching it off.
+
+use serde::Serialize;
+
+use super::candidate::{Candidate, Family};
+use super::harness::{BenchError, Contender, Harness, Measured};
+use super::measure::{Subject, as_map, counter, picture_of};
+#[cfg(feature = "cli")]
+use super::plot::{Bar, Panel};
+use super::statistics::Summary;
+use super::table::{Cell, Table};
+use crate::measure::CoverageError;
+use crate::project::{FrameSetup, SetupOptions, Stats};
+
+/// What tables call an engine with everything on.
+pub const WHOLE: &str = "everything on";
+
+/// An engine without one of its techniques, measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The scene.
+    pub scene: String,
+    /// The engine.
+    pub engine: &'static str,
+    /// What is off, or [`WHOLE`].
+    pub variant: &'static str,
+    /// What that means.
+    pub about: &'static str,
+    /// Wall time of a frame.
+    pub wall: Summary,
+    /// Processor time of a frame.
+    pub thread: Option<Summary>,
+    /// Time over that of the engine with everything on.
+    pub time_ratio: f64,
+    /// How much the engine had to do.
+    pub work: Option<u64>,
+    /// What that counts.
+    pub work_unit: &'static str,
+    /// All that it counted.
+    #[serde(serialize_with = "as_map")]
+    pub counters: Stats,
+    /// Samples that show another voxel than with everything on.
+    pub changed: u64,
+    /// How far the picture is from the reference.
+    pub coverage: CoverageError,
+}
+
+/// Measures families on a scene, all variants in one race, on one thread.
+///
+/// # Errors
+/// When a frame cannot be set up or drawn, or there are no threads.
+pub fn run(
+    subject: &Subject,
+    size: (u32, u32),
+    options: &SetupOptions,
+    families: &[Family],
+    reference: &Candidate,
+    harness: &mut Harness<'_>,
+) -> Result<Vec<Row>, BenchError> {
+    let setup = subject.setup(size, options)?;
+    let right = picture_of(reference, &subject.graph, &setup)?;
+    let mut contenders = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for family in families {
+        let whole = family.whole;
+        let contender = |variant: &str, setup: FrameSetup, make: super::MakeEngine| Contender {
+            name: format!("{}, {}, {variant}", subject.name, whole.name),
+            graph: &subject.graph,
+            setup,
+            threads: 1,
+            engine: make(1),
+        };
+        rows.push(blank(subject, &whole, WHOLE, whole.about));
+        contenders.push(contender(WHOLE, setup.clone(), whole.make));
+        for variant in family.variants {
+            let mut options = *options;
+            (variant.adjust)(&mut options);
+            rows.push(blank(subject, &whole, variant.name, variant.about));
+            let setup = subject.setup(size, &options)?;
+            contenders.push(contender(variant.name, setup, variant.make));
+        }
+    }
+    // Pictures of the families' wholes come before those of their variants.
+    let mut whole_picture = Vec::new();
+    let measured = harness.race(&mut contenders, &mut |place, frame| {
+        let row = &mut rows[place];
+        if row.variant == WHOLE {
+            whole_picture.clone_from(&frame.voxel);
+        }
+        row.changed = crate::measure::count_differing(&frame.voxel, &whole_picture);
+        row.coverage = CoverageError::between(&frame.voxel, &right);
+    })?;
+    let mut whole_ms = 0.0;
+    for (row, measured) in rows.iter_mut().zip(measured) {
+        fill_in(row, measured, &mut whole_ms);
+    }
+    Ok(rows)
+}
+
+fn blank(subject: &Subject, whole: &Candidate, variant: &'static str, about: &'static str) -> Row {
+    Row {
+        scene: subject.name.clone(),
+        engine: whole.name,
+        variant,
+        about,
+        wall: Summary::default(),
+        thread: None,
+        time_ratio: 1.0,
+        work: None,
+        work_unit: whole.work,
+        counters: Stats::new(),
+        changed: 0,
+        coverage: CoverageError::default(),
+    }
+}
+
+fn fill_in(row: &mut Row, measured: Measured, whole_ms: &mut f64) {
+    let median_ms = measured.thread.unwrap_or(measured.wall).median_ms;
+    if row.variant == WHOLE {
+        *whole_ms = median_ms;
+    }
+    row.time_ratio = median_ms / whole_ms.max(f64::MIN_POSITIVE);
+    row.wall = measured.wall;
+    row.thread = measured.thread;
+    row.work = counter(&measured.counters, row.work_unit);
+    row.counters = measured.counters;
+}
+
+/// The rows as a table.
+#[must_use]
+pub fn table(rows: &[Row]) -> Table {
+    let columns = [
+        "scene",
+        "engine",
+        "variant",
+        "median_ms",
+        "deviation_ms",
+        "thread_median_ms",
+        "time_ratio",
+        "work",
+        "work_unit",
+        "picture",
+        "changed",
+        "extra",
+        "missing",
+        "other_voxel",
+    ];
+    let mut table = Table::new("Techniques switched off in turn", &columns);
+    for row in rows {
+        let picture = if row.changed == 0 { "same" } else { "changed" };
+        table.rows.push(vec![
+            Cell::Text(row.scene.clone()),
+            row.engine.into(),
+            row.variant.into(),
+            Cell::ms(row.wall.median_ms),
+            Cell::ms(row.wall.deviation_ms),
+            row.thread.map_or(Cell::None, |t| Cell::ms(t.median_ms)),
+            Cell::ratio(row.time_ratio),
+            row.work.into(),
+            row.work_unit.into(),
+            picture.into(),
+            row.changed.into(),
+            row.coverage.extra.into(),
+            row.coverage.missing.into(),
+            row.coverage.wrong_voxel.into(),
+        ]);
+    }
+    table
+}
+
+/// What each variant means.
+#[must_use]
+pub fn legend(families: &[Family]) -> Table {
+    let mut table = Table::new("What is switched off", &["engine", "variant", "meaning"]);
+    for family in families {
+        for variant in family.variants {
+            table.rows.push(vec![
+                family.whole.name.into(),
+                variant.name.into(),
+                variant.about.into(),
+            ]);
+        }
+    }
+    table
+}
+
+/// Bars for each scene.
+#[cfg(feature = "cli")]
+#[must_use]
+pub fn panels(rows: &[Row]) -> Vec<Panel> {
+    let mut scenes: Vec<&str> = rows.iter().map(|row| row.scene.as_str()).collect();
+    scenes.dedup();
+    let bar = |row: &Row| Bar {
+        name: format!("{}, {}", row.engine, row.variant),
+        value: row.wall.median_ms,
+    };
+    let panel = |scene: &str| Panel::Bars {
+        title: format!("{scene}, ms a frame"),
+        bars: rows.iter().filter(|r| r.scene == scene).map(bar).collect(),
+    };
+    scenes.into_iter().map(panel).collect()
+}

@@ -1,0 +1,46 @@
+//! Who can be measured: engines by name, and engines with a part switched off.
+
+use crate::project::{Engine, SetupOptions};
+
+/// Makes an engine for so many threads, 1 or more.
+///
+/// It draws inside a thread pool of that size, so an engine that uses the
+/// pool it is called in need not look at the number.
+pub type MakeEngine = fn(usize) -> Box<dyn Engine + Send>;
+
+/// An engine by name.
+#[derive(Debug, Clone, Copy)]
+pub struct Candidate {
+    /// What tables call it.
+    pub name: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+    /// The counter among its `Stats` that says how much it had to do.
+    pub work: &'static str,
+    /// Whether more threads make it faster; else it is measured on one.
+    pub parallel: bool,
+    /// Makes it.
+    pub make: MakeEngine,
+}
+
+/// An engine without one of its techniques.
+#[derive(Debug, Clone, Copy)]
+pub struct Variant {
+    /// What tables call it.
+    pub name: &'static str,
+    /// What is off, and whether the picture may be another.
+    pub about: &'static str,
+    /// Changes the frame's settings, if it is they that switch the technique.
+    pub adjust: fn(&mut SetupOptions),
+    /// Makes the engine, if it is the engine that switches it.
+    pub make: MakeEngine,
+}
+
+/// An engine and what can be switched off in it.
+#[derive(Debug, Clone, Copy)]
+pub struct Family {
+    /// The engine with everything on.
+    pub whole: Candidate,
+    /// One technique off at a time.
+    pub variants: &'static [Variant],
+}

@@ -1,0 +1,72 @@
+//! Two clocks: the wall's, and the calling thread's time on a processor.
+
+use std::time::{Duration, Instant};
+
+/// Both clocks at one moment.
+#[derive(Debug, Clone, Copy)]
+pub struct Clock {
+    wall: Instant,
+    thread: Option<Duration>,
+}
+
+/// What went by, milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Elapsed {
+    /// On the wall.
+    pub wall_ms: f64,
+    /// On a processor, by the calling thread alone; `None` where the system does not tell it.
+    pub thread_ms: Option<f64>,
+}
+
+impl Clock {
+    /// Now. To be read again on the same thread.
+    #[must_use]
+    pub fn start() -> Self {
+        let thread = thread_time();
+        Self {
+            wall: Instant::now(),
+            thread,
+        }
+    }
+
+    /// What went by since the start.
+    #[must_use]
+    pub fn elapsed(&self) -> Elapsed {
+        let wall = self.wall.elapsed();
+        let thread = self.thread.zip(thread_time());
+        Elapsed {
+            wall_ms: wall.as_secs_f64() * 1e3,
+            thread_ms: thread.map(|(from, to)| to.saturating_sub(from).as_secs_f64() * 1e3),
+        }
+    }
+}
+
+/// Time that this thread has had on a processor.
+#[cfg(unix)]
+fn thread_time() -> Option<Duration> {
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
+    let seconds = u64::try_from(time.tv_sec).ok()?;
+    let nanoseconds = u32::try_from(time.tv_nsec).ok()?;
+    Some(Duration::new(seconds, nanoseconds))
+}
+
+#[cfg(not(unix))]
+fn thread_time() -> Option<Duration> {
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sleeping_is_wall_time_alone() {
+        let clock = Clock::start();
+        std::thread::sleep(Duration::from_millis(30));
+        let elapsed = clock.elapsed();
+        assert!(elapsed.wall_ms >= 30.0);
+        if let Some(thread_ms) = elapsed.thread_ms {
+            assert!(thread_ms < 15.0, "{thread_ms}");
+        }
+    }
+}

@@ -1,0 +1,91 @@
+//! `bench engines`: who is how fast, and how wrong.
+
+use super::measure::Timing;
+#[cfg(feature = "cli")]
+use super::plot::{Bar, Panel, Series};
+use super::table::{Cell, Table};
+
+/// The times as a table.
+#[must_use]
+pub fn table(timings: &[Timing]) -> Table {
+    let columns = [
+        "scene",
+        "size",
+        "engine",
+        "threads",
+        "median_ms",
+        "min_ms",
+        "deviation_ms",
+        "thread_median_ms",
+        "work",
+        "work_unit",
+        "extra",
+        "missing",
+        "other_voxel",
+    ];
+    let mut table = Table::new("Engines: clear, traverse and colour", &columns);
+    for timing in timings {
+        let coverage = timing.coverage;
+        table.rows.push(vec![
+            Cell::Text(timing.scene.clone()),
+            Cell::Text(timing.size()),
+            timing.engine.into(),
+            (timing.threads as u64).into(),
+            Cell::ms(timing.wall.median_ms),
+            Cell::ms(timing.wall.min_ms),
+            Cell::ms(timing.wall.deviation_ms),
+            timing.thread.map_or(Cell::None, |t| Cell::ms(t.median_ms)),
+            timing.work.into(),
+            timing.work_unit.into(),
+            coverage.map(|c| c.extra).into(),
+            coverage.map(|c| c.missing).into(),
+            coverage.map(|c| c.wrong_voxel).into(),
+        ]);
+    }
+    table
+}
+
+/// A plot for each scene: times by size where there are several, else bars.
+#[cfg(feature = "cli")]
+#[must_use]
+pub fn panels(timings: &[Timing]) -> Vec<Panel> {
+    let mut scenes: Vec<&str> = timings.iter().map(|t| t.scene.as_str()).collect();
+    scenes.dedup();
+    scenes
+        .into_iter()
+        .map(|scene| panel(scene, timings))
+        .collect()
+}
+
+#[cfg(feature = "cli")]
+fn panel(scene: &str, timings: &[Timing]) -> Panel {
+    let of_scene: Vec<&Timing> = timings.iter().filter(|t| t.scene == scene).collect();
+    let several = of_scene
+        .windows(2)
+        .any(|pair| pair[0].pixels() != pair[1].pixels());
+    let name = |t: &Timing| match t.threads {
+        1 => t.engine.to_owned(),
+        threads => format!("{}, {threads} threads", t.engine),
+    };
+    if !several {
+        let bar = |t: &&Timing| Bar {
+            name: name(t),
+            value: t.wall.median_ms,
+        };
+        return Panel::Bars {
+            title: of_scene.first().map_or_else(String::new, |t| {
+                format!("{scene}, {}, ms a frame", t.size())
+            }),
+            bars: of_scene.iter().map(bar).collect(),
+        };
+    }
+    let points = of_scene
+        .iter()
+        .map(|t| (name(t), (t.pixels() as f64, t.wall.median_ms)));
+    Panel::Curves {
+        title: scene.to_owned(),
+        x_label: "pixels".to_owned(),
+        y_label: "ms a frame".to_owned(),
+        series: Series::collect(points),
+    }
+}

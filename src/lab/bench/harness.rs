@@ -1,0 +1,300 @@
+//! Interleaved runs: every contender draws a frame, then every one the next.
+//!
+//! What drifts while a measurement goes on (other work, clock rates) then
+//! hits all alike, and a contender does not find the caches as its own last
+//! frame left them. A frame is: clear, traverse, colour of each sample
+//! written. Buffers are made before the first frame and reused.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::clock::{Clock, Elapsed};
+use super::statistics::Summary;
+use crate::frame::Frame;
+use crate::graph::{Graph, Progress};
+use crate::picture::flat_colors;
+use crate::project::{Engine, EngineError, FrameSetup, SetupError, Stats};
+
+/// How often each contender draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schedule {
+    /// Frames before those that count.
+    pub warmup: u32,
+    /// Frames that count, 1 or more.
+    pub runs: u32,
+}
+
+/// An engine and the frame that it draws.
+pub struct Contender<'c> {
+    /// What an error calls it.
+    pub name: String,
+    /// What it draws.
+    pub graph: &'c Graph,
+    /// The frame.
+    pub setup: FrameSetup,
+    /// Threads of the pool that it draws in, 1 or more.
+    pub threads: usize,
+    /// Who draws.
+    pub engine: Box<dyn Engine + Send>,
+}
+
+/// What a contender took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Wall time of a frame.
+    pub wall: Summary,
+    /// Processor time of the drawing thread; only for contenders on one
+    /// thread, and where the system tells it.
+    pub thread: Option<Summary>,
+    /// Counters of one frame.
+    pub counters: Stats,
+}
+
+/// Why there is no measurement.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BenchError {
+    /// An engine did not finish its frame.
+    #[error("{who}: {source}")]
+    Engine {
+        /// The contender.
+        who: String,
+        /// What the engine said.
+        source: EngineError,
+    },
+    /// A frame cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The system gave no threads.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// The system's reason.
+        reason: String,
+    },
+}
+
+/// Sample and colour buffers of one size.
+struct Buffers {
+    frame: Frame,
+    colors: Vec<[u8; 3]>,
+}
+
+impl Buffers {
+    fn new(width: u32, height: u32) -> Self {
+        let frame = Frame::new(width, height, false);
+        // Not zero, so that its pages are there before the first frame.
+        let colors = vec![[1; 3]; frame.node.len()];
+        Self { frame, colors }
+    }
+}
+
+/// Runs contenders. Keeps thread pools and buffers between races.
+pub struct Harness<'p> {
+    schedule: Schedule,
+    progress: &'p dyn Progress,
+    pools: BTreeMap<usize, ThreadPool>,
+    buffers: BTreeMap<(u32, u32), Buffers>,
+}
+
+impl<'p> Harness<'p> {
+    /// A harness; `progress` is told of every frame, between frames.
+    #[must_use]
+    pub fn new(schedule: Schedule, progress: &'p dyn Progress) -> Self {
+        Self {
+            schedule,
+            progress,
+            pools: BTreeMap::new(),
+            buffers: BTreeMap::new(),
+        }
+    }
+
+    /// Measures all contenders in turn. `look` is shown each contender's first
+    /// frame, by the contender's place in the list, outside of the times.
+    ///
+    /// # Errors
+    /// When an engine fails, or there are no threads.
+    pub fn race(
+        &mut self,
+        contenders: &mut [Contender<'_>],
+        look: &mut dyn FnMut(usize, &Frame),
+    ) -> Result<Vec<Measured>, BenchError> {
+        for contender in &*contenders {
+            self.make_pool(contender.threads)?;
+            let (width, height) = (contender.setup.width, contender.setup.height);
+            self.buffers
+                .entry((width, height))
+                .or_insert_with(|| Buffers::new(width, height));
+        }
+        let rounds = self.schedule.warmup + self.schedule.runs.max(1);
+        let mut times: Vec<Vec<Elapsed>> = contenders
+            .iter()
+            .map(|_| Vec::with_capacity(rounds as usize))
+            .collect();
+        let mut counters = vec![Stats::new(); contenders.len()];
+        let frames = u64::from(rounds) * contenders.len() as u64;
+        self.progress.begin("measuring", frames);
+        for round in 0..rounds {
+            for (place, contender) in contenders.iter_mut().enumerate() {
+                let (elapsed, stats) = self.frame(contender)?;
+                if round >= self.schedule.warmup {
+                    times[place].push(elapsed);
+                }
+                counters[place] = stats;
+                if round == 0 {
+                    let size = (contender.setup.width, contender.setup.height);
+                    if let Some(buffers) = self.buffers.get(&size) {
+                        look(place, &buffers.frame);
+                    }
+                }
+                self.progress.advance(1);
+            }
+        }
+        self.progress.end();
+        let of = |(contender, (times, counters)): (&Contender<'_>, (Vec<Elapsed>, Stats))| {
+            let wall: Vec<f64> = times.iter().map(|t| t.wall_ms).collect();
+            let thread: Option<Vec<f64>> = times.iter().map(|t| t.thread_ms).collect();
+            Measured {
+                wall: Summary::of(&wall),
+                thread: thread
+                    .filter(|_| contender.threads == 1)
+                    .map(|thread| Summary::of(&thread)),
+                counters,
+            }
+        };
+        Ok(contenders
+            .iter()
+            .zip(times.into_iter().zip(counters))
+            .map(of)
+            .collect())
+    }
+
+    /// Forgets the buffers, which the next race makes anew.
+    pub fn release_buffers(&mut self) {
+        self.buffers.clear();
+    }
+
+    fn make_pool(&mut self, threads: usize) -> Result<(), BenchError> {
+        if self.pools.contains_key(&threads) {
+            return Ok(());
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|e| BenchError::Threads {
+            threads,
+            reason: e.to_string(),
+        })?;
+        self.pools.insert(threads, pool);
+        Ok(())
+    }
+
+    /// One frame; the clocks run inside the pool, around the work alone.
+    fn frame(&mut self, contender: &mut Contender<'_>) -> Result<(Elapsed, Stats), BenchError> {
+        let Contender {
+            name,
+            graph,
+            setup,
+            threads,
+            engine,
+        } = contender;
+        let size = (setup.width, setup.height);
+        let buffers = self
+            .buffers
+            .entry(size)
+            .or_insert_with(|| Buffers::new(size.0, size.1));
+        let mut draw = || {
+            let clock = Clock::start();
+            let stats = engine.render(&graph.view(), setup, &mut buffers.frame);
+            flat_colors(graph, &buffers.frame, &mut buffers.colors);
+            black_box(buffers.colors.as_slice());
+            (clock.elapsed(), stats)
+        };
+        let (elapsed, stats) = match self.pools.get(threads) {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        let stats = stats.map_err(|source| BenchError::Engine {
+            who: name.clone(),
+            source,
+        })?;
+        Ok((elapsed, stats))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use super::*;
+    use crate::graph::{GraphView, Placement, Silent, Store};
+    use crate::project::{Camera, SetupOptions};
+
+    /// Notes its name for each frame and how many threads it finds.
+    struct Scribe(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
+
+    impl Engine for Scribe {
+        fn render(
+            &mut self,
+            _: &GraphView<'_>,
+            _: &FrameSetup,
+            frame: &mut Frame,
+        ) -> Result<Stats, EngineError> {
+            frame.clear();
+            frame.node[0] = 0;
+            let mut notes = self.1.lock().unwrap();
+            notes.push((self.0, rayon::current_num_threads()));
+            Ok(vec![("frames", notes.len() as u64)])
+        }
+    }
+
+    #[test]
+    fn contenders_take_turns_in_pools_of_their_own() {
+        let graph = Graph {
+            depth: 0,
+            root: 0,
+            mask: Store::from(vec![]),
+            first: Store::from(vec![]),
+            links: Store::from(vec![]),
+            color: Store::from(vec![[1, 2, 3]]),
+            normal: Store::from(vec![]),
+            level_start: vec![],
+            voxels: 1,
+            placement: Placement::default(),
+        };
+        let camera = Camera {
+            eye: glam::DVec3::new(0.5, -3.0, 0.5),
+            target: glam::DVec3::splat(0.5),
+            up: glam::DVec3::Z,
+            fov_degrees: 60.0,
+            width: 4,
+            height: 2,
+        };
+        let setup =
+            FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default()).unwrap();
+        let notes = Arc::new(Mutex::new(Vec::new()));
+        let contender = |name: &'static str, threads| Contender {
+            name: name.to_owned(),
+            graph: &graph,
+            setup: setup.clone(),
+            threads,
+            engine: Box::new(Scribe(name, Arc::clone(&notes))),
+        };
+        let mut contenders = [contender("a", 1), contender("b", 2)];
+        let schedule = Schedule { warmup: 1, runs: 2 };
+        let mut seen = Vec::new();
+        let measured = Harness::new(schedule, &Silent)
+            .race(&mut contenders, &mut |place, frame| {
+                seen.push((place, frame.drawn()));
+            })
+            .unwrap();
+        let round = [("a", 1), ("b", 2)];
+        assert_eq!(*notes.lock().unwrap(), [round, round, round].concat());
+        assert_eq!(seen, [(0, 1), (1, 1)]);
+        assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
+        // Counters are those of the last frame; one thread's time is told of one thread alone.
+        assert_eq!(measured[1].counters, [("frames", 6)]);
+        assert_eq!(measured[1].thread, None);
+        assert_eq!(measured[0].thread.is_some(), cfg!(unix));
+    }
+}

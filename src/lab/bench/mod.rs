@@ -1,0 +1,29 @@
+//! Times of engines, measured side by side.
+//!
+//! [`harness`] runs whoever competes in turn; [`measure`] makes contenders
+//! of scenes, sizes, engines and thread counts; the experiments [`engines`],
+//! [`scaling`] and [`ablation`] say what is measured and how it is shown. Engines
+//! come from outside as lists of [`Candidate`]s: nothing here knows one by name.
+
+pub mod ablation;
+mod candidate;
+mod clock;
+pub mod engines;
+mod fit;
+pub mod harness;
+pub mod measure;
+#[cfg(feature = "cli")]
+pub mod plot;
+pub mod scaling;
+mod scan;
+mod statistics;
+mod table;
+
+pub use candidate::{Candidate, Family, MakeEngine, Variant};
+pub use clock::{Clock, Elapsed};
+pub use fit::PowerLaw;
+pub use harness::{BenchError, Contender, Harness, Measured, Schedule};
+pub use measure::{Plan, Subject, Timing, measure};
+pub use scan::Scan;
+pub use statistics::Summary;
+pub use table::{Cell, Table};

@@ -1,0 +1,77 @@
+//! What a few times of the same work say.
+
+use serde::Serialize;
+
+/// Order statistics of some times. With times that other work on the machine
+/// can only lengthen, `min` and `median` say more than a mean.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Summary {
+    /// How many times there are.
+    pub runs: usize,
+    /// Least, milliseconds.
+    pub min_ms: f64,
+    /// Middle, milliseconds; of an even number the mean of two.
+    pub median_ms: f64,
+    /// Greatest, milliseconds.
+    pub max_ms: f64,
+    /// Median of the absolute deviations from the median, milliseconds.
+    pub deviation_ms: f64,
+}
+
+impl Summary {
+    /// The statistics of some times in milliseconds; zeros for none.
+    #[must_use]
+    pub fn of(times_ms: &[f64]) -> Self {
+        let mut sorted = times_ms.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let (Some(&min_ms), Some(&max_ms)) = (sorted.first(), sorted.last()) else {
+            return Self::default();
+        };
+        let median_ms = middle(&sorted);
+        let mut deviations: Vec<f64> = sorted.iter().map(|t| (t - median_ms).abs()).collect();
+        deviations.sort_by(f64::total_cmp);
+        Self {
+            runs: sorted.len(),
+            min_ms,
+            median_ms,
+            max_ms,
+            deviation_ms: middle(&deviations),
+        }
+    }
+}
+
+/// The middle of growing numbers; 0 for none.
+fn middle(sorted: &[f64]) -> f64 {
+    let half = sorted.len() / 2;
+    match sorted {
+        [] => 0.0,
+        _ if sorted.len() % 2 == 1 => sorted[half],
+        _ => (sorted[half - 1] + sorted[half]) / 2.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn order_statistics() {
+        let odd = Summary::of(&[5.0, 1.0, 2.0]);
+        assert_eq!((odd.runs, odd.min_ms, odd.median_ms), (3, 1.0, 2.0));
+        // Deviations 3, 1, 0.
+        assert_eq!((odd.max_ms, odd.deviation_ms), (5.0, 1.0));
+        let even = Summary::of(&[10.0, 2.0, 4.0, 3.0]);
+        // Deviations 6.5, 1.5, 0.5, 0.5.
+        assert_eq!((even.median_ms, even.deviation_ms), (3.5, 1.0));
+        assert_eq!(Summary::of(&[7.0]).deviation_ms, 0.0);
+        assert_eq!(Summary::of(&[]), Summary::default());
+    }
+
+    #[test]
+    fn one_slow_run_does_not_move_the_median() {
+        let quiet = Summary::of(&[10.0, 10.2, 10.1, 9.9, 10.0]);
+        let disturbed = Summary::of(&[10.0, 10.2, 10.1, 9.9, 500.0]);
+        assert!((quiet.median_ms - disturbed.median_ms).abs() <= 0.1);
+        assert!(disturbed.deviation_ms <= 0.2);
+    }
+}

@@ -1,0 +1,406 @@
+//! A ray caster in `f32`: the stand-in for renderers that are not ours.
+//!
+//! One ray for each sample through the octree, with a stack, children in the
+//! order in which the ray meets them (Revelles, Urena, Lastra 2000; the form
+//! is that of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). No
+//! allocation for a ray, nothing tested twice, the first leaf ends it: what
+//! one writes when one has floating point and an hour. One thread, no packets.
+//!
+//! The object is the cube `[1, 2]^3`, so that a cell's position along an axis
+//! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
+//! where the ray runs upwards; in mirrored space it runs downwards on every axis.
+
+use crate::frame::{Frame, NO_NODE};
+use crate::graph::GraphView;
+use crate::project::{Engine, EngineError, FrameSetup, Stats};
+
+/// Bits of an `f32`'s mantissa, hence levels that positions can tell apart.
+const MANTISSA_BITS: u32 = 23;
+/// Deepest level that is looked at; nodes there are drawn as one voxel.
+pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
+/// Least magnitude of a direction's component, so that its inverse is finite
+/// and products with it stay far from overflow.
+const LEAST_SLOPE: f32 = 1.0 / (1 << MANTISSA_BITS) as f32;
+
+/// The ray caster in floating point. Drawing rule, cage, tolerance and level
+/// of detail of the set-up are ignored: a sample shows what its centre sees,
+/// as far as `f32` can tell.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FloatRays;
+
+impl Engine for FloatRays {
+    /// Never fails. `steps` counts the cells that rays looked at. Does not
+    /// fill `frame.records`. Nodes at [`MAX_LEVEL`] are drawn as one voxel.
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        frame.clear();
+        let rays = Rays::new(setup);
+        let caster = Caster {
+            graph,
+            last_level: setup.depth.min(MAX_LEVEL),
+            depth: setup.depth,
+        };
+        let mut steps = 0;
+        let mut drawn = 0;
+        let width = frame.width as usize;
+        let rows = frame.node.chunks_mut(width.max(1));
+        let rows = rows.zip(frame.voxel.chunks_mut(width.max(1)));
+        for (j, (nodes, voxels)) in rows.enumerate() {
+            for (i, (node, voxel)) in nodes.iter_mut().zip(voxels).enumerate() {
+                let (origin, direction) = rays.of_sample(i as u32, j as u32);
+                if let Some(seen) = caster.cast(origin, direction, &mut steps) {
+                    (*node, *voxel) = seen;
+                    drawn += 1;
+                }
+            }
+        }
+        debug_assert_eq!(
+            drawn,
+            frame.node.iter().filter(|&&n| n != NO_NODE).count() as u64
+        );
+        Ok(vec![
+            ("samples", frame.node.len() as u64),
+            ("samples_drawn", drawn),
+            ("steps", steps),
+        ])
+    }
+}
+
+/// The rays of a frame, in the object's cube `[1, 2]^3`.
+struct Rays {
+    /// The eye.
+    eye: [f64; 3],
+    /// Direction of the first sample's ray, and its change for each sample
+    /// right and down.
+    first: [f64; 3],
+    right: [f64; 3],
+    down: [f64; 3],
+}
+
+impl Rays {
+    /// Inverts the frame's view: once a frame, in `f64`.
+    fn new(setup: &FrameSetup) -> Self {
+        let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
+        let origin = setup.origin_clip.map(|c| c as f64);
+        let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
+        let determinant = dot(normal[0], edge[0]);
+        let side = (1u64 << setup.depth) as f64;
+        // Object coordinates, in cubes, of a clip vector.
+        let object = |clip: [f64; 3]| normal.map(|n| dot(n, clip) / determinant / side);
+        let sample = 1.0 / (1u64 << setup.levels) as f64;
+        // The first sample's centre is half a sample from the corner.
+        let first = object([sample / 2.0, sample / 2.0, 1.0]);
+        let longest = first.iter().fold(0.0f64, |most, c| most.max(c.abs()));
+        let unit = 1.0 / longest;
+        Self {
+            eye: object(origin.map(|c| -c)).map(|c| 1.0 + c),
+            first: first.map(|c| c * unit),
+            right: object([sample, 0.0, 0.0]).map(|c| c * unit),
+            down: object([0.0, sample, 0.0]).map(|c| c * unit),
+        }
+    }
+
+    /// Origin and direction of a sample's ray. The origin is where the ray
+    /// comes near the cube, so that `f32` keeps its digits for the way inside.
+    fn of_sample(&self, i: u32, j: u32) -> ([f32; 3], [f32; 3]) {
+        let (i, j) = (f64::from(i), f64::from(j));
+        let direction: [f64; 3] =
+            std::array::from_fn(|k| self.first[k] + self.right[k] * i + self.down[k] * j);
+        let to_centre: [f64; 3] = std::array::from_fn(|k| 1.5 - self.eye[k]);
+        let nearest = dot(to_centre, direction) / dot(direction, direction);
+        // Half the cube's diagonal is below 1.
+        let length = dot(direction, direction).sqrt();
+        let start = (nearest - 1.0 / length).max(0.0);
+        let origin = std::array::from_fn(|k| (self.eye[k] + direction[k] * start) as f32);
+        (origin, direction.map(|c| c as f32))
+    }
+}
+
+/// What is put aside when a ray descends: the node above, and where the ray leaves it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Aside {
+    node: u32,
+    exit: f32,
+}
+
+struct Caster<'g> {
+    graph: &'g GraphView<'g>,
+    /// Level at which a node is a voxel.
+    last_level: u32,
+    depth: u32,
+}
+
+impl Caster<'_> {
+    /// The first solid cell on a ray: its node, and its cell as a frame stores it.
+    #[inline]
+    fn cast(
+        &self,
+        origin: [f32; 3],
+        direction: [f32; 3],
+        steps: &mut u64,
+    ) -> Option<(u32, [i32; 4])> {
+        // Octant bit 4 >> k belongs to axis k. Mirrored axes: direction above 0.
+        let mut mirror = 0u8;
+        // The plane at `p` of axis k is crossed at t = p * slope[k] - bias[k]; slope is negative.
+        let mut slope = [0f32; 3];
+        let mut bias = [0f32; 3];
+        for k in 0..3 {
+            slope[k] = -1.0 / direction[k].abs().max(LEAST_SLOPE);
+            bias[k] = slope[k] * origin[k];
+            if direction[k] > 0.0 {
+                mirror |= 4 >> k;
+                bias[k] = 3.0 * slope[k] - bias[k];
+            }
+        }
+        let at = |p: f32, k: usize| p * slope[k] - bias[k];
+        let mut near = at(2.0, 0).max(at(2.0, 1)).max(at(2.0, 2)).max(0.0);
+        let mut exit = at(1.0, 0).min(at(1.0, 1)).min(at(1.0, 2));
+        if near > exit {
+            return None;
+        }
+        let mut node = self.graph.root;
+        let mut mask = self.graph.mask(node);
+        if mask == 0 || self.last_level == 0 {
+            return Some((node, [0; 4]));
+        }
+
+        let mut stack = [Aside::default(); MANTISSA_BITS as usize + 1];
+        // Of the cell looked at: lowest corner in mirrored space, octant in its parent
+        // (mirrored), side, and the bit of the mantissa that the side is.
+        let mut low = [1f32; 3];
+        let mut octant = 0u8;
+        let mut side = 0.5f32;
+        let mut bit = MANTISSA_BITS - 1;
+        for k in 0..3 {
+            if at(1.5, k) > near {
+                octant |= 4 >> k;
+                low[k] = 1.5;
+            }
+        }
+        // Where the parent ends, as put aside last.
+        let mut aside = exit;
+        loop {
+            *steps += 1;
+            let leaves: [f32; 3] = std::array::from_fn(|k| at(low[k], k));
+            let cell_exit = leaves[0].min(leaves[1]).min(leaves[2]);
+            let child_octant = octant ^ mirror;
+            if mask >> child_octant & 1 != 0 && near <= exit {
+                let child_end = exit.min(cell_exit);
+                if near <= child_end
+                    && let Some(child) = self.graph.child(node, child_octant)
+                {
+                    let level = MANTISSA_BITS - bit;
+                    let child_mask = self.graph.mask(child);
+                    if child_mask == 0 || level == self.last_level {
+                        return Some((child, self.cell(low, bit, mirror)));
+                    }
+                    // Descend.
+                    if cell_exit < aside {
+                        stack[bit as usize] = Aside { node, exit };
+                    }
+                    aside = cell_exit;
+                    node = child;
+                    mask = child_mask;
+                    octant = 0;
+                    bit -= 1;
+                    side *= 0.5;
+                    for k in 0..3 {
+                        if side * slope[k] + leaves[k] > near {
+                            octant |= 4 >> k;
+                            low[k] += side;
+                        }
+                    }
+                    exit = child_end;
+                    continue;
+                }
+            }
+            // Advance to the neighbour that the ray enters.
+            let mut turned = 0u8;
+            for k in 0..3 {
+                if leaves[k] <= cell_exit {
+                    turned |= 4 >> k;
+                    low[k] -= side;
+                }
+            }
+            near = cell_exit;
+            octant ^= turned;
+            if octant & turned == 0 {
+                continue;
+            }
+            // It is not in the same parent: ascend to the lowest that holds both.
+            let mut differing = 0u32;
+            for k in 0..3 {
+                if turned & (4 >> k) != 0 {
+                    differing |= low[k].to_bits() ^ (low[k] + side).to_bits();
+                }
+            }
+            bit = 31 - differing.leading_zeros();
+            if bit >= MANTISSA_BITS {
+                return None;
+            }
+            side = f32::from_bits((bit + 127 - MANTISSA_BITS) << MANTISSA_BITS);
+            let above = stack[bit as usize];
+            node = above.node;
+            mask = self.graph.mask(node);
+            exit = above.exit;
+            octant = 0;
+            for k in 0..3 {
+                let place = low[k].to_bits() >> bit;
+                low[k] = f32::from_bits(place << bit);
+                if place & 1 != 0 {
+                    octant |= 4 >> k;
+                }
+            }
+            aside = 0.0;
+        }
+    }
+
+    /// The cell whose lowest corner in mirrored space is `low`.
+    fn cell(&self, low: [f32; 3], bit: u32, mirror: u8) -> [i32; 4] {
+        let level = MANTISSA_BITS - bit;
+        let last = (1u32 << level) - 1;
+        let mut cell = [0, 0, 0, level as i32];
+        for k in 0..3 {
+            let place = low[k].to_bits() >> bit & last;
+            let place = if mirror & (4 >> k) != 0 {
+                last - place
+            } else {
+                place
+            };
+            // Places are below 2^level and depth at most 30.
+            cell[k] = (place << (self.depth - level)) as i32;
+        }
+        cell
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::graph::{Graph, Silent};
+    use crate::measure::CoverageError;
+    use crate::project::{Camera, SetupOptions};
+    use crate::rays::Rays as Oracle;
+    use crate::scene::{OpenOptions, open};
+
+    fn graph(spec: &str) -> Graph {
+        open(spec, &OpenOptions::default(), &Silent).unwrap().graph
+    }
+
+    /// Draws both; eye and target in sides of the object's cube.
+    fn against_oracle(graph: &Graph, eye: [f64; 3], target: [f64; 3]) -> (CoverageError, Stats) {
+        let placement = &graph.placement;
+        let low = DVec3::from_array(placement.origin_index.map(|c| c as f64));
+        let side = (1u64 << graph.depth) as f64;
+        let camera = Camera {
+            eye: low + DVec3::from_array(eye) * side,
+            target: low + DVec3::from_array(target) * side,
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 256,
+            height: 256,
+        };
+        let setup =
+            FrameSetup::new(&camera, placement, graph.depth, &SetupOptions::default()).unwrap();
+        let mut exact = Frame::new(256, 256, false);
+        let mut float = exact.clone();
+        Oracle.render(&graph.view(), &setup, &mut exact).unwrap();
+        let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();
+        let error = CoverageError::between(&float.voxel, &exact.voxel);
+        for (a, b) in float.voxel.iter().zip(&float.node) {
+            assert_eq!(a[3] < 0, *b == NO_NODE);
+        }
+        (error, stats)
+    }
+
+    #[test]
+    fn it_sees_what_the_oracle_sees() {
+        let outside = ([1.6, -0.7, 1.25], [0.5, 0.5, 0.3]);
+        let front = ([0.47, -0.95, 0.53], [0.475, 0.5, 0.475]);
+        // All octants of direction, and far away.
+        let views = [
+            outside,
+            front,
+            ([-0.6, 1.4, -0.8], [0.5, 0.5, 0.5]),
+            ([1.3, 1.9, 0.6], [0.4, 0.5, 0.5]),
+            ([-1.3, -0.4, 1.6], [0.4, 0.5, 0.5]),
+            ([6.0, -14.0, 8.0], [0.5, 0.5, 0.4]),
+        ];
+        for spec in ["gen:terrain,depth=8", "gen:menger,depth=4"] {
+            let graph = graph(spec);
+            for (eye, target) in views {
+                let (error, _) = against_oracle(&graph, eye, target);
+                eprintln!("{spec} from {eye:?}: {error:?}");
+                assert!(error.covered > 0, "{spec} from {eye:?}");
+                assert!(error.differing() <= 12, "{spec} from {eye:?}: {error:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn it_sees_from_inside_and_through_cycles() {
+        for spec in [
+            "gen:menger,depth=3",
+            "gen:sierpinski,depth=9",
+            "gen:sphere,depth=6",
+        ] {
+            let graph = graph(spec);
+            for eye in [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]] {
+                let (error, stats) = against_oracle(&graph, eye, [0.9, 0.8, 0.3]);
+                eprintln!("{spec} from {eye:?}: {error:?}");
+                assert!(error.covered > 0, "{spec} from {eye:?}");
+                assert!(error.differing() <= 12, "{spec} from {eye:?}: {error:?}");
+                let steps = stats.iter().find(|(name, _)| *name == "steps");
+                assert!(steps.is_some_and(|&(_, steps)| steps < 256 * 256 * 200));
+            }
+        }
+    }
+
+    #[test]
+    fn one_voxel_and_rays_along_the_axes() {
+        // Odd sizes have a ray through the middle with two components 0.
+        let graph = graph("gen:sphere,depth=1");
+        let camera = Camera {
+            eye: DVec3::new(0.7, -4.0, 0.6),
+            target: DVec3::new(0.7, 0.0, 0.6),
+            up: DVec3::Z,
+            fov_degrees: 40.0,
+            width: 17,
+            height: 17,
+        };
+        let options = SetupOptions::default();
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+        let mut frame = Frame::new(17, 17, false);
+        FloatRays.render(&graph.view(), &setup, &mut frame).unwrap();
+        assert_ne!(frame.node[8 * 17 + 8], NO_NODE);
+        let leaf = GraphView {
+            depth: 0,
+            root: 0,
+            mask: &[],
+            first: &[],
+            links: &[],
+        };
+        let setup = FrameSetup::new(&camera, &graph.placement, 0, &options).unwrap();
+        FloatRays.render(&leaf, &setup, &mut frame).unwrap();
+        assert_eq!(frame.voxel[8 * 17 + 8], [0; 4]);
+        assert_eq!(frame.voxel[0], crate::frame::NO_VOXEL);
+    }
+}
