@@ -60,10 +60,10 @@ struct CommonArgs {
     /// Results as JSON on stdout
     #[arg(long, global = true)]
     json: bool,
-    /// Threads, 0 for all; never changes a bit of output
-    #[arg(long, global = true, value_name = "N", default_value_t = 0,
-          value_parser = clap::value_parser!(u16).range(0..=1024))]
-    threads: u16,
+    /// Threads, 0 for all; never changes a bit of output [default: 0; of measurements: 1].
+    /// Experiments take a list, such as 1,2
+    #[arg(long, global = true, value_name = "N")]
+    threads: Option<args::ThreadCounts>,
     /// TOML file with flags by their long names; flags on the command line come first
     #[arg(long, global = true, value_name = "FILE")]
     config: Option<std::path::PathBuf>,
@@ -89,6 +89,22 @@ enum Verb {
     Completions(manual::CompletionsArgs),
     /// Print the manual page
     Man(manual::ManArgs),
+}
+
+impl Cli {
+    /// Threads of the pool that all work shares, 0 for all.
+    fn threads(&self) -> Result<usize, CliError> {
+        let given = self.common.threads.as_ref().map_or(&[][..], |t| &t.0);
+        match (given, &self.verb) {
+            ([], _) => Ok(0),
+            (&[one], _) => Ok(usize::from(one)),
+            // Experiments make a pool for each number and use this one to prepare.
+            (_, Some(Verb::Bench(args))) if args.takes_thread_list() => Ok(0),
+            _ => Err(CliError::usage(
+                "--threads takes one number here; lists are for bench engines and bench scaling",
+            )),
+        }
+    }
 }
 
 /// Runs the program on the process's arguments.
@@ -119,7 +135,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
     };
     let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
     rayon::ThreadPoolBuilder::new()
-        .num_threads(usize::from(cli.common.threads))
+        .num_threads(cli.threads()?)
         .build_global()
         .map_err(|e| CliError::new(Kind::Run, format!("cannot start the threads: {e}")))?;
     match cli.verb {
@@ -130,7 +146,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Convert(args)) => convert::run(&args, &console),
         Some(Verb::Generate(args)) => generate::run(&args, &console),
         Some(Verb::Compare(args)) => compare::run(&args, &console),
-        Some(Verb::Bench(args)) => bench::run(&args, &console),
+        Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
         Some(Verb::Completions(args)) => manual::completions(&args),
         Some(Verb::Man(args)) => manual::man(&args),
     }

@@ -8,11 +8,11 @@ mod scene;
 mod values;
 
 pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
-pub use engine::{EngineArgs, EngineName, Isa, OverflowName};
+pub use engine::{CoverageName, EngineArgs, EngineName, Isa, OverflowName};
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};
 pub use scene::{OutOfBoundsName, SceneArgs};
-pub use values::{Point, Size, Tolerance};
+pub use values::{Point, Size, ThreadCounts, Tolerance};
 
 /// A setting as a configuration file has it: the flag's long name and its value.
 pub type Setting = (&'static str, toml::Value);

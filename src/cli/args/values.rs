@@ -97,6 +97,27 @@ impl fmt::Display for Tolerance {
     }
 }
 
+/// Numbers of threads: `2`, or `1,2,4`; 0 stands for all that the machine has.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ThreadCounts(pub Vec<u16>);
+
+impl FromStr for ThreadCounts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        text.split(',')
+            .map(|part| {
+                part.trim()
+                    .parse::<u16>()
+                    .ok()
+                    .filter(|&count| count <= 1024)
+                    .ok_or_else(|| "expected a number of threads, 0 to 1024".to_owned())
+            })
+            .collect::<Result<_, _>>()
+            .map(Self)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -119,6 +140,15 @@ mod tests {
         }
         for bad in ["1,2", "1,2,3,4", "a,b,c", "nan,0,0", "inf,0,0", ""] {
             assert!(bad.parse::<Point>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_threads() {
+        assert_eq!("4".parse(), Ok(ThreadCounts(vec![4])));
+        assert_eq!("1, 2,0".parse(), Ok(ThreadCounts(vec![1, 2, 0])));
+        for bad in ["", "1,", "-1", "1025", "two"] {
+            assert!(bad.parse::<ThreadCounts>().is_err(), "{bad}");
         }
     }
 

@@ -99,6 +99,22 @@ impl Table {
         }
     }
 
+    /// The table without some columns.
+    #[must_use]
+    pub fn without(&self, names: &[&str]) -> Self {
+        let kept: Vec<usize> = (0..self.columns.len())
+            .filter(|&column| !names.contains(&self.columns[column]))
+            .collect();
+        let rows = self.rows.iter();
+        Self {
+            title: self.title.clone(),
+            columns: kept.iter().map(|&column| self.columns[column]).collect(),
+            rows: rows
+                .map(|row| kept.iter().map(|&column| row[column].clone()).collect())
+                .collect(),
+        }
+    }
+
     /// The table in CSV (RFC 4180): a line of names, then the rows.
     #[must_use]
     pub fn csv(&self) -> String {
@@ -173,6 +189,13 @@ mod tests {
                         \"gen:menger,depth=2\",12.345,1234567\r\n\
                         \"a \"\"b\"\" | c\",0.5,\r\n";
         assert_eq!(table().csv(), expected);
+    }
+
+    #[test]
+    fn columns_can_be_left_out() {
+        let less = table().without(&["ms", "nothing"]);
+        assert_eq!(less.columns, ["scene", "records"]);
+        assert_eq!(less.rows[1], [Cell::from("a \"b\" | c"), Cell::None]);
     }
 
     #[test]

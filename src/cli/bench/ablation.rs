@@ -1,0 +1,91 @@
+//! `bench ablation`: techniques switched off in turn.
+
+use clap::Args;
+use serde_json::json;
+
+use super::args::{ExportArgs, MeasureArgs};
+use super::context::Context;
+use super::export::{self, Results};
+use super::{subjects, thread_counts};
+use crate::cli::args::{CameraArgs, SceneArgs, ThreadCounts};
+use crate::cli::console::Console;
+use crate::cli::error::CliError;
+use crate::cli::{engines, report};
+use crate::lab::bench::{Candidate, Family, Harness, ablation as experiment};
+
+/// Arguments of `bench ablation`. Always on one thread.
+#[derive(Debug, Args)]
+pub(super) struct AblationArgs {
+    /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
+    /// bundled]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    export: ExportArgs,
+}
+
+/// Pixels a side where nothing is said.
+const DEFAULT_SIDE: u32 = 512;
+
+pub(super) fn run(
+    args: &AblationArgs,
+    from_config: Vec<String>,
+    threads: Option<&ThreadCounts>,
+    console: &Console,
+) -> Result<(), CliError> {
+    export::check(&args.export)?;
+    if threads.is_some() && thread_counts(threads) != [1] {
+        return Err(CliError::usage("an ablation is measured on one thread"));
+    }
+    let sizes = args.measure.sizes(DEFAULT_SIDE)?;
+    let [size] = sizes[..] else {
+        return Err(CliError::usage("an ablation is measured at one size")
+            .advise("give --size in place of --scan"));
+    };
+    let families = families(&args.measure)?;
+    let (schedule, options) = (args.measure.schedule(), args.measure.options());
+    let context = Context::now();
+    let mut harness = Harness::new(schedule, console.progress());
+    let mut rows = Vec::new();
+    for name in subjects::names(&args.scenes, from_config) {
+        let subject = subjects::open(&name, &args.camera, &args.scene, size, console)?;
+        rows.extend(experiment::run(
+            &subject,
+            size,
+            &options,
+            &families,
+            &engines::REFERENCE,
+            &mut harness,
+        )?);
+    }
+    let mut fields = context.json(schedule, &options);
+    fields["width"] = size.0.into();
+    fields["height"] = size.1.into();
+    fields["results"] = json!(rows);
+    let table = experiment::table(&rows);
+    let results = Results {
+        document: report::document("bench ablation", fields),
+        tables: vec![table.clone(), experiment::legend(&families)],
+        rows: table,
+        preface: context.markdown(schedule),
+        panels: experiment::panels(&rows),
+    };
+    export::write(&results, &args.export, console)
+}
+
+/// The families whose engine was asked for; all if none was.
+fn families(args: &MeasureArgs) -> Result<Vec<Family>, CliError> {
+    let wholes: Vec<Candidate> = engines::FAMILIES.iter().map(|f| f.whole).collect();
+    let all: Vec<&str> = wholes.iter().map(|whole| whole.name).collect();
+    let chosen: Vec<&str> = args.choose(&wholes, &all)?.iter().map(|c| c.name).collect();
+    let families = engines::FAMILIES.iter().copied();
+    Ok(families
+        .filter(|f| chosen.contains(&f.whole.name))
+        .collect())
+}

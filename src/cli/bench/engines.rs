@@ -1,0 +1,73 @@
+//! `bench engines`: the engines and a stand-in rival, side by side.
+
+use clap::Args;
+use serde_json::json;
+
+use super::args::{ExportArgs, MeasureArgs};
+use super::context::Context;
+use super::export::{self, Results};
+use super::{subjects, thread_counts};
+use crate::cli::args::{CameraArgs, SceneArgs, ThreadCounts};
+use crate::cli::console::Console;
+use crate::cli::error::CliError;
+use crate::cli::{engines, report};
+use crate::lab::bench::{Harness, Plan, engines as experiment, measure};
+
+/// Arguments of `bench engines`.
+#[derive(Debug, Args)]
+pub(super) struct EnginesArgs {
+    /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
+    /// bundled]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<String>,
+    #[command(flatten)]
+    measure: MeasureArgs,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    export: ExportArgs,
+}
+
+/// Pixels a side where nothing is said.
+const DEFAULT_SIDE: u32 = 1024;
+
+pub(super) fn run(
+    args: &EnginesArgs,
+    from_config: Vec<String>,
+    threads: Option<&ThreadCounts>,
+    console: &Console,
+) -> Result<(), CliError> {
+    export::check(&args.export)?;
+    let sizes = args.measure.sizes(DEFAULT_SIDE)?;
+    let all: Vec<&str> = engines::CANDIDATES.iter().map(|c| c.name).collect();
+    let candidates = args.measure.choose(engines::CANDIDATES, &all)?;
+    let (schedule, options) = (args.measure.schedule(), args.measure.options());
+    let context = Context::now();
+    let threads = thread_counts(threads);
+    let plan = Plan {
+        sizes: &sizes,
+        threads: &threads,
+        options,
+        candidates: &candidates,
+        reference: Some(&engines::REFERENCE),
+    };
+    let mut harness = Harness::new(schedule, console.progress());
+    let mut timings = Vec::new();
+    for name in subjects::names(&args.scenes, from_config) {
+        let subject = subjects::open(&name, &args.camera, &args.scene, sizes[0], console)?;
+        timings.extend(measure(&[subject], &plan, &mut harness)?);
+    }
+    let mut fields = context.json(schedule, &options);
+    fields["results"] = json!(timings);
+    let rows = experiment::table(&timings);
+    let results = Results {
+        document: report::document("bench engines", fields),
+        tables: vec![rows.clone()],
+        rows,
+        preface: context.markdown(schedule),
+        panels: experiment::panels(&timings),
+    };
+    export::write(&results, &args.export, console)
+}

@@ -1,0 +1,87 @@
+//! Results to stdout and to files.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use super::args::ExportArgs;
+use crate::cli::console::Console;
+use crate::cli::error::CliError;
+use crate::cli::report;
+use crate::lab::bench::plot::{self, Panel};
+use crate::lab::bench::{Cell, Table};
+use crate::picture::store;
+
+/// The results of an experiment in all forms.
+pub(super) struct Results {
+    /// The JSON document.
+    pub(super) document: Value,
+    /// The measurements, one a row: CSV.
+    pub(super) rows: Table,
+    /// What people read: stdout and Markdown.
+    pub(super) tables: Vec<Table>,
+    /// What stands above the tables in Markdown.
+    pub(super) preface: String,
+    /// The plot.
+    pub(super) panels: Vec<Panel>,
+}
+
+/// Fails before the work where a file would be replaced without `--force`, or two be one.
+pub(super) fn check(args: &ExportArgs) -> Result<(), CliError> {
+    let paths: Vec<&PathBuf> = [
+        &args.export_json,
+        &args.export_csv,
+        &args.export_markdown,
+        &args.export_svg,
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    for (place, path) in paths.iter().enumerate() {
+        store::check_free(path, args.force)?;
+        if paths[..place].contains(path) {
+            return Err(CliError::usage(format!(
+                "{}: two exports to one file",
+                path.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Writes the files, then prints.
+pub(super) fn write(
+    results: &Results,
+    args: &ExportArgs,
+    console: &Console,
+) -> Result<(), CliError> {
+    let file = |path: &Option<PathBuf>, text: &dyn Fn() -> Result<String, CliError>| {
+        let Some(path) = path else { return Ok(()) };
+        store::write(path, text()?.as_bytes(), args.force)?;
+        console.note(format!("{}: written", path.display()));
+        Ok::<(), CliError>(())
+    };
+    file(&args.export_json, &|| {
+        Ok(format!("{:#}\n", results.document))
+    })?;
+    file(&args.export_csv, &|| Ok(results.rows.csv()))?;
+    file(&args.export_markdown, &|| {
+        let tables = results.tables.iter().map(Table::markdown);
+        let tables: Vec<String> = tables.collect();
+        Ok(format!("{}\n{}", results.preface, tables.join("\n")))
+    })?;
+    file(&args.export_svg, &|| Ok(plot::svg(&results.panels)?))?;
+    if console.json {
+        return console.document(&results.document);
+    }
+    let tables: Vec<String> = results.tables.iter().map(in_text).collect();
+    console.data(tables.join("\n\n"))
+}
+
+/// A table for a terminal, under its title.
+fn in_text(table: &Table) -> String {
+    let head = table.columns.iter().map(|c| c.replace('_', " ")).collect();
+    let rows = table.rows.iter();
+    let rows = rows.map(|row| row.iter().map(Cell::for_people).collect());
+    format!("{}\n\n{}", table.title, report::table(head, rows.collect()))
+}

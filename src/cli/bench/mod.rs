@@ -1,0 +1,97 @@
+//! `bench`: the experiments, one file each, and what they share.
+
+mod ablation;
+mod args;
+mod context;
+mod engines;
+mod export;
+mod scaling;
+mod subjects;
+mod vertex_error;
+
+use clap::{Args, Subcommand};
+
+use super::args::ThreadCounts;
+use super::console::Console;
+use super::error::{CliError, Kind};
+use crate::lab::bench::BenchError;
+use crate::lab::bench::plot::PlotError;
+
+/// Arguments of `bench`.
+#[derive(Debug, Args)]
+pub(super) struct BenchArgs {
+    #[command(subcommand)]
+    experiment: Experiment,
+}
+
+/// What is measured.
+#[derive(Debug, Subcommand)]
+enum Experiment {
+    /// How fast each engine is, and how far its picture is from the exact one
+    Engines(Box<engines::EnginesArgs>),
+    /// How time grows with the pixels of the picture and the voxels of the scene
+    Scaling(Box<scaling::ScalingArgs>),
+    /// What each technique is worth, by switching it off
+    Ablation(Box<ablation::AblationArgs>),
+    /// How far the paper's screen-space midpoints are from exact projection
+    VertexError,
+}
+
+impl BenchArgs {
+    /// Whether `--threads` may list several numbers.
+    pub(super) fn takes_thread_list(&self) -> bool {
+        matches!(
+            self.experiment,
+            Experiment::Engines(_) | Experiment::Scaling(_)
+        )
+    }
+}
+
+/// Runs an experiment; `threads` is what `--threads` said.
+pub(super) fn run(
+    args: &BenchArgs,
+    scenes: Vec<String>,
+    threads: Option<&ThreadCounts>,
+    console: &Console,
+) -> Result<(), CliError> {
+    match &args.experiment {
+        Experiment::Engines(args) => engines::run(args, scenes, threads, console),
+        Experiment::Scaling(args) => scaling::run(args, scenes, threads, console),
+        Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
+        Experiment::VertexError => vertex_error::run(console),
+    }
+}
+
+/// Thread counts to measure: those given, 0 for all; else one.
+fn thread_counts(given: Option<&ThreadCounts>) -> Vec<usize> {
+    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let mut counts: Vec<usize> = given.map_or_else(
+        || vec![1],
+        |given| {
+            let resolved = |&count: &u16| match count {
+                0 => all(),
+                count => usize::from(count),
+            };
+            given.0.iter().map(resolved).collect()
+        },
+    );
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+impl From<BenchError> for CliError {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Engine { who, source } => Self::from(source).at(who),
+            BenchError::Setup(error) => error.into(),
+            BenchError::Threads { .. } => Self::new(Kind::Run, error),
+        }
+    }
+}
+
+impl From<PlotError> for CliError {
+    fn from(error: PlotError) -> Self {
+        Self::new(Kind::Run, error)
+    }
+}

@@ -1,0 +1,19 @@
+//! `bench vertex-error`: the paper's midpoints against exact projection.
+
+use serde_json::json;
+
+use crate::cli::console::Console;
+use crate::cli::error::{CliError, Kind};
+use crate::cli::report;
+use crate::lab::vertex_error;
+
+pub(super) fn run(console: &Console) -> Result<(), CliError> {
+    let table = vertex_error::standard_table().map_err(|e| CliError::new(Kind::Run, e))?;
+    if console.json {
+        return console.document(&report::document(
+            "bench vertex-error",
+            json!({ "table": table }),
+        ));
+    }
+    console.data(table.to_string())
+}
