@@ -1,6 +1,7 @@
 //! The command line and the pictures it writes.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+mod bench;
 mod buffers;
 mod manners;
 mod resolve;

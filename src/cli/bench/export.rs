@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use comfy_table::CellAlignment;
+use comfy_table::presets::NOTHING;
 use serde_json::Value;
 
 use super::args::ExportArgs;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::cli::report;
 use crate::lab::bench::plot::{self, Panel};
 use crate::lab::bench::{Cell, Table};
 use crate::picture::store;
@@ -78,10 +79,20 @@ pub(super) fn write(
     console.data(tables.join("\n\n"))
 }
 
-/// A table for a terminal, under its title.
+/// A table for a terminal, under its title: words to the left, numbers to the right.
 fn in_text(table: &Table) -> String {
-    let head = table.columns.iter().map(|c| c.replace('_', " ")).collect();
-    let rows = table.rows.iter();
-    let rows = rows.map(|row| row.iter().map(Cell::for_people).collect());
-    format!("{}\n\n{}", table.title, report::table(head, rows.collect()))
+    let mut text = comfy_table::Table::new();
+    text.load_style(NOTHING)
+        .set_header(table.columns.iter().map(|name| name.replace('_', " ")));
+    for row in &table.rows {
+        text.add_row(row.iter().map(Cell::for_people));
+    }
+    for column in 0..table.columns.len() {
+        if !table.is_of_words(column)
+            && let Some(column) = text.column_mut(column)
+        {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    format!("{}\n\n{}", table.title, text.trim_fmt())
 }

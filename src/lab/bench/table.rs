@@ -99,6 +99,13 @@ impl Table {
         }
     }
 
+    /// Whether a column has an entry in words, which are set to the left.
+    #[must_use]
+    pub fn is_of_words(&self, column: usize) -> bool {
+        let words = |row: &Vec<Cell>| matches!(row.get(column), Some(Cell::Text(_)));
+        self.rows.iter().any(words)
+    }
+
     /// The table without some columns.
     #[must_use]
     pub fn without(&self, names: &[&str]) -> Self {
@@ -132,9 +139,11 @@ impl Table {
     pub fn markdown(&self) -> String {
         let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
         for column in 0..self.columns.len() {
-            let words = |row: &Vec<Cell>| matches!(row.get(column), Some(Cell::Text(_)));
-            let left = self.rows.iter().any(words);
-            text += if left { "---|" } else { "--:|" };
+            text += if self.is_of_words(column) {
+                "---|"
+            } else {
+                "--:|"
+            };
         }
         text.push('\n');
         for row in &self.rows {

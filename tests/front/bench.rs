@@ -1,0 +1,294 @@
+//! The timed experiments as a script meets them: tables, exports, exit codes.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+const SCENE: &str = "gen:menger,depth=2";
+
+fn bench(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
+    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    command.current_dir(folder).arg("bench").args(line);
+    command.assert()
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn stdout_of(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
+}
+
+fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
+}
+
+fn json_of(assert: &assert_cmd::assert::Assert) -> Value {
+    serde_json::from_str(&stdout_of(assert)).unwrap()
+}
+
+/// Rows of a CSV text without quoted commas in the columns looked at: by name.
+fn rows(csv: &str) -> Vec<std::collections::HashMap<String, String>> {
+    let mut lines = csv.lines().map(fields);
+    let head = lines.next().unwrap();
+    lines
+        .map(|line| {
+            assert_eq!(line.len(), head.len(), "{line:?}");
+            head.iter().cloned().zip(line).collect()
+        })
+        .collect()
+}
+
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut inside = false;
+    for letter in line.chars() {
+        match letter {
+            '"' => inside = !inside,
+            ',' if !inside => fields.push(String::new()),
+            letter => fields.last_mut().unwrap().push(letter),
+        }
+    }
+    fields
+}
+
+#[test]
+fn engines_agree_and_are_told_in_every_form() {
+    let folder = folder();
+    let line = [
+        "engines",
+        SCENE,
+        "--size",
+        "48x32",
+        "--lod",
+        "0",
+        "--tolerance",
+        "0",
+        "--warmup",
+        "0",
+        "--runs",
+        "3",
+        "--threads",
+        "1,2",
+        "--json",
+        "--export-json",
+        "a/r.json",
+        "--export-csv",
+        "a/r.csv",
+        "--export-markdown",
+        "a/r.md",
+        "--export-svg",
+        "a/r.svg",
+    ];
+    let document = json_of(&bench(folder.path(), &line).success());
+    assert_eq!(document["schema"], "shiftvox.bench engines");
+    assert_eq!(document["schema_version"], 1);
+    assert_eq!(document["schedule"]["runs"], 3);
+    let results = document["results"].as_array().unwrap();
+    // The oracle uses threads, the others are measured on one.
+    let who = |r: &Value| {
+        (
+            r["engine"].as_str().unwrap().to_owned(),
+            r["threads"].as_u64().unwrap(),
+        )
+    };
+    let all: Vec<_> = results.iter().map(who).collect();
+    assert!(
+        all.contains(&("rays".to_owned(), 1)) && all.contains(&("rays".to_owned(), 2)),
+        "{all:?}"
+    );
+    assert_eq!(all.iter().filter(|(name, _)| name == "machine").count(), 1);
+    for result in results {
+        let error = |name: &str| result["coverage"][name].as_u64().unwrap();
+        assert_eq!(error("pixels"), 48 * 32);
+        assert!(error("covered") > 100);
+        // Exact coverage, no level of detail, clip space: the machine is exact.
+        let allowed = if result["engine"] == "float-rays" {
+            3
+        } else {
+            0
+        };
+        assert!(
+            error("extra") + error("missing") + error("wrong_voxel") <= allowed,
+            "{result}"
+        );
+        assert!(result["work"].as_u64().unwrap() > 100);
+        let wall = &result["wall"];
+        let ms = |name: &str| wall[name].as_f64().unwrap();
+        assert_eq!(wall["runs"], 3);
+        assert!(
+            0.0 < ms("min_ms")
+                && ms("min_ms") <= ms("median_ms")
+                && ms("median_ms") <= ms("max_ms")
+        );
+        assert_eq!(
+            result["thread"].is_null(),
+            result["threads"] != 1 || !cfg!(unix)
+        );
+    }
+    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let written: Value = serde_json::from_str(&file("a/r.json")).unwrap();
+    assert_eq!(written, document);
+    let rows = rows(&file("a/r.csv"));
+    assert_eq!(rows.len(), results.len());
+    assert_eq!(rows[0]["scene"], SCENE);
+    assert_eq!(rows[0]["size"], "48x32");
+    let median = results[0]["wall"]["median_ms"].as_f64().unwrap();
+    assert_eq!(rows[0]["median_ms"].parse::<f64>().unwrap(), median);
+    assert!(file("a/r.md").contains("| machine | 1 |"));
+    assert!(file("a/r.svg").starts_with("<svg") && file("a/r.svg").contains("float-rays"));
+
+    // What is there is not replaced, and no time is spent before that is said.
+    let line = ["engines", SCENE, "--export-csv", "a/r.csv"];
+    assert!(stderr_of(&bench(folder.path(), &line).code(1)).contains("--force"));
+}
+
+#[test]
+fn counters_do_not_depend_on_the_run() {
+    let folder = folder();
+    let line = ["engines", SCENE, "--size", "32", "--runs", "1", "--json"];
+    let work = || {
+        let document = json_of(&bench(folder.path(), &line).success());
+        let results = document["results"].as_array().unwrap().clone();
+        let of = |r: &Value| {
+            (
+                r["engine"].clone(),
+                r["counters"].clone(),
+                r["coverage"].clone(),
+            )
+        };
+        results.iter().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(work(), work());
+}
+
+#[test]
+fn scaling_scans_and_fits() {
+    let folder = folder();
+    let line = [
+        "scaling",
+        SCENE,
+        "--scan",
+        "size=16..64*2",
+        "--size",
+        "32",
+        "--max-voxels",
+        "2e4",
+        "--runs",
+        "1",
+        "--engines",
+        "machine,float-rays",
+        "--export-csv",
+        "r.csv",
+        "--export-svg",
+        "r.svg",
+        "--export-json",
+        "r.json",
+    ];
+    let assert = bench(folder.path(), &line).success();
+    assert!(stdout_of(&assert).contains("paper table 1 ms"));
+    let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let rows = rows(&file("r.csv"));
+    let pick = |growing: &str, engine: &str, column: &str| -> Vec<String> {
+        let of = rows
+            .iter()
+            .filter(|r| r["growing"] == growing && r["engine"] == engine);
+        of.map(|r| r[column].clone()).collect()
+    };
+    assert_eq!(
+        pick("pixels", "machine", "size"),
+        ["16x16", "32x32", "64x64"]
+    );
+    assert_eq!(
+        pick("pixels", "machine", "paper_table_1_ms"),
+        ["", "", "<1"]
+    );
+    // Terrain of depth 5 and 6, sponges of depth 2 and 3.
+    let voxels = pick("voxels", "float-rays", "voxels");
+    assert_eq!(voxels, ["2637", "11998", "400", "8000"]);
+    assert!(
+        pick("voxels", "machine", "size")
+            .iter()
+            .all(|size| size == "32x32")
+    );
+    let document: Value = serde_json::from_str(&file("r.json")).unwrap();
+    let growths = document["growths"].as_array().unwrap();
+    assert_eq!(growths.len(), 2 + 4);
+    let law = &growths[0]["work_law"];
+    assert_eq!(law["points"], 3);
+    let exponent = law["exponent"].as_f64().unwrap();
+    assert!((0.1..1.5).contains(&exponent), "{law}");
+    assert!(law["r_squared"].as_f64().unwrap() <= 1.0);
+    let svg = file("r.svg");
+    for part in ["Time by pixels", "Time by voxels", "Table I"] {
+        assert!(svg.contains(part), "{part}");
+    }
+}
+
+#[test]
+fn ablation_tells_what_a_technique_changes() {
+    let folder = folder();
+    let line = [
+        "ablation", SCENE, "--size", "48", "--lod", "0", "--runs", "1", "--json",
+    ];
+    let document = json_of(&bench(folder.path(), &line).success());
+    let results = document["results"].as_array().unwrap();
+    let row = |engine: &str, variant: &str| {
+        let same = |r: &&Value| r["engine"] == engine && r["variant"] == variant;
+        results
+            .iter()
+            .find(same)
+            .unwrap_or_else(|| panic!("{variant}"))
+    };
+    let of = |variant: &str, name: &str| row("machine", variant)[name].as_u64().unwrap();
+    assert_eq!(of("everything on", "changed"), 0);
+    assert_eq!(of("fill-vector rejection off", "changed"), 0);
+    assert!(of("fill-vector rejection off", "work") > of("everything on", "work"));
+    assert!(of("occlusion order off", "changed") > 50);
+    // It is off already.
+    assert_eq!(
+        of("level of detail off", "work"),
+        of("everything on", "work")
+    );
+    let screen = &row("machine", "screen space off")["coverage"];
+    assert_eq!(
+        (&screen["extra"], &screen["missing"], &screen["wrong_voxel"]),
+        (&0.into(), &0.into(), &0.into())
+    );
+    let text = stdout_of(&bench(folder.path(), &line[..line.len() - 1]).success());
+    assert!(
+        text.contains("WRONG") && text.contains("time ratio"),
+        "{text}"
+    );
+}
+
+#[test]
+fn wrong_experiments_exit_with_2() {
+    let folder = folder();
+    let lines: [&[&str]; 13] = [
+        &[],
+        &["speed"],
+        &["engines", SCENE, "--scan", "size=64"],
+        &["engines", SCENE, "--scan", "depth=1..2+1"],
+        &["engines", SCENE, "--scan", "size=64..128*2", "--size", "64"],
+        &["engines", SCENE, "--runs", "0"],
+        &["engines", SCENE, "--engines", "slow"],
+        &["engines", SCENE, "--threads", "1,two"],
+        &["engines", SCENE, "--export-csv", "a", "--export-json", "a"],
+        &["scaling", SCENE, "--max-voxels", "0.5"],
+        &["ablation", SCENE, "--scan", "size=16..32*2"],
+        &["ablation", SCENE, "--threads", "2"],
+        &["vertex-error", "--threads", "1,2"],
+    ];
+    for line in lines {
+        let assert = bench(folder.path(), line).code(2);
+        assert!(!stderr_of(&assert).is_empty(), "{line:?} says nothing");
+        assert_eq!(stdout_of(&assert), "", "{line:?}");
+    }
+    bench(folder.path(), &["engines", SCENE, "--size", "32768"]).code(5);
+    bench(folder.path(), &["engines", "missing.vox"]).code(4);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
