@@ -51,6 +51,7 @@ pub(super) fn run(
     let families = families(&args.measure)?;
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
+    context.warn(console);
     let mut harness = Harness::new(schedule, console.progress());
     let mut rows = Vec::new();
     for name in subjects::names(&args.scenes, from_config) {
@@ -65,8 +66,6 @@ pub(super) fn run(
         )?);
     }
     let mut fields = context.json(schedule, &options);
-    fields["width"] = size.0.into();
-    fields["height"] = size.1.into();
     fields["results"] = json!(rows);
     let table = experiment::table(&rows);
     let results = Results {

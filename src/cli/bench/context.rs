@@ -2,8 +2,12 @@
 
 use serde_json::{Value, json};
 
+use crate::cli::console::Console;
 use crate::lab::bench::Schedule;
 use crate::project::SetupOptions;
+
+/// Load above which times are likely to be disturbed.
+const BUSY: f64 = 0.5;
 
 /// Machine and command, found before the first measurement.
 pub(super) struct Context {
@@ -30,6 +34,15 @@ impl Context {
             threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             load: load.and_then(|text| text.split_whitespace().next()?.parse().ok()),
             command: format!("shiftvox {}", command.join(" ")),
+        }
+    }
+
+    /// Says so where other work is likely to show in the times.
+    pub(super) fn warn(&self, console: &Console) {
+        if let Some(load) = self.load.filter(|&load| load > BUSY) {
+            console.note(format!(
+                "the machine is not idle (load {load}): trust counters, thread times and minima"
+            ));
         }
     }
 

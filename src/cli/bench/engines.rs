@@ -45,6 +45,7 @@ pub(super) fn run(
     let candidates = args.measure.choose(engines::CANDIDATES, &all)?;
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
+    context.warn(console);
     let threads = thread_counts(threads);
     let plan = Plan {
         sizes: &sizes,

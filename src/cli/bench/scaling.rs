@@ -91,6 +91,7 @@ pub(super) fn run(
     let candidates = args.measure.choose(engines::CANDIDATES, engines::SCALED)?;
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
+    context.warn(console);
     let threads = thread_counts(threads);
     let mut plan = Plan {
         sizes: &picture_sizes,

@@ -20,6 +20,10 @@ pub const WHOLE: &str = "everything on";
 pub struct Row {
     /// The scene.
     pub scene: String,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
     /// The engine.
     pub engine: &'static str,
     /// What is off, or [`WHOLE`].
@@ -43,6 +47,14 @@ pub struct Row {
     pub changed: u64,
     /// How far the picture is from the reference.
     pub coverage: CoverageError,
+}
+
+impl Row {
+    /// The size in words: `512x512`.
+    #[must_use]
+    pub fn size(&self) -> String {
+        format!("{}x{}", self.width, self.height)
+    }
 }
 
 /// Measures families on a scene, all variants in one race, on one thread.
@@ -70,12 +82,12 @@ pub fn run(
             threads: 1,
             engine: make(1),
         };
-        rows.push(blank(subject, &whole, WHOLE, whole.about));
+        rows.push(blank(subject, size, &whole, WHOLE, whole.about));
         contenders.push(contender(WHOLE, setup.clone(), whole.make));
         for variant in family.variants {
             let mut options = *options;
             (variant.adjust)(&mut options);
-            rows.push(blank(subject, &whole, variant.name, variant.about));
+            rows.push(blank(subject, size, &whole, variant.name, variant.about));
             let setup = subject.setup(size, &options)?;
             contenders.push(contender(variant.name, setup, variant.make));
         }
@@ -97,9 +109,17 @@ pub fn run(
     Ok(rows)
 }
 
-fn blank(subject: &Subject, whole: &Candidate, variant: &'static str, about: &'static str) -> Row {
+fn blank(
+    subject: &Subject,
+    size: (u32, u32),
+    whole: &Candidate,
+    variant: &'static str,
+    about: &'static str,
+) -> Row {
     Row {
         scene: subject.name.clone(),
+        width: size.0,
+        height: size.1,
         engine: whole.name,
         variant,
         about,
@@ -131,6 +151,7 @@ fn fill_in(row: &mut Row, measured: Measured, whole_ms: &mut f64) {
 pub fn table(rows: &[Row]) -> Table {
     let columns = [
         "scene",
+        "size",
         "engine",
         "variant",
         "median_ms",
@@ -150,6 +171,7 @@ pub fn table(rows: &[Row]) -> Table {
         let picture = if row.changed == 0 { "same" } else { "changed" };
         table.rows.push(vec![
             Cell::Text(row.scene.clone()),
+            Cell::Text(row.size()),
             row.engine.into(),
             row.variant.into(),
             Cell::ms(row.wall.median_ms),
@@ -188,15 +210,16 @@ pub fn legend(families: &[Family]) -> Table {
 #[cfg(feature = "cli")]
 #[must_use]
 pub fn panels(rows: &[Row]) -> Vec<Panel> {
-    let mut scenes: Vec<&str> = rows.iter().map(|row| row.scene.as_str()).collect();
-    scenes.dedup();
     let bar = |row: &Row| Bar {
         name: format!("{}, {}", row.engine, row.variant),
         value: row.wall.median_ms,
     };
-    let panel = |scene: &str| Panel::Bars {
-        title: format!("{scene}, ms a frame"),
-        bars: rows.iter().filter(|r| r.scene == scene).map(bar).collect(),
-    };
-    scenes.into_iter().map(panel).collect()
+    rows.chunk_by(|a, b| a.scene == b.scene)
+        .map(|of_scene| Panel::Bars {
+            title: of_scene.first().map_or_else(String::new, |row| {
+                format!("{}, {}, ms a frame", row.scene, row.size())
+            }),
+            bars: of_scene.iter().map(bar).collect(),
+        })
+        .collect()
 }

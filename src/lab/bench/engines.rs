@@ -49,43 +49,39 @@ pub fn table(timings: &[Timing]) -> Table {
 #[cfg(feature = "cli")]
 #[must_use]
 pub fn panels(timings: &[Timing]) -> Vec<Panel> {
-    let mut scenes: Vec<&str> = timings.iter().map(|t| t.scene.as_str()).collect();
-    scenes.dedup();
-    scenes
-        .into_iter()
-        .map(|scene| panel(scene, timings))
+    timings
+        .chunk_by(|a, b| a.scene == b.scene)
+        .map(panel)
         .collect()
 }
 
 #[cfg(feature = "cli")]
-fn panel(scene: &str, timings: &[Timing]) -> Panel {
-    let of_scene: Vec<&Timing> = timings.iter().filter(|t| t.scene == scene).collect();
-    let several = of_scene
-        .windows(2)
-        .any(|pair| pair[0].pixels() != pair[1].pixels());
+fn panel(timings: &[Timing]) -> Panel {
+    let [first, ..] = timings else {
+        return Panel::Bars {
+            title: String::new(),
+            bars: Vec::new(),
+        };
+    };
     let name = |t: &Timing| match t.threads {
         1 => t.engine.to_owned(),
         threads => format!("{}, {threads} threads", t.engine),
     };
-    if !several {
-        let bar = |t: &&Timing| Bar {
+    if timings.iter().all(|t| t.pixels() == first.pixels()) {
+        let bar = |t: &Timing| Bar {
             name: name(t),
             value: t.wall.median_ms,
         };
         return Panel::Bars {
-            title: of_scene.first().map_or_else(String::new, |t| {
-                format!("{scene}, {}, ms a frame", t.size())
-            }),
-            bars: of_scene.iter().map(bar).collect(),
+            title: format!("{}, {}, ms a frame", first.scene, first.size()),
+            bars: timings.iter().map(bar).collect(),
         };
     }
-    let points = of_scene
-        .iter()
-        .map(|t| (name(t), (t.pixels() as f64, t.wall.median_ms)));
+    let at = |t: &Timing| (name(t), (t.pixels() as f64, t.wall.median_ms));
     Panel::Curves {
-        title: scene.to_owned(),
+        title: first.scene.clone(),
         x_label: "pixels".to_owned(),
         y_label: "ms a frame".to_owned(),
-        series: Series::collect(points),
+        series: Series::collect(timings.iter().map(at)),
     }
 }

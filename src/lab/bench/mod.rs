@@ -1,6 +1,6 @@
 //! Times of engines, measured side by side.
 //!
-//! [`harness`] runs whoever competes in turn; [`measure`] makes contenders
+//! [`harness`] runs whoever competes in turn; [`mod@measure`] makes contenders
 //! of scenes, sizes, engines and thread counts; the experiments [`engines`],
 //! [`scaling`] and [`ablation`] say what is measured and how it is shown. Engines
 //! come from outside as lists of [`Candidate`]s: nothing here knows one by name.

@@ -3,6 +3,8 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::table::Cell;
+
 /// Points of one name.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
@@ -34,7 +36,7 @@ impl Series {
 pub struct Bar {
     /// What stands beside it.
     pub name: String,
-    /// Its length, 0 or more.
+    /// Its length, milliseconds, 0 or more.
     pub value: f64,
 }
 
@@ -237,7 +239,7 @@ fn draw_bars(area: &Area<'_>, title: &str, bars: &[Bar]) -> Result<(), PlotError
         .map_err(PlotError::of)?;
         area.draw(&words(bar.name.clone(), (14, top + 3), 14))
             .map_err(PlotError::of)?;
-        let value = in_short(bar.value);
+        let value = Cell::ms(bar.value).for_people();
         area.draw(&words(value, (right + 6, top + 3), 14))
             .map_err(PlotError::of)?;
     }
