@@ -115,7 +115,7 @@ const MACHINE_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "screen space off",
-        about: "--tolerance 0: every record stays in clip space, no divides; the picture may change towards the exact one",
+        about: "--tolerance 0: every record stays in clip space, no divides; the picture may change",
         adjust: |options| options.tolerance_px = 0.0,
         make: MACHINE.make,
     },

@@ -268,7 +268,7 @@ fn ablation_tells_what_a_technique_changes() {
 #[test]
 fn wrong_experiments_exit_with_2() {
     let folder = folder();
-    let lines: [&[&str]; 13] = [
+    let lines: [&[&str]; 14] = [
         &[],
         &["speed"],
         &["engines", SCENE, "--scan", "size=64"],
@@ -281,6 +281,7 @@ fn wrong_experiments_exit_with_2() {
         &["scaling", SCENE, "--max-voxels", "0.5"],
         &["ablation", SCENE, "--scan", "size=16..32*2"],
         &["ablation", SCENE, "--threads", "2"],
+        &["ablation", SCENE, "--engines", "rays"],
         &["vertex-error", "--threads", "1,2"],
     ];
     for line in lines {

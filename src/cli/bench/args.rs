@@ -3,8 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser};
 
 use crate::cli::args::{CoverageName, EngineArgs, Size, Tolerance};
+use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::bench::{Candidate, Scan, Schedule};
 use crate::project::SetupOptions;
@@ -31,8 +33,8 @@ pub(super) struct MeasureArgs {
     /// Several square sizes: size=64..4096*2, or size=100..500+100
     #[arg(long, value_name = "size=A..B*F", value_parser = size_scan)]
     pub(super) scan: Option<Scan>,
-    /// Engines to measure, by name
-    #[arg(long, value_name = "LIST", value_delimiter = ',')]
+    /// Engines to measure
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = engine_names())]
     engines: Vec<String>,
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
@@ -68,6 +70,16 @@ pub(super) struct ExportArgs {
     /// Replace files that exist
     #[arg(long)]
     pub(super) force: bool,
+}
+
+/// The engines that there are, with a line about each.
+fn engine_names() -> PossibleValuesParser {
+    let name = |c: &Candidate| PossibleValue::new(c.name).help(c.about);
+    engines::CANDIDATES
+        .iter()
+        .map(name)
+        .collect::<Vec<_>>()
+        .into()
 }
 
 fn size_scan(text: &str) -> Result<Scan, String> {
@@ -121,8 +133,10 @@ impl MeasureArgs {
     ) -> Result<Vec<Candidate>, CliError> {
         let known: Vec<&str> = all.iter().map(|candidate| candidate.name).collect();
         if let Some(unknown) = self.engines.iter().find(|n| !known.contains(&n.as_str())) {
-            return Err(CliError::usage(format!("there is no engine `{unknown}`"))
-                .advise(format!("there are {}", known.join(", "))));
+            return Err(CliError::usage(format!(
+                "engine {unknown} has no part in this experiment"
+            ))
+            .advise(format!("it is about {}", known.join(", "))));
         }
         let wanted = |name: &str| match self.engines.as_slice() {
             [] => default.contains(&name),

@@ -28,10 +28,18 @@ pub(super) struct BenchArgs {
 #[derive(Debug, Subcommand)]
 enum Experiment {
     /// How fast each engine is, and how far its picture is from the exact one
+    ///
+    /// A frame is: clear, traverse, the colour of each sample written. Engines take turns. With --threads
+    /// 1,2 those that use threads are measured with each number.
     Engines(Box<engines::EnginesArgs>),
     /// How time grows with the pixels of the picture and the voxels of the scene
+    ///
+    /// First the picture grows from 64 to 4096 a side (with --size: up to that), for each scene; then terrain
+    /// and sponge grow, in pictures of 1024 x 1024 (or --size). Power laws are fitted to time and work.
     Scaling(Box<scaling::ScalingArgs>),
     /// What each technique is worth, by switching it off
+    ///
+    /// One at a time, on one thread; says what that costs and whether it changes the picture.
     Ablation(Box<ablation::AblationArgs>),
     /// How far the paper's screen-space midpoints are from exact projection
     VertexError,

@@ -15,9 +15,6 @@ use crate::lab::bench::scaling::{self as experiment, Growing, Growth};
 use crate::lab::bench::{Harness, Plan, Scan, measure};
 
 /// Arguments of `bench scaling`.
-///
-/// The picture grows from 64 to 4096 a side for each scene; then the scenes grow, in pictures of
-/// 1024 x 1024. With --size the picture grows up to that size, and it is the size of the second part.
 #[derive(Debug, Args)]
 pub(super) struct ScalingArgs {
     /// Scenes whose picture grows: files, generators, or `bundled`
