@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
-use super::records::{Record, Records};
+use super::records::{Record, Records, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
 
 pub use super::records::MAX_SIDE;
@@ -132,12 +132,19 @@ impl Builder {
         placement_world: ([f64; 3], f64),
         progress: &dyn Progress,
     ) -> Result<Graph, BuildError> {
-        let (world_origin, voxel_size) = placement_world;
-        let finite = world_origin.iter().all(|c| c.is_finite()) && voxel_size.is_finite();
-        if !finite || voxel_size <= 0.0 {
-            return Err(BuildError::Placement);
+        let placement = Placement {
+            origin_index: self.min.map(i64::from),
+            world_origin: placement_world.0,
+            voxel_size: placement_world.1,
+        };
+        placement.check_world()?;
+        if self.is_empty() {
+            return Err(BuildError::Empty);
         }
-        let extent = self.extent()?;
+        if self.pushed > self.records.len() as u64 {
+            return Err(BuildError::TooMany(self.pushed));
+        }
+        let extent = extent(self.min, self.max)?;
         let longest = extent.iter().copied().max().unwrap_or(1);
         let depth = longest.next_power_of_two().trailing_zeros();
 
@@ -172,34 +179,21 @@ impl Builder {
             normal: tree.normal.into(),
             level_start: tree.level_start,
             voxels,
-            placement: Placement {
-                origin_index: self.min.map(i64::from),
-                world_origin,
-                voxel_size,
-            },
+            placement,
         })
     }
+}
 
-    /// Sides of the bounding box, voxels.
-    fn extent(&self) -> Result<[u64; 3], BuildError> {
-        if self.is_empty() {
-            return Err(BuildError::Empty);
+impl Placement {
+    /// Whether the world part makes sense.
+    pub(super) fn check_world(&self) -> Result<(), BuildError> {
+        let origin = self.world_origin.iter();
+        let finite = origin.chain([&self.voxel_size]).all(|c| c.is_finite());
+        if finite && self.voxel_size > 0.0 {
+            Ok(())
+        } else {
+            Err(BuildError::Placement)
         }
-        if self.pushed > self.records.len() as u64 {
-            return Err(BuildError::TooMany(self.pushed));
-        }
-        let mut extent = [0; 3];
-        for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
-            let side = i64::from(self.max[axis]) - i64::from(self.min[axis]) + 1;
-            extent[axis] = side.unsigned_abs();
-            if extent[axis] > MAX_SIDE {
-                return Err(BuildError::TooLarge {
-                    axis: name,
-                    extent: extent[axis],
-                });
-            }
-        }
-        Ok(extent)
     }
 }
 
@@ -295,7 +289,7 @@ impl Tree {
 }
 
 /// The coarsest level at which a voxel begins a node of its own.
-fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 {
+pub(super) fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 {
     match before {
         None => 0,
         // Keys differ, and below bit 3 * depth.

@@ -2,6 +2,7 @@
 
 mod average;
 pub mod build;
+pub mod external;
 pub mod linked;
 pub mod merge;
 mod morton;
@@ -16,6 +17,7 @@ pub mod vxg;
 pub mod walk;
 
 pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
 pub use progress::{Progress, Silent};

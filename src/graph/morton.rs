@@ -19,6 +19,21 @@ pub(super) fn key(at: [u32; 3]) -> u64 {
     spread(at[0]) << 2 | spread(at[1]) << 1 | spread(at[2])
 }
 
+/// Takes every third bit, the first included: what [`spread`] spread.
+fn gather(bits: u64) -> u32 {
+    let mut value = bits & 0x1249_2492_4924_9249;
+    value = (value | value >> 2) & 0x10c3_0c30_c30c_30c3;
+    value = (value | value >> 4) & 0x100f_00f0_0f00_f00f;
+    value = (value | value >> 8) & 0x001f_0000_ff00_00ff;
+    value = (value | value >> 16) & 0x001f_0000_0000_ffff;
+    ((value | value >> 32) & 0x1f_ffff) as u32
+}
+
+/// The coordinates of a Morton key.
+pub(super) fn at(key: u64) -> [u32; 3] {
+    [gather(key >> 2), gather(key >> 1), gather(key)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -31,5 +46,17 @@ mod tests {
             assert_eq!(key([0, 0, 1 << bit]), 1 << (3 * bit));
         }
         assert_eq!(key([0x1f_ffff; 3]), (1 << 63) - 1);
+    }
+
+    #[test]
+    fn coordinates_come_back() {
+        let mut state = 1u64;
+        for _ in 0..10_000 {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            let place = [state >> 1, state >> 22, state >> 43].map(|c| c as u32 & 0x1f_ffff);
+            assert_eq!(at(key(place)), place);
+        }
     }
 }

@@ -9,10 +9,26 @@ use std::cmp::Reverse;
 
 use rayon::prelude::*;
 
-use super::{PackedNormal, morton};
+use super::{BuildError, PackedNormal, morton};
 
 /// Longest side of the bounding box of a set of voxels.
 pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+
+/// Sides of the bounding box from its lowest to its highest voxel.
+pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
+    let mut extent = [0; 3];
+    for (axis, name) in ['x', 'y', 'z'].into_iter().enumerate() {
+        let side = i64::from(max[axis]) - i64::from(min[axis]) + 1;
+        extent[axis] = side.unsigned_abs();
+        if extent[axis] > MAX_SIDE {
+            return Err(BuildError::TooLarge {
+                axis: name,
+                extent: extent[axis],
+            });
+        }
+    }
+    Ok(extent)
+}
 
 /// Voxels in a piece, the first included; only one that was reserved has
 /// more. 40 MB: allocators return blocks of that size to the system at once.

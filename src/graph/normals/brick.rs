@@ -1,15 +1,15 @@
 //! Bricks of 4^3 voxels, and the window of 8^3 voxels around one.
 
 /// The voxels around a brick, `[z][y]`, bit x; its own are 2 to 5 along each axis.
-pub(super) type Window = [[u8; 8]; 8];
+pub(in crate::graph) type Window = [[u8; 8]; 8];
 
 /// Occupancy of 4^3 voxels, in two orders.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Brick {
+pub(in crate::graph) struct Brick {
     /// Bits in Morton order.
-    pub(super) morton: u64,
+    pub(in crate::graph) morton: u64,
     /// Bit `z * 16 + y * 4 + x`.
-    pub(super) by_rows: u64,
+    pub(in crate::graph) by_rows: u64,
 }
 
 impl From<u64> for Brick {
@@ -50,7 +50,7 @@ fn to_rows(word: u64) -> u64 {
 
 /// Puts one of the 27 bricks around and including a brick, `(x * 3 + y) * 3 + z`, into its window.
 #[inline]
-pub(super) fn put(rows: &mut Window, neighbour: usize, brick_rows: u64) {
+pub(in crate::graph) fn put(rows: &mut Window, neighbour: usize, brick_rows: u64) {
     /// First place in the window, first place in the brick, how many.
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
     let (to_x, from_x, count_x) = SPAN[neighbour / 9];

@@ -18,7 +18,7 @@
 //! down the tree with it: a child's neighbours are children of its parent's
 //! neighbours. In a brick, a row of five voxels is an entry of a table.
 
-mod brick;
+pub(super) mod brick;
 mod moments;
 
 use glam::DVec3;
@@ -69,7 +69,7 @@ impl Estimate<'_> {
             let brick = Brick::from(self.mask.first().map_or(1, |&mask| u64::from(mask)));
             let mut rows = Window::default();
             put(&mut rows, SELF, brick.by_rows);
-            self.fill_brick(&rows, brick.morton, [0; 3], normals);
+            fill_brick(self.centre, &rows, brick.morton, [0; 3], normals);
         }
         progress.end();
     }
@@ -190,23 +190,30 @@ impl Estimate<'_> {
             call([along(0), along(1), along(2)], &of_child);
         }
     }
+}
 
-    /// Writes the normals of a brick's voxels, given in Morton order.
-    fn fill_brick(&self, rows: &Window, word: u64, corner: [i32; 3], normals: &mut [PackedNormal]) {
-        let set_bits = (0..64usize).filter(|bit| word >> bit & 1 == 1);
-        for (bit, normal) in set_bits.zip(normals) {
-            if !normal.is_none() {
-                continue;
-            }
-            let at = MORTON_TO_XYZ[bit];
-            if enclosed(rows, at) {
-                continue;
-            }
-            let moments = Moments::around(rows, at);
-            let outward =
-                [0, 1, 2].map(|k| f64::from(corner[k]) + at[k] as f64 + 0.5 - self.centre[k]);
-            *normal = moments.normal(DVec3::from_array(outward));
+/// Writes the normals of those of a brick's voxels that have none; they are
+/// given in Morton order. `corner` is the brick's and `centre` the middle of
+/// the object, both in finest voxels.
+pub(super) fn fill_brick(
+    centre: [f64; 3],
+    rows: &Window,
+    word: u64,
+    corner: [i32; 3],
+    normals: &mut [PackedNormal],
+) {
+    let set_bits = (0..64usize).filter(|bit| word >> bit & 1 == 1);
+    for (bit, normal) in set_bits.zip(normals) {
+        if !normal.is_none() {
+            continue;
         }
+        let at = MORTON_TO_XYZ[bit];
+        if enclosed(rows, at) {
+            continue;
+        }
+        let moments = Moments::around(rows, at);
+        let outward = [0, 1, 2].map(|k| f64::from(corner[k]) + at[k] as f64 + 0.5 - centre[k]);
+        *normal = moments.normal(DVec3::from_array(outward));
     }
 }
 
@@ -261,8 +268,8 @@ impl Walk<'_> {
         }
         let word = word_of(neighbours[SELF]).morton;
         let end = self.next + word.count_ones() as usize;
-        self.estimate
-            .fill_brick(&rows, word, corner, &mut self.normals[self.next..end]);
+        let own = &mut self.normals[self.next..end];
+        fill_brick(self.estimate.centre, &rows, word, corner, own);
         self.next = end;
     }
 }

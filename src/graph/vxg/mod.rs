@@ -18,4 +18,5 @@ mod write;
 
 pub use error::VxgError;
 pub use read::{from_bytes, is_vxg, open, verify};
+pub(in crate::graph) use write::{check_free, write_pieces};
 pub use write::{write, write_to};

@@ -1,10 +1,11 @@
 //! Writing a `.vxg` file.
 
 use std::borrow::Cow;
-use std::io::{self, BufWriter, Write};
+use std::fs::File;
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use xxhash_rust::xxh3::xxh3_64;
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::error::VxgError;
 use super::format::{
@@ -21,6 +22,27 @@ use crate::graph::{Graph, PackedNormal};
 /// When the graph breaks an invariant, when `path` exists and `overwrite` is
 /// false, or when the system refuses.
 pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError> {
+    graph.validate()?;
+    replace(path, overwrite, |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        write_unchecked(graph, &mut out).and_then(|()| out.flush())
+    })
+}
+
+/// Fails where a file stands that may not be replaced.
+pub(in crate::graph) fn check_free(path: &Path, overwrite: bool) -> Result<(), VxgError> {
+    if !overwrite && path.symlink_metadata().is_ok() {
+        return Err(VxgError::Exists(path.to_owned()));
+    }
+    Ok(())
+}
+
+/// Fills a temporary file beside `path` and gives it that name.
+fn replace(
+    path: &Path,
+    overwrite: bool,
+    fill: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<(), VxgError> {
     let refused = |doing: &'static str| {
         move |source: io::Error| VxgError::Io {
             file: path.to_owned(),
@@ -28,11 +50,8 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
             source,
         }
     };
-    graph.validate()?;
     // Asked before the work; `persist_noclobber` is what makes sure.
-    if !overwrite && path.symlink_metadata().is_ok() {
-        return Err(VxgError::Exists(path.to_owned()));
-    }
+    check_free(path, overwrite)?;
     let folder = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -50,12 +69,7 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
     let mut temporary = options
         .tempfile_in(folder)
         .map_err(refused("create a temporary file beside it"))?;
-    {
-        let mut out = BufWriter::with_capacity(1 << 16, temporary.as_file_mut());
-        write_unchecked(graph, &mut out)
-            .and_then(|()| out.flush())
-            .map_err(refused("write it"))?;
-    }
+    fill(temporary.as_file_mut()).map_err(refused("write it"))?;
     let stored = if overwrite {
         temporary.persist(path)
     } else {
@@ -68,6 +82,51 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
         }
         Err(failure) => Err(refused("rename the temporary file")(failure.error)),
     }
+}
+
+/// Writes a file whose arrays are handed over piece by piece, because they are
+/// nowhere as a whole. `outline` is the graph without its arrays; `lengths`
+/// are the bytes of the sections. `hand_on` is called for each section in
+/// turn and puts its bytes, little-endian. Gives the bytes of the file.
+pub(in crate::graph) fn write_pieces(
+    outline: &Graph,
+    lengths: [u64; SECTIONS],
+    path: &Path,
+    overwrite: bool,
+    mut hand_on: impl FnMut(usize, &mut dyn FnMut(&[u8]) -> io::Result<()>) -> io::Result<()>,
+) -> Result<u64, VxgError> {
+    let (offsets, file_bytes) = layout(lengths);
+    replace(path, overwrite, |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        // The header comes last: it holds the checksums.
+        out.write_all(&[0; HEADER_BYTES])?;
+        let mut written = HEADER_BYTES as u64;
+        let mut table = [Section::default(); SECTIONS];
+        for (i, section) in table.iter_mut().enumerate() {
+            // Less than the alignment.
+            out.write_all(&[0; 64][..(offsets[i] - written) as usize])?;
+            let mut checksum = Xxh3::new();
+            let mut bytes = 0;
+            hand_on(i, &mut |piece| {
+                checksum.update(piece);
+                bytes += piece.len() as u64;
+                out.write_all(piece)
+            })?;
+            if bytes != lengths[i] {
+                return Err(io::Error::other("a section's length was foretold wrongly"));
+            }
+            *section = Section {
+                offset: offsets[i],
+                bytes,
+                checksum: checksum.digest(),
+            };
+            written = offsets[i] + bytes;
+        }
+        out.seek(SeekFrom::Start(0))?;
+        out.write_all(&header(outline, &table, file_bytes))?;
+        out.flush()
+    })?;
+    Ok(file_bytes)
 }
 
 /// Writes a graph to anything that takes bytes.

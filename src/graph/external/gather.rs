@@ -1,0 +1,130 @@
+//! Voxels as they are pushed, in sorted runs.
+//!
+//! Morton order counts from the lowest corner, which is known only when all
+//! voxels are there. Runs are sorted from the lowest corner so far; most scenes
+//! reach it early, and the few runs for which it was another one are sorted
+//! again at the end.
+
+use std::io;
+use std::sync::Arc;
+use std::thread::JoinHandle;
+
+use rayon::prelude::*;
+
+use super::plan::Plan;
+use super::record::{key, moved, placed, pushed};
+use super::runs::{Merge, Runs};
+use super::scratch::Scratch;
+use crate::graph::{Progress, Voxel};
+
+/// What a thread hands back that has sorted a run and written it.
+type Sorted = io::Result<(Vec<u128>, Runs)>;
+
+/// Pushed voxels.
+#[derive(Debug)]
+pub(super) struct Gather {
+    plan: Plan,
+    scratch: Arc<Scratch>,
+    buffer: Vec<u128>,
+    /// The run before, while it is sorted and written beside the pushing.
+    running: Option<JoinHandle<Sorted>>,
+    /// The corner from which each run is sorted.
+    corners: Vec<[i32; 3]>,
+    pub(super) min: [i32; 3],
+    pub(super) max: [i32; 3],
+    pub(super) pushed: u64,
+    /// After a failure nothing more is kept.
+    failure: Option<io::Error>,
+}
+
+impl Gather {
+    pub(super) fn new(plan: Plan, scratch: Arc<Scratch>) -> Self {
+        Self {
+            plan,
+            scratch,
+            buffer: Vec::new(),
+            running: None,
+            corners: Vec::new(),
+            min: [i32::MAX; 3],
+            max: [i32::MIN; 3],
+            pushed: 0,
+            failure: None,
+        }
+    }
+
+    /// Adds a voxel; it replaces an earlier one at the same index.
+    pub(super) fn push(&mut self, voxel: &Voxel) {
+        self.pushed += 1;
+        if self.failure.is_some() {
+            return;
+        }
+        for axis in 0..3 {
+            self.min[axis] = self.min[axis].min(voxel.index[axis]);
+            self.max[axis] = self.max[axis].max(voxel.index[axis]);
+        }
+        if self.buffer.capacity() == 0 {
+            self.buffer.reserve_exact(self.plan.run_records);
+        }
+        self.buffer.push(pushed(voxel, self.buffer.len()));
+        if self.buffer.len() >= self.plan.run_records
+            && let Err(error) = self.spill()
+        {
+            self.failure = Some(error);
+        }
+    }
+
+    /// Waits for the run before, and gives a thread this one.
+    fn spill(&mut self) -> io::Result<()> {
+        let (spare, mut runs) = self.waited()?;
+        let mut records = std::mem::replace(&mut self.buffer, spare);
+        let corner = self.min;
+        self.corners.push(corner);
+        let thread = std::thread::Builder::new().name("sort a run".to_owned());
+        let sort = move || {
+            records
+                .par_iter_mut()
+                .for_each(|record| *record = placed(*record, corner));
+            records.par_sort_unstable();
+            // The last pushed is the first of its equals.
+            records.dedup_by_key(|record| key(*record));
+            runs.add(&records)?;
+            records.clear();
+            Ok((records, runs))
+        };
+        self.running = Some(thread.spawn(sort)?);
+        Ok(())
+    }
+
+    /// What the thread that sorts hands back, or new things if there is none.
+    fn waited(&mut self) -> Sorted {
+        match self.running.take() {
+            None => Ok((Vec::new(), Runs::new(&self.scratch)?)),
+            Some(thread) => thread
+                .join()
+                .unwrap_or_else(|_| Err(io::Error::other("the thread that sorts has failed"))),
+        }
+    }
+
+    /// All voxels in Morton order from the lowest corner, and the number of
+    /// runs that they were sorted in.
+    pub(super) fn merged(mut self, progress: &dyn Progress) -> io::Result<(Merge, usize)> {
+        if let Some(failure) = self.failure.take() {
+            return Err(failure);
+        }
+        progress.begin("sort voxels", 0);
+        if !self.buffer.is_empty() {
+            self.spill()?;
+        }
+        let (mut buffer, mut runs) = self.waited()?;
+        for (run, &corner) in self.corners.iter().enumerate() {
+            if corner != self.min {
+                runs.rekey(run, &mut buffer, |record| moved(record, corner, self.min))?;
+            }
+        }
+        drop((buffer, self.buffer));
+        let count = runs.len();
+        let merge = runs.merged(&self.plan, &self.scratch)?;
+        progress.end();
+        Ok((merge, count))
+    }
+}

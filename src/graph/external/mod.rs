@@ -1,0 +1,327 @@
+//! Scenes larger than memory: a `.vxg` file built by external sort.
+//!
+//! The file is the one that [`Builder`](super::Builder) and
+//! [`vxg::write`](super::vxg::write()) make of the same voxels, byte for byte.
+//! How, stage by stage (`spec/graph.md` has the figures):
+//!
+//! 1. `gather`: voxels are pushed, sorted in runs as large as memory allows,
+//!    and spilled;
+//! 2. `runs`: the runs are merged in Morton order;
+//! 3. `finest`: the voxels' attributes and the bricks of 4^3 that they fill
+//!    are written, a brick at the face of its block once more for each block
+//!    beside it (`halo`);
+//! 4. `finest` and `tree`: a block at a time, normals are estimated, and the
+//!    nodes of each level written as they are complete;
+//! 5. the levels are joined to the file.
+
+mod finest;
+mod gather;
+mod halo;
+mod plan;
+mod record;
+mod runs;
+mod scratch;
+mod tree;
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::records::extent;
+use super::vxg::{self, VxgError};
+use super::{BuildError, BuildOptions, Graph, Placement, Progress, Voxel};
+use finest::Finest;
+use gather::Gather;
+use plan::Plan;
+use scratch::{Scratch, Spool};
+use tree::{Level, TreeWriter};
+
+/// How a file is built outside memory.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct ExternalOptions {
+    /// Where normals come from.
+    pub build: BuildOptions,
+    /// Bytes of memory that the build may take, the program included. Below
+    /// some 64 MB it is not kept to, because the program itself is larger.
+    pub memory: u64,
+    /// Folder of the temporary files; about 22 bytes a voxel of a surface.
+    pub temporary: PathBuf,
+}
+
+/// Why no file was built.
+#[derive(Debug, thiserror::Error)]
+pub enum ExternalError {
+    /// The voxels make no graph.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// A temporary file could not be made, written or read.
+    #[error("{}: temporary files: {source}", folder.display())]
+    Temporary {
+        /// Their folder.
+        folder: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] VxgError),
+}
+
+/// What was built, and what that took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExternalReport {
+    /// Voxels pushed, repeated ones included.
+    pub pushed: u64,
+    /// Finest voxels of the graph.
+    pub voxels: u64,
+    /// Nodes of the graph.
+    pub nodes: u64,
+    /// Bytes of the file.
+    pub bytes: u64,
+    /// Sorted runs that the voxels were spilled in.
+    pub runs: u64,
+    /// Most bytes that temporary files took at once, the result not included.
+    pub temporary_bytes: u64,
+    /// Bytes written to temporary files, all together.
+    pub temporary_written: u64,
+}
+
+/// Collects voxels and makes a `.vxg` file of them, within a limit of memory.
+#[derive(Debug)]
+pub struct ExternalBuilder {
+    options: ExternalOptions,
+    plan: Plan,
+    scratch: Arc<Scratch>,
+    gather: Gather,
+}
+
+impl ExternalBuilder {
+    /// A builder without voxels.
+    #[must_use]
+    pub fn new(options: ExternalOptions) -> Self {
+        let plan = Plan::new(options.memory);
+        let scratch = Scratch::new(options.temporary.clone());
+        Self {
+            gather: Gather::new(plan, Arc::clone(&scratch)),
+            options,
+            plan,
+            scratch,
+        }
+    }
+
+    /// Voxels pushed so far, repeated ones included.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.gather.pushed
+    }
+
+    /// Whether no voxel was pushed yet.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Adds a voxel; it replaces an earlier one at the same index. If a
+    /// temporary file cannot be written, [`Self::finish`] says so.
+    pub fn push(&mut self, voxel: Voxel) {
+        self.gather.push(&voxel);
+    }
+
+    /// Builds the graph and writes it to `path`, by a temporary name beside
+    /// it. `placement_world` is as in [`Builder::finish`](super::Builder::finish).
+    ///
+    /// # Errors
+    /// When there are no voxels, too many, or too far apart; when `path`
+    /// exists and `overwrite` is false; when the system refuses. Temporary
+    /// files are gone in any case.
+    pub fn finish(
+        self,
+        placement_world: ([f64; 3], f64),
+        path: &Path,
+        overwrite: bool,
+        progress: &dyn Progress,
+    ) -> Result<ExternalReport, ExternalError> {
+        let placement = Placement {
+            origin_index: self.gather.min.map(i64::from),
+            world_origin: placement_world.0,
+            voxel_size: placement_world.1,
+        };
+        placement.check_world()?;
+        let pushed = self.gather.pushed;
+        if pushed == 0 {
+            return Err(BuildError::Empty.into());
+        }
+        let extent = extent(self.gather.min, self.gather.max)?;
+        vxg::check_free(path, overwrite)?;
+        let built = self.build(extent, progress)?;
+        let outline = built.outline(placement)?;
+        let inner = outline.level_start[built.depth as usize];
+        let nodes = u64::from(outline.level_start[built.depth as usize + 1]);
+        let report = ExternalReport {
+            pushed,
+            voxels: outline.voxels,
+            nodes,
+            bytes: 0,
+            runs: built.runs,
+            temporary_bytes: built.scratch.peak(),
+            temporary_written: built.scratch.written(),
+        };
+        let lengths = [
+            u64::from(inner),
+            4 * u64::from(inner),
+            0,
+            3 * nodes,
+            2 * nodes,
+        ];
+        let mut sections = built.sections();
+        progress.begin("write the graph", lengths.iter().sum());
+        let bytes = vxg::write_pieces(&outline, lengths, path, overwrite, |section, put| {
+            sections.hand_on(section, &outline.level_start, &mut |bytes| {
+                progress.advance(bytes.len() as u64);
+                put(bytes)
+            })
+        })?;
+        progress.end();
+        Ok(ExternalReport { bytes, ..report })
+    }
+
+    /// Stages 1 to 4.
+    fn build(self, extent: [u64; 3], progress: &dyn Progress) -> Result<Built, ExternalError> {
+        let Self {
+            options,
+            plan,
+            scratch,
+            gather,
+        } = self;
+        let refused = |source| ExternalError::Temporary {
+            folder: options.temporary.clone(),
+            source,
+        };
+        let longest = extent.iter().copied().max().unwrap_or(1);
+        let depth = longest.next_power_of_two().trailing_zeros();
+        let pushed = gather.pushed;
+        let (sorted, runs) = gather.merged(progress).map_err(refused)?;
+        progress.begin("merge voxels", pushed);
+        let finest = Finest::take(sorted, depth, &plan, &scratch, progress).map_err(refused)?;
+        progress.end();
+        let voxels = finest.voxels;
+        if voxels >= u64::from(u32::MAX) {
+            return Err(BuildError::TooMany(voxels).into());
+        }
+        let mut tree = TreeWriter::new(depth, &scratch, plan.spool_bytes);
+        let centre = extent.map(|side| side as f64 / 2.0);
+        progress.begin("estimate normals, average", voxels);
+        let normals = options.build.normals;
+        let [color, normal] = finest
+            .finish(&mut tree, normals, centre, &plan, &scratch, progress)
+            .map_err(refused)?;
+        let (levels, counts) = tree.finish().map_err(refused)?;
+        progress.end();
+        Ok(Built {
+            depth,
+            runs: runs as u64,
+            levels,
+            counts,
+            color,
+            normal,
+            scratch,
+        })
+    }
+}
+
+/// All that the file is made of.
+struct Built {
+    depth: u32,
+    runs: u64,
+    levels: Vec<Level>,
+    /// Nodes of each level.
+    counts: Vec<u64>,
+    color: Spool,
+    normal: Spool,
+    scratch: Arc<Scratch>,
+}
+
+impl Built {
+    /// The graph without its arrays.
+    fn outline(&self, placement: Placement) -> Result<Graph, BuildError> {
+        let mut level_start = vec![0u32];
+        let mut total = 0u64;
+        let all: u64 = self.counts.iter().sum();
+        if all >= u64::from(u32::MAX) {
+            return Err(BuildError::TooMany(all));
+        }
+        for count in &self.counts {
+            total += count;
+            level_start.push(total as u32);
+        }
+        Ok(Graph {
+            depth: self.depth,
+            root: 0,
+            mask: Vec::new().into(),
+            first: Vec::new().into(),
+            links: Vec::new().into(),
+            color: Vec::new().into(),
+            normal: Vec::new().into(),
+            level_start,
+            voxels: self.counts[self.depth as usize],
+            placement,
+        })
+    }
+
+    fn sections(self) -> Sections {
+        let mut sections = Sections::default();
+        for level in self.levels {
+            sections.mask.push(level.mask);
+            sections.first.push(level.first);
+            sections.color.push(level.color);
+            sections.normal.push(level.normal);
+        }
+        sections.color.push(self.color);
+        sections.normal.push(self.normal);
+        sections
+    }
+}
+
+/// The levels' parts of each section, gone once handed on.
+#[derive(Default)]
+struct Sections {
+    mask: Vec<Spool>,
+    first: Vec<Spool>,
+    color: Vec<Spool>,
+    normal: Vec<Spool>,
+}
+
+impl Sections {
+    /// Hands on a section's bytes: `MASK`, `FRST`, `LINK`, `COLR`, `NRML`.
+    fn hand_on(
+        &mut self,
+        section: usize,
+        level_start: &[u32],
+        put: &mut dyn FnMut(&[u8]) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let levels = match section {
+            0 => &mut self.mask,
+            1 => {
+                for (level, spool) in std::mem::take(&mut self.first).into_iter().enumerate() {
+                    // Children are of the level below.
+                    let base = level_start[level + 1];
+                    spool.drain(|piece| {
+                        for number in piece.as_chunks_mut::<4>().0 {
+                            let first = base.wrapping_add(u32::from_ne_bytes(*number));
+                            *number = first.to_le_bytes();
+                        }
+                        put(piece)
+                    })?;
+                }
+                return Ok(());
+            }
+            3 => &mut self.color,
+            4 => &mut self.normal,
+            _ => return Ok(()),
+        };
+        for spool in std::mem::take(levels) {
+            spool.drain(|piece| put(piece))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! A voxel on its way to its place: 128 bits that sort as they are.
+//!
+//! | bits | while pushed | once placed |
+//! |---|---|---|
+//! | 127..64 | index modulo 2^21 along each axis | Morton key from the lowest corner |
+//! | 63..40 | all ones less the number within the run | the same |
+//! | 39..16 | colour | colour |
+//! | 15..0 | normal | normal |
+//!
+//! So equal keys come with the last pushed first.
+
+use crate::graph::records::MAX_SIDE;
+use crate::graph::{PackedNormal, Voxel, morton};
+
+/// Most records in a run: their numbers take 24 bits.
+pub(super) const MAX_RUN: usize = 1 << 24;
+
+/// A voxel as it is pushed, the `number`-th of its run.
+pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
+    let mut packed = 0u64;
+    for (axis, index) in (0u32..).zip(voxel.index) {
+        packed |= (u64::from(index as u32) & (MAX_SIDE - 1)) << (axis * morton::MAX_BITS);
+    }
+    let latest_first = (MAX_RUN - 1 - number) as u64;
+    let [r, g, b] = voxel.color.map(u64::from);
+    let normal = u64::from(voxel.normal.unwrap_or(PackedNormal::NONE).0);
+    let rest = latest_first << 40 | r << 32 | g << 24 | b << 16 | normal;
+    u128::from(packed) << 64 | u128::from(rest)
+}
+
+/// With the Morton key from a corner in place of the index.
+pub(super) fn placed(record: u128, corner: [i32; 3]) -> u128 {
+    let packed = key(record);
+    // The extent is at most 2^21, so the low bits tell the distance.
+    let at = [0, 1, 2].map(|axis| {
+        let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
+        low_bits.wrapping_sub(corner[axis] as u32) & (MAX_SIDE as u32 - 1)
+    });
+    with_key(record, morton::key(at))
+}
+
+/// Placed from another corner, which is nowhere above the first.
+pub(super) fn moved(record: u128, from: [i32; 3], to: [i32; 3]) -> u128 {
+    let old = morton::at(key(record));
+    let at = [0, 1, 2].map(|axis| {
+        let further = (from[axis] as u32).wrapping_sub(to[axis] as u32);
+        old[axis].wrapping_add(further) & (MAX_SIDE as u32 - 1)
+    });
+    with_key(record, morton::key(at))
+}
+
+fn with_key(record: u128, key: u64) -> u128 {
+    u128::from(key) << 64 | u128::from(record as u64)
+}
+
+/// The upper half: what records are sorted by.
+pub(super) fn key(record: u128) -> u64 {
+    (record >> 64) as u64
+}
+
+/// Colour, red first.
+pub(super) fn color(record: u128) -> [u8; 3] {
+    [
+        (record >> 32) as u8,
+        (record >> 24) as u8,
+        (record >> 16) as u8,
+    ]
+}
+
+/// Normal.
+pub(super) fn normal(record: u128) -> PackedNormal {
+    PackedNormal(record as u16)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_come_back_and_the_last_pushed_is_first() {
+        let voxel = Voxel {
+            index: [-5, 7, i32::MIN + 3],
+            color: [1, 200, 255],
+            normal: Some(PackedNormal(0xabcd)),
+        };
+        let corner = [-6, 7, i32::MIN];
+        let record = placed(pushed(&voxel, 17), corner);
+        assert_eq!(morton::at(key(record)), [1, 0, 3]);
+        assert_eq!(
+            (color(record), normal(record)),
+            ([1, 200, 255], PackedNormal(0xabcd))
+        );
+        assert!(placed(pushed(&voxel, 18), corner) < record);
+        assert!(placed(pushed(&voxel, MAX_RUN - 1), corner) < record);
+        let other = [-60, -7, i32::MIN];
+        assert_eq!(
+            moved(record, corner, other),
+            placed(pushed(&voxel, 17), other)
+        );
+    }
+}

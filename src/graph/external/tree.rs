@@ -1,0 +1,180 @@
+//! The tree's levels, each written as its nodes are closed.
+//!
+//! Bricks come in Morton order. Of the nodes above them, one a level is open
+//! at a time. Nodes of a level are opened, closed and written in one order,
+//! so a node's number within its level is known when it is opened, and the
+//! number of its first child when that is: only the level's first node has to
+//! be added at the end.
+
+use std::io;
+use std::sync::Arc;
+
+use super::scratch::{Scratch, Spool};
+use crate::graph::PackedNormal;
+use crate::graph::average::Sum;
+use crate::graph::build::first_new_level;
+
+/// A finished node without its child list.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Node {
+    pub(super) mask: u8,
+    pub(super) color: [u8; 3],
+    pub(super) normal: PackedNormal,
+}
+
+impl Node {
+    /// A node that shows the average of what was added up.
+    pub(super) fn new(mask: u8, sum: &Sum) -> Self {
+        Self {
+            mask,
+            color: sum.color(),
+            normal: sum.normal(),
+        }
+    }
+}
+
+/// What a brick adds to the tree.
+#[derive(Debug, Clone)]
+pub(super) struct BrickNodes {
+    /// Which octants hold voxels.
+    pub(super) mask: u8,
+    /// A node for each of them.
+    pub(super) octants: Vec<Node>,
+    /// All voxels added up.
+    pub(super) sum: Sum,
+}
+
+/// The nodes of a level above the finest.
+#[derive(Debug)]
+pub(super) struct Level {
+    pub(super) mask: Spool,
+    /// Number of the first child within its level, `u32`.
+    pub(super) first: Spool,
+    pub(super) color: Spool,
+    pub(super) normal: Spool,
+}
+
+/// A node that may get more children.
+#[derive(Debug, Clone, Copy, Default)]
+struct Open {
+    mask: u8,
+    first: u64,
+    sum: Sum,
+}
+
+/// Writes the levels above the finest.
+#[derive(Debug)]
+pub(super) struct TreeWriter {
+    depth: u32,
+    levels: Vec<Level>,
+    /// Nodes begun at each level, the finest included.
+    begun: Vec<u64>,
+    /// The open node of each level above the bricks.
+    open: Vec<Open>,
+    before: Option<u64>,
+}
+
+impl TreeWriter {
+    pub(super) fn new(depth: u32, scratch: &Arc<Scratch>, spool_bytes: usize) -> Self {
+        let spool = || Spool::new(scratch, spool_bytes);
+        Self {
+            depth,
+            levels: (0..depth)
+                .map(|_| Level {
+                    mask: spool(),
+                    first: spool(),
+                    color: spool(),
+                    normal: spool(),
+                })
+                .collect(),
+            begun: vec![0; depth as usize + 1],
+            open: vec![Open::default(); depth.saturating_sub(2) as usize],
+            before: None,
+        }
+    }
+
+    /// Adds the next brick: `voxels` of them, in the nodes that it has. An
+    /// object of less than two levels is one octant of one brick, or a voxel.
+    pub(super) fn push(
+        &mut self,
+        brick_key: u64,
+        voxels: u32,
+        nodes: &BrickNodes,
+    ) -> io::Result<()> {
+        let finest = self.depth as usize;
+        let mut first = self.begun[finest];
+        self.begun[finest] += u64::from(voxels);
+        if finest == 0 {
+            return Ok(());
+        }
+        let octants = finest - 1;
+        let first_octant = self.begun[octants];
+        self.begun[octants] += nodes.octants.len() as u64;
+        for node in &nodes.octants {
+            self.write(octants, *node, first)?;
+            first += u64::from(node.mask.count_ones());
+        }
+        let Some(brick_level) = octants.checked_sub(1) else {
+            return Ok(());
+        };
+        self.open_above(brick_key, brick_level)?;
+        self.begun[brick_level] += 1;
+        self.write(brick_level, Node::new(nodes.mask, &nodes.sum), first_octant)?;
+        if let Some(parent) = self.open.last_mut() {
+            parent.mask |= 1 << (brick_key & 7);
+            parent.sum.add(&nodes.sum);
+        }
+        Ok(())
+    }
+
+    /// Closes the nodes above the last brick that the next is not below, and
+    /// opens its own.
+    fn open_above(&mut self, brick_key: u64, brick_level: usize) -> io::Result<()> {
+        let new_level = first_new_level(self.before, brick_key, brick_level as u32) as usize;
+        if self.before.is_some() {
+            self.close(new_level)?;
+        }
+        self.before = Some(brick_key);
+        for level in new_level..brick_level {
+            self.open[level] = Open {
+                first: self.begun[level + 1],
+                ..Open::default()
+            };
+            self.begun[level] += 1;
+            if let Some(above) = level.checked_sub(1) {
+                let octant = brick_key >> (3 * (brick_level - level)) & 7;
+                self.open[above].mask |= 1 << octant;
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes the open nodes of a level and those below, lowest first.
+    fn close(&mut self, from: usize) -> io::Result<()> {
+        for level in (from..self.open.len()).rev() {
+            let Open { mask, first, sum } = self.open[level];
+            self.write(level, Node::new(mask, &sum), first)?;
+            if let Some(above) = level.checked_sub(1) {
+                self.open[above].sum.add(&sum);
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, level: usize, node: Node, first: u64) -> io::Result<()> {
+        let to = &mut self.levels[level];
+        to.mask.push(&[node.mask])?;
+        // More than 32 bits are refused at the end.
+        to.first.push(&(first as u32).to_ne_bytes())?;
+        to.color.push(&node.color)?;
+        to.normal.push(&node.normal.0.to_le_bytes())
+    }
+
+    /// The levels above the finest, and the number of nodes of each level.
+    pub(super) fn finish(mut self) -> io::Result<(Vec<Level>, Vec<u64>)> {
+        if self.before.is_some() {
+            self.close(0)?;
+        }
+        Ok((self.levels, self.begun))
+    }
+}

@@ -1,0 +1,186 @@
+//! A file built by external sort is the one that is built in memory.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+use std::fs;
+use std::path::Path;
+
+use proptest::prelude::*;
+use shiftvox::graph::{
+    BuildError, BuildOptions, Builder, ExternalBuilder, ExternalError, ExternalOptions,
+    ExternalReport, Normals, PackedNormal, Silent, Voxel, vxg,
+};
+use shiftvox::scene::generate::Spec;
+
+const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
+
+fn options(memory: u64, normals: Normals, temporary: &Path) -> ExternalOptions {
+    ExternalOptions {
+        build: BuildOptions { normals },
+        memory,
+        temporary: temporary.to_owned(),
+    }
+}
+
+/// The file built within `memory`, and the report; nothing else may be left.
+fn external(voxels: &[Voxel], memory: u64, normals: Normals) -> (Vec<u8>, ExternalReport) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.vxg");
+    let mut builder = ExternalBuilder::new(options(memory, normals, folder.path()));
+    voxels.iter().for_each(|&voxel| builder.push(voxel));
+    let report = builder.finish(PLACE, &path, false, &Silent).unwrap();
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    (fs::read(path).unwrap(), report)
+}
+
+fn in_memory(voxels: &[Voxel], normals: Normals) -> Vec<u8> {
+    let mut builder = Builder::new(BuildOptions { normals });
+    builder.extend(voxels.iter().copied());
+    let graph = builder.finish(PLACE, &Silent).unwrap();
+    let mut bytes = Vec::new();
+    vxg::write_to(&graph, &mut bytes).unwrap();
+    bytes
+}
+
+/// The first place where two files differ.
+fn difference(a: &[u8], b: &[u8]) -> Option<usize> {
+    if a.len() != b.len() {
+        return Some(a.len().min(b.len()));
+    }
+    a.iter().zip(b).position(|(a, b)| a != b)
+}
+
+/// Clusters and strays, with repeated indices, a few colours, some normals.
+fn voxels() -> impl Strategy<Value = Vec<Voxel>> {
+    let near = prop::array::uniform3(-6..6i32);
+    let wide = prop::array::uniform3(-40..60i32);
+    let far = prop::array::uniform3(-900_000..900_000i32);
+    let index = prop_oneof![30 => near, 10 => wide, 1 => far];
+    let color = prop_oneof![Just([1, 2, 3]), any::<[u8; 3]>()];
+    let normal =
+        prop_oneof![4 => Just(None), 1 => (1..=u16::MAX).prop_map(|n| Some(PackedNormal(n)))];
+    let voxel = (index, color, normal).prop_map(|(index, color, normal)| Voxel {
+        index,
+        color,
+        normal,
+    });
+    prop::collection::vec(voxel, 1..400)
+}
+
+/// Memory from nothing, for runs of two voxels, to more than enough.
+const MEMORY: [u64; 6] = [0, 3000, 12_000, 50_000, 400_000, 64 << 20];
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn every_byte_is_that_of_the_file_built_in_memory(voxels in voxels(), which in 0..MEMORY.len()) {
+        for normals in [Normals::FromSurface, Normals::None] {
+            let (file, report) = external(&voxels, MEMORY[which], normals);
+            let expected = in_memory(&voxels, normals);
+            prop_assert_eq!(difference(&file, &expected), None);
+            prop_assert_eq!(report.pushed, voxels.len() as u64);
+            prop_assert_eq!(report.bytes, file.len() as u64);
+        }
+    }
+}
+
+#[test]
+fn small_objects_of_every_depth() {
+    let row = |length: i32| -> Vec<Voxel> {
+        (0..length)
+            .map(|i| Voxel {
+                index: [-i, i, 7],
+                color: [i as u8, 255 - i as u8, 9],
+                normal: None,
+            })
+            .collect()
+    };
+    for length in [1, 2, 3, 4, 5, 8, 9, 16, 17, 33, 65] {
+        let voxels = row(length);
+        for memory in MEMORY {
+            let (file, _) = external(&voxels, memory, Normals::FromSurface);
+            let expected = in_memory(&voxels, Normals::FromSurface);
+            assert_eq!(difference(&file, &expected), None, "{length}, {memory}");
+        }
+    }
+}
+
+/// Solids, walls, wires and hills, cut in blocks of one brick and more.
+#[test]
+fn generated_scenes_are_the_same_in_any_memory() {
+    let scenes = [
+        "gen:terrain,depth=7",
+        "gen:sphere,depth=6",
+        "gen:menger,depth=3",
+        "gen:wires,depth=5",
+        "gen:random,depth=5,density=30",
+    ];
+    for scene in scenes {
+        let spec = Spec::parse(scene).unwrap();
+        let mut voxels = Vec::new();
+        spec.voxels(&mut |voxel| voxels.push(voxel), &Silent);
+        // From the far end, so that the lowest corner comes last.
+        let reversed: Vec<Voxel> = voxels.iter().rev().copied().collect();
+        let expected = in_memory(&voxels, Normals::FromSurface);
+        let mut runs = Vec::new();
+        for memory in [2000, 40_000, 400_000, 4 << 20, 64 << 20] {
+            for order in [&voxels, &reversed] {
+                let (file, report) = external(order, memory, Normals::FromSurface);
+                assert_eq!(difference(&file, &expected), None, "{scene}, {memory}");
+                runs.push(report.runs);
+            }
+        }
+        assert!(runs[0] > 50 && runs.ends_with(&[1, 1]), "{scene}: {runs:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_built_leaves_nothing_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.vxg");
+    let builder = || ExternalBuilder::new(options(0, Normals::FromSurface, folder.path()));
+    let at = |x: i32| Voxel {
+        index: [x, 0, 0],
+        ..Voxel::default()
+    };
+    let refused = builder().finish(PLACE, &path, true, &Silent).unwrap_err();
+    assert!(matches!(refused, ExternalError::Build(BuildError::Empty)));
+
+    let mut wide = builder();
+    (0..100).for_each(|x| wide.push(at(x * 40_000)));
+    let refused = wide.finish(PLACE, &path, true, &Silent).unwrap_err();
+    let found = matches!(
+        refused,
+        ExternalError::Build(BuildError::TooLarge { axis: 'x', .. })
+    );
+    assert!(found, "{refused}");
+
+    let mut flat = builder();
+    flat.push(at(1));
+    let place = ([0.0; 3], 0.0);
+    let refused = flat.finish(place, &path, true, &Silent).unwrap_err();
+    assert!(matches!(
+        refused,
+        ExternalError::Build(BuildError::Placement)
+    ));
+
+    fs::write(&path, b"precious").unwrap();
+    let mut second = builder();
+    (0..100).for_each(|x| second.push(at(x)));
+    let refused = second.finish(PLACE, &path, false, &Silent).unwrap_err();
+    assert!(matches!(refused, ExternalError::Write(_)), "{refused}");
+    assert_eq!(fs::read(&path).unwrap(), b"precious");
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+
+    let nowhere = options(0, Normals::None, &folder.path().join("no/folder"));
+    let mut lost = ExternalBuilder::new(nowhere);
+    (0..100).for_each(|x| lost.push(at(x)));
+    assert_eq!(lost.len(), 100);
+    let refused = lost.finish(PLACE, &path, true, &Silent).unwrap_err();
+    assert!(
+        matches!(refused, ExternalError::Temporary { .. }),
+        "{refused}"
+    );
+    assert!(refused.to_string().contains("no/folder"), "{refused}");
+    assert_eq!(fs::read(&path).unwrap(), b"precious");
+}
