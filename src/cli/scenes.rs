@@ -6,7 +6,10 @@ use std::time::Instant;
 use super::args::{OutOfBoundsName, SceneArgs};
 use super::error::{CliError, Kind};
 use super::fit::Up;
-use crate::graph::{Graph, MergeBy, Progress, Silent, Voxel, merge, vxg};
+use crate::graph::{
+    ExternalError, ExternalOptions, ExternalReport, Graph, MergeBy, Progress, Silent, Voxel, merge,
+    vxg,
+};
 use crate::picture::store;
 use crate::scene::{self, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions, SceneError};
 
@@ -109,8 +112,17 @@ fn ready(opened: Opened, source: &str, stem: String, started: Instant) -> Scene 
 
 impl From<OpenError> for CliError {
     fn from(error: OpenError) -> Self {
+        let written = matches!(
+            error,
+            OpenError::External {
+                error: ExternalError::Temporary { .. } | ExternalError::Write(_),
+                ..
+            }
+        );
         let kind = if error.is_limit() {
             Kind::Limit
+        } else if written {
+            Kind::Run
         } else {
             Kind::Input
         };
@@ -119,7 +131,13 @@ impl From<OpenError> for CliError {
             OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
-            OpenError::TooMany { .. } => failure.advise("ask for fewer levels"),
+            OpenError::TooMany { .. } => failure.advise(
+                "build it outside memory: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
+            ),
+            OpenError::External {
+                error: ExternalError::Temporary { .. },
+                ..
+            } => failure.advise("choose a folder with more room with --temp"),
             _ => failure,
         }
     }
@@ -180,6 +198,28 @@ pub(super) fn write(
         bytes,
         warnings,
     })
+}
+
+/// Builds a `.vxg` file of a scene within a limit of memory.
+///
+/// # Errors
+/// A bad input, a file that exists, or a failed write.
+pub(super) fn build_file(
+    source: &str,
+    args: &SceneArgs,
+    external: ExternalOptions,
+    output: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<(Written, Option<ExternalReport>), CliError> {
+    let options = options(args);
+    let built = scene::build_file(source, &options, external, output, force, progress)?;
+    let written = Written {
+        voxels: built.voxels,
+        bytes: built.bytes,
+        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+    };
+    Ok((written, built.report))
 }
 
 /// The finest voxels of a graph at their file indices; a large leaf is many.

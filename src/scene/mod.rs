@@ -11,10 +11,12 @@ use std::path::Path;
 
 use crate::graph::{Progress, Voxel};
 
+mod build_file;
 mod detect;
 mod emit;
 mod error;
 pub mod generate;
+mod memory;
 mod npy;
 mod open;
 mod options;
@@ -22,6 +24,7 @@ mod ply;
 mod ply_write;
 mod vox;
 
+pub use build_file::{BuiltFile, build_file};
 pub use detect::{DETECT_BYTES, FileKind, detect};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};

@@ -6,11 +6,9 @@ use std::io::Read;
 use std::path::Path;
 
 use super::generate::{self, Spec, SpecError};
+use super::memory;
 use super::{DETECT_BYTES, FileKind, ReadOptions, SceneError, SceneInfo, detect, read_voxels};
-use crate::graph::{BuildError, BuildOptions, Builder, Graph, Progress, vxg};
-
-/// Most voxels that are gathered for one graph: ten gigabytes' worth.
-const MAX_VOXELS: u64 = 500_000_000;
+use crate::graph::{BuildError, BuildOptions, Builder, ExternalError, Graph, Progress, vxg};
 
 /// Graph files up to this size are checked in full when they are opened;
 /// larger ones are mapped, and only the pages that a picture needs are read.
@@ -54,11 +52,28 @@ pub enum OpenError {
         /// What is wrong with them.
         error: BuildError,
     },
-    /// More voxels than are gathered.
-    #[error("{source_name}: more than {MAX_VOXELS} voxels")]
+    /// The voxels make no `.vxg` file.
+    #[error("{source_name}: {error}")]
+    External {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with them, or with the place to write to.
+        error: ExternalError,
+    },
+    /// More voxels than can be built in memory.
+    #[error(
+        "{source_name}: {voxels} voxels or more take at least {needed} bytes of memory while they are built, \
+         and {available} are free"
+    )]
     TooMany {
         /// The scene, as the user named it.
         source_name: String,
+        /// Voxels that there are at the least.
+        voxels: u64,
+        /// Bytes that they take at the least.
+        needed: u64,
+        /// Bytes of memory that were free when reading began.
+        available: u64,
     },
 }
 
@@ -68,9 +83,13 @@ impl OpenError {
     pub fn is_limit(&self) -> bool {
         match self {
             Self::TooMany { .. } => true,
-            Self::Build { error, .. } => !matches!(error, BuildError::Empty),
+            Self::Build { error, .. }
+            | Self::External {
+                error: ExternalError::Build(error),
+                ..
+            } => !matches!(error, BuildError::Empty),
             Self::Scene(error) => error.is_limit(),
-            Self::Spec(_) | Self::Graph(_) => false,
+            Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
         }
     }
 }
@@ -156,6 +175,7 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
         Some(graph) => graph,
         None => {
             let mut gathered = Gathered::default();
+            gathered.expect(spec.least_voxels(), source)?;
             spec.voxels(&mut |v| gathered.push(v), progress);
             gathered.finish(source, progress)?
         }
@@ -170,34 +190,84 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
 /// Voxels on their way into a graph.
 struct Gathered {
     builder: Builder,
-    too_many: bool,
+    /// Free memory at the beginning, where the system tells.
+    available: Option<u64>,
+    /// Most voxels that fit it.
+    most: u64,
+    /// Voxels seen, kept or not.
+    seen: u64,
 }
 
 impl Default for Gathered {
     fn default() -> Self {
+        let available = memory::available();
         Self {
             builder: Builder::new(BuildOptions::default()),
-            too_many: false,
+            available,
+            most: available.map_or(u64::MAX, memory::most_voxels),
+            seen: 0,
         }
     }
 }
 
 impl Gathered {
     fn push(&mut self, voxel: crate::graph::Voxel) {
-        if self.builder.len() >= MAX_VOXELS {
-            self.too_many = true;
-        } else {
+        self.seen += 1;
+        if self.seen <= self.most {
             self.builder.push(voxel);
+        } else if !self.builder.is_empty() {
+            // It is lost; let go of what there is.
+            self.builder = Builder::new(BuildOptions::default());
+        }
+    }
+
+    /// Fails where so many voxels cannot be built in memory.
+    fn expect(&self, voxels: u64, source: &str) -> Result<(), OpenError> {
+        match self.available {
+            Some(available) if voxels > self.most => Err(OpenError::TooMany {
+                source_name: source.to_owned(),
+                voxels,
+                needed: memory::least_bytes(voxels),
+                available,
+            }),
+            _ => Ok(()),
         }
     }
 
     fn finish(self, source: &str, progress: &dyn Progress) -> Result<Graph, OpenError> {
+        self.expect(self.seen, source)?;
         let source_name = source.to_owned();
-        if self.too_many {
-            return Err(OpenError::TooMany { source_name });
-        }
         self.builder
             .finish(([0.0; 3], 1.0), progress)
             .map_err(|error| OpenError::Build { source_name, error })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::{Silent, Voxel};
+
+    #[test]
+    fn more_voxels_than_memory_are_told() {
+        let mut gathered = Gathered {
+            available: Some(100),
+            most: 4,
+            ..Gathered::default()
+        };
+        for x in 0..5 {
+            gathered.push(Voxel {
+                index: [x, 0, 0],
+                ..Voxel::default()
+            });
+        }
+        assert!(gathered.builder.is_empty());
+        let error = gathered.finish("a.ply", &Silent).expect_err("too many");
+        assert!(error.is_limit());
+        assert_eq!(
+            error.to_string(),
+            "a.ply: 5 voxels or more take at least 125 bytes of memory while they are built, \
+             and 100 are free"
+        );
     }
 }

@@ -12,7 +12,7 @@ pub use engine::{CoverageName, EngineArgs, EngineName, Isa, OverflowName};
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};
 pub use scene::{OutOfBoundsName, SceneArgs};
-pub use values::{Point, Size, ThreadCounts, Tolerance};
+pub use values::{Memory, Point, Size, ThreadCounts, Tolerance};
 
 /// A setting as a configuration file has it: the flag's long name and its value.
 pub type Setting = (&'static str, toml::Value);

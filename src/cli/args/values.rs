@@ -118,6 +118,52 @@ impl FromStr for ThreadCounts {
     }
 }
 
+/// An amount of memory: bytes, or with `K`, `M`, `G` or `T` for powers of 1024.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Memory {
+    /// Bytes.
+    pub bytes: u64,
+}
+
+/// Least memory that an external build keeps to.
+const LEAST_MEMORY: u64 = 64 << 20;
+
+impl FromStr for Memory {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        let upper = text.to_ascii_uppercase();
+        let amount = upper.strip_suffix("IB").or(upper.strip_suffix('B'));
+        let amount = amount.unwrap_or(&upper);
+        let (digits, shift) = match amount.char_indices().next_back() {
+            Some((end, unit @ ('K' | 'M' | 'G' | 'T'))) => {
+                let shift = match unit {
+                    'K' => 10,
+                    'M' => 20,
+                    'G' => 30,
+                    _ => 40,
+                };
+                (&amount[..end], shift)
+            }
+            _ => (amount, 0),
+        };
+        let wrong = || format!("expected an amount of memory such as 512M or 2G, not `{text}`");
+        let number: f64 = digits.parse().map_err(|_| wrong())?;
+        let bytes = number * (1u64 << shift) as f64;
+        // Exact below 2^53, which is more than any machine has.
+        if !(0.0..9e15).contains(&bytes) || digits.contains(['E', '+']) {
+            return Err(wrong());
+        }
+        if (bytes as u64) < LEAST_MEMORY {
+            return Err("building takes 64M at the least".to_owned());
+        }
+        Ok(Self {
+            bytes: bytes as u64,
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -158,6 +204,26 @@ mod tests {
         assert_eq!("0.0625".parse(), Ok(Tolerance(0.0625)));
         for bad in ["-1", "nan", "x"] {
             assert!(bad.parse::<Tolerance>().is_err(), "{bad}");
+        }
+    }
+    #[test]
+    fn amounts_of_memory() {
+        for (text, bytes) in [
+            ("1G", 1 << 30),
+            ("512M", 512 << 20),
+            ("512MiB", 512 << 20),
+            ("1.5g", 3 << 29),
+            ("2T", 2 << 40),
+            ("65536k", 64 << 20),
+            ("67108864", 64 << 20),
+            ("67108864B", 64 << 20),
+        ] {
+            assert_eq!(text.parse(), Ok(Memory { bytes }), "{text}");
+        }
+        for bad in [
+            "", "G", "-1G", "nan", "inf", "1e30", "1X", "63M", "0", "9999999T", "1 0G",
+        ] {
+            assert!(bad.parse::<Memory>().is_err(), "{bad}");
         }
     }
 }

@@ -176,6 +176,19 @@ impl Spec {
         self.settings
     }
 
+    /// Voxels that the scene has at the least: 0 where that takes work to know.
+    #[must_use]
+    pub fn least_voxels(&self) -> u64 {
+        let power = |base: u64| base.saturating_pow(self.settings.depth);
+        match self.generator.name {
+            "checker" => power(8) / 2,
+            "menger" => power(20),
+            // Two of each column: its lowest, and the ground.
+            "terrain" => 2 * power(4),
+            _ => 0,
+        }
+    }
+
     /// The scene as a graph, where it is one with cycles; else `None`, and
     /// [`Self::voxels`] gives it.
     #[must_use]
@@ -306,6 +319,24 @@ mod tests {
         );
         assert!(message("gen:menger,deep").contains("key=value"));
         assert!(message("gen:menger,").contains("key=value"));
+    }
+
+    #[test]
+    fn no_scene_has_fewer_voxels_than_its_least() {
+        for text in [
+            "gen:checker,depth=4",
+            "gen:menger,depth=3",
+            "gen:terrain,depth=6",
+        ] {
+            let spec = Spec::parse(text).expect(text);
+            let mut voxels = 0;
+            spec.voxels(&mut |_| voxels += 1, &crate::graph::Silent);
+            let least = spec.least_voxels();
+            assert!(
+                least > 0 && (least..2 * least + 1).contains(&voxels),
+                "{text}: {voxels}"
+            );
+        }
     }
 
     #[test]

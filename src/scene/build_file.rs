@@ -1,0 +1,76 @@
+//! From a scene to a `.vxg` file that need never be in memory as a whole.
+
+use std::path::Path;
+
+use super::generate::{self, Spec};
+use super::open::{OpenError, OpenOptions};
+use super::{SceneInfo, read_voxels};
+use crate::graph::{ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
+
+/// A `.vxg` file that was built.
+#[derive(Debug)]
+pub struct BuiltFile {
+    /// Voxels of the graph.
+    pub voxels: u64,
+    /// Bytes of the file.
+    pub bytes: u64,
+    /// What a voxel file held beside its voxels.
+    pub info: Option<SceneInfo>,
+    /// What building took; none for a cyclic scene, which is a few nodes.
+    pub report: Option<ExternalReport>,
+}
+
+/// Reads a voxel file, or makes the scene of a `gen:` specification, and
+/// builds a `.vxg` file of it within a limit of memory. The file is the one
+/// that [`open`](super::open()) and [`vxg::write`] give.
+///
+/// A `.vox` file is held whole besides: its own length, within 4 GB.
+///
+/// # Errors
+/// See [`OpenError`]; a `.vxg` file is refused as input.
+pub fn build_file(
+    source: &str,
+    options: &OpenOptions,
+    external: ExternalOptions,
+    output: &Path,
+    overwrite: bool,
+    progress: &dyn Progress,
+) -> Result<BuiltFile, OpenError> {
+    let failed = |error| OpenError::External {
+        source_name: source.to_owned(),
+        error,
+    };
+    let mut builder = ExternalBuilder::new(external);
+    let mut info = None;
+    if source.starts_with(generate::PREFIX) {
+        let spec = Spec::parse(source)?;
+        if let Some(graph) = spec.linked() {
+            vxg::write(&graph, output, overwrite)?;
+            return Ok(BuiltFile {
+                voxels: graph.voxels,
+                bytes: std::fs::metadata(output).map_or(0, |file| file.len()),
+                info,
+                report: None,
+            });
+        }
+        spec.voxels(&mut |voxel| builder.push(voxel), progress);
+    } else {
+        let sink = &mut |voxel| builder.push(voxel);
+        info = Some(read_voxels(
+            Path::new(source),
+            &options.read,
+            sink,
+            progress,
+        )?);
+    }
+    let placement = ([0.0; 3], 1.0);
+    let report = builder
+        .finish(placement, output, overwrite, progress)
+        .map_err(failed)?;
+    Ok(BuiltFile {
+        voxels: report.voxels,
+        bytes: report.bytes,
+        info,
+        report: Some(report),
+    })
+}
