@@ -263,7 +263,8 @@ fn tell(
             vec!["median ms".to_owned(), format!("{median:.3}")],
             vec!["max ms".to_owned(), format!("{max:.3}")],
         ];
-        let counters = drawn.stats.iter();
+        let pages = report::page_counters(scene);
+        let counters = drawn.stats.iter().chain(&pages);
         rows.extend(counters.map(|&(name, count)| vec![name.to_owned(), report::grouped(count)]));
         let head = vec![scene.source.clone(), "one frame".to_owned()];
         console.data(report::table(head, rows))?;
@@ -271,7 +272,7 @@ fn tell(
     if let Some(path) = output {
         console.note(format!("{}: drawn in {median:.1} ms", path.display()));
     }
-    for (name, count) in &drawn.stats {
+    for (name, count) in drawn.stats.iter().chain(&report::page_counters(scene)) {
         console.detail(format!("  {name}: {}", report::grouped(*count)));
     }
     Ok(())

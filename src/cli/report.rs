@@ -41,11 +41,14 @@ pub(super) fn camera(camera: &Camera) -> Value {
 /// What drawing one scene took.
 pub(super) fn drawn(scene: &Scene, at: &Camera, drawn: &Drawn, hash: Option<&str>) -> Value {
     let (min, median, max) = min_median_max(&drawn.times_ms);
-    let counters: serde_json::Map<String, Value> = drawn
+    let mut counters: serde_json::Map<String, Value> = drawn
         .stats
         .iter()
         .map(|&(name, count)| (name.to_owned(), count.into()))
         .collect();
+    for (name, count) in page_counters(scene) {
+        counters.insert(name.to_owned(), count.into());
+    }
     json!({
         "scene": scene.source,
         "width": drawn.picture.width,
@@ -62,6 +65,17 @@ pub(super) fn drawn(scene: &Scene, at: &Camera, drawn: &Drawn, hash: Option<&str
         "resolve_ms": drawn.resolve_ms,
         "counters": counters,
         "hash": hash,
+    })
+}
+
+/// Pages of a mapped scene: all, and those in memory by now. None of others.
+pub(super) fn page_counters(scene: &Scene) -> Vec<(&'static str, u64)> {
+    let pages = scene.graph.mapped_pages();
+    pages.map_or_else(Vec::new, |pages| {
+        vec![
+            ("pages_mapped", pages.mapped),
+            ("pages_resident", pages.resident),
+        ]
     })
 }
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod external;
+mod pages;
 mod properties;
 mod scale;
 mod speed;

@@ -19,3 +19,28 @@ pub(super) fn map(file: &File) -> io::Result<Arc<Mmap>> {
     let map = unsafe { Mmap::map(file) }?;
     Ok(Arc::new(map))
 }
+
+/// How a mapped file is going to be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Access {
+    /// Here and there: a page that is missing is read alone, not with those around it.
+    Scattered,
+    /// From the beginning to the end.
+    Whole,
+}
+
+/// Tells the system how the file is going to be read. It may take no notice,
+/// and where it has no such call nothing is told: reading works all the same.
+pub(super) fn advise(map: &Mmap, access: Access) {
+    #[cfg(unix)]
+    {
+        let advice = match access {
+            Access::Scattered => memmap2::Advice::Random,
+            Access::Whole => memmap2::Advice::Sequential,
+        };
+        // Refused advice changes nothing but speed.
+        let _ = map.advise(advice);
+    }
+    #[cfg(not(unix))]
+    let _ = (map, access);
+}

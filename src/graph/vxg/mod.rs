@@ -13,10 +13,12 @@
 mod error;
 mod format;
 mod map;
+mod pages;
 mod read;
 mod write;
 
 pub use error::VxgError;
+pub use pages::MappedPages;
 pub use read::{from_bytes, is_vxg, open, verify};
 pub(in crate::graph) use write::{check_free, write_pieces};
 pub use write::{write, write_to};

@@ -13,7 +13,7 @@ use super::format::{
     HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION,
     at, layout,
 };
-use super::map::map;
+use super::map::{Access, advise, map};
 use crate::graph::{Graph, Invalid, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).
@@ -39,7 +39,9 @@ pub fn open(path: &Path) -> Result<Graph, VxgError> {
 /// As [`open`], and when any byte is not as it was written.
 pub fn verify(path: &Path) -> Result<Graph, VxgError> {
     let (graph, header, bytes) = open_with_header(path)?;
+    bytes.advise(Access::Whole);
     verify_sections(&graph, &header, &bytes, path)?;
+    bytes.advise(Access::Scattered);
     Ok(graph)
 }
 
@@ -60,6 +62,15 @@ pub fn from_bytes(bytes: &[u8]) -> Result<Graph, VxgError> {
 enum Bytes {
     Mapped(Arc<Mmap>),
     Read(Vec<u8>),
+}
+
+impl Bytes {
+    /// Tells the system how a mapped file is going to be read.
+    fn advise(&self, access: Access) {
+        if let Self::Mapped(map) = self {
+            advise(map, access);
+        }
+    }
 }
 
 impl std::ops::Deref for Bytes {
@@ -97,6 +108,7 @@ fn open_with_header(path: &Path) -> Result<(Graph, Header, Bytes), VxgError> {
     let header = Header::read(&beginning, file_bytes, path)?;
     if cfg!(target_endian = "little") {
         let map = map(&file).map_err(refused("map it into memory"))?;
+        advise(&map, Access::Scattered);
         let graph = header.graph_mapped(&map, path)?;
         return Ok((graph, header, Bytes::Mapped(map)));
     }
