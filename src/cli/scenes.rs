@@ -131,6 +131,9 @@ impl From<OpenError> for CliError {
             OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
+            OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {
+                failure.advise("ask for fewer levels: a graph has less than 2^32 nodes")
+            }
             OpenError::TooMany { .. } => failure.advise(
                 "build it outside memory: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
             ),

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::generate::{self, Spec};
 use super::open::{OpenError, OpenOptions};
 use super::{SceneInfo, read_voxels};
-use crate::graph::{ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
+use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
 
 /// A `.vxg` file that was built.
 #[derive(Debug)]
@@ -52,6 +52,10 @@ pub fn build_file(
                 info,
                 report: None,
             });
+        }
+        let least = spec.least_voxels();
+        if least >= u64::from(u32::MAX) {
+            return Err(failed(BuildError::TooMany(least).into()));
         }
         spec.voxels(&mut |voxel| builder.push(voxel), progress);
     } else {

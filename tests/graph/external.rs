@@ -9,7 +9,9 @@ use shiftvox::graph::{
     BuildError, BuildOptions, Builder, ExternalBuilder, ExternalError, ExternalOptions,
     ExternalReport, Normals, PackedNormal, Silent, Voxel, vxg,
 };
+use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::generate::Spec;
+use shiftvox::scene::{self, OpenOptions};
 
 const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
@@ -183,4 +185,131 @@ fn what_cannot_be_built_leaves_nothing_behind() {
     );
     assert!(refused.to_string().contains("no/folder"), "{refused}");
     assert_eq!(fs::read(&path).unwrap(), b"precious");
+}
+
+/// Importers and generators lead to the same file by both ways.
+#[test]
+fn files_of_every_format_are_built_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let ply = folder.path().join("scene.ply");
+    let npy = folder.path().join("scene.npy");
+    let spec = Spec::parse("gen:terrain,depth=6").unwrap();
+    let mut voxels = Vec::new();
+    spec.voxels(&mut |voxel| voxels.push(voxel), &Silent);
+    let mut out = fs::File::create(&ply).unwrap();
+    scene::write_ply(&mut out, voxels.iter().copied(), true).unwrap();
+    let indices = voxels.iter().flat_map(|voxel| voxel.index).collect();
+    let array = Array {
+        shape: vec![voxels.len(), 3],
+        values: Values::I32(indices),
+    };
+    fs::write(&npy, encode(&array)).unwrap();
+
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
+    let mut sources: Vec<String> = [ply, npy, data.join("sphere.vox"), data.join("extended.vox")]
+        .map(|path| path.to_str().unwrap().to_owned())
+        .into();
+    sources.push("gen:wires,depth=4".to_owned());
+    sources.push("gen:sierpinski,depth=20".to_owned());
+    for source in sources {
+        let options = OpenOptions::default();
+        let opened = scene::open(&source, &options, &Silent).unwrap();
+        let mut expected = Vec::new();
+        vxg::write_to(&opened.graph, &mut expected).unwrap();
+        let path = folder.path().join("out.vxg");
+        let external = self::options(10_000, Normals::FromSurface, folder.path());
+        let built = scene::build_file(&source, &options, external, &path, true, &Silent).unwrap();
+        let file = fs::read(&path).unwrap();
+        assert_eq!(difference(&file, &expected), None, "{source}");
+        assert_eq!(
+            (built.voxels, built.bytes),
+            (opened.graph.voxels, file.len() as u64)
+        );
+        assert_eq!(built.info, opened.info);
+    }
+    // A graph is no list of voxels.
+    let path = folder.path().join("again.vxg");
+    let source = folder.path().join("out.vxg");
+    let external = self::options(10_000, Normals::FromSurface, folder.path());
+    let options = OpenOptions::default();
+    let refused = scene::build_file(
+        source.to_str().unwrap(),
+        &options,
+        external,
+        &path,
+        true,
+        &Silent,
+    );
+    assert!(refused.unwrap_err().to_string().contains(".vxg graph"));
+}
+
+/// What 32 bits cannot number is refused before anything is made of it.
+#[test]
+fn scenes_beyond_all_numbers_are_refused_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.vxg");
+    let external = options(64 << 20, Normals::FromSurface, folder.path());
+    let source = "gen:menger,depth=8";
+    let refused = scene::build_file(
+        source,
+        &OpenOptions::default(),
+        external,
+        &path,
+        true,
+        &Silent,
+    );
+    let refused = refused.unwrap_err();
+    assert!(
+        refused.is_limit() && refused.to_string().contains("25600000000"),
+        "{refused}"
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+fn shiftvox(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    let mut command = assert_cmd::Command::cargo_bin("shiftvox").unwrap();
+    command
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn convert_builds_within_a_limit_of_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = "gen:terrain,depth=7";
+    let plain = shiftvox(folder.path(), &["convert", scene, "plain.vxg"]);
+    assert!(plain.status.success());
+    let limited: &[&str] = &["convert", scene, "limited.vxg", "--memory", "64M", "--json"];
+    let found = shiftvox(folder.path(), limited);
+    assert!(found.status.success());
+    let document: serde_json::Value = serde_json::from_slice(&found.stdout).unwrap();
+    assert_eq!(document["schema"], "shiftvox.convert");
+    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
+    assert_eq!(difference(&read("limited.vxg"), &read("plain.vxg")), None);
+    let wrong: [(&[&str], i32); 5] = [
+        (limited, 1),
+        (&["convert", scene, "a.ply", "--memory", "1G"], 2),
+        (&["convert", scene, "a.vxg", "--memory", "1M"], 2),
+        (&["convert", scene, "a.vxg", "--temp", "."], 2),
+        (
+            &[
+                "convert",
+                scene,
+                "a.vxg",
+                "--memory",
+                "1G",
+                "--temp",
+                "no/folder",
+            ],
+            1,
+        ),
+    ];
+    for (arguments, code) in wrong {
+        let found = shiftvox(folder.path(), arguments);
+        assert_eq!(found.status.code(), Some(code), "{arguments:?}");
+        assert!(!found.stderr.is_empty(), "{arguments:?}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }

@@ -7,7 +7,10 @@
 use std::sync::Mutex;
 use std::time::Instant;
 
-use shiftvox::graph::{BuildOptions, Builder, Graph, Progress, Silent};
+use shiftvox::graph::{
+    BuildOptions, Builder, ExternalBuilder, ExternalOptions, Graph, MergeBy, Progress, Silent,
+    merge,
+};
 use shiftvox::scene::generate::Spec;
 
 /// A builder that holds a scene's voxels, pushed one by one as an importer would.
@@ -132,4 +135,71 @@ fn sixty_million_voxels_stay_within_their_memory() {
     );
     // The voxels pushed, the graph, a piece of pushed voxels, and the program itself.
     assert!(peak <= 20 * voxels + bytes + (64 << 20));
+}
+
+/// Builds within 256 MB, beside the default folder for temporary files; the
+/// peak is that of the process, so it must run alone.
+#[test]
+#[ignore = "takes half a minute and 2 GB of disk"]
+fn a_scene_larger_than_its_memory_stays_within_it() {
+    let spec = std::env::var("SHIFTVOX_SPEC").unwrap_or("gen:terrain,depth=12".to_owned());
+    let spec = Spec::parse(&spec).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let memory = 256 << 20;
+    let mut builder = ExternalBuilder::new(ExternalOptions {
+        build: BuildOptions::default(),
+        memory,
+        temporary: folder.path().to_owned(),
+    });
+    let start = Instant::now();
+    spec.voxels(&mut |voxel| builder.push(voxel), &Silent);
+    eprintln!("pushed in {:.1} s", start.elapsed().as_secs_f64());
+    let path = folder.path().join("out.vxg");
+    let watch = Stopwatch(Mutex::new(None));
+    let report = builder
+        .finish(([0.0; 3], 1.0), &path, false, &watch)
+        .unwrap();
+    let voxels = report.voxels as f64;
+    eprintln!(
+        "{report:?}\n{:.1} s, {:.2} bytes a voxel, {:.2} temporary",
+        start.elapsed().as_secs_f64(),
+        report.bytes as f64 / voxels,
+        report.temporary_bytes as f64 / voxels
+    );
+    let Some(peak) = memory_of_process("VmHWM:") else {
+        eprintln!("skipped: this system does not tell the peak of memory");
+        return;
+    };
+    assert!(peak <= memory, "{peak} bytes");
+}
+
+/// What merging equal subtrees saves, shape and attributes apart.
+#[test]
+#[ignore = "takes a minute and 3 GB"]
+fn what_merging_saves_on_large_terrain() {
+    for depth in [10, 11] {
+        let graph = build(&format!("gen:terrain,depth={depth}"));
+        let shape_bits = |graph: &Graph| {
+            let bytes = graph.mask.len() + 4 * (graph.first.len() + graph.links.len());
+            8.0 * bytes as f64 / graph.voxels as f64
+        };
+        eprintln!(
+            "depth {depth}: {} voxels, a tree of {} nodes: {:.3} bits a voxel of shape, {:.2} bytes in all",
+            graph.voxels,
+            graph.len(),
+            shape_bits(&graph),
+            graph.bytes() as f64 / graph.voxels as f64
+        );
+        for by in [MergeBy::Shape, MergeBy::ShapeAndAttributes] {
+            let (merged, report) = merge(&graph, by, &Silent);
+            eprintln!(
+                "  {by:?}: {} nodes, gain {:.2}; {:.3} bits a voxel of shape, {:.2} bytes in all",
+                merged.len(),
+                report.gain(),
+                shape_bits(&merged),
+                merged.bytes() as f64 / merged.voxels as f64
+            );
+            assert_eq!(merged.voxels, graph.voxels);
+        }
+    }
 }
