@@ -121,10 +121,18 @@ impl Gather {
                 runs.rekey(run, &mut buffer, |record| moved(record, corner, self.min))?;
             }
         }
-        drop((buffer, self.buffer));
+        drop((buffer, std::mem::take(&mut self.buffer)));
         let count = runs.len();
         let merge = runs.merged(&self.plan, &self.scratch)?;
         progress.end();
         Ok((merge, count))
+    }
+}
+
+/// Nothing is written any more once the builder is gone.
+impl Drop for Gather {
+    fn drop(&mut self) {
+        // Whatever it says, nobody wants the run.
+        let _ = self.waited();
     }
 }

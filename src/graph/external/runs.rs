@@ -229,3 +229,45 @@ impl Sorter {
         self.runs.merged(plan, scratch)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A record of a key that says in which run it came.
+    fn record(key: u64, run: u64) -> u128 {
+        u128::from(key) << 64 | u128::from(run)
+    }
+
+    #[test]
+    fn of_equal_keys_the_last_run_stays_in_any_number_of_passes() -> io::Result<()> {
+        let folder = tempfile::tempdir()?;
+        let scratch = Scratch::new(folder.path().to_owned());
+        for fan_in in [2, 3, 7, 100] {
+            let plan = Plan {
+                fan_in,
+                merge_bytes: 16 * fan_in,
+                ..Plan::new(0)
+            };
+            let mut runs = Runs::new(&scratch)?;
+            let mut expected = std::collections::BTreeMap::new();
+            for run in 0..40 {
+                // Every key of the multiples of `step`.
+                let step = 1 + run * 7 % 11;
+                let keys = (0..100).filter(|key| key % step == 0);
+                let sorted: Vec<u128> = keys.map(|key| record(key, run)).collect();
+                runs.add(&sorted)?;
+                expected.extend(sorted.iter().map(|&record| (key(record), record)));
+            }
+            runs.add(&[])?;
+            assert_eq!(runs.len(), 41);
+            let mut merge = runs.merged(&plan, &scratch)?;
+            for (_, record) in expected {
+                assert_eq!(merge.next()?, Some(record), "{fan_in}");
+            }
+            assert_eq!(merge.next()?, None);
+            assert_eq!(merge.next()?, None);
+        }
+        Ok(())
+    }
+}
