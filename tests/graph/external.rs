@@ -212,13 +212,13 @@ fn files_of_every_format_are_built_the_same() {
     sources.push("gen:wires,depth=4".to_owned());
     sources.push("gen:sierpinski,depth=20".to_owned());
     for source in sources {
-        let options = OpenOptions::default();
-        let opened = scene::open(&source, &options, &Silent).unwrap();
+        let reading = OpenOptions::default();
+        let opened = scene::open(&source, &reading, &Silent).unwrap();
         let mut expected = Vec::new();
         vxg::write_to(&opened.graph, &mut expected).unwrap();
         let path = folder.path().join("out.vxg");
-        let external = self::options(10_000, Normals::FromSurface, folder.path());
-        let built = scene::build_file(&source, &options, external, &path, true, &Silent).unwrap();
+        let external = options(10_000, Normals::FromSurface, folder.path());
+        let built = scene::build_file(&source, &reading, external, &path, true, &Silent).unwrap();
         let file = fs::read(&path).unwrap();
         assert_eq!(difference(&file, &expected), None, "{source}");
         assert_eq!(
@@ -230,11 +230,11 @@ fn files_of_every_format_are_built_the_same() {
     // A graph is no list of voxels.
     let path = folder.path().join("again.vxg");
     let source = folder.path().join("out.vxg");
-    let external = self::options(10_000, Normals::FromSurface, folder.path());
-    let options = OpenOptions::default();
+    let external = options(10_000, Normals::FromSurface, folder.path());
+    let reading = OpenOptions::default();
     let refused = scene::build_file(
         source.to_str().unwrap(),
-        &options,
+        &reading,
         external,
         &path,
         true,

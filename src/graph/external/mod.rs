@@ -12,11 +12,12 @@
 //!    beside it (`halo`);
 //! 4. `finest` and `tree`: a block at a time, normals are estimated, and the
 //!    nodes of each level written as they are complete;
-//! 5. the levels are joined to the file.
+//! 5. `join`: the levels become the sections of the file.
 
 mod finest;
 mod gather;
 mod halo;
+mod join;
 mod plan;
 mod record;
 mod runs;
@@ -29,12 +30,13 @@ use std::sync::Arc;
 
 use super::records::extent;
 use super::vxg::{self, VxgError};
-use super::{BuildError, BuildOptions, Graph, Placement, Progress, Voxel};
+use super::{BuildError, BuildOptions, Placement, Progress, Voxel};
 use finest::Finest;
 use gather::Gather;
+use join::Built;
 use plan::Plan;
-use scratch::{Scratch, Spool};
-use tree::{Level, TreeWriter};
+use scratch::Scratch;
+use tree::TreeWriter;
 
 /// How a file is built outside memory.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -226,102 +228,5 @@ impl ExternalBuilder {
             normal,
             scratch,
         })
-    }
-}
-
-/// All that the file is made of.
-struct Built {
-    depth: u32,
-    runs: u64,
-    levels: Vec<Level>,
-    /// Nodes of each level.
-    counts: Vec<u64>,
-    color: Spool,
-    normal: Spool,
-    scratch: Arc<Scratch>,
-}
-
-impl Built {
-    /// The graph without its arrays.
-    fn outline(&self, placement: Placement) -> Result<Graph, BuildError> {
-        let mut level_start = vec![0u32];
-        let mut total = 0u64;
-        let all: u64 = self.counts.iter().sum();
-        if all >= u64::from(u32::MAX) {
-            return Err(BuildError::TooMany(all));
-        }
-        for count in &self.counts {
-            total += count;
-            level_start.push(total as u32);
-        }
-        Ok(Graph {
-            depth: self.depth,
-            root: 0,
-            mask: Vec::new().into(),
-            first: Vec::new().into(),
-            links: Vec::new().into(),
-            color: Vec::new().into(),
-            normal: Vec::new().into(),
-            level_start,
-            voxels: self.counts[self.depth as usize],
-            placement,
-        })
-    }
-
-    fn sections(self) -> Sections {
-        let mut sections = Sections::default();
-        for level in self.levels {
-            sections.mask.push(level.mask);
-            sections.first.push(level.first);
-            sections.color.push(level.color);
-            sections.normal.push(level.normal);
-        }
-        sections.color.push(self.color);
-        sections.normal.push(self.normal);
-        sections
-    }
-}
-
-/// The levels' parts of each section, gone once handed on.
-#[derive(Default)]
-struct Sections {
-    mask: Vec<Spool>,
-    first: Vec<Spool>,
-    color: Vec<Spool>,
-    normal: Vec<Spool>,
-}
-
-impl Sections {
-    /// Hands on a section's bytes: `MASK`, `FRST`, `LINK`, `COLR`, `NRML`.
-    fn hand_on(
-        &mut self,
-        section: usize,
-        level_start: &[u32],
-        put: &mut dyn FnMut(&[u8]) -> io::Result<()>,
-    ) -> io::Result<()> {
-        let levels = match section {
-            0 => &mut self.mask,
-            1 => {
-                for (level, spool) in std::mem::take(&mut self.first).into_iter().enumerate() {
-                    // Children are of the level below.
-                    let base = level_start[level + 1];
-                    spool.drain(|piece| {
-                        for number in piece.as_chunks_mut::<4>().0 {
-                            let first = base.wrapping_add(u32::from_ne_bytes(*number));
-                            *number = first.to_le_bytes();
-                        }
-                        put(piece)
-                    })?;
-                }
-                return Ok(());
-            }
-            3 => &mut self.color,
-            4 => &mut self.normal,
-            _ => return Ok(()),
-        };
-        for spool in std::mem::take(levels) {
-            spool.drain(|piece| put(piece))?;
-        }
-        Ok(())
     }
 }
