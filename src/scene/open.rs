@@ -96,6 +96,10 @@ impl OpenError {
 
 /// Opens a file, or makes the scene of a `gen:` specification.
 ///
+/// Voxels are gathered and built in memory; more than fit the memory that is
+/// free at the beginning are an error, in advance where their number is known.
+/// [`build_file`](super::build_file()) makes a `.vxg` file of those.
+///
 /// # Errors
 /// See [`OpenError`].
 pub fn open(
