@@ -2,8 +2,9 @@
 
 use hwmodel::count::Counter;
 
-use super::args::{EngineArgs, EngineName};
-use super::error::CliError;
+use super::args::{EngineArgs, EngineName, Isa};
+use super::error::{CliError, Kind};
+use crate::fast::{Fast, FastOptions, Instructions, Switches};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::lab::bench::{Candidate, Family, Variant};
@@ -17,9 +18,28 @@ use crate::rays::Rays;
 /// # Errors
 /// When this build does not have it.
 pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
+    let instructions = match args.isa {
+        Isa::Auto => Instructions::Auto,
+        Isa::Scalar => Instructions::Scalar,
+        Isa::Avx2 => Instructions::Avx2,
+        Isa::Avx512 => Instructions::Avx512,
+    };
+    if !instructions.are_available() {
+        return Err(CliError::new(
+            Kind::Run,
+            format!("this processor does not have the instructions of --isa {:?}", args.isa)
+                .to_lowercase(),
+        )
+        .advise("leave --isa out, or take --isa scalar: the picture is the same"));
+    }
     match args.engine {
-        EngineName::Fast => Err(CliError::usage("--engine fast is not in this version")
-            .advise("use --engine machine (the same picture) or --engine rays")),
+        EngineName::Fast => {
+            let options = FastOptions {
+                instructions,
+                ..FastOptions::default()
+            };
+            Ok(Box::new(Fast::new(options, Box::new(machine(args)))))
+        }
         EngineName::Machine => Ok(Box::new(machine(args))),
         EngineName::Rays => Ok(Box::new(Rays)),
     }
@@ -54,6 +74,24 @@ const MACHINE: Candidate = Candidate {
     make: |_| Box::new(Machine::default()),
 };
 
+const FAST: Candidate = Candidate {
+    name: "fast",
+    about: "the machine's bits, sample by sample",
+    work: "records",
+    parallel: true,
+    make: |threads| fast(threads, Switches::default()),
+};
+
+/// A fast engine on so many threads.
+fn fast(threads: usize, switches: Switches) -> Box<dyn Engine + Send> {
+    let options = FastOptions {
+        threads,
+        switches,
+        ..FastOptions::default()
+    };
+    Box::new(Fast::new(options, Box::new(Machine::default())))
+}
+
 /// What the experiments take for the truth.
 pub(super) const REFERENCE: Candidate = Candidate {
     name: "rays",
@@ -73,16 +111,97 @@ const FLOAT_RAYS: Candidate = Candidate {
 };
 
 /// All engines that the experiments can measure.
-pub(super) const CANDIDATES: &[Candidate] = &[MACHINE, REFERENCE, FLOAT_RAYS];
+pub(super) const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
 
 /// Those whose growth is measured where none is named.
-pub(super) const SCALED: &[&str] = &["machine"];
+pub(super) const SCALED: &[&str] = &["fast", "machine"];
 
 /// What can be switched off, by engine.
-pub(super) const FAMILIES: &[Family] = &[Family {
-    whole: MACHINE,
-    variants: MACHINE_VARIANTS,
-}];
+pub(super) const FAMILIES: &[Family] = &[
+    Family {
+        whole: FAST,
+        variants: FAST_VARIANTS,
+    },
+    Family {
+        whole: MACHINE,
+        variants: MACHINE_VARIANTS,
+    },
+];
+
+const FAST_VARIANTS: &[Variant] = &[
+    Variant {
+        name: "hidden windows looked into",
+        about: "nodes behind what is drawn go on down; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                hidden: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+    },
+    Variant {
+        name: "off-screen nodes looked into",
+        about: "nodes beside the picture, or that hold no sample, go on down; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                off_screen: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+    },
+    Variant {
+        name: "a full picture goes on",
+        about: "no stop when every sample is drawn; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                full: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+    },
+    Variant {
+        name: "bricks off",
+        about: "voxel by voxel in the last levels; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                bricks: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+    },
+    Variant {
+        name: "whole blocks off",
+        about: "large solids tile by tile, without looking at blocks first; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                whole_blocks: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+    },
+    Variant {
+        name: "level of detail off",
+        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
+        adjust: |options| options.lod_px = 0.0,
+        make: FAST.make,
+    },
+    Variant {
+        name: "screen space off",
+        about: "--tolerance 0: lattices only to find voxels, exact planes decide; the picture may change",
+        adjust: |options| options.tolerance_px = 0.0,
+        make: FAST.make,
+    },
+];
 
 const MACHINE_VARIANTS: &[Variant] = &[
     Variant {

@@ -34,8 +34,6 @@ mod switches;
 mod view;
 mod walk;
 
-use rayon::prelude::*;
-
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -78,6 +76,18 @@ pub struct Fast {
     /// Draws what this engine does not.
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
+    /// The constants of the last frame, good for the next of the same set-up.
+    prepared: Option<Prepared>,
+    /// Counts of the last frame.
+    counters: Counters,
+}
+
+/// A frame's constants.
+struct Prepared {
+    setup: FrameSetup,
+    /// `None`: not a frame for this engine.
+    view: Option<View>,
+    exact: Exact,
 }
 
 impl std::fmt::Debug for Fast {
@@ -97,65 +107,140 @@ impl Fast {
             options,
             fallback,
             fill: FillMemory::default(),
+            prepared: None,
+            counters: Counters::default(),
         }
     }
 
-    /// Draws a frame, or says that it does not: `None`.
-    fn draw(
+    /// Draws a frame, or says that it does not: `false`. Allocates nothing
+    /// when the set-up is that of the last frame.
+    fn draw_fast(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
-    ) -> Option<Stats> {
+    ) -> bool {
         if frame.records.is_some() {
-            return None;
+            return false;
         }
-        let view = View::new(setup)?;
-        let exact = Exact::new(setup);
+        let prepared = match &mut self.prepared {
+            Some(prepared) if prepared.setup == *setup => prepared,
+            other => other.insert(Prepared {
+                setup: setup.clone(),
+                view: View::new(setup),
+                exact: Exact::new(setup),
+            }),
+        };
+        let Some(view) = &prepared.view else {
+            return false;
+        };
         let job = Job {
-            view: &view,
-            exact: &exact,
+            view,
+            exact: &prepared.exact,
             graph,
             switches: &self.options.switches,
         };
         let grid = Grid::new(frame.width, frame.height);
         self.fill.resize(&grid);
-        let bands = bands(grid.blocks_down, self.threads());
-        let pieces = pieces(&grid, &bands, frame, self.fill.part());
-        let counters = match self.options.instructions {
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Auto | Instructions::Avx512 if lanes::Avx512::detect().is_some() => {
-                run_all(&job, pieces, lanes::Avx512::detect()?)
-            }
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Auto | Instructions::Avx512 | Instructions::Avx2
-                if lanes::Avx2::detect().is_some() =>
-            {
-                run_all(&job, pieces, lanes::Avx2::detect()?)
-            }
-            _ => run_all(&job, pieces, Scalar),
-        };
-        counters.map(|counters| counters.stats())
-    }
-
-    fn threads(&self) -> usize {
-        match self.options.threads {
+        let threads = match self.options.threads {
             0 => rayon::current_num_threads(),
             threads => threads,
-        }
+        };
+        let piece = Piece {
+            grid,
+            bounds: Window {
+                left: 0,
+                top: 0,
+                right: frame.width as i32 - 1,
+                bottom: frame.height as i32 - 1,
+            },
+            fill: self.fill.part(),
+            pixels: Pixels {
+                width: frame.width as usize,
+                top: 0,
+                node: &mut frame.node,
+                voxel: &mut frame.voxel,
+            },
+        };
+        let counters = match self.options.instructions.found() {
+            #[cfg(target_arch = "x86_64")]
+            Found::Avx512(isa) => run_bands(&job, piece, isa, threads),
+            #[cfg(target_arch = "x86_64")]
+            Found::Avx2(isa) => run_bands(&job, piece, isa, threads),
+            Found::Scalar(isa) => run_bands(&job, piece, isa, threads),
+        };
+        self.counters = counters.unwrap_or_default();
+        counters.is_some()
     }
 }
 
 impl Engine for Fast {
+    fn draw(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<(), EngineError> {
+        if self.draw_fast(graph, setup, frame) {
+            return Ok(());
+        }
+        self.fallback.draw(graph, setup, frame)
+    }
+
     fn render(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
-        match self.draw(graph, setup, frame) {
-            Some(stats) => Ok(stats),
-            None => self.fallback.render(graph, setup, frame),
+        if self.draw_fast(graph, setup, frame) {
+            return Ok(self.counters.stats());
+        }
+        self.fallback.render(graph, setup, frame)
+    }
+}
+
+/// A set of instructions that the processor has.
+enum Found {
+    #[cfg(target_arch = "x86_64")]
+    Avx512(lanes::Avx512),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(lanes::Avx2),
+    Scalar(Scalar),
+}
+
+impl Instructions {
+    /// The best of these that the processor has.
+    fn found(self) -> Found {
+        #[cfg(target_arch = "x86_64")]
+        {
+            let (avx512, avx2) = match self {
+                Self::Auto | Self::Avx512 => (true, true),
+                Self::Avx2 => (false, true),
+                Self::Scalar => (false, false),
+            };
+            if let Some(isa) = lanes::Avx512::detect().filter(|_| avx512) {
+                return Found::Avx512(isa);
+            }
+            if let Some(isa) = lanes::Avx2::detect().filter(|_| avx2) {
+                return Found::Avx2(isa);
+            }
+        }
+        Found::Scalar(Scalar)
+    }
+
+    /// Whether the processor has these; without, the next lower set is used.
+    #[must_use]
+    pub fn are_available(self) -> bool {
+        let found = self.found();
+        match self {
+            Self::Auto | Self::Scalar => true,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => matches!(found, Found::Avx2(_)),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => matches!(found, Found::Avx512(_)),
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx2 | Self::Avx512 => false,
         }
     }
 }
@@ -176,80 +261,70 @@ struct Piece<'p> {
     pixels: Pixels<'p>,
 }
 
-/// How many rows of blocks each band has. Nodes that lie across two bands are
-/// visited in both, so there are few bands; several to a thread, large ones
-/// first, so that threads end together.
-fn bands(block_rows: usize, threads: usize) -> Vec<usize> {
+/// Rows of blocks that the first of several bands has. Nodes that lie across
+/// two bands are visited in both, so there are few bands; several to a
+/// thread, large ones first, so that threads end together.
+fn first_band(block_rows: usize, threads: usize) -> usize {
     if threads <= 1 {
-        return vec![block_rows];
+        return block_rows;
     }
-    let mut left = block_rows;
-    let mut bands = Vec::new();
-    while left > 0 {
-        let rows = (left / (2 * threads)).max(1);
-        bands.push(rows);
-        left -= rows;
-    }
-    bands
+    (block_rows / (2 * threads)).max(1)
 }
 
-fn pieces<'p>(
-    grid: &Grid,
-    bands: &[usize],
-    frame: &'p mut Frame,
-    fill: FillPart<'p>,
-) -> Vec<Piece<'p>> {
-    let (width, height) = (frame.width as usize, frame.height as usize);
-    let mut rest = (fill, &mut frame.node[..], &mut frame.voxel[..]);
-    let mut first_row = 0;
-    let mut pieces = Vec::with_capacity(bands.len());
-    for &rows in bands {
-        let top = first_row << BLOCK_LOG2;
-        let bottom = ((first_row + rows) << BLOCK_LOG2).min(height);
-        let samples = (bottom - top) * width;
-        let voxels = samples.min(rest.2.len());
-        let (fill, fill_rest) = rest.0.split(grid, rows);
-        let (node, node_rest) = rest.1.split_at_mut(samples);
-        let (voxel, voxel_rest) = rest.2.split_at_mut(voxels);
-        rest = (fill_rest, node_rest, voxel_rest);
-        pieces.push(Piece {
-            grid: *grid,
-            bounds: Window {
-                left: 0,
-                top: top as i32,
-                right: width as i32 - 1,
-                bottom: bottom as i32 - 1,
-            },
+impl Piece<'_> {
+    /// The first rows of blocks, and the others.
+    fn split(self, rows: usize) -> (Self, Self) {
+        let top = self.bounds.top + ((rows << BLOCK_LOG2) as i32);
+        let samples = (top - self.bounds.top) as usize * self.pixels.width;
+        let voxels = samples.min(self.pixels.voxel.len());
+        let (fill, fill_rest) = self.fill.split(&self.grid, rows);
+        let (node, node_rest) = self.pixels.node.split_at_mut(samples);
+        let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
+        let width = self.pixels.width;
+        let piece = |bounds: Window, fill, node, voxel| Self {
+            grid: self.grid,
+            bounds,
             fill,
             pixels: Pixels {
                 width,
-                top: top as i32,
+                top: bounds.top,
                 node,
                 voxel,
             },
-        });
-        first_row += rows;
+        };
+        let upper = Window {
+            bottom: top - 1,
+            ..self.bounds
+        };
+        let lower = Window { top, ..self.bounds };
+        (
+            piece(upper, fill, node, voxel),
+            piece(lower, fill_rest, node_rest, voxel_rest),
+        )
     }
-    pieces
+
+    /// Rows of blocks.
+    fn block_rows(&self) -> usize {
+        ((self.bounds.bottom - self.bounds.top) as usize >> BLOCK_LOG2) + 1
+    }
 }
 
-/// Draws all bands. `None`: a subtree has numbers that do not fit.
-fn run_all<I: Isa>(job: &Job<'_>, mut pieces: Vec<Piece<'_>>, isa: I) -> Option<Counters> {
-    let mut total = Counters::default();
-    if pieces.len() == 1 {
-        let counters = run(job, pieces.pop()?, isa)?;
-        total.add(&counters);
-        return Some(total);
+/// Draws a band after the other, each while others draw the rest. `None`: a
+/// subtree has numbers that do not fit.
+fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Option<Counters> {
+    let rows = piece.block_rows();
+    let first = first_band(rows, threads);
+    if first == rows {
+        return run(job, piece, isa);
     }
-    let counters: Vec<Option<Counters>> = pieces
-        .into_par_iter()
-        .with_max_len(1)
-        .map(|piece| run(job, piece, isa))
-        .collect();
-    for counters in counters {
-        total.add(&counters?);
-    }
-    Some(total)
+    let (band, rest) = piece.split(first);
+    let (counters, others) = rayon::join(
+        || run(job, band, isa),
+        || run_bands(job, rest, isa, threads),
+    );
+    let mut counters = counters?;
+    counters.add(&others?);
+    Some(counters)
 }
 
 /// Draws one band.

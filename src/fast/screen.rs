@@ -28,6 +28,9 @@ pub(super) struct ScreenRecord {
 /// than a tile, else 0; `None` if nothing is.
 #[inline(always)]
 fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window) -> Option<u64> {
+    if !walk.switches.off_screen && window.is_empty() {
+        return Some(0);
+    }
     if window.right - window.left < 8 && window.bottom - window.top < 8 {
         let open = walk.fill.open_in_square(window);
         if open == 0 && walk.switches.hidden {

@@ -48,12 +48,15 @@ impl Engine for FloatRays {
         let mut drawn = 0;
         let width = frame.width as usize;
         let rows = frame.node.chunks_mut(width.max(1));
-        let rows = rows.zip(frame.voxel.chunks_mut(width.max(1)));
-        for (j, (nodes, voxels)) in rows.enumerate() {
-            for (i, (node, voxel)) in nodes.iter_mut().zip(voxels).enumerate() {
+        for (j, nodes) in rows.enumerate() {
+            for (i, node) in nodes.iter_mut().enumerate() {
                 let (origin, direction) = rays.of_sample(i as u32, j as u32);
-                if let Some(seen) = caster.cast(origin, direction, &mut steps) {
-                    (*node, *voxel) = seen;
+                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps) {
+                    *node = seen;
+                    // None where the frame is of nodes alone.
+                    if let Some(to) = frame.voxel.get_mut(j * width + i) {
+                        *to = voxel;
+                    }
                     drawn += 1;
                 }
             }

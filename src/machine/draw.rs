@@ -63,7 +63,10 @@ impl<'f> Canvas<'f> {
         dp.read(Memory::Attribute, u64::from(node));
         dp.write(Memory::Pixel, at as u64);
         self.frame.node[at] = node;
-        self.frame.voxel[at] = voxel;
+        // None where the frame is of nodes alone.
+        if let Some(to) = self.frame.voxel.get_mut(at) {
+            *to = voxel;
+        }
         self.drawn += 1;
 
         dp.stage(Stage::FillUpdate);

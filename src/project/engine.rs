@@ -24,6 +24,20 @@ pub type Stats = Vec<(&'static str, u64)>;
 
 /// Draws a frame from its recorded input.
 pub trait Engine {
+    /// Draws like [`Engine::render`] and tells of no counts: what an engine
+    /// does to tell is then not done, nor timed.
+    ///
+    /// # Errors
+    /// As [`Engine::render`].
+    fn draw(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<(), EngineError> {
+        self.render(graph, setup, frame).map(drop)
+    }
+
     /// Draws into `frame`, which has the size of `setup` and is cleared first.
     ///
     /// # Errors

@@ -84,7 +84,7 @@ impl Default for SetupOptions {
             bits: 64,
             frac: None,
             cage: CageKind::default(),
-            tolerance_px: 1.0 / 16.0,
+            tolerance_px: 1.0 / 8.0,
             coverage: Coverage::default(),
             lod_px: 1.0,
             aa_log2: 0,

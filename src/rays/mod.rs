@@ -58,10 +58,18 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &View, frame: &mut Frame)
         Some(records) => records.chunks_mut(width).map(Some).collect(),
         None => (0..frame.height).map(|_| None).collect(),
     };
+    // Where voxels are not wanted, they go nowhere.
+    let mut unwanted = Vec::new();
+    let voxels = if frame.voxel.is_empty() {
+        unwanted.resize(frame.node.len(), NO_VOXEL);
+        &mut unwanted
+    } else {
+        &mut frame.voxel
+    };
     frame
         .node
         .par_chunks_mut(width)
-        .zip(frame.voxel.par_chunks_mut(width))
+        .zip(voxels.par_chunks_mut(width))
         .zip(record_rows)
         .enumerate()
         .map(|(j, ((nodes, voxels), mut records))| {

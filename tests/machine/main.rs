@@ -4,6 +4,7 @@
 mod common;
 mod counts;
 mod exact;
+mod fast;
 mod files;
 mod golden;
 mod oracle;

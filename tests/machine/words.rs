@@ -46,7 +46,7 @@ const TO_HOST: [Allowed; 4] = [
     ),
 ];
 
-const PRODUCTS: [Allowed; 17] = [
+const PRODUCTS: [Allowed; 16] = [
     allowed(
         "constants.rs",
         "i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])",
@@ -110,11 +110,6 @@ const PRODUCTS: [Allowed; 17] = [
         "planes.rs",
         "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
         INDEX,
-    ),
-    allowed(
-        "strips.rs",
-        "let middle = |column: u32| Word::from_host(i64::from(2 * column + 1) << (below + frac));",
-        HALF_SAMPLES,
     ),
 ];
 

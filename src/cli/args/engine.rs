@@ -10,9 +10,9 @@ use crate::project::{CageKind, Coverage, SetupOptions};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
 pub enum EngineName {
     /// The same bits as the machine, as fast as the processor goes.
+    #[default]
     Fast,
     /// The paper's loop in machine words: adders and shifts.
-    #[default]
     Machine,
     /// The exact reference: what each sample's centre sees.
     Rays,
@@ -75,7 +75,7 @@ pub struct EngineArgs {
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub cage: Option<CageName>,
     /// Largest deviation in pixels at which a record may change from clip to screen space:
-    /// 0 never, inf at once [default: 0.0625]
+    /// 0 never, inf at once [default: 0.125]
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     pub tolerance: Option<Tolerance>,
     /// Which pixels a voxel draws [default: exact]

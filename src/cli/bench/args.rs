@@ -40,7 +40,7 @@ pub(super) struct MeasureArgs {
     #[arg(long, value_enum, conflicts_with = "paper")]
     coverage: Option<CoverageName>,
     /// Largest deviation in pixels at which a record may change from clip to screen space
-    /// [default: 0.0625]
+    /// [default: 0.125]
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     tolerance: Option<Tolerance>,
     /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]

@@ -3,7 +3,8 @@
 //! What drifts while a measurement goes on (other work, clock rates) then
 //! hits all alike, and a contender does not find the caches as its own last
 //! frame left them. A frame is: clear, traverse, colour of each sample
-//! written. Buffers are made before the first frame and reused.
+//! written. Buffers are made before the first frame and reused. One frame
+//! before those is for the counters and for who wants to look at it.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -84,7 +85,7 @@ struct Buffers {
 
 impl Buffers {
     fn new(width: u32, height: u32) -> Self {
-        let frame = Frame::new(width, height, false);
+        let frame = Frame::nodes_only(width, height);
         // Not zero, so that its pages are there before the first frame.
         let colors = vec![[1; 3]; frame.node.len()];
         Self { frame, colors }
@@ -112,7 +113,7 @@ impl<'p> Harness<'p> {
     }
 
     /// Measures all contenders in turn. `look` is shown each contender's first
-    /// frame, by the contender's place in the list, outside of the times.
+    /// frame, voxels and all, by the contender's place in the list, outside of the times.
     ///
     /// # Errors
     /// When an engine fails, or there are no threads.
@@ -134,20 +135,19 @@ impl<'p> Harness<'p> {
             .map(|_| Vec::with_capacity(rounds as usize))
             .collect();
         let mut counters = vec![Stats::new(); contenders.len()];
-        let frames = u64::from(rounds) * contenders.len() as u64;
+        let frames = u64::from(rounds + 1) * contenders.len() as u64;
         self.progress.begin("measuring", frames);
+        for (place, contender) in contenders.iter_mut().enumerate() {
+            let (frame, stats) = self.whole_frame(contender)?;
+            look(place, &frame);
+            counters[place] = stats;
+            self.progress.advance(1);
+        }
         for round in 0..rounds {
             for (place, contender) in contenders.iter_mut().enumerate() {
-                let (elapsed, stats) = self.frame(contender)?;
+                let elapsed = self.frame(contender)?;
                 if round >= self.schedule.warmup {
                     times[place].push(elapsed);
-                }
-                counters[place] = stats;
-                if round == 0 {
-                    let size = (contender.setup.width, contender.setup.height);
-                    if let Some(buffers) = self.buffers.get(&size) {
-                        look(place, &buffers.frame);
-                    }
                 }
                 self.progress.advance(1);
             }
@@ -189,8 +189,28 @@ impl<'p> Harness<'p> {
         Ok(())
     }
 
+    /// A frame with its voxels and counters, which is not timed.
+    fn whole_frame(
+        &mut self,
+        contender: &mut Contender<'_>,
+    ) -> Result<(Frame, Stats), BenchError> {
+        let setup = &contender.setup;
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let (graph, engine) = (contender.graph.view(), &mut contender.engine);
+        let mut draw = || engine.render(&graph, setup, &mut frame);
+        let stats = match self.pools.get(&contender.threads) {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        let stats = stats.map_err(|source| BenchError::Engine {
+            who: contender.name.clone(),
+            source,
+        })?;
+        Ok((frame, stats))
+    }
+
     /// One frame; the clocks run inside the pool, around the work alone.
-    fn frame(&mut self, contender: &mut Contender<'_>) -> Result<(Elapsed, Stats), BenchError> {
+    fn frame(&mut self, contender: &mut Contender<'_>) -> Result<Elapsed, BenchError> {
         let Contender {
             name,
             graph,
@@ -205,20 +225,20 @@ impl<'p> Harness<'p> {
             .or_insert_with(|| Buffers::new(size.0, size.1));
         let mut draw = || {
             let clock = Clock::start();
-            let stats = engine.render(&graph.view(), setup, &mut buffers.frame);
+            let drawn = engine.draw(&graph.view(), setup, &mut buffers.frame);
             flat_colors(graph, &buffers.frame, &mut buffers.colors);
             black_box(buffers.colors.as_slice());
-            (clock.elapsed(), stats)
+            (clock.elapsed(), drawn)
         };
-        let (elapsed, stats) = match self.pools.get(threads) {
+        let (elapsed, drawn) = match self.pools.get(threads) {
             Some(pool) => pool.install(draw),
             None => draw(),
         };
-        let stats = stats.map_err(|source| BenchError::Engine {
+        drawn.map_err(|source| BenchError::Engine {
             who: name.clone(),
             source,
         })?;
-        Ok((elapsed, stats))
+        Ok(elapsed)
     }
 }
 
@@ -289,11 +309,12 @@ mod tests {
             })
             .unwrap();
         let round = [("a", 1), ("b", 2)];
-        assert_eq!(*notes.lock().unwrap(), [round, round, round].concat());
+        assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
         assert_eq!(seen, [(0, 1), (1, 1)]);
         assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
-        // Counters are those of the last frame; one thread's time is told of one thread alone.
-        assert_eq!(measured[1].counters, [("frames", 6)]);
+        // Counters are those of the first frame, which is not timed; one
+        // thread's time is told of one thread alone.
+        assert_eq!(measured[1].counters, [("frames", 2)]);
         assert_eq!(measured[1].thread, None);
         assert_eq!(measured[0].thread.is_some(), cfg!(unix));
     }

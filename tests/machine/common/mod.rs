@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
+use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, PackedNormal, Placement};
 use shiftvox::machine::{Machine, MachineOptions};
@@ -189,7 +190,7 @@ pub fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> FrameSet
     FrameSetup::new(camera, &graph.placement, graph.depth, options).expect("a frame")
 }
 
-/// Draws with the machine.
+/// Draws with the machine; as it is by default, with the fast engine too.
 pub fn draw_with(
     options: MachineOptions,
     graph: &Graph,
@@ -197,6 +198,14 @@ pub fn draw_with(
 ) -> Result<(Frame, Stats), EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
+    if options == MachineOptions::default() {
+        // Whatever a test says of the machine, it says of the default engine.
+        let mut fast = Frame::new(setup.width, setup.height, false);
+        Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
+            .render(&graph.view(), setup, &mut fast)
+            .expect("what the machine draws");
+        assert!(fast == frame, "the fast engine draws other bits");
+    }
     Ok((frame, stats))
 }
 

@@ -1,0 +1,211 @@
+//! The fast engine equals the machine in every buffer: on random graphs,
+//! cameras, sizes, cages, coverage rules, tolerances, levels of detail,
+//! formats, thread counts and instruction sets.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::common::*;
+use crate::scenes;
+use proptest::prelude::*;
+use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, GraphView};
+use shiftvox::machine::Machine;
+use shiftvox::project::{
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
+};
+
+/// A machine that notes whether it was asked.
+struct Noted(Machine, Arc<AtomicBool>);
+
+impl Engine for Noted {
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        self.1.store(true, Ordering::Relaxed);
+        self.0.render(graph, setup, frame)
+    }
+}
+
+/// What the fast engine draws, and whether it drew that itself.
+fn draw_fast(
+    options: FastOptions,
+    graph: &Graph,
+    setup: &FrameSetup,
+) -> (Result<Frame, EngineError>, bool) {
+    let asked = Arc::new(AtomicBool::new(false));
+    let fallback = Noted(Machine::default(), Arc::clone(&asked));
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut fast = Fast::new(options, Box::new(fallback));
+    let drawn = fast.render(&graph.view(), setup, &mut frame);
+    (drawn.map(|_| frame), !asked.load(Ordering::Relaxed))
+}
+
+fn draw_machine(graph: &Graph, setup: &FrameSetup) -> Result<Frame, EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    Machine::default()
+        .render(&graph.view(), setup, &mut frame)
+        .map(|_| frame)
+}
+
+/// Small ones of every kind: thin, solid, cyclic, with surfaces.
+const SPECS: [&str; 8] = [
+    "gen:terrain,depth=7,seed=3",
+    "gen:menger,depth=3",
+    "gen:sierpinski,depth=9",
+    "gen:sphere,depth=5",
+    "gen:shell,depth=6",
+    "gen:truss,depth=6",
+    "gen:wires,depth=6",
+    "gen:maze,depth=5",
+];
+
+const SETS: [Instructions; 3] = [
+    Instructions::Scalar,
+    Instructions::Avx2,
+    Instructions::Avx512,
+];
+
+fn any_options() -> impl Strategy<Value = FastOptions> {
+    let set = (0..SETS.len()).prop_map(|i| SETS[i]);
+    let switches = proptest::array::uniform5(proptest::bool::weighted(0.85));
+    (set, 1..4usize, switches).prop_map(|(instructions, threads, on)| FastOptions {
+        threads,
+        instructions,
+        switches: Switches {
+            hidden: on[0],
+            full: on[1],
+            off_screen: on[2],
+            bricks: on[3],
+            whole_blocks: on[4],
+        },
+    })
+}
+
+fn any_settings() -> impl Strategy<Value = SetupOptions> {
+    let tolerance = prop_oneof![
+        3 => Just(0.0),
+        1 => Just(1.0 / 256.0),
+        2 => Just(1.0 / 16.0),
+        3 => Just(1.0 / 8.0),
+        2 => Just(0.4),
+        2 => Just(1.5),
+        1 => Just(f64::INFINITY),
+    ];
+    let coverage = prop_oneof![
+        30 => Just(Coverage::Exact),
+        1 => Just(Coverage::Center),
+        1 => Just(Coverage::Any),
+    ];
+    let cage = prop_oneof![Just(CageKind::Frame), Just(CageKind::Corners)];
+    let format = prop_oneof![
+        6 => Just((64, None)),
+        1 => (24..64u32).prop_map(|bits| (bits, None)),
+        1 => (24..64u32, 4..12u32).prop_map(|(bits, frac)| (bits, Some(frac))),
+    ];
+    let lod = prop_oneof![3 => Just(0.0), 3 => Just(1.0), 1 => Just(0.3), 1 => Just(6.0)];
+    (tolerance, coverage, cage, format, lod, 0..2u32).prop_map(
+        |(tolerance_px, coverage, cage, (bits, frac), lod_px, aa_log2)| SetupOptions {
+            bits,
+            frac,
+            cage,
+            tolerance_px,
+            coverage,
+            lod_px,
+            aa_log2,
+        },
+    )
+}
+
+/// Compares the two engines on one frame.
+fn agree(
+    graph: &Graph,
+    camera: &Camera,
+    settings: &SetupOptions,
+    options: FastOptions,
+) -> Result<(), TestCaseError> {
+    let Ok(setup) = FrameSetup::new(camera, &graph.placement, graph.depth, settings) else {
+        return Ok(());
+    };
+    let right = draw_machine(graph, &setup);
+    let (drawn, by_itself) = draw_fast(options, graph, &setup);
+    match (&right, &drawn) {
+        (Ok(right), Ok(drawn)) => prop_assert!(
+            right == drawn,
+            "{} samples differ",
+            right.node.iter().zip(&drawn.node).filter(|(a, b)| a != b).count()
+        ),
+        (Err(right), Err(drawn)) => prop_assert_eq!(right, drawn),
+        _ => prop_assert!(false, "only one of them drew: {:?}", right.err()),
+    }
+    let usual = settings.bits == 64 && settings.frac.is_none();
+    if usual && settings.coverage == Coverage::Exact && settings.tolerance_px.is_finite() {
+        // Deep graphs far away may be beyond its lanes; these are not.
+        prop_assert!(by_itself || graph.depth > 12, "left to the machine");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(160))]
+
+    #[test]
+    fn equal_on_random_graphs(
+        (graph, camera) in any_graph(1..9).prop_flat_map(|graph| {
+            let side = f64::from(1u32 << graph.depth);
+            (Just(graph), any_camera(side, 1..90))
+        }),
+        settings in any_settings(),
+        options in any_options(),
+    ) {
+        // Under the other rules a cyclic graph is subdivided to the last bit.
+        prop_assume!(settings.coverage == Coverage::Exact || graph.depth < 5);
+        agree(&graph, &camera, &settings, options)?;
+    }
+
+    #[test]
+    fn equal_on_random_octrees(
+        graph in any_octree(4, 0.3),
+        camera in any_camera(16.0, 1..110),
+        settings in any_settings(),
+        options in any_options(),
+    ) {
+        agree(&graph, &camera, &settings, options)?;
+    }
+
+    #[test]
+    fn equal_on_sparse_octrees(
+        graph in any_octree(4, 0.02),
+        camera in any_camera(16.0, 40..160),
+        settings in any_settings(),
+        options in any_options(),
+    ) {
+        agree(&graph, &camera, &settings, options)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn equal_on_generated_scenes(
+        which in 0..SPECS.len(),
+        camera in any_camera(1.0, 60..300),
+        settings in any_settings(),
+        options in any_options(),
+    ) {
+        prop_assume!(settings.coverage == Coverage::Exact);
+        let graph = scenes::graph_of_spec(SPECS[which]);
+        let side = f64::from(1u32 << graph.depth);
+        let camera = Camera {
+            eye: camera.eye * side,
+            target: camera.target * side,
+            ..camera
+        };
+        agree(&graph, &camera, &settings, options)?;
+    }
+}
