@@ -72,8 +72,8 @@ fn a_frame_allocates_nothing_after_the_first() {
                 tolerance_px,
                 ..SetupOptions::default()
             };
-            let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)
-                .expect("a frame");
+            let setup =
+                FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect("a frame");
             let options = FastOptions {
                 threads: 1,
                 ..FastOptions::default()

@@ -27,8 +27,11 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
     if !instructions.are_available() {
         return Err(CliError::new(
             Kind::Run,
-            format!("this processor does not have the instructions of --isa {:?}", args.isa)
-                .to_lowercase(),
+            format!(
+                "this processor does not have the instructions of --isa {:?}",
+                args.isa
+            )
+            .to_lowercase(),
         )
         .advise("leave --isa out, or take --isa scalar: the picture is the same"));
     }

@@ -114,12 +114,7 @@ impl Fast {
 
     /// Draws a frame, or says that it does not: `false`. Allocates nothing
     /// when the set-up is that of the last frame.
-    fn draw_fast(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-    ) -> bool {
+    fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
         if frame.records.is_some() {
             return false;
         }

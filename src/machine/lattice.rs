@@ -29,9 +29,6 @@ pub(super) trait Lattice: Copy + std::fmt::Debug {
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
-    /// The lowest corner.
-    fn corner(&self) -> Word;
-
     /// `f` applied to each number that makes up the lattice; `f` is linear.
     fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
 
@@ -144,11 +141,6 @@ impl Lattice for Corners {
     }
 
     #[inline]
-    fn corner(&self) -> Word {
-        self.0[0]
-    }
-
-    #[inline]
     fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
         Self(self.0.map(f))
     }
@@ -225,11 +217,6 @@ impl Lattice for Frame {
     #[inline]
     fn edges<P: Probe>(&self, _: &mut Datapath<P>) -> [Word; 3] {
         self.edges
-    }
-
-    #[inline]
-    fn corner(&self) -> Word {
-        self.corner
     }
 
     #[inline]

@@ -137,7 +137,12 @@ fn agree(
         (Ok(right), Ok(drawn)) => prop_assert!(
             right == drawn,
             "{} samples differ",
-            right.node.iter().zip(&drawn.node).filter(|(a, b)| a != b).count()
+            right
+                .node
+                .iter()
+                .zip(&drawn.node)
+                .filter(|(a, b)| a != b)
+                .count()
         ),
         (Err(right), Err(drawn)) => prop_assert_eq!(right, drawn),
         _ => prop_assert!(false, "only one of them drew: {:?}", right.err()),

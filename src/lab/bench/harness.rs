@@ -190,10 +190,7 @@ impl<'p> Harness<'p> {
     }
 
     /// A frame with its voxels and counters, which is not timed.
-    fn whole_frame(
-        &mut self,
-        contender: &mut Contender<'_>,
-    ) -> Result<(Frame, Stats), BenchError> {
+    fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let setup = &contender.setup;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let (graph, engine) = (contender.graph.view(), &mut contender.engine);

@@ -1,0 +1,100 @@
+//! How long does the fast engine take for a frame, by instruction set? The
+//! instruction sets are the kernels: the walk is the same.
+//! Recorded results: `docs/performance.md`.
+//!
+//! ```text
+//! cargo bench --bench fast
+//! ```
+
+#[path = "../tests/machine/scenes/mod.rs"]
+mod scenes;
+
+use std::hint::black_box;
+use std::time::Duration;
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use glam::DVec3;
+use shiftvox::fast::{Fast, FastOptions, Instructions};
+use shiftvox::frame::Frame;
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+
+use scenes::graph_of_spec;
+
+/// A generator, and eye and target as parts of its side: the cameras of the
+/// benchmark scenes, one large voxel after another, and a cyclic graph.
+const SUBJECTS: [(&str, [f64; 3], [f64; 3]); 4] = [
+    ("gen:terrain,depth=9", [1.6, -0.7, 1.25], [0.5, 0.5, 0.3]),
+    (
+        "gen:menger,depth=4",
+        [0.47, -0.95, 0.53],
+        [0.475, 0.5, 0.475],
+    ),
+    ("gen:sphere,depth=5", [1.1, -0.4, 0.8], [0.5, 0.5, 0.5]),
+    (
+        "gen:sierpinski,depth=12",
+        [1.2, -0.9, 0.9],
+        [0.45, 0.45, 0.4],
+    ),
+];
+
+const SETS: [(&str, Instructions); 3] = [
+    ("scalar", Instructions::Scalar),
+    ("avx2", Instructions::Avx2),
+    ("avx512", Instructions::Avx512),
+];
+
+fn frames(criterion: &mut Criterion) {
+    for (spec, eye, target) in SUBJECTS {
+        let graph = graph_of_spec(spec);
+        let side = f64::from(1u32 << graph.depth);
+        let camera = Camera {
+            eye: DVec3::from_array(eye) * side,
+            target: DVec3::from_array(target) * side,
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 1024,
+            height: 1024,
+        };
+        let mut group = criterion.benchmark_group(spec);
+        for tolerance_px in [0.0, 1.0 / 8.0] {
+            let options = SetupOptions {
+                tolerance_px,
+                ..SetupOptions::default()
+            };
+            let setup =
+                FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect("a frame");
+            for (name, instructions) in SETS {
+                if !instructions.are_available() {
+                    continue;
+                }
+                let options = FastOptions {
+                    threads: 1,
+                    instructions,
+                    ..FastOptions::default()
+                };
+                let mut fast = Fast::new(options, Box::new(Machine::default()));
+                let mut frame = Frame::nodes_only(setup.width, setup.height);
+                let id = BenchmarkId::new(name, format!("tolerance {tolerance_px}"));
+                group.bench_function(id, |bencher| {
+                    bencher.iter(|| {
+                        fast.draw(&graph.view(), &setup, &mut frame)
+                            .expect("a frame");
+                        black_box(&frame.node);
+                    });
+                });
+            }
+        }
+        group.finish();
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_secs(1));
+    targets = frames
+}
+criterion_main!(benches);
