@@ -1,9 +1,9 @@
 //! Records in clip space: exact whole numbers, as the machine has them.
 
 use super::canvas::Window;
-use super::lanes::Isa;
+use super::lanes::{Isa, Reals};
 use super::screen;
-use super::subtree::Subtree;
+use super::subtree::{Lattice, Subtree};
 use super::view::{Level, Vertices, View};
 use super::walk::{Walk, voxel_at};
 use crate::project::OCCLUSION_ORDER;
@@ -47,7 +47,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) {
     let view = walk.view;
     let level = &view.levels[record.level as usize];
     let w_min = record.corner[2] + level.w_span[0];
-    if w_min >= level.screen_depth && change(walk, record, level) {
+    if w_min >= level.screen_depth && walk.isa.change(walk, record) {
         return;
     }
     let mask = if record.level == view.depth {
@@ -95,25 +95,38 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) {
 
 /// Changes a record to screen space and goes on there, if it may change.
 #[inline(always)]
-fn change<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord, level: &Level) -> bool {
-    let vertices = level.vertices_at(record.corner);
-    if !is_within_guard(&vertices) {
+pub(super) fn change<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) -> bool {
+    let (isa, view) = (walk.isa, walk.view);
+    let level = &view.levels[record.level as usize];
+    let vertices = vertices(isa, level, record.corner);
+    if !is_within_guard(isa, &vertices) {
         return false;
     }
     let w_max = record.corner[2] + level.w_span[1];
     let w_min = record.corner[2] + level.w_span[0];
-    let Some(finest) = finest_level(walk.view, record.level, [w_min, w_max]) else {
+    let Some(finest) = finest_level(view, record.level, [w_min, w_max]) else {
         return false;
     };
-    let Some((subtree, place)) = Subtree::new(walk.view, &vertices, record, finest, w_min) else {
+    let Some(lattice) = Lattice::new(isa, view, &vertices, record, finest, w_min) else {
         walk.is_lost = true;
         return true;
     };
+    let subtree = Subtree::new(isa, view, record, &lattice);
     walk.counters.changes += 1;
     walk.tables.forget();
-    let left = subtree.finest - record.level;
-    screen::start(walk, &subtree, record.node, left, record.min, place);
+    screen::start(walk, &subtree, record, lattice.place);
     true
+}
+
+/// Clip vectors of the vertices of a voxel whose lowest corner is here: by
+/// coordinate, then in Morton order.
+#[inline(always)]
+fn vertices<I: Isa>(isa: I, level: &Level, corner: [f64; 3]) -> [I::Reals; 3] {
+    [
+        isa.reals(&level.vertices[0]) + isa.real(corner[0]),
+        isa.reals(&level.vertices[1]) + isa.real(corner[1]),
+        isa.reals(&level.vertices[2]) + isa.real(corner[2]),
+    ]
 }
 
 /// In a frame without tolerance, the level whose nodes are solids by level of
@@ -140,16 +153,11 @@ fn finest_level(view: &View, level: u32, [w_min, w_max]: [f64; 2]) -> Option<u32
 
 /// Whether a box leaves the picture by no more than an eighth of it.
 #[inline(always)]
-fn is_within_guard(vertices: &Vertices) -> bool {
-    let scale = f64::from(1u32 << SCREEN_GUARD_SHIFT);
-    let mut within = true;
-    for axis in 0..2 {
-        for i in 0..8 {
-            let (x, w) = (vertices[axis][i], vertices[2][i]);
-            within &= scale * x + w >= 0.0 && scale * (w - x) + w >= 0.0;
-        }
-    }
-    within
+fn is_within_guard<I: Isa>(isa: I, [x, y, w]: &[I::Reals; 3]) -> bool {
+    let scale = isa.real(f64::from(1u32 << SCREEN_GUARD_SHIFT));
+    let least = scale.fused(x.least(*y), *w);
+    let most = scale.fused(*w - x.greatest(*y), *w);
+    !least.least(most).any_negative()
 }
 
 /// The samples that a box may draw, or `None` if it can be left: behind the
@@ -163,8 +171,8 @@ fn window_of<I: Isa>(walk: &mut Walk<'_, I>, level: &Level, corner: [f64; 3]) ->
     }
     let mut window = walk.fill.bounds;
     if corner[2] + level.w_span[0] > 0.0 {
-        let vertices = level.vertices_at(corner);
-        let seen = samples_of(view, &vertices).and(&window);
+        let vertices = vertices(walk.isa, level, corner);
+        let seen = samples_of(walk.isa, view, &vertices).and(&window);
         if seen.is_empty() && walk.switches.off_screen {
             walk.counters.skipped_off_screen += 1;
             return None;
@@ -183,34 +191,10 @@ fn window_of<I: Isa>(walk: &mut Walk<'_, I>, level: &Level, corner: [f64; 3]) ->
 
 /// The samples in a box's window. All vertices are before the eye.
 #[inline(always)]
-fn samples_of(view: &View, vertices: &Vertices) -> Window {
-    let mut low = [0i32; 2];
-    let mut high = [0i32; 2];
-    for axis in 0..2 {
-        let mut position = [0.0; 8];
-        for i in 0..8 {
-            position[i] = vertices[axis][i] / vertices[2][i];
-        }
-        let least = reduce(position, |a, b| if a < b { a } else { b });
-        let greatest = reduce(position, |a, b| if a > b { a } else { b });
-        // Sample i is at i + 1/2. Conversions saturate.
-        let first = least * view.root_samples - view.margin - 0.5;
-        let last = greatest * view.root_samples + view.margin - 0.5;
-        low[axis] = first.ceil() as i32;
-        high[axis] = last.floor() as i32;
-    }
-    Window {
-        left: low[0],
-        top: low[1],
-        right: high[0],
-        bottom: high[1],
-    }
-}
-
-#[inline(always)]
-fn reduce(v: [f64; 8], f: impl Fn(f64, f64) -> f64) -> f64 {
-    let half: [f64; 4] = std::array::from_fn(|i| f(v[i], v[i + 4]));
-    f(f(half[0], half[2]), f(half[1], half[3]))
+fn samples_of<I: Isa>(isa: I, view: &View, [x, y, w]: &[I::Reals; 3]) -> Window {
+    // Rounded, which the margin has room for.
+    let unit = isa.real(view.root_samples).over(*w);
+    isa.samples_between(*x * unit, *y * unit, view.margin)
 }
 
 /// Whether a box that is partly behind the eye lies beside the picture: all

@@ -2,6 +2,7 @@
 
 use super::brick;
 use super::canvas::{TILE_LOG2, Window, tiles_of};
+use super::clip::ClipRecord;
 use super::lanes::Isa;
 use super::subtree::{LANES, STRIPS, Subtree};
 use super::walk::{Walk, voxel_at};
@@ -51,14 +52,13 @@ fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window) -> Option<u64> {
 pub(super) fn start<I: Isa>(
     walk: &mut Walk<'_, I>,
     subtree: &Subtree,
-    node: u32,
-    left: u32,
-    min: [i32; 3],
-    place: [i32; LANES],
+    record: &ClipRecord,
+    place: I::Eight,
 ) {
+    let isa = walk.isa;
+    let left = subtree.finest - record.level;
     let bias = subtree.window_bias(left);
-    let at = walk.isa.load(&place);
-    let (window, is_empty) = walk.isa.window(at, &bias, subtree, &walk.bounds);
+    let (window, is_empty) = isa.window(place, &bias, subtree, &walk.bounds);
     if is_empty && walk.switches.off_screen {
         walk.counters.skipped_off_screen += 1;
         return;
@@ -67,10 +67,10 @@ pub(super) fn start<I: Isa>(
         return;
     };
     let record = ScreenRecord {
-        node,
+        node: record.node,
         left,
-        min,
-        place,
+        min: record.min,
+        place: isa.store(place),
         window,
         open,
     };

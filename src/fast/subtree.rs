@@ -3,7 +3,8 @@
 
 use super::canvas::TILE_LOG2;
 use super::clip::ClipRecord;
-use super::view::{Vertices, View};
+use super::lanes::{Isa, Reals};
+use super::view::View;
 use crate::project::STRIP_NORMAL_BITS;
 
 /// Lanes of a vector of functions: three strips, nothing, and the box across
@@ -59,161 +60,58 @@ pub(super) struct Subtree {
 const COARSE_SAMPLES: i64 = 2;
 
 impl Subtree {
-    /// Nothing yet.
-    const EMPTY: Self = Self {
-        finest: 0,
-        finest_side: 0,
-        step: [[0; LANES]; 2],
-        box_bits: 0,
-        half_width: [0; LANES],
-        reach: [0; LANES],
-        doubt: [0; LANES],
-        half_edge: [[0; LANES]; 3],
-        child: [[0; LANES]; 8],
-        origin: [0; 4],
-        octant: None,
-        is_coarse: false,
-    };
-
-    /// The lattice of the voxel with these vertices, and its place in it.
-    /// `finest`: the level at which level of detail ends it, at most; what the
-    /// lattice itself finds small enough ends it before. `w_min`: the vertices'
-    /// least depth. `None`: its numbers
-    /// are too large for the lanes.
-    ///
-    /// Whole numbers below 2^53 in `f64`, lane by lane: exact.
+    /// A lattice, with the tables that its records need.
     #[inline(always)]
-    pub(super) fn new(
-        view: &View,
-        vertices: &Vertices,
-        record: &ClipRecord,
-        finest: u32,
-        w_min: f64,
-    ) -> Option<(Self, [i32; LANES])> {
-        let (sum_x, edges_x) = mean(positions(view, &vertices[0], &vertices[2]));
-        let (sum_y, edges_y) = mean(positions(view, &vertices[1], &vertices[2]));
-        let levels = if view.search.is_some() {
-            finest - record.level
-        } else {
-            levels_below(view, record.level, &edges_x, &edges_y)
-        };
-        if levels > MOST_LEVELS || view.search.is_some() && levels > view.frac + FREE_LEVELS {
-            // Rounding would add up to more than a search allows for.
-            return None;
-        }
-        let fine = levels.saturating_sub(FREE_LEVELS).min(view.frac) + view.strip_guard;
-        let half_sample = (1u64 << (view.frac + SUM_BITS - 1)) as f64;
-        let (centre_x, centre_y) = (sum_x - half_sample, sum_y - half_sample);
-        let left = record.window.left >> TILE_LOG2 << TILE_LOG2;
-        let top = record.window.top >> TILE_LOG2 << TILE_LOG2;
-
-        let mut subtree = Self::EMPTY;
-        subtree.finest = record.level + levels;
-        subtree.finest_side = view.levels[subtree.finest as usize].side;
-        subtree.box_bits = STRIP_NORMAL_BITS + fine;
-        subtree.origin = [left, top, left, top];
+    pub(super) fn new<I: Isa>(isa: I, view: &View, record: &ClipRecord, lattice: &Lattice<I>) -> Self {
+        let finest_side = view.levels[lattice.finest as usize].side;
         let side = view.levels[record.level as usize].side;
-        // The lowest centre of a voxel that is subdivided is one side of the
-        // finest voxels above the lowest corner.
-        subtree.octant = view.common_octant(record.min, side, subtree.finest_side.min(side));
-
-        let (normal_x, normal_y) = normals(&edges_x, &edges_y);
-        let scale = power_of_two(fine as i32);
-        let unit = power_of_two(fine as i32 - (view.frac + SUM_BITS) as i32);
-        let edge_unit = unit * power_of_two(-(levels as i32));
-        let (left, top) = (f64::from(left), f64::from(top));
-        let mut step = [[0.0; LANES]; 2];
-        let mut place = [0.0; LANES];
-        for f in 0..LANES {
-            let (x, y) = (normal_x[f], normal_y[f]);
-            step[0][f] = x * scale;
-            step[1][f] = y * scale;
-            let at = ((x * centre_x + y * centre_y) * unit).floor();
-            place[f] = at - (step[0][f] * left + step[1][f] * top);
-        }
-        let mut half = [0.0; LANES];
-        let mut half_edge = [[0.0; LANES]; 3];
-        for k in 0..3 {
-            for f in 0..LANES {
-                let edge = (normal_x[f] * edges_x[k] + normal_y[f] * edges_y[k]) * edge_unit;
-                // To the nearest, halves up.
-                half_edge[k][f] = (edge + 0.5).floor();
-                half[f] += half_edge[k][f].abs();
-            }
-        }
-        let across = f64::from(record.window.right - record.window.left) + 16.0;
-        let down = f64::from(record.window.bottom - record.window.top) + 16.0;
-        let least_depth = view.levels[record.level as usize].screen_depth;
-        let samples = view
-            .search
-            .map_or(0.0, |search| search.deviation(least_depth, w_min));
-        let whole = power_of_two(levels as i32);
-        let mut most = 0.0;
-        let mut reaches = [0.0; LANES];
-        for f in 0..LANES {
-            let slope = step[0][f].abs() + step[1][f].abs();
-            let reach = if samples * slope > 0.0 {
-                (slope * samples).floor() + 2.0
-            } else {
-                0.0
-            };
-            reaches[f] = reach;
-            let value = place[f].abs()
-                + (half[f] + reach) * whole
-                + step[0][f].abs() * across
-                + step[1][f].abs() * down;
-            most = if value > most { value } else { most };
-        }
-        if most >= VALUE_LIMIT {
-            return None;
-        }
-        let mut lanes = [0i32; LANES];
-        for f in 0..LANES {
-            lanes[f] = whole_number(place[f]);
-            subtree.step[0][f] = whole_number(step[0][f]);
-            subtree.step[1][f] = whole_number(step[1][f]);
-            subtree.half_width[f] = whole_number(half[f]);
-            subtree.reach[f] = whole_number(reaches[f]);
-        }
-        for k in 0..3 {
-            for f in 0..LANES {
-                subtree.half_edge[k][f] = whole_number(half_edge[k][f]);
-            }
-        }
+        let half_width = isa.store(lattice.half_width);
+        let half_edge = [
+            isa.store(lattice.half_edge[0]),
+            isa.store(lattice.half_edge[1]),
+            isa.store(lattice.half_edge[2]),
+        ];
+        let reach = isa.store(lattice.reach);
+        let mut doubt = [0; LANES];
         if view.search.is_some() {
             // A strip's normal is rounded, so its bounds hold more than the
             // outline: along its edge the function is not quite constant.
             for f in 0..LANES {
-                let along = if f < STRIPS {
-                    subtree.half_edge[f][f].abs()
-                } else {
-                    0
-                };
-                let reach = subtree.reach[f];
-                subtree.doubt[f] = if reach > 0 { reach + 2 * along + 2 } else { 0 };
+                let along = if f < STRIPS { half_edge[f][f].abs() } else { 0 };
+                doubt[f] = if reach[f] > 0 { reach[f] + 2 * along + 2 } else { 0 };
             }
         }
-        let box_width = subtree.half_width[ACROSS].max(subtree.half_width[ACROSS + 1]);
-        subtree.is_coarse =
-            view.search.is_none() && 2 * i64::from(box_width) >= COARSE_SAMPLES << subtree.box_bits;
-        subtree.make_children();
-        Some((subtree, lanes))
-    }
-
-    /// By octant, a child's centre relative to its parent's.
-    #[inline(always)]
-    fn make_children(&mut self) {
-        let half_edge = &self.half_edge;
-        for lane in 0..LANES {
-            let [x, y, z] = [half_edge[0][lane], half_edge[1][lane], half_edge[2][lane]];
-            self.child[0][lane] = -x - y - z;
-            self.child[1][lane] = -x - y + z;
-            self.child[2][lane] = -x + y - z;
-            self.child[3][lane] = -x + y + z;
-            self.child[4][lane] = x - y - z;
-            self.child[5][lane] = x - y + z;
-            self.child[6][lane] = x + y - z;
-            self.child[7][lane] = x + y + z;
+        let box_width = half_width[ACROSS].max(half_width[ACROSS + 1]);
+        let is_coarse =
+            view.search.is_none() && 2 * i64::from(box_width) >= COARSE_SAMPLES << lattice.box_bits;
+        let [left, top] = lattice.origin;
+        let [x, y, z] = lattice.half_edge;
+        let (y_and_z, y_less_z) = (isa.add(y, z), isa.sub(y, z));
+        let (z_less_y, neither) = (isa.negative(y_less_z), isa.negative(y_and_z));
+        Self {
+            finest: lattice.finest,
+            finest_side,
+            step: [isa.store(lattice.step[0]), isa.store(lattice.step[1])],
+            box_bits: lattice.box_bits,
+            half_width,
+            reach,
+            doubt,
+            half_edge,
+            child: [
+                isa.store(isa.sub(neither, x)),
+                isa.store(isa.sub(z_less_y, x)),
+                isa.store(isa.sub(y_less_z, x)),
+                isa.store(isa.sub(y_and_z, x)),
+                isa.store(isa.add(neither, x)),
+                isa.store(isa.add(z_less_y, x)),
+                isa.store(isa.add(y_less_z, x)),
+                isa.store(isa.add(y_and_z, x)),
+            ],
+            origin: [left, top, left, top],
+            // The lowest centre of a voxel that is subdivided is one side of
+            // the finest voxels above the lowest corner.
+            octant: view.common_octant(record.min, side, finest_side.min(side)),
+            is_coarse,
         }
     }
 
@@ -251,45 +149,130 @@ impl Subtree {
     }
 }
 
-/// Screen positions of eight vertices, `floor(x / w)` in units of `2^-frac` samples.
-#[inline(always)]
-fn positions(view: &View, x: &[f64; 8], w: &[f64; 8]) -> [f64; 8] {
-    let unit = view.root_samples * (1u64 << view.frac) as f64;
-    let mut positions = [0.0; 8];
-    for i in 0..8 {
-        // Whole numbers below 2^53 times a power of two: exact.
-        let x = x[i] * unit;
-        let quotient = (x / w[i]).floor();
-        // The quotient is rounded before it is rounded down, so it may be one
-        // too large or too small. The remainder is a whole number below 2^53.
-        let rest = (-quotient).mul_add(w[i], x);
-        let above = if rest >= w[i] { 1.0 } else { 0.0 };
-        let below = if rest < 0.0 { 1.0 } else { 0.0 };
-        positions[i] = quotient + above - below;
-    }
-    positions
+/// The numbers of a lattice, lane by lane.
+pub(super) struct Lattice<I: Isa> {
+    finest: u32,
+    box_bits: u32,
+    origin: [i32; 2],
+    step: [I::Eight; 2],
+    half_width: I::Eight,
+    reach: I::Eight,
+    half_edge: [I::Eight; 3],
+    /// The place of the voxel in it.
+    pub(super) place: I::Eight,
 }
 
-/// The sum of eight positions, and by axis the sum of the four edges along it.
-#[inline(always)]
-fn mean(p: [f64; 8]) -> (f64, [f64; 3]) {
-    let mut z_sum = [0.0; 4];
-    let mut z_edge = [0.0; 4];
-    for i in 0..4 {
-        z_sum[i] = p[2 * i] + p[2 * i + 1];
-        z_edge[i] = p[2 * i + 1] - p[2 * i];
+impl<I: Isa> Lattice<I> {
+    /// The lattice of the voxel with these vertices. `finest`: the level at
+    /// which level of detail ends it, at most; what the lattice itself finds
+    /// small enough ends it before. `w_min`: the vertices' least depth.
+    /// `None`: its numbers are too large for the lanes.
+    ///
+    /// Whole numbers below 2^53 in `f64`, lane by lane: exact.
+    #[inline(always)]
+    pub(super) fn new(
+        isa: I,
+        view: &View,
+        vertices: &[I::Reals; 3],
+        record: &ClipRecord,
+        finest: u32,
+        w_min: f64,
+    ) -> Option<Self> {
+        let (sum_x, strips_x) = positions(isa, view, vertices[0], vertices[2]).sums();
+        let (sum_y, strips_y) = positions(isa, view, vertices[1], vertices[2]).sums();
+        let (edges_x, edges_y) = (strips_x.first(), strips_y.first());
+        let levels = if view.search.is_some() {
+            finest - record.level
+        } else {
+            levels_below(view, record.level, &edges_x, &edges_y)
+        };
+        if levels > MOST_LEVELS || view.search.is_some() && levels > view.frac + FREE_LEVELS {
+            // Rounding would add up to more than a search allows for.
+            return None;
+        }
+        let fine = levels.saturating_sub(FREE_LEVELS).min(view.frac) + view.strip_guard;
+        let half_sample = (1u64 << (view.frac + SUM_BITS - 1)) as f64;
+        let (centre_x, centre_y) = (sum_x - half_sample, sum_y - half_sample);
+        let left = record.window.left >> TILE_LOG2 << TILE_LOG2;
+        let top = record.window.top >> TILE_LOG2 << TILE_LOG2;
+
+        let (normal_x, normal_y) = normals(isa, strips_x, strips_y);
+        let scale = isa.real(power_of_two(fine as i32));
+        let unit = power_of_two(fine as i32 - (view.frac + SUM_BITS) as i32);
+        let edge_unit = isa.real(unit * power_of_two(-(levels as i32)));
+        let step = [normal_x * scale, normal_y * scale];
+        let centre = normal_x.fused(isa.real(centre_x), normal_y * isa.real(centre_y));
+        let at = (centre * isa.real(unit)).floor();
+        let to_origin = step[0].fused(
+            isa.real(f64::from(left)),
+            step[1] * isa.real(f64::from(top)),
+        );
+        let place = at - to_origin;
+        let zero = isa.real(0.0);
+        let mut half = zero;
+        let mut half_edge = [zero; 3];
+        for k in 0..3 {
+            let edge = normal_x.fused(isa.real(edges_x[k]), normal_y * isa.real(edges_y[k]));
+            // To the nearest, halves up.
+            half_edge[k] = edge.fused(edge_unit, isa.real(0.5)).floor();
+            half = half + half_edge[k].abs();
+        }
+        let across = f64::from(record.window.right - record.window.left) + 16.0;
+        let down = f64::from(record.window.bottom - record.window.top) + 16.0;
+        let slope = [step[0].abs(), step[1].abs()];
+        let mut reach = zero;
+        if let Some(search) = &view.search {
+            let least_depth = view.levels[record.level as usize].screen_depth;
+            let samples = isa.real(search.deviation(least_depth, w_min));
+            // Where there is no slope there is nothing to reach: a slope is
+            // one at least, and less than half of it is none.
+            let slope = slope[0] + slope[1];
+            let is_sloped = slope.is_at_least(isa.real(0.5));
+            reach = ((slope * samples).floor() + isa.real(2.0)) * is_sloped;
+        }
+        let whole = isa.real(power_of_two(levels as i32));
+        let most = (half + reach).fused(whole, place.abs());
+        let most = slope[0].fused(isa.real(across), most);
+        let most = slope[1].fused(isa.real(down), most);
+        if (isa.real(VALUE_LIMIT - 1.0) - most).any_negative() {
+            return None;
+        }
+        Some(Self {
+            finest: record.level + levels,
+            box_bits: STRIP_NORMAL_BITS + fine,
+            origin: [left, top],
+            step: [isa.whole(step[0]), isa.whole(step[1])],
+            half_width: isa.whole(half),
+            reach: isa.whole(reach),
+            half_edge: [
+                isa.whole(half_edge[0]),
+                isa.whole(half_edge[1]),
+                isa.whole(half_edge[2]),
+            ],
+            place: isa.whole(place),
+        })
     }
-    let sum = (z_sum[0] + z_sum[1]) + (z_sum[2] + z_sum[3]);
-    let x = (z_sum[2] + z_sum[3]) - (z_sum[0] + z_sum[1]);
-    let y = (z_sum[1] - z_sum[0]) + (z_sum[3] - z_sum[2]);
-    let z = (z_edge[0] + z_edge[1]) + (z_edge[2] + z_edge[3]);
-    (sum, [x, y, z])
+}
+
+/// Screen positions of eight vertices, `floor(x / w)` in units of `2^-frac` samples.
+#[inline(always)]
+fn positions<I: Isa>(isa: I, view: &View, x: I::Reals, w: I::Reals) -> I::Reals {
+    let unit = view.root_samples * (1u64 << view.frac) as f64;
+    // Whole numbers below 2^53 times a power of two: exact.
+    let x = x * isa.real(unit);
+    let quotient = x.over(w).floor();
+    // The quotient is rounded before it is rounded down, so it may be one
+    // too large or too small. The remainder is a whole number below 2^53.
+    let rest = (isa.real(0.0) - quotient).fused(w, x);
+    let above = rest.is_at_least(w);
+    let not_below = rest.is_at_least(isa.real(0.0));
+    quotient + (above + not_below - isa.real(1.0))
 }
 
 /// Levels from a voxel to those that are no larger than the level of detail,
 /// or than what positions can part, or finest voxels.
 #[inline(always)]
-fn levels_below(view: &View, level: u32, x: &[f64; 3], y: &[f64; 3]) -> u32 {
+fn levels_below(view: &View, level: u32, x: &[f64; 4], y: &[f64; 4]) -> u32 {
     let across = x[0].abs() + x[1].abs() + x[2].abs();
     let down = y[0].abs() + y[1].abs() + y[2].abs();
     let mut size = (if across > down { across } else { down }) as i64;
@@ -302,14 +285,6 @@ fn levels_below(view: &View, level: u32, x: &[f64; 3], y: &[f64; 3]) -> u32 {
     levels
 }
 
-/// A whole number below 2^31 as one: in the lowest bits of a sum with a number
-/// whose last place is 1. (A plain conversion has to look for what is too large.)
-#[inline(always)]
-fn whole_number(value: f64) -> i32 {
-    const LAST_PLACE_ONE: f64 = ((1u64 << 52) + (1 << 51)) as f64;
-    (value + LAST_PLACE_ONE).to_bits() as i32
-}
-
 /// `2^exponent`, of an exponent between -1022 and 1023.
 #[inline(always)]
 fn power_of_two(exponent: i32) -> f64 {
@@ -320,26 +295,18 @@ fn power_of_two(exponent: i32) -> f64 {
 /// [`STRIP_NORMAL_BITS`] bits, towards zero, turned by a right angle; and the
 /// steps of the box.
 #[inline(always)]
-fn normals(edges_x: &[f64; 3], edges_y: &[f64; 3]) -> ([f64; LANES], [f64; LANES]) {
-    /// Which functions are the box across, and the box down.
-    const ACROSS_LANES: [f64; LANES] = [0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
-    const DOWN_LANES: [f64; LANES] = [0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0];
-    let unit = power_of_two(STRIP_NORMAL_BITS as i32);
-    let mut x = [0.0; LANES];
-    let mut y = [0.0; LANES];
-    x[..STRIPS].copy_from_slice(edges_x);
-    y[..STRIPS].copy_from_slice(edges_y);
-    for f in 0..LANES {
-        let (across, down) = (x[f].abs(), y[f].abs());
-        let longer = if across > down { across } else { down };
-        // The exponent of a number of n bits is n - 1. An edge that is none
-        // stays so: its power is made that of the number one.
-        let longer = if longer > 0.0 { longer } else { 1.0 };
-        let exponent = (longer.to_bits() >> 52) as i32 - 1023;
-        let scale = power_of_two(STRIP_NORMAL_BITS as i32 - 1 - exponent);
-        let (along_x, along_y) = ((x[f] * scale).trunc(), (y[f] * scale).trunc());
-        x[f] = ACROSS_LANES[f] * unit - along_y;
-        y[f] = DOWN_LANES[f] * unit + along_x;
-    }
-    (x, y)
+fn normals<I: Isa>(isa: I, x: I::Reals, y: I::Reals) -> (I::Reals, I::Reals) {
+    const UNIT: f64 = (1u32 << STRIP_NORMAL_BITS) as f64;
+    /// The functions that are the box across, and the box down.
+    const ACROSS_LANES: [f64; LANES] = [0.0, 0.0, 0.0, 0.0, UNIT, 0.0, UNIT, 0.0];
+    const DOWN_LANES: [f64; LANES] = [0.0, 0.0, 0.0, 0.0, 0.0, UNIT, 0.0, UNIT];
+    // An edge that is none stays so: its scale is that of the number one. The
+    // exponent of a number of n bits is n - 1.
+    let longer = x.abs().greatest(y.abs()).greatest(isa.real(1.0));
+    let scale = longer.scale_to(STRIP_NORMAL_BITS - 1);
+    let (along_x, along_y) = ((x * scale).trunc(), (y * scale).trunc());
+    (
+        isa.reals(&ACROSS_LANES) - along_y,
+        isa.reals(&DOWN_LANES) + along_x,
+    )
 }

@@ -7,10 +7,14 @@
 //! for each set ([`Isa::clip`], [`Isa::screen`] and the others), so that the steps become a
 //! few instructions in the middle of it and not calls.
 
+mod reals;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
+#[cfg(target_arch = "x86_64")]
+mod x86_reals;
 
+pub(super) use reals::Reals;
 pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::{Avx2, Avx512};
@@ -30,6 +34,10 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// A clip-space record's turn: [`super::clip::turn`] compiled for this set.
     fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord);
 
+    /// Changes a clip-space record to screen space and goes on there:
+    /// `clip::change` compiled for this set. `false`: it may not change.
+    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool;
+
     /// A screen-space record's turn: [`super::screen::turn`] compiled for this set.
     fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
 
@@ -45,6 +53,22 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
 
     /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
+
+    /// Eight `f64`.
+    type Reals: Reals;
+
+    /// Takes eight `f64`.
+    fn reals(self, values: &[f64; 8]) -> Self::Reals;
+
+    /// Eight times the same `f64`.
+    fn real(self, value: f64) -> Self::Reals;
+
+    /// Whole numbers below 2^31 as such.
+    fn whole(self, values: Self::Reals) -> Self::Eight;
+
+    /// The samples from the least to the greatest of eight places, in samples,
+    /// across and down, widened by a margin. What is beyond 2^30 is cut.
+    fn samples_between(self, x: Self::Reals, y: Self::Reals, margin: f64) -> Window;
 
     /// Eight functions' values.
     type Eight: Copy;

@@ -1,6 +1,7 @@
 //! The scalar twin: plain Rust, on any processor.
 
 use super::Isa;
+use super::reals::ScalarReals;
 use crate::fast::brick::{self, Coarse, Parts, Tables};
 use crate::fast::canvas::Window;
 use crate::fast::clip::{self, ClipRecord};
@@ -36,6 +37,47 @@ impl Isa for Scalar {
 
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
         tables.make_parts(self, subtree, left, octant);
+    }
+
+    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
+        clip::change(walk, record)
+    }
+
+    type Reals = ScalarReals;
+
+    #[inline(always)]
+    fn reals(self, values: &[f64; 8]) -> ScalarReals {
+        ScalarReals(*values)
+    }
+
+    #[inline(always)]
+    fn real(self, value: f64) -> ScalarReals {
+        ScalarReals([value; 8])
+    }
+
+    #[inline(always)]
+    fn whole(self, values: ScalarReals) -> [i32; LANES] {
+        values.0.map(|value| value as i32)
+    }
+
+    #[inline(always)]
+    fn samples_between(self, x: ScalarReals, y: ScalarReals, margin: f64) -> Window {
+        const FAR: f64 = (1 << 30) as f64;
+        let first = |places: &[f64; 8]| {
+            let least = places.iter().copied().fold(f64::INFINITY, f64::min);
+            // Sample i is at i + 1/2.
+            ((least - 0.5) - margin).ceil().clamp(-FAR, FAR) as i32
+        };
+        let last = |places: &[f64; 8]| {
+            let greatest = places.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            ((greatest - 0.5) + margin).floor().clamp(-FAR, FAR) as i32
+        };
+        Window {
+            left: first(&x.0),
+            top: first(&y.0),
+            right: last(&x.0),
+            bottom: last(&y.0),
+        }
     }
 
     type Eight = [i32; LANES];

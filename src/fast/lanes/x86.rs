@@ -3,6 +3,7 @@
 use std::arch::x86_64::*;
 
 use super::Isa;
+use super::x86_reals::{Avx2Reals, Avx512Reals};
 use crate::fast::brick::{self, Coarse, ORDER_BYTES, Parts, Tables};
 use crate::fast::canvas::Window;
 use crate::fast::clip::{self, ClipRecord};
@@ -50,6 +51,11 @@ mod avx2 {
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     pub(super) fn clip(walk: &mut Walk<'_, Avx2>, record: &ClipRecord) {
         clip::turn(walk, record);
+    }
+
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn change(walk: &mut Walk<'_, Avx2>, record: &ClipRecord) -> bool {
+        clip::change(walk, record)
     }
 
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
@@ -142,6 +148,47 @@ mod eight {
             bottom,
         };
         (window, is_empty)
+    }
+
+    /// [`Isa::samples_between`] of halves of places.
+    #[inline(always)]
+    pub(super) fn samples_between(x: [__m256d; 2], y: [__m256d; 2], margin: f64) -> Window {
+        let mut lines = [0i32; 4];
+        // SAFETY: see above.
+        unsafe {
+            // What is last is what is first of the negative.
+            let negative = _mm256_set1_pd(-0.0);
+            let left = _mm256_min_pd(x[0], x[1]);
+            let right = _mm256_xor_pd(negative, _mm256_max_pd(x[0], x[1]));
+            let top = _mm256_min_pd(y[0], y[1]);
+            let bottom = _mm256_xor_pd(negative, _mm256_max_pd(y[0], y[1]));
+            let across = _mm256_min_pd(
+                _mm256_unpacklo_pd(left, right),
+                _mm256_unpackhi_pd(left, right),
+            );
+            let down = _mm256_min_pd(
+                _mm256_unpacklo_pd(top, bottom),
+                _mm256_unpackhi_pd(top, bottom),
+            );
+            let first = _mm256_min_pd(
+                _mm256_permute2f128_pd::<0x20>(across, down),
+                _mm256_permute2f128_pd::<0x31>(across, down),
+            );
+            // Sample i is at i + 1/2.
+            let first = _mm256_sub_pd(first, _mm256_setr_pd(0.5, -0.5, 0.5, -0.5));
+            let first = _mm256_ceil_pd(_mm256_sub_pd(first, _mm256_set1_pd(margin)));
+            let far = _mm256_set1_pd((1 << 30) as f64);
+            let first = _mm256_max_pd(first, _mm256_xor_pd(negative, far));
+            let first = _mm256_cvtpd_epi32(_mm256_min_pd(first, far));
+            _mm_storeu_si128(lines.as_mut_ptr().cast(), first);
+        }
+        let [left, less_right, top, less_bottom] = lines;
+        Window {
+            left,
+            top,
+            right: -less_right,
+            bottom: -less_bottom,
+        }
     }
 
     #[inline(always)]
@@ -399,9 +446,41 @@ impl Isa for Avx2 {
         unsafe { avx2::clip(walk, record) }
     }
 
+    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx2::change(walk, record) }
+    }
+
     fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
         // SAFETY: `self` is only made where these features were found.
         unsafe { avx2::screen(walk, subtree, record) }
+    }
+
+    type Reals = Avx2Reals;
+
+    #[inline(always)]
+    fn reals(self, values: &[f64; 8]) -> Avx2Reals {
+        let values = values.as_ptr();
+        // SAFETY: `self` is only made where these features were found; the
+        // loads are of twice four entries that the array has.
+        unsafe { Avx2Reals(_mm256_loadu_pd(values), _mm256_loadu_pd(values.add(4))) }
+    }
+
+    #[inline(always)]
+    fn real(self, value: f64) -> Avx2Reals {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { Avx2Reals(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+    }
+
+    #[inline(always)]
+    fn whole(self, values: Avx2Reals) -> __m256i {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { _mm256_set_m128i(_mm256_cvtpd_epi32(values.1), _mm256_cvtpd_epi32(values.0)) }
+    }
+
+    #[inline(always)]
+    fn samples_between(self, x: Avx2Reals, y: Avx2Reals, margin: f64) -> Window {
+        eight::samples_between([x.0, x.1], [y.0, y.1], margin)
     }
 
     eight_lanes!();
@@ -527,6 +606,12 @@ mod avx512 {
 
     #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+    pub(super) fn change(walk: &mut Walk<'_, Avx512>, record: &ClipRecord) -> bool {
+        clip::change(walk, record)
+    }
+
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
     pub(super) fn screen(walk: &mut Walk<'_, Avx512>, subtree: &Subtree, record: &ScreenRecord) {
         screen::turn(walk, subtree, record);
     }
@@ -557,9 +642,40 @@ impl Isa for Avx512 {
         unsafe { avx512::clip(walk, record) }
     }
 
+    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { avx512::change(walk, record) }
+    }
+
     fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
         // SAFETY: `self` is only made where these features were found.
         unsafe { avx512::screen(walk, subtree, record) }
+    }
+
+    type Reals = Avx512Reals;
+
+    #[inline(always)]
+    fn reals(self, values: &[f64; 8]) -> Avx512Reals {
+        // SAFETY: `self` is only made where these features were found; the
+        // load is of all that the array has.
+        unsafe { Avx512Reals(_mm512_loadu_pd(values.as_ptr())) }
+    }
+
+    #[inline(always)]
+    fn real(self, value: f64) -> Avx512Reals {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { Avx512Reals(_mm512_set1_pd(value)) }
+    }
+
+    #[inline(always)]
+    fn whole(self, values: Avx512Reals) -> __m256i {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe { _mm512_cvtpd_epi32(values.0) }
+    }
+
+    #[inline(always)]
+    fn samples_between(self, x: Avx512Reals, y: Avx512Reals, margin: f64) -> Window {
+        eight::samples_between(x.halves(), y.halves(), margin)
     }
 
     eight_lanes!();
