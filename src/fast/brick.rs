@@ -125,7 +125,7 @@ pub(super) struct Tables {
     /// By strip, what the samples of a tile add to its first.
     pub(super) tile: [[i32; 64]; STRIPS],
     /// Whether `square` and `fits_square` are made.
-    has_square: bool,
+    pub(super) has_square: bool,
     /// `tile` modulo 2^16.
     pub(super) square: [[i16; 64]; STRIPS],
     /// Whether a voxel of the finest level is so narrow that this modulus does
@@ -207,26 +207,17 @@ impl Tables {
         }
     }
 
-    /// Makes the table of a tile's samples in sixteen bits, unless it is made.
+    /// Makes the table of a tile's samples in sixteen bits.
     #[inline(always)]
-    pub(super) fn make_square(&mut self, subtree: &Subtree) {
-        if self.has_square {
-            return;
-        }
+    pub(super) fn make_square<I: Isa>(&mut self, isa: I, subtree: &Subtree) {
         self.has_square = true;
         let mut most = 0;
         for f in 0..STRIPS {
-            let (across, down) = (subtree.step[0][f] as i16, subtree.step[1][f] as i16);
-            let mut row = [0i16; 8];
-            for x in 0..8 {
-                row[x] = across.wrapping_mul(x as i16);
-            }
-            for to in self.square[f].chunks_exact_mut(8) {
-                to.copy_from_slice(&row);
-                for entry in &mut row {
-                    *entry = entry.wrapping_add(down);
-                }
-            }
+            isa.square_table(
+                &mut self.square[f],
+                subtree.step[0][f],
+                subtree.step[1][f],
+            );
             most = most.max(subtree.voxel_range(f));
         }
         self.fits_square = most < 1 << 16;

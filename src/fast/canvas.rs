@@ -1,6 +1,6 @@
 //! The picture in the making: which samples are drawn, and what they show.
 //!
-//! One bit a sample, in words of 8 x 8 samples (tiles), and one bit a tile, in
+//! One bit a sample, set while it is open, in words of 8 x 8 samples (tiles), and one bit a tile, in
 //! words of 8 x 8 tiles (blocks). So a few words tell whether anything can still
 //! be drawn in a window. What lies outside the picture is drawn from the start,
 //! as in the image quadtree. A square is what is no larger than a tile, anywhere.
@@ -11,8 +11,8 @@ use crate::frame::NO_NODE;
 pub(super) const TILE_LOG2: u32 = 3;
 /// Samples along a block's side, as a power of two.
 pub(super) const BLOCK_LOG2: u32 = 6;
-/// A tile or block with everything drawn.
-const FULL: u64 = u64::MAX;
+/// A tile or block with everything open.
+const ALL: u64 = u64::MAX;
 /// The leftmost samples of a tile's eight rows.
 const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
@@ -53,7 +53,7 @@ impl Window {
         let bottom = (self.bottom - y).min(7) as u32;
         // Each is in 0..8, since the word and the window overlap.
         let row = ((0xffu64 << left) & 0xff) & (0xff >> (7 - right));
-        let rows = (FULL << (8 * top)) & (FULL >> (8 * (7 - bottom)));
+        let rows = (ALL << (8 * top)) & (ALL >> (8 * (7 - bottom)));
         row.wrapping_mul(LEFT_COLUMN) & rows
     }
 
@@ -75,6 +75,10 @@ pub(super) struct Fill<'p> {
     /// The band's samples.
     pub(super) bounds: Window,
     grid: Grid,
+    /// Place of the band's first tile in the whole picture.
+    first_tile: usize,
+    /// Row of the band's first blocks in the whole picture.
+    first_block_row: i32,
     part: FillPart<'p>,
     /// Samples not drawn yet.
     pub(super) open: u64,
@@ -83,9 +87,9 @@ pub(super) struct Fill<'p> {
 /// The memory of a picture's fill, or a band's part of it.
 #[derive(Debug)]
 pub(super) struct FillPart<'p> {
-    /// One bit a sample, set where it is drawn; by tile.
+    /// One bit a sample, set where it is open; by tile.
     tiles: &'p mut [u64],
-    /// One bit a tile, set where it is full; by block.
+    /// One bit a tile, set where a sample of it is open; by block.
     blocks: &'p mut [u64],
 }
 
@@ -100,7 +104,11 @@ impl FillMemory {
     /// Makes room for a picture; no more is allocated for the next of its size.
     pub(super) fn resize(&mut self, grid: &Grid) {
         let rows = grid.blocks_down;
-        self.tiles.resize(rows * grid.tiles_per_block_row(), 0);
+        // Beyond the last tile there is room for what lies below and beside
+        // it, so that squares there can be looked at like others.
+        let beyond = grid.tiles_across + 2;
+        self.tiles
+            .resize(rows * grid.tiles_per_block_row() + beyond, 0);
         self.blocks.resize(rows * grid.blocks_across, 0);
     }
 
@@ -147,8 +155,8 @@ impl Grid {
 }
 
 /// The lowest columns of a tile, by number of columns.
-const COLUMNS: [u64; 9] = {
-    let mut masks = [0; 9];
+const COLUMNS: [u64; 16] = {
+    let mut masks = [0; 16];
     let mut i = 0;
     while i <= 8 {
         masks[i] = (0xff >> (8 - i)) * LEFT_COLUMN;
@@ -162,21 +170,23 @@ impl<'p> Fill<'p> {
     pub(super) fn clear(grid: &Grid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;
-        let mut fill = Self {
+        let fill = Self {
             bounds,
             grid: *grid,
+            first_tile: (bounds.top >> TILE_LOG2) as usize * grid.tiles_across,
+            first_block_row: bounds.top >> BLOCK_LOG2,
             part,
             open: across * down,
         };
-        fill.part.tiles.fill(FULL);
-        fill.part.blocks.fill(FULL);
+        fill.part.tiles.fill(0);
+        fill.part.blocks.fill(0);
         let tiles = bounds.coarser(TILE_LOG2);
         for y in tiles.top..=tiles.bottom {
             for x in tiles.left..=tiles.right {
                 let at = fill.tile_at(x, y);
-                fill.part.tiles[at] = !bounds.bits(x << TILE_LOG2, y << TILE_LOG2);
+                fill.part.tiles[at] = bounds.bits(x << TILE_LOG2, y << TILE_LOG2);
                 let (block, bit) = fill.block_of(x, y);
-                fill.part.blocks[block] &= !bit;
+                fill.part.blocks[block] |= bit;
             }
         }
         fill
@@ -185,21 +195,33 @@ impl<'p> Fill<'p> {
     /// Place of the tile in column `x` and row `y` of tiles.
     #[inline(always)]
     fn tile_at(&self, x: i32, y: i32) -> usize {
-        (y - (self.bounds.top >> TILE_LOG2)) as usize * self.grid.tiles_across + x as usize
+        let from_top = (y as usize).wrapping_mul(self.grid.tiles_across);
+        from_top
+            .wrapping_add(x as usize)
+            .wrapping_sub(self.first_tile)
     }
 
     /// Place of a tile's block, and its bit there.
     #[inline(always)]
     fn block_of(&self, x: i32, y: i32) -> (usize, u64) {
-        let row = ((y >> 3) - (self.bounds.top >> BLOCK_LOG2)) as usize;
+        let row = ((y >> 3) - self.first_block_row) as usize;
         let at = row * self.grid.blocks_across + (x >> 3) as usize;
         (at, 1u64 << ((y & 7) << 3 | (x & 7)))
     }
 
-    /// A tile's drawn samples. Beside the band everything is drawn.
+    /// A tile's open samples. Beside the band nothing is open.
     #[inline(always)]
     fn tile(&self, at: usize) -> u64 {
-        self.part.tiles.get(at).copied().unwrap_or(FULL)
+        self.part.tiles.get(at).copied().unwrap_or(0)
+    }
+
+    /// A tile's open samples and those of the tile beside it.
+    #[inline(always)]
+    fn two_tiles(&self, at: usize) -> [u64; 2] {
+        match self.part.tiles.get(at..).and_then(|t| t.first_chunk()) {
+            Some(two) => *two,
+            None => [self.tile(at), 0],
+        }
     }
 
     /// The open samples of a square, eight bits a row.
@@ -210,22 +232,18 @@ impl<'p> Fill<'p> {
             (window.right - window.left) as u32,
             (window.bottom - window.top) as u32,
         );
-        let wanted = COLUMNS[more_x as usize & 7] << 1 | LEFT_COLUMN;
-        let wanted = wanted & (FULL >> (56 - 8 * more_y));
+        let wanted = COLUMNS[more_x as usize + 1 & 15] & (ALL >> (56 - 8 * more_y));
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        if x + more_x < 8 && y + more_y < 8 {
-            return !self.tile(at) >> (8 * y + x) & wanted;
-        }
         // Columns of two tiles above each other, then both side by side. A
         // tile below or beside that the window does not reach is shifted out
         // or masked.
-        let below = at + self.grid.tiles_across;
-        let column = |upper: usize, lower: usize| {
-            (!self.tile(upper) >> (8 * y)) | (!self.tile(lower) << 1 << (63 - 8 * y))
-        };
-        let left = column(at, below) >> x & COLUMNS[8 - x as usize];
-        let right = column(at + 1, below + 1) << 1 << (7 - x) & !COLUMNS[8 - x as usize];
-        (left | right) & wanted
+        let upper = self.two_tiles(at);
+        let lower = self.two_tiles(at.wrapping_add(self.grid.tiles_across));
+        let down = 8 * y;
+        let left = upper[0] >> down | lower[0] << 1 << (63 - down);
+        let right = upper[1] >> down | lower[1] << 1 << (63 - down);
+        let own = COLUMNS[8 - x as usize];
+        (left >> x & own | right << 1 << (7 - x) & !own) & wanted
     }
 
     /// Marks samples of a tile as drawn, which are open.
@@ -235,10 +253,10 @@ impl<'p> Fill<'p> {
             return;
         }
         if let Some(tile) = self.part.tiles.get_mut(at) {
-            *tile |= samples;
-            if *tile == FULL {
+            *tile &= !samples;
+            if *tile == 0 {
                 let (block, bit) = self.block_of(x, y);
-                self.part.blocks[block] |= bit;
+                self.part.blocks[block] &= !bit;
             }
         }
     }
@@ -257,14 +275,14 @@ impl<'p> Fill<'p> {
         let (tile_x, tile_y) = (window.left >> TILE_LOG2, window.top >> TILE_LOG2);
         self.open -= u64::from(samples.count_ones());
         let at = self.tile_at(tile_x, tile_y);
-        let below = at + self.grid.tiles_across;
+        let below = at.wrapping_add(self.grid.tiles_across);
         let left = samples << x & !COLUMNS[x as usize];
         let right = samples >> 1 >> (7 - x) & COLUMNS[x as usize];
         self.mark_at(at, tile_x, tile_y, left << (8 * y));
-        self.mark_at(at + 1, tile_x + 1, tile_y, right << (8 * y));
+        self.mark_at(at.wrapping_add(1), tile_x + 1, tile_y, right << (8 * y));
         self.mark_at(below, tile_x, tile_y + 1, left >> 1 >> (63 - 8 * y));
         self.mark_at(
-            below + 1,
+            below.wrapping_add(1),
             tile_x + 1,
             tile_y + 1,
             right >> 1 >> (63 - 8 * y),
@@ -274,7 +292,7 @@ impl<'p> Fill<'p> {
     /// The samples of a tile that are in the window and not drawn.
     #[inline(always)]
     pub(super) fn open_in_tile(&self, x: i32, y: i32, window: &Window) -> u64 {
-        !self.tile(self.tile_at(x, y)) & window.bits(x << TILE_LOG2, y << TILE_LOG2)
+        self.tile(self.tile_at(x, y)) & window.bits(x << TILE_LOG2, y << TILE_LOG2)
     }
 
     /// Whether a tile that a window overlaps is not full.
@@ -285,14 +303,14 @@ impl<'p> Fill<'p> {
         if blocks.left == blocks.right && blocks.top == blocks.bottom {
             let (at, _) = self.block_of(tiles.left, tiles.top);
             let bits = tiles.bits(blocks.left << 3, blocks.top << 3);
-            return !self.part.blocks[at] & bits != 0;
+            return self.part.blocks[at] & bits != 0;
         }
         let mut y = blocks.top;
         while y <= blocks.bottom {
             let mut x = blocks.left;
             while x <= blocks.right {
                 let (at, _) = self.block_of(x << 3, y << 3);
-                if !self.part.blocks[at] & tiles.bits(x << 3, y << 3) != 0 {
+                if self.part.blocks[at] & tiles.bits(x << 3, y << 3) != 0 {
                     return true;
                 }
                 x += 1;

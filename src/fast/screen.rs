@@ -90,6 +90,18 @@ fn step<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord
     walk.isa.screen(walk, subtree, record);
 }
 
+/// By octant and axis: all ones where a child lies in the upper half.
+static BEYOND: [[i32; 3]; 8] = [
+    [0, 0, 0],
+    [0, 0, -1],
+    [0, -1, 0],
+    [0, -1, -1],
+    [-1, 0, 0],
+    [-1, 0, -1],
+    [-1, -1, 0],
+    [-1, -1, -1],
+];
+
 /// A record's turn: it is drawn, or its children have their turns, nearest first.
 #[inline(always)]
 pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
@@ -127,9 +139,10 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         let before = mask & ((1u8 << (child & 7)) - 1);
         let slot = first.wrapping_add(before.count_ones());
         let mut min = record.min;
-        min[0] += i32::from(child >> 2 & 1) * half;
-        min[1] += i32::from(child >> 1 & 1) * half;
-        min[2] += i32::from(child & 1) * half;
+        let beyond = &BEYOND[usize::from(child & 7)];
+        min[0] += beyond[0] & half;
+        min[1] += beyond[1] & half;
+        min[2] += beyond[2] & half;
         let child = ScreenRecord {
             node: brick::linked(walk.graph.links, slot),
             left,
@@ -146,22 +159,28 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
 #[inline(always)]
 fn draw_solid<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
     if walk.view.search.is_some() {
-        let side = subtree.finest_side << record.left;
-        let outline = walk.exact.outline(record.min, side, true);
-        let voxel = voxel_at(record.min, subtree.finest - record.left);
-        outline.draw(walk, &record.window, record.node, voxel);
-        return;
+        draw_outline(walk, subtree, record);
+    } else if record.open == 0 || !draw_square(walk, subtree, record) {
+        walk.isa.tiles(walk, subtree, record);
     }
-    if record.open == 0 || !draw_square(walk, subtree, record) {
-        draw_tiles(walk, subtree, record);
-    }
+}
+
+/// Draws a solid by its exact silhouette.
+#[inline(never)]
+fn draw_outline<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+    let side = subtree.finest_side << record.left;
+    let outline = walk.exact.outline(record.min, side, true);
+    let voxel = voxel_at(record.min, subtree.finest - record.left);
+    outline.draw(walk, &record.window, record.node, voxel);
 }
 
 /// Draws a solid whose window is no larger than a tile, with sixteen bits a
 /// sample; `false` if those are too few.
 #[inline(always)]
 fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) -> bool {
-    walk.tables.make_square(subtree);
+    if !walk.tables.has_square {
+        walk.isa.square(&mut walk.tables, subtree);
+    }
     if !walk.tables.fits_square || record.left > 0 {
         return false;
     }
@@ -192,7 +211,7 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
 
 /// Draws a solid of any size, tile by tile.
 #[inline(always)]
-fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
+pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
     walk.counters.solids += 1;
     walk.tables.make_tile(subtree);
     let window = &record.window;

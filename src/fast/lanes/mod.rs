@@ -41,6 +41,9 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// A screen-space record's turn: [`super::screen::turn`] compiled for this set.
     fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
 
+    /// Draws a solid tile by tile: `screen::draw_tiles` compiled for this set.
+    fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
+
     /// Draws a node by samples: `brick::draw_node` compiled for this set.
     fn brick(
         self,
@@ -53,6 +56,9 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
 
     /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
+
+    /// Makes the table of a square's samples: [`Tables::make_square`] compiled for this set.
+    fn square(self, tables: &mut Tables, subtree: &Subtree);
 
     /// Eight `f64`.
     type Reals: Reals;
@@ -128,6 +134,9 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// modulo 2^8. `few`: in byte `j` of the first eight `children[j] >> shift`.
     fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool);
 
+    /// In entry `8 y + x`: `across x + down y`, modulo 2^16.
+    fn square_table(self, table: &mut [i16; 64], across: i32, down: i32);
+
     /// The lowest bytes spread to those bytes that `mask` has a bit for, in
     /// order; `exist`: a byte of ones for each such bit.
     fn spread(self, bytes: u64, mask: u8, exist: u64) -> u64;
@@ -166,6 +175,10 @@ mod tests {
             let count = if few { 8 } else { 64 };
             assert_eq!(mine[..count], twin[..count]);
         }
+        let (mut mine, mut twin) = ([0; 64], [0; 64]);
+        isa.square_table(&mut mine, words[93], words[94]);
+        Scalar.square_table(&mut twin, words[93], words[94]);
+        assert_eq!(mine, twin);
         for mask in [0, 0xff, bytes[360], bytes[361]] {
             let exist = (0..8).fold(0u64, |all, bit| {
                 all | (u64::from(mask >> bit & 1) * 0xff) << (8 * bit)

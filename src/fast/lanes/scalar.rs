@@ -39,6 +39,14 @@ impl Isa for Scalar {
         tables.make_parts(self, subtree, left, octant);
     }
 
+    fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+        screen::draw_tiles(walk, subtree, record);
+    }
+
+    fn square(self, tables: &mut Tables, subtree: &Subtree) {
+        tables.make_square(self, subtree);
+    }
+
     fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
         clip::change(walk, record)
     }
@@ -186,6 +194,14 @@ impl Isa for Scalar {
     #[inline(always)]
     fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
         brick::byte_table(table, children, shift, few);
+    }
+
+    #[inline(always)]
+    fn square_table(self, table: &mut [i16; 64], across: i32, down: i32) {
+        for (i, entry) in table.iter_mut().enumerate() {
+            let (x, y) = (i as i32 & 7, i as i32 >> 3);
+            *entry = across.wrapping_mul(x).wrapping_add(down.wrapping_mul(y)) as i16;
+        }
     }
 
     #[inline(always)]

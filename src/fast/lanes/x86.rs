@@ -28,41 +28,118 @@ impl Avx2 {
     }
 }
 
-/// Compiles the walk's turns for AVX2.
-mod avx2 {
-    use super::*;
+/// What the walk has compiled for each set: a function with the set's
+/// instructions in a module of the set's name, and the step that calls it.
+macro_rules! compiled {
+    ($set:ident, $name:ident, $features:literal) => {
+        mod $name {
+            use super::*;
 
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn brick(
-        walk: &mut Walk<'_, Avx2>,
-        subtree: &Subtree,
-        record: &ScreenRecord,
-        octant: u8,
-        parts: &Parts,
-    ) {
-        brick::draw_node(walk, subtree, record, octant, parts);
-    }
+            type Set = $set;
 
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn tables(isa: Avx2, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
-        tables.make_parts(isa, subtree, left, octant);
-    }
+            #[target_feature(enable = $features)]
+            pub(super) fn clip(walk: &mut Walk<'_, Set>, record: &ClipRecord) {
+                clip::turn(walk, record);
+            }
 
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn clip(walk: &mut Walk<'_, Avx2>, record: &ClipRecord) {
-        clip::turn(walk, record);
-    }
+            #[target_feature(enable = $features)]
+            pub(super) fn change(walk: &mut Walk<'_, Set>, record: &ClipRecord) -> bool {
+                clip::change(walk, record)
+            }
 
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn change(walk: &mut Walk<'_, Avx2>, record: &ClipRecord) -> bool {
-        clip::change(walk, record)
-    }
+            #[target_feature(enable = $features)]
+            pub(super) fn screen(
+                walk: &mut Walk<'_, Set>,
+                subtree: &Subtree,
+                record: &ScreenRecord,
+            ) {
+                screen::turn(walk, subtree, record);
+            }
 
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn screen(walk: &mut Walk<'_, Avx2>, subtree: &Subtree, record: &ScreenRecord) {
-        screen::turn(walk, subtree, record);
-    }
+            #[target_feature(enable = $features)]
+            pub(super) fn tiles(walk: &mut Walk<'_, Set>, subtree: &Subtree, record: &ScreenRecord) {
+                screen::draw_tiles(walk, subtree, record);
+            }
+
+            #[target_feature(enable = $features)]
+            pub(super) fn brick(
+                walk: &mut Walk<'_, Set>,
+                subtree: &Subtree,
+                record: &ScreenRecord,
+                octant: u8,
+                parts: &Parts,
+            ) {
+                brick::draw_node(walk, subtree, record, octant, parts);
+            }
+
+            #[target_feature(enable = $features)]
+            pub(super) fn tables(
+                isa: Set,
+                tables: &mut Tables,
+                subtree: &Subtree,
+                left: u32,
+                octant: u8,
+            ) {
+                tables.make_parts(isa, subtree, left, octant);
+            }
+
+            #[target_feature(enable = $features)]
+            pub(super) fn square(isa: Set, tables: &mut Tables, subtree: &Subtree) {
+                tables.make_square(isa, subtree);
+            }
+        }
+    };
+    ($name:ident) => {
+        fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::clip(walk, record) }
+        }
+
+        fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::change(walk, record) }
+        }
+
+        fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::screen(walk, subtree, record) }
+        }
+
+        fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::tiles(walk, subtree, record) }
+        }
+
+        fn brick(
+            self,
+            walk: &mut Walk<'_, Self>,
+            subtree: &Subtree,
+            record: &ScreenRecord,
+            octant: u8,
+            parts: &Parts,
+        ) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::brick(walk, subtree, record, octant, parts) }
+        }
+
+        fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::tables(self, tables, subtree, left, octant) }
+        }
+
+        fn square(self, tables: &mut Tables, subtree: &Subtree) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::square(self, tables, subtree) }
+        }
+    };
 }
+
+compiled!(Avx2, avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
+compiled!(
+    Avx512,
+    avx512,
+    "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
+);
 
 /// Steps on eight 32-bit lanes and on sixteen bytes, the same in both sets.
 ///
@@ -234,6 +311,21 @@ mod eight {
     }
 
     #[inline(always)]
+    pub(super) fn square_table(table: &mut [i16; 64], across: i32, down: i32) {
+        // SAFETY: see above; the stores are of eight times 8 entries, all
+        // that the table has.
+        unsafe {
+            let columns = _mm_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7);
+            let down = _mm_set1_epi16(down as i16);
+            let mut row = _mm_mullo_epi16(columns, _mm_set1_epi16(across as i16));
+            for y in 0..8 {
+                _mm_storeu_si128(table.as_mut_ptr().add(8 * y).cast(), row);
+                row = _mm_add_epi16(row, down);
+            }
+        }
+    }
+
+    #[inline(always)]
     pub(super) fn spread(bytes: u64, exist: u64) -> u64 {
         // SAFETY: see above; both sets have BMI2.
         unsafe { _pdep_u64(bytes, exist) }
@@ -400,6 +492,11 @@ macro_rules! eight_lanes {
         }
 
         #[inline(always)]
+        fn square_table(self, table: &mut [i16; 64], across: i32, down: i32) {
+            eight::square_table(table, across, down);
+        }
+
+        #[inline(always)]
         fn spread(self, bytes: u64, _: u8, exist: u64) -> u64 {
             eight::spread(bytes, exist)
         }
@@ -424,37 +521,7 @@ macro_rules! eight_lanes {
 impl Isa for Avx2 {
     const NAME: &'static str = "avx2";
 
-    fn brick(
-        self,
-        walk: &mut Walk<'_, Self>,
-        subtree: &Subtree,
-        record: &ScreenRecord,
-        octant: u8,
-        parts: &Parts,
-    ) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx2::brick(walk, subtree, record, octant, parts) }
-    }
-
-    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx2::tables(self, tables, subtree, left, octant) }
-    }
-
-    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx2::clip(walk, record) }
-    }
-
-    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx2::change(walk, record) }
-    }
-
-    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx2::screen(walk, subtree, record) }
-    }
+    compiled!(avx2);
 
     type Reals = Avx2Reals;
 
@@ -570,87 +637,10 @@ impl Avx512 {
     }
 }
 
-/// Compiles the walk's turns for AVX-512.
-mod avx512 {
-    use super::*;
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn brick(
-        walk: &mut Walk<'_, Avx512>,
-        subtree: &Subtree,
-        record: &ScreenRecord,
-        octant: u8,
-        parts: &Parts,
-    ) {
-        brick::draw_node(walk, subtree, record, octant, parts);
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn tables(
-        isa: Avx512,
-        tables: &mut Tables,
-        subtree: &Subtree,
-        left: u32,
-        octant: u8,
-    ) {
-        tables.make_parts(isa, subtree, left, octant);
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn clip(walk: &mut Walk<'_, Avx512>, record: &ClipRecord) {
-        clip::turn(walk, record);
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn change(walk: &mut Walk<'_, Avx512>, record: &ClipRecord) -> bool {
-        clip::change(walk, record)
-    }
-
-    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-    #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-    pub(super) fn screen(walk: &mut Walk<'_, Avx512>, subtree: &Subtree, record: &ScreenRecord) {
-        screen::turn(walk, subtree, record);
-    }
-}
-
 impl Isa for Avx512 {
     const NAME: &'static str = "avx512";
 
-    fn brick(
-        self,
-        walk: &mut Walk<'_, Self>,
-        subtree: &Subtree,
-        record: &ScreenRecord,
-        octant: u8,
-        parts: &Parts,
-    ) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx512::brick(walk, subtree, record, octant, parts) }
-    }
-
-    fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx512::tables(self, tables, subtree, left, octant) }
-    }
-
-    fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx512::clip(walk, record) }
-    }
-
-    fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx512::change(walk, record) }
-    }
-
-    fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { avx512::screen(walk, subtree, record) }
-    }
+    compiled!(avx512);
 
     type Reals = Avx512Reals;
 
