@@ -610,7 +610,7 @@ impl Brick<'_> {
                     right: (left + 7).min(window.right),
                     bottom: (top + 7).min(window.bottom),
                 };
-                let open = walk.fill.open_in_square(&square);
+                let open = walk.fill.open_in_square(walk.isa, &square);
                 if open != 0 {
                     let drawn = self.draw_square(walk, [left, top], open);
                     walk.fill.mark_square(&square, drawn);

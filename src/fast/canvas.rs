@@ -5,6 +5,7 @@
 //! be drawn in a window. What lies outside the picture is drawn from the start,
 //! as in the image quadtree. A square is what is no larger than a tile, anywhere.
 
+use super::lanes::Isa;
 use crate::frame::NO_NODE;
 
 /// Samples along a tile's side, as a power of two.
@@ -215,18 +216,9 @@ impl<'p> Fill<'p> {
         self.part.tiles.get(at).copied().unwrap_or(0)
     }
 
-    /// A tile's open samples and those of the tile beside it.
-    #[inline(always)]
-    fn two_tiles(&self, at: usize) -> [u64; 2] {
-        match self.part.tiles.get(at..).and_then(|t| t.first_chunk()) {
-            Some(two) => *two,
-            None => [self.tile(at), 0],
-        }
-    }
-
     /// The open samples of a square, eight bits a row.
     #[inline(always)]
-    pub(super) fn open_in_square(&self, window: &Window) -> u64 {
+    pub(super) fn open_in_square<I: Isa>(&self, isa: I, window: &Window) -> u64 {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
         let (more_x, more_y) = (
             (window.right - window.left) as u32,
@@ -234,16 +226,12 @@ impl<'p> Fill<'p> {
         );
         let wanted = COLUMNS[more_x as usize + 1 & 15] & (ALL >> (56 - 8 * more_y));
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        // Columns of two tiles above each other, then both side by side. A
-        // tile below or beside that the window does not reach is shifted out
-        // or masked.
-        let upper = self.two_tiles(at);
-        let lower = self.two_tiles(at.wrapping_add(self.grid.tiles_across));
-        let down = 8 * y;
-        let left = upper[0] >> down | lower[0] << 1 << (63 - down);
-        let right = upper[1] >> down | lower[1] << 1 << (63 - down);
+        // What lies in the four tiles that the window may reach. Those that it
+        // does not reach are shifted out or masked.
+        let below = at.wrapping_add(self.grid.tiles_across);
+        let [left, right] = isa.square_of(self.part.tiles, at, below, x, y);
         let own = COLUMNS[8 - x as usize];
-        (left >> x & own | right << 1 << (7 - x) & !own) & wanted
+        ((left ^ right) & own ^ right) & wanted
     }
 
     /// Marks samples of a tile as drawn, which are open.
@@ -324,9 +312,9 @@ impl<'p> Fill<'p> {
     /// and lies in the band. In windows larger than a tile, tiles that are
     /// not full count as open.
     #[inline(always)]
-    pub(super) fn is_open(&self, window: &Window) -> bool {
+    pub(super) fn is_open<I: Isa>(&self, isa: I, window: &Window) -> bool {
         if window.right - window.left < 8 && window.bottom - window.top < 8 {
-            return self.open_in_square(window) != 0;
+            return self.open_in_square(isa, window) != 0;
         }
         self.has_open_tile(window)
     }

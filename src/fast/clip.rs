@@ -182,7 +182,7 @@ fn window_of<I: Isa>(walk: &mut Walk<'_, I>, level: &Level, corner: [f64; 3]) ->
         walk.counters.skipped_off_screen += 1;
         return None;
     }
-    if walk.switches.hidden && !window.is_empty() && !walk.fill.is_open(&window) {
+    if walk.switches.hidden && !window.is_empty() && !walk.fill.is_open(walk.isa, &window) {
         walk.counters.skipped_hidden += 1;
         return None;
     }

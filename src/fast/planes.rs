@@ -331,7 +331,7 @@ impl Outline {
                     bottom: top + side - 1,
                 }
                 .and(window);
-                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
+                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(walk.isa, &block) {
                     continue;
                 }
                 let cover = if walk.switches.whole_blocks {

@@ -33,7 +33,7 @@ fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window) -> Option<u64> {
         return Some(0);
     }
     if window.right - window.left < 8 && window.bottom - window.top < 8 {
-        let open = walk.fill.open_in_square(window);
+        let open = walk.fill.open_in_square(walk.isa, window);
         if open == 0 && walk.switches.hidden {
             walk.counters.skipped_hidden += 1;
             return None;

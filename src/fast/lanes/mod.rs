@@ -116,6 +116,11 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
         bounds: &Bounds,
     ) -> (Window, bool);
 
+    /// The samples from column `x` and row `y` of a tile on, of the tile and the
+    /// one below, moved to column 0; and of those to the right of both, moved
+    /// to column `8 - x`. What is beyond the tiles' end is 0.
+    fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2];
+
     /// The samples `i` of a square for which `start + table[i]` is within
     /// twice the half width for all three strips, modulo 2^16.
     fn square_within(
@@ -179,6 +184,18 @@ mod tests {
         isa.square_table(&mut mine, words[93], words[94]);
         Scalar.square_table(&mut twin, words[93], words[94]);
         assert_eq!(mine, twin);
+        let tiles: [u64; 8] = std::array::from_fn(|i| {
+            u64::from_le_bytes(std::array::from_fn(|k| bytes[8 * i + k]))
+        });
+        for (at, below) in [(0, 4), (3, 6), (2, 7), (6, 9), (usize::MAX, 3)] {
+            let (x, y) = (u32::from(bytes[380] & 7), u32::from(bytes[381] & 7));
+            for (x, y) in [(x, y), (x, 0), (0, y)] {
+                assert_eq!(
+                    isa.square_of(&tiles, at, below, x, y),
+                    Scalar.square_of(&tiles, at, below, x, y)
+                );
+            }
+        }
         for mask in [0, 0xff, bytes[360], bytes[361]] {
             let exist = (0..8).fold(0u64, |all, bit| {
                 all | (u64::from(mask >> bit & 1) * 0xff) << (8 * bit)

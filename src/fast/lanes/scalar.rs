@@ -197,6 +197,18 @@ impl Isa for Scalar {
     }
 
     #[inline(always)]
+    fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
+        let tile = |at: usize| tiles.get(at).copied().unwrap_or(0);
+        let column = |upper: u64, lower: u64| match 8 * (y & 7) {
+            0 => upper,
+            down => upper >> down | lower << (64 - down),
+        };
+        let left = column(tile(at), tile(below));
+        let right = column(tile(at.wrapping_add(1)), tile(below.wrapping_add(1)));
+        [left >> (x & 7), right << (8 - (x & 7))]
+    }
+
+    #[inline(always)]
     fn square_table(self, table: &mut [i16; 64], across: i32, down: i32) {
         for (i, entry) in table.iter_mut().enumerate() {
             let (x, y) = (i as i32 & 7, i as i32 >> 3);

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-use super::Isa;
+use super::{Isa, Scalar};
 use super::x86_reals::{Avx2Reals, Avx512Reals};
 use crate::fast::brick::{self, Coarse, ORDER_BYTES, Parts, Tables};
 use crate::fast::canvas::Window;
@@ -30,6 +30,8 @@ impl Avx2 {
 
 /// What the walk has compiled for each set: a function with the set's
 /// instructions in a module of the set's name, and the step that calls it.
+/// They are not put into each other: what one needs now and then would be
+/// computed each time that the other is called.
 macro_rules! compiled {
     ($set:ident, $name:ident, $features:literal) => {
         mod $name {
@@ -37,16 +39,19 @@ macro_rules! compiled {
 
             type Set = $set;
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn clip(walk: &mut Walk<'_, Set>, record: &ClipRecord) {
                 clip::turn(walk, record);
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn change(walk: &mut Walk<'_, Set>, record: &ClipRecord) -> bool {
                 clip::change(walk, record)
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn screen(
                 walk: &mut Walk<'_, Set>,
@@ -56,11 +61,13 @@ macro_rules! compiled {
                 screen::turn(walk, subtree, record);
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn tiles(walk: &mut Walk<'_, Set>, subtree: &Subtree, record: &ScreenRecord) {
                 screen::draw_tiles(walk, subtree, record);
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn brick(
                 walk: &mut Walk<'_, Set>,
@@ -72,6 +79,7 @@ macro_rules! compiled {
                 brick::draw_node(walk, subtree, record, octant, parts);
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn tables(
                 isa: Set,
@@ -83,6 +91,7 @@ macro_rules! compiled {
                 tables.make_parts(isa, subtree, left, octant);
             }
 
+            #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn square(isa: Set, tables: &mut Tables, subtree: &Subtree) {
                 tables.make_square(isa, subtree);
@@ -311,6 +320,26 @@ mod eight {
     }
 
     #[inline(always)]
+    pub(super) fn square_of(tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
+        let last = tiles.len().wrapping_sub(2);
+        if at > last || below > last || tiles.len() < 2 {
+            return Scalar.square_of(tiles, at, below, x, y);
+        }
+        // SAFETY: see above; the loads are of two entries each, the last of
+        // which is in the slice.
+        unsafe {
+            let upper = _mm_loadu_si128(tiles.as_ptr().add(at).cast());
+            let lower = _mm_loadu_si128(tiles.as_ptr().add(below).cast());
+            let up = _mm_cvtsi32_si128(8 * y as i32);
+            let down = _mm_cvtsi32_si128(64 - 8 * y as i32);
+            // A shift by 64 leaves nothing.
+            let both = _mm_or_si128(_mm_srl_epi64(upper, up), _mm_sll_epi64(lower, down));
+            let (left, right) = (_mm_cvtsi128_si64(both), _mm_extract_epi64::<1>(both));
+            [left as u64 >> x, (right as u64) << (8 - x)]
+        }
+    }
+
+    #[inline(always)]
     pub(super) fn square_table(table: &mut [i16; 64], across: i32, down: i32) {
         // SAFETY: see above; the stores are of eight times 8 entries, all
         // that the table has.
@@ -489,6 +518,11 @@ macro_rules! eight_lanes {
         #[inline(always)]
         fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
             eight::byte_table(table, children, shift, few);
+        }
+
+        #[inline(always)]
+        fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
+            eight::square_of(tiles, at, below, x & 7, y & 7)
         }
 
         #[inline(always)]
