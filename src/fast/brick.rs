@@ -1,12 +1,10 @@
-//! The last levels of a subtree, up to four, in steps of one or two.
+//! The last two levels of a subtree, or the last one, in one step.
 //!
 //! Two levels are 64 parts, one level 8: one lane each, in the order in which
 //! the machine would come to them. For each open sample of a node's window:
-//! the lanes that exist and whose strips hold the sample, the first of them
-//! first. Where those are the finest voxels, the first is what the sample
-//! shows; else the sample looks for its voxel in there, and in the next if it
-//! finds none. So the work is for samples, not for voxels, and hidden parts
-//! cost nothing.
+//! the lanes that exist and whose strips hold the sample; the first of them is
+//! what the sample shows. So the work is for samples, not for voxels, and
+//! hidden parts cost nothing.
 //!
 //! The lanes are bytes: a function's value is cut to its upper bits, so that
 //! 64 parts are one or two vectors. What the bytes find is a few parts too
@@ -68,18 +66,6 @@ impl Coarse {
             isa.byte_table(&mut self.parts[f], &children, shift, few);
         }
     }
-
-    /// The same parts, two levels larger: the bytes are the same.
-    #[inline(always)]
-    fn make_larger(&mut self, subtree: &Subtree, lower: &Self) {
-        self.parts = lower.parts;
-        for f in 0..STRIPS {
-            let shift = lower.shift[f] + 2;
-            self.shift[f] = shift;
-            let half = (subtree.half_width[f] << 2) + subtree.reach[f];
-            self.width[f] = [((2 * half) >> shift) as u8 + 2; 32];
-        }
-    }
 }
 
 /// By axis, which way the children of octant 0 lie in occlusion order.
@@ -100,20 +86,16 @@ const NEAREST: [[i32; 8]; 3] = {
 /// Tables of one subtree, kept from brick to brick.
 #[derive(Debug)]
 pub(super) struct Tables {
-    /// Levels left and octant that `upper` and `lower` are for.
+    /// Levels left and octant that the tables of parts are for.
     made_for: Option<(u32, u8)>,
-    /// The parts of a node more than two levels above the finest: nodes two levels above it.
-    upper: Coarse,
-    /// The parts of those, or of a node one or two levels above the finest: finest voxels.
-    lower: Coarse,
-    /// The centre of a child of the finest level relative to its parent's, in
-    /// occlusion order.
-    children: [[i32; LANES]; 8],
-    /// From the lower bound of a brick to that of a finest voxel in its centre.
-    to_lower: [i32; LANES],
+    /// The parts of a node, in bytes.
+    parts: Coarse,
+    /// By levels above the finest, less one, in occlusion order: the centre of
+    /// a child relative to its parent's.
+    children: [[[i32; LANES]; 8]; 2],
     /// What so many columns, and so many rows, add.
     steps: [[[i32; LANES]; 8]; 2],
-    /// Half the width of the parts that a node is first split into.
+    /// Half the width of a finest voxel.
     half: [i32; LANES],
     /// The width of a finest voxel.
     width: [i32; LANES],
@@ -125,7 +107,7 @@ pub(super) struct Tables {
     /// By strip, what the samples of a tile add to its first.
     pub(super) tile: [[i32; 64]; STRIPS],
     /// Whether `square` and `fits_square` are made.
-    pub(super) has_square: bool,
+    has_square: bool,
     /// `tile` modulo 2^16.
     pub(super) square: [[i16; 64]; STRIPS],
     /// Whether a voxel of the finest level is so narrow that this modulus does
@@ -137,10 +119,8 @@ impl Default for Tables {
     fn default() -> Self {
         Self {
             made_for: None,
-            upper: Coarse::EMPTY,
-            lower: Coarse::EMPTY,
-            children: [[0; LANES]; 8],
-            to_lower: [0; LANES],
+            parts: Coarse::EMPTY,
+            children: [[[0; LANES]; 8]; 2],
             steps: [[[0; LANES]; 8]; 2],
             half: [0; LANES],
             width: [0; LANES],
@@ -190,6 +170,7 @@ impl Tables {
         self.made_for = None;
         self.has_tile = false;
         self.has_square = false;
+        self.fits_square = false;
     }
 
     /// Makes the table of a tile's samples, unless it is made.
@@ -207,9 +188,12 @@ impl Tables {
         }
     }
 
-    /// Makes the table of a tile's samples in sixteen bits.
+    /// Makes the table of a tile's samples in sixteen bits, unless it is made.
     #[inline(always)]
     pub(super) fn make_square<I: Isa>(&mut self, isa: I, subtree: &Subtree) {
+        if self.has_square {
+            return;
+        }
         self.has_square = true;
         let mut most = 0;
         for f in 0..STRIPS {
@@ -221,11 +205,6 @@ impl Tables {
             most = most.max(subtree.voxel_range(f));
         }
         self.fits_square = most < 1 << 16;
-    }
-
-    /// Half the width of a finest voxel, with the subtree's reach.
-    fn lower_half(&self, subtree: &Subtree) -> [i32; LANES] {
-        std::array::from_fn(|lane| subtree.half_width[lane] + subtree.reach[lane])
     }
 
     /// Makes the tables of parts.
@@ -249,52 +228,24 @@ impl Tables {
                 value = isa.add(value, step);
             }
         }
-        for (to, nearest) in self.children.iter_mut().zip(OCCLUSION_ORDER) {
-            *to = subtree.child[usize::from(octant ^ nearest) & 7];
+        for (i, nearest) in OCCLUSION_ORDER.into_iter().enumerate() {
+            let child = isa.load(&subtree.child[usize::from(octant ^ nearest) & 7]);
+            self.children[0][i] = isa.store(child);
+            self.children[1][i] = isa.store(isa.add(child, child));
         }
-        self.lower.make(isa, subtree, octant, left == 1);
-        if left <= 2 {
-            return;
-        }
-        for lane in 0..LANES {
-            self.half[lane] = (subtree.half_width[lane] << 2) + subtree.reach[lane];
-            self.to_lower[lane] = self.half[lane] - lower[lane];
-        }
-        if left == 4 {
-            self.upper.make_larger(subtree, &self.lower);
-        } else {
-            let mut few = Coarse::EMPTY;
-            few.make(isa, subtree, octant, true);
-            self.upper.make_larger(subtree, &few);
-        }
+        self.parts.make(isa, subtree, octant, left == 1);
     }
 
     /// A value relative to the centre of a lane's finest voxel, from one
     /// relative to the centre of a node `levels` levels above.
     #[inline(always)]
     fn from_part<I: Isa>(&self, isa: I, value: I::Eight, levels: u32, lane: u32) -> I::Eight {
-        let inner = isa.load(&self.children[lane as usize & 7]);
-        let value = isa.sub(value, inner);
+        let [inner, outer] = &self.children;
+        let value = isa.sub(value, isa.load(&inner[lane as usize & 7]));
         if levels == 1 {
             return value;
         }
-        let outer = isa.load(&self.children[lane as usize >> 3 & 7]);
-        isa.sub(value, isa.add(outer, outer))
-    }
-
-    /// The same for a brick of a node `levels` levels above it: from the
-    /// lower bound of a brick to that of a finest voxel.
-    #[inline(always)]
-    fn from_brick<I: Isa>(&self, isa: I, value: I::Eight, levels: u32, slot: u32) -> I::Eight {
-        let value = isa.sub(value, isa.load(&self.to_lower));
-        let zero = isa.load(&[0; LANES]);
-        let inner = isa.load(&self.children[slot as usize & 7]);
-        let value = isa.sub(value, isa.plus_shifted(zero, inner, 2));
-        if levels == 1 {
-            return value;
-        }
-        let outer = isa.load(&self.children[slot as usize >> 3 & 7]);
-        isa.sub(value, isa.plus_shifted(zero, outer, 3))
+        isa.sub(value, isa.load(&outer[lane as usize >> 3 & 7]))
     }
 }
 
@@ -364,14 +315,6 @@ static BYTES: [u64; 256] = {
 };
 
 impl Parts {
-    const EMPTY: Self = Self {
-        lanes: 0,
-        masks: 0,
-        first: 0,
-        mask: 0,
-        is_uneven: false,
-    };
-
     /// The parts of a node one or two levels above them.
     #[inline(always)]
     fn of<I: Isa>(isa: I, graph: &GraphView<'_>, node: u32, levels: u32, octant: u8) -> Self {
@@ -500,27 +443,7 @@ fn corner(min: [i32; 3], levels: u32, side: i32, octant: u8, lane: u32) -> [i32;
     corner
 }
 
-/// Bricks below a node: made when a sample looks into them.
-#[derive(Debug)]
-pub(super) struct Bricks {
-    /// Those that are made, by lane.
-    made: u64,
-    /// Those with parts of different sizes.
-    uneven: u64,
-    parts: [Parts; 64],
-}
-
-impl Default for Bricks {
-    fn default() -> Self {
-        Self {
-            made: 0,
-            uneven: 0,
-            parts: [Parts::EMPTY; 64],
-        }
-    }
-}
-
-/// Draws a node at most four levels above the finest, in whose window
+/// Draws a node one or two levels above the finest, in whose window
 /// something is open; `false` if it is none for this: a solid, or parts of
 /// different sizes or in different orders.
 #[inline(always)]
@@ -543,12 +466,7 @@ pub(super) fn draw<I: Isa>(
             None => return false,
         },
     };
-    let levels = if record.left > 2 {
-        record.left - 2
-    } else {
-        record.left
-    };
-    let parts = Parts::of(walk.isa, walk.graph, record.node, levels, octant);
+    let parts = Parts::of(walk.isa, walk.graph, record.node, record.left, octant);
     if parts.is_uneven {
         return false;
     }
@@ -570,8 +488,6 @@ pub(super) fn draw_node<I: Isa>(
     parts: &Parts,
 ) {
     walk.counters.bricks += 1;
-    walk.bricks.made = 0;
-    walk.bricks.uneven = 0;
     let brick = Brick {
         subtree,
         record,
@@ -633,45 +549,33 @@ impl Brick<'_> {
         let first = isa.plus_times(first, isa.load(&step[1]), corner[1] - origin[1]);
         walk.counters.brick_samples += u64::from(open.count_ones());
         let place = walk.pixels.at(corner[0], corner[1]);
-        let is_deep = self.record.left > 2;
 
         // First the lanes of all samples, without a branch; then those samples
         // that have any.
-        let few = matches!(self.record.left, 1 | 3);
+        let few = self.record.left == 1;
         let mut count = 0;
         let mut left = open;
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;
             let value = self.value_at(isa, &walk.tables, first, bit);
-            let coarse = if is_deep {
-                &walk.tables.upper
-            } else {
-                &walk.tables.lower
-            };
-            let lanes = self.parts.lanes & isa.strips_within(coarse, value, few);
+            let lanes = self.parts.lanes & isa.strips_within(&walk.tables.parts, value, few);
             walk.found[count & 63] = (bit, lanes);
             count += usize::from(lanes != 0);
         }
         let mut drawn = 0u64;
-        for i in 0..count.min(64) {
-            let (bit, lanes) = walk.found[i];
+        let mut i = 0;
+        while i < count {
+            let (bit, lanes) = walk.found[i & 63];
+            i += 1;
             let value = self.value_at(isa, &walk.tables, first, bit);
             let (column, row) = (bit & 7, bit >> 3);
             let at = [corner[0] + column as i32, corner[1] + row as i32];
-            let place = place + row as usize * walk.pixels.width + column as usize;
-            let is_drawn = if is_deep {
-                self.show_deep(walk, lanes, value, at, place)
-            } else {
-                match self.first_inside(walk, None, lanes, value, at) {
-                    Some(lane) => {
-                        self.show(walk, self.parts, None, lane, place);
-                        true
-                    }
-                    None => false,
-                }
-            };
-            drawn |= u64::from(is_drawn) << bit;
+            if let Some(lane) = self.first_inside(walk, lanes, value, at) {
+                let place = place + row as usize * walk.pixels.width + column as usize;
+                self.show(walk, lane, place);
+                drawn |= 1 << bit;
+            }
         }
         walk.counters.samples_drawn += u64::from(drawn.count_ones());
         drawn
@@ -684,115 +588,28 @@ impl Brick<'_> {
         isa.add(value, isa.load(&tables.steps[1][bit as usize >> 3 & 7]))
     }
 
-    /// Shows a finest voxel: a lane of these parts, of a brick or of the node itself.
+    /// Shows a finest voxel: a lane of the parts.
     #[inline(always)]
-    fn show<I: Isa>(
-        &self,
-        walk: &mut Walk<'_, I>,
-        parts: &Parts,
-        slot: Option<u32>,
-        lane: u32,
-        place: usize,
-    ) {
-        let levels = if slot.is_some() { 2 } else { self.record.left };
-        walk.pixels.node[place] = parts.node(walk.graph, levels, self.octant, lane);
+    fn show<I: Isa>(&self, walk: &mut Walk<'_, I>, lane: u32, place: usize) {
+        let levels = self.record.left;
+        walk.pixels.node[place] = self.parts.node(walk.graph, levels, self.octant, lane);
         if walk.pixels.wants_voxels() {
-            let min = self.corner(slot, lane);
-            walk.pixels.voxel[place] = voxel_at(min, self.subtree.finest);
+            walk.pixels.voxel[place] = voxel_at(self.corner(lane), self.subtree.finest);
         }
     }
 
-    /// The lowest corner of a lane's finest voxel, of a brick or the node itself.
-    fn corner(&self, slot: Option<u32>, lane: u32) -> [i32; 3] {
-        let side = self.subtree.finest_side;
-        match slot {
-            Some(slot) => corner(self.brick_corner(slot), 2, side, self.octant, lane),
-            None => {
-                let levels = self.record.left.min(2);
-                corner(self.record.min, levels, side, self.octant, lane)
-            }
-        }
+    /// The lowest corner of a lane's finest voxel.
+    fn corner(&self, lane: u32) -> [i32; 3] {
+        let (record, side) = (self.record, self.subtree.finest_side);
+        corner(record.min, record.left, side, self.octant, lane)
     }
 
-    /// The lowest corner of a brick.
-    fn brick_corner(&self, slot: u32) -> [i32; 3] {
-        let (levels, side) = (self.record.left - 2, self.subtree.finest_side << 2);
-        corner(self.record.min, levels, side, self.octant, slot)
-    }
-
-    /// Draws a sample of a node whose parts are bricks: looked for in them,
-    /// nearest first. `value`: the functions relative to the lower bound of a
-    /// brick in the node's centre.
-    #[inline(always)]
-    fn show_deep<I: Isa>(
-        &self,
-        walk: &mut Walk<'_, I>,
-        lanes: u64,
-        value: I::Eight,
-        at: [i32; 2],
-        place: usize,
-    ) -> bool {
-        let isa = walk.isa;
-        let mut lanes = lanes;
-        while lanes != 0 {
-            let slot = lanes.trailing_zeros();
-            let bit = lanes & lanes.wrapping_neg();
-            lanes ^= bit;
-            if walk.bricks.made & bit == 0 {
-                self.make_brick(walk, slot);
-            }
-            let levels = self.record.left - 2;
-            let value = walk.tables.from_brick(isa, value, levels, slot);
-            if walk.bricks.uneven & bit == 0 {
-                let exist = walk.bricks.parts[slot as usize & 63].lanes;
-                let coarse = &walk.tables.lower;
-                let inside = exist & isa.strips_within(coarse, value, false);
-                if let Some(lane) = self.first_inside(walk, Some(slot), inside, value, at) {
-                    let brick = slot as usize & 63;
-                    let node = walk.bricks.parts[brick].node(walk.graph, 2, self.octant, lane);
-                    walk.pixels.node[place] = node;
-                    if walk.pixels.wants_voxels() {
-                        let min = self.corner(Some(slot), lane);
-                        walk.pixels.voxel[place] = voxel_at(min, self.subtree.finest);
-                    }
-                    return true;
-                }
-            } else {
-                let node = self.parts.node(walk.graph, levels, self.octant, slot);
-                // Back to what is relative to the brick's centre.
-                let value = isa.sub(value, isa.load(&walk.tables.lower_half(self.subtree)));
-                let found = self.find_slowly(walk, node, 2, self.brick_corner(slot), value, at);
-                if let Some((node, voxel)) = found {
-                    walk.pixels.node[place] = node;
-                    if walk.pixels.wants_voxels() {
-                        walk.pixels.voxel[place] = voxel;
-                    }
-                    return true;
-                }
-            }
-        }
-        false
-    }
-
-    /// Looks which parts a brick has.
-    #[inline(always)]
-    fn make_brick<I: Isa>(&self, walk: &mut Walk<'_, I>, slot: u32) {
-        let levels = self.record.left - 2;
-        let node = self.parts.node(walk.graph, levels, self.octant, slot);
-        let parts = &mut walk.bricks.parts[slot as usize & 63];
-        *parts = Parts::of(walk.isa, walk.graph, node, 2, self.octant);
-        walk.bricks.made |= 1 << (slot & 63);
-        walk.bricks.uneven |= u64::from(parts.is_uneven) << (slot & 63);
-    }
-
-    /// The first of the lanes of finest voxels, of a brick or of the node
-    /// itself, that a sample is inside. `value`: the functions relative to the
-    /// lower bound of a finest voxel in its centre.
+    /// The first of the lanes that a sample is inside. `value`: the functions
+    /// relative to the lower bound of a finest voxel in the node's centre.
     #[inline(always)]
     fn first_inside<I: Isa>(
         &self,
         walk: &mut Walk<'_, I>,
-        slot: Option<u32>,
         lanes: u64,
         value: I::Eight,
         at: [i32; 2],
@@ -802,8 +619,7 @@ impl Brick<'_> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
-            let levels = if slot.is_some() { 2 } else { self.record.left };
-            let from_part = walk.tables.from_part(isa, value, levels, lane);
+            let from_part = walk.tables.from_part(isa, value, self.record.left, lane);
             if !isa.all_within(from_part, isa.load(&walk.tables.width)) {
                 continue;
             }
@@ -818,55 +634,10 @@ impl Brick<'_> {
             }
             walk.counters.exact_samples += 1;
             let side = self.subtree.finest_side;
-            if walk.exact.covers(self.corner(slot, lane), side, at) {
+            if walk.exact.covers(self.corner(lane), side, at) {
                 return Some(lane);
             }
         }
         None
-    }
-
-    /// What a sample shows of a node `left` levels above the finest, whatever
-    /// its parts: node by node.
-    #[cold]
-    fn find_slowly<I: Isa>(
-        &self,
-        walk: &mut Walk<'_, I>,
-        node: u32,
-        left: u32,
-        min: [i32; 3],
-        value: I::Eight,
-        at: [i32; 2],
-    ) -> Option<(u32, [i32; 4])> {
-        let isa = walk.isa;
-        let mut half = self.subtree.half_width;
-        for lane in 0..LANES {
-            half[lane] = (half[lane] << left) + self.subtree.reach[lane];
-        }
-        if isa.any_beyond(value, isa.load(&half)) {
-            return None;
-        }
-        let side = self.subtree.finest_side << left;
-        let mask = walk.graph.mask(node);
-        if left == 0 || mask == 0 {
-            if walk.view.search.is_some() {
-                walk.counters.exact_samples += 1;
-                if !walk.exact.covers(min, side, at) {
-                    return None;
-                }
-            }
-            return Some((node, voxel_at(min, self.subtree.finest - left)));
-        }
-        OCCLUSION_ORDER.iter().find_map(|nearest| {
-            let child = self.octant ^ nearest;
-            let inner = walk.graph.child(node, child)?;
-            let offset = isa.load(&self.subtree.child[usize::from(child)]);
-            let centre = isa.plus_shifted(isa.load(&[0; LANES]), offset, left - 1);
-            let mut corner = min;
-            for k in 0..3 {
-                corner[k] += i32::from(child >> (2 - k) & 1) * (side / 2);
-            }
-            let value = isa.sub(value, centre);
-            self.find_slowly(walk, inner, left - 1, corner, value, at)
-        })
     }
 }

@@ -348,16 +348,22 @@ impl Pixels<'_> {
     /// Shows a node, and a voxel where asked for, at samples of the square
     /// whose first sample is (x, y), eight bits a row.
     #[inline(always)]
-    pub(super) fn show(&mut self, x: i32, y: i32, samples: u64, node: u32, voxel: [i32; 4]) {
+    pub(super) fn show<I: Isa>(
+        &mut self,
+        isa: I,
+        [x, y]: [i32; 2],
+        samples: u64,
+        node: u32,
+        voxel: [i32; 4],
+    ) {
         let first = self.at(x, y);
-        let mut left = samples;
-        while left != 0 {
-            let bit = left.trailing_zeros() as usize;
-            left &= left - 1;
-            let at = first + (bit >> 3) * self.width + (bit & 7);
-            self.node[at] = node;
-            if self.wants_voxels() {
-                self.voxel[at] = voxel;
+        isa.put(self.node, first, self.width, samples, node);
+        if self.wants_voxels() {
+            let mut left = samples;
+            while left != 0 {
+                let bit = left.trailing_zeros() as usize;
+                left &= left - 1;
+                self.voxel[first + (bit >> 3) * self.width + (bit & 7)] = voxel;
             }
         }
     }

@@ -114,6 +114,9 @@ pub(super) fn change<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) -> boo
     let subtree = Subtree::new(isa, view, record, &lattice);
     walk.counters.changes += 1;
     walk.tables.forget();
+    if subtree.is_coarse {
+        walk.tables.make_square(isa, &subtree);
+    }
     screen::start(walk, &subtree, record, lattice.place);
     true
 }

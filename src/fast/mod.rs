@@ -337,7 +337,6 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         bounds: Bounds::new(&piece.bounds),
         counters: Counters::default(),
         tables: brick::Tables::default(),
-        bricks: brick::Bricks::default(),
         found: [(0, 0); 64],
         is_lost: false,
     };

@@ -395,7 +395,7 @@ impl Outline {
                 if samples != 0 {
                     walk.counters.tiles_filled += u64::from(samples == u64::MAX);
                     walk.counters.samples_drawn += u64::from(samples.count_ones());
-                    walk.pixels.show(left, top, samples, node, voxel);
+                    walk.pixels.show(walk.isa, [left, top], samples, node, voxel);
                     walk.fill.mark_tile(x, y, samples);
                 }
             }

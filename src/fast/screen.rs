@@ -175,12 +175,9 @@ fn draw_outline<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scre
 }
 
 /// Draws a solid whose window is no larger than a tile, with sixteen bits a
-/// sample; `false` if those are too few.
+/// sample; `false` if those are too few, or their table is not made.
 #[inline(always)]
 fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) -> bool {
-    if !walk.tables.has_square {
-        walk.isa.square(&mut walk.tables, subtree);
-    }
     if !walk.tables.fits_square || record.left > 0 {
         return false;
     }
@@ -202,8 +199,8 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
     if samples != 0 {
         let voxel = voxel_at(record.min, subtree.finest);
         walk.counters.samples_drawn += u64::from(samples.count_ones());
-        walk.pixels
-            .show(window.left, window.top, samples, record.node, voxel);
+        let corner = [window.left, window.top];
+        walk.pixels.show(isa, corner, samples, record.node, voxel);
         walk.fill.mark_square(window, samples);
     }
     true
@@ -213,6 +210,7 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
 #[inline(always)]
 pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord) {
     walk.counters.solids += 1;
+    walk.tables.make_square(walk.isa, subtree);
     walk.tables.make_tile(subtree);
     let window = &record.window;
     let voxel = voxel_at(record.min, subtree.finest - record.left);
@@ -236,7 +234,7 @@ pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, reco
             if samples != 0 {
                 walk.counters.tiles_filled += u64::from(samples == u64::MAX);
                 walk.counters.samples_drawn += u64::from(samples.count_ones());
-                walk.pixels.show(left, top, samples, record.node, voxel);
+                walk.pixels.show(walk.isa, [left, top], samples, record.node, voxel);
                 walk.fill.mark_tile(x, y, samples);
             }
         }

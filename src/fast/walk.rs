@@ -1,7 +1,7 @@
 //! What the turns of a walk share: the frame's constants, the graph, the
 //! picture in the making.
 
-use super::brick::{Bricks, Tables};
+use super::brick::Tables;
 use super::canvas::{Fill, Pixels, Window};
 use super::counters::Counters;
 use super::planes::Exact;
@@ -24,8 +24,6 @@ pub(super) struct Walk<'w, I> {
     pub(super) counters: Counters,
     /// Tables of the subtree that is worked on.
     pub(super) tables: Tables,
-    /// Bricks of the node that is worked on.
-    pub(super) bricks: Bricks,
     /// Samples of a square, and the lanes that were found there.
     pub(super) found: [(u32, u64); 64],
     /// Set where a subtree has numbers that do not fit the lanes; the frame is

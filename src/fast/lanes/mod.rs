@@ -57,9 +57,6 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
 
-    /// Makes the table of a square's samples: [`Tables::make_square`] compiled for this set.
-    fn square(self, tables: &mut Tables, subtree: &Subtree);
-
     /// Eight `f64`.
     type Reals: Reals;
 
@@ -120,6 +117,10 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// one below, moved to column 0; and of those to the right of both, moved
     /// to column `8 - x`. What is beyond the tiles' end is 0.
     fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2];
+
+    /// Puts `value` to the entries of `rows` that `samples` has bits for, eight
+    /// bits a row of `width` entries, from entry `first` on.
+    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32);
 
     /// The samples `i` of a square for which `start + table[i]` is within
     /// twice the half width for all three strips, modulo 2^16.
@@ -187,6 +188,13 @@ mod tests {
         let tiles: [u64; 8] = std::array::from_fn(|i| {
             u64::from_le_bytes(std::array::from_fn(|k| bytes[8 * i + k]))
         });
+        let samples = u64::from_le_bytes(std::array::from_fn(|i| bytes[384 + i]));
+        let (mut mine, mut twin) = ([0; 70], [0; 70]);
+        // The last rows end where the entries do.
+        let samples = samples & 0x0f0f_0f0f_0f0f_0f0f;
+        isa.put(&mut mine, 3, 9, samples, 7);
+        Scalar.put(&mut twin, 3, 9, samples, 7);
+        assert_eq!(mine, twin);
         for (at, below) in [(0, 4), (3, 6), (2, 7), (6, 9), (usize::MAX, 3)] {
             let (x, y) = (u32::from(bytes[380] & 7), u32::from(bytes[381] & 7));
             for (x, y) in [(x, y), (x, 0), (0, y)] {

@@ -43,10 +43,6 @@ impl Isa for Scalar {
         screen::draw_tiles(walk, subtree, record);
     }
 
-    fn square(self, tables: &mut Tables, subtree: &Subtree) {
-        tables.make_square(self, subtree);
-    }
-
     fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
         clip::change(walk, record)
     }
@@ -194,6 +190,16 @@ impl Isa for Scalar {
     #[inline(always)]
     fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
         brick::byte_table(table, children, shift, few);
+    }
+
+    #[inline(always)]
+    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
+        let mut left = samples;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            rows[first + (bit >> 3) * width + (bit & 7)] = value;
+        }
     }
 
     #[inline(always)]

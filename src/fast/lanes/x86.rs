@@ -90,12 +90,6 @@ macro_rules! compiled {
             ) {
                 tables.make_parts(isa, subtree, left, octant);
             }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn square(isa: Set, tables: &mut Tables, subtree: &Subtree) {
-                tables.make_square(isa, subtree);
-            }
         }
     };
     ($name:ident) => {
@@ -134,11 +128,6 @@ macro_rules! compiled {
         fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
             // SAFETY: `self` is only made where these features were found.
             unsafe { $name::tables(self, tables, subtree, left, octant) }
-        }
-
-        fn square(self, tables: &mut Tables, subtree: &Subtree) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::square(self, tables, subtree) }
         }
     };
 }
@@ -395,33 +384,20 @@ mod eight {
         }
     }
 
-    /// The first sixteen lanes of a table.
-    #[inline(always)]
-    pub(super) fn sixteen(table: &[u8; 64], start: __m128i, width: &[u8; 32]) -> __m128i {
-        // SAFETY: see above.
-        unsafe {
-            let entries = _mm_loadu_si128(table.as_ptr().cast());
-            let value = _mm_sub_epi8(start, entries);
-            let width = _mm_loadu_si128(width.as_ptr().cast());
-            _mm_cmpeq_epi8(_mm_min_epu8(value, width), value)
-        }
-    }
-
     #[inline(always)]
     pub(super) fn bits(lanes: __m128i) -> u64 {
         // SAFETY: see above.
         unsafe { u64::from(_mm_movemask_epi8(lanes) as u32) }
     }
 
-    /// The values of the three strips, cut to bytes, in the first bytes of vectors.
+    /// The values of the three strips, cut to bytes, in the first bytes of
+    /// four lanes.
     #[inline(always)]
-    pub(super) fn cut(coarse: &Coarse, start: __m256i) -> [__m128i; 3] {
+    pub(super) fn cut(coarse: &Coarse, start: __m256i) -> __m128i {
         // SAFETY: see above.
         unsafe {
-            let low = _mm256_castsi256_si128(start);
             let shift = _mm_loadu_si128(coarse.shift.as_ptr().cast());
-            let cut = _mm_srav_epi32(low, shift);
-            [cut, _mm_srli_si128::<4>(cut), _mm_srli_si128::<8>(cut)]
+            _mm_srav_epi32(_mm256_castsi256_si128(start), shift)
         }
     }
 
@@ -429,28 +405,29 @@ mod eight {
     #[inline(always)]
     pub(super) fn few_strips(coarse: &Coarse, start: __m256i) -> u64 {
         let cut = cut(coarse, start);
-        // SAFETY: see above.
+        // SAFETY: see above; a table has more than 16 entries, a width too.
         unsafe {
-            let mut lanes = _mm_set1_epi8(-1);
+            let mut beyond = _mm_setzero_si128();
             for f in 0..3 {
-                let start = _mm_broadcastb_epi8(cut[f]);
-                lanes = _mm_and_si128(lanes, sixteen(&coarse.parts[f], start, &coarse.width[f]));
+                let start = _mm_shuffle_epi8(cut, _mm_set1_epi8(4 * f as i8));
+                let entries = _mm_loadu_si128(coarse.parts[f].as_ptr().cast());
+                let width = _mm_loadu_si128(coarse.width[f].as_ptr().cast());
+                let value = _mm_sub_epi8(start, entries);
+                beyond = _mm_or_si128(beyond, _mm_subs_epu8(value, width));
             }
-            bits(lanes)
+            bits(_mm_cmpeq_epi8(beyond, _mm_setzero_si128()))
         }
     }
 }
 
-/// 32 lanes of a comparison, as bytes of all ones.
+/// By how much 32 lanes are beyond a width; 0 where they are within.
 #[inline(always)]
-fn half_within(table: &[u8; 64], half: usize, start: __m256i, width: &[u8; 32]) -> __m256i {
+fn half_beyond(table: &[u8; 64], half: usize, start: __m256i, width: __m256i) -> __m256i {
     // SAFETY: an `Avx2` is only made where AVX2 was found, and only its steps
     // call this; the load is of 32 entries that the array has.
     unsafe {
         let entries = _mm256_loadu_si256(table.as_ptr().add(32 * half).cast());
-        let value = _mm256_sub_epi8(start, entries);
-        let width = _mm256_loadu_si256(width.as_ptr().cast());
-        _mm256_cmpeq_epi8(_mm256_min_epu8(value, width), value)
+        _mm256_subs_epu8(_mm256_sub_epi8(start, entries), width)
     }
 }
 
@@ -587,6 +564,27 @@ impl Isa for Avx2 {
     eight_lanes!();
 
     #[inline(always)]
+    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
+        // SAFETY: `self` is only made where these features were found; what is
+        // stored to is in the slice.
+        unsafe {
+            let value_lanes = _mm256_set1_epi32(value as i32);
+            let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
+            let (mut left, mut at) = (samples, first);
+            while left != 0 {
+                if at + 8 > rows.len() {
+                    return Scalar.put(rows, at, width, left, value);
+                }
+                let row = _mm256_and_si256(_mm256_set1_epi32(left as i32), bits);
+                let mask = _mm256_cmpeq_epi32(row, bits);
+                _mm256_maskstore_epi32(rows.as_mut_ptr().add(at).cast(), mask, value_lanes);
+                left >>= 8;
+                at += width;
+            }
+        }
+    }
+
+    #[inline(always)]
     fn square_within(
         self,
         tables: &[[i16; 64]; STRIPS],
@@ -623,17 +621,20 @@ impl Isa for Avx2 {
             return eight::few_strips(coarse, start);
         }
         let cut = eight::cut(coarse, start);
-        // SAFETY: as in `bytes_within`.
+        // SAFETY: as in `half_beyond`; a width has 32 entries.
         unsafe {
-            let mut low = _mm256_set1_epi8(-1);
+            let cut = _mm256_broadcastsi128_si256(cut);
+            let mut low = _mm256_setzero_si256();
             let mut high = low;
             for f in 0..3 {
-                let start = _mm256_broadcastb_epi8(cut[f]);
-                let (table, width) = (&coarse.parts[f], &coarse.width[f]);
-                low = _mm256_and_si256(low, half_within(table, 0, start, width));
-                high = _mm256_and_si256(high, half_within(table, 1, start, width));
+                let start = _mm256_shuffle_epi8(cut, _mm256_set1_epi8(4 * f as i8));
+                let width = _mm256_loadu_si256(coarse.width[f].as_ptr().cast());
+                let table = &coarse.parts[f];
+                low = _mm256_or_si256(low, half_beyond(table, 0, start, width));
+                high = _mm256_or_si256(high, half_beyond(table, 1, start, width));
             }
-            bits_of(low, high)
+            let none = _mm256_setzero_si256();
+            bits_of(_mm256_cmpeq_epi8(low, none), _mm256_cmpeq_epi8(high, none))
         }
     }
 
@@ -705,6 +706,25 @@ impl Isa for Avx512 {
     eight_lanes!();
 
     #[inline(always)]
+    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
+        // SAFETY: `self` is only made where these features were found; what is
+        // stored to is in the slice.
+        unsafe {
+            let value_lanes = _mm256_set1_epi32(value as i32);
+            let (mut left, mut at) = (samples, first);
+            while left != 0 {
+                if at + 8 > rows.len() {
+                    return Scalar.put(rows, at, width, left, value);
+                }
+                let row = rows.as_mut_ptr().add(at).cast();
+                _mm256_mask_storeu_epi32(row, left as u8, value_lanes);
+                left >>= 8;
+                at += width;
+            }
+        }
+    }
+
+    #[inline(always)]
     fn square_within(
         self,
         tables: &[[i16; 64]; STRIPS],
@@ -741,7 +761,8 @@ impl Isa for Avx512 {
             let mut lanes = u64::MAX;
             for f in 0..3 {
                 let entries = _mm512_loadu_si512(coarse.parts[f].as_ptr().cast());
-                let value = _mm512_sub_epi8(_mm512_broadcastb_epi8(cut[f]), entries);
+                let start = _mm_shuffle_epi8(cut, _mm_set1_epi8(4 * f as i8));
+                let value = _mm512_sub_epi8(_mm512_broadcastb_epi8(start), entries);
                 let width = _mm512_set1_epi8(coarse.width[f][0] as i8);
                 lanes = _mm512_mask_cmple_epu8_mask(lanes, value, width);
             }
