@@ -102,6 +102,8 @@ pub(super) struct Tables {
     /// In a frame without tolerance, what a value is less from the lower bound
     /// that is certain to be inside, and the width of what is.
     sure: [[i32; LANES]; 2],
+    /// Whether anything is certain: no such width is below zero.
+    has_sure: bool,
     /// Whether `tile` is made.
     has_tile: bool,
     /// By strip, what the samples of a tile add to its first.
@@ -125,6 +127,7 @@ impl Default for Tables {
             half: [0; LANES],
             width: [0; LANES],
             sure: [[0; LANES]; 2],
+            has_sure: false,
             has_tile: false,
             tile: [[0; 64]; STRIPS],
             has_square: false,
@@ -219,6 +222,7 @@ impl Tables {
             self.sure[0][lane] = reach + subtree.doubt[lane];
             self.sure[1][lane] = 2 * (half - subtree.doubt[lane]);
         }
+        self.has_sure = self.sure[1].iter().all(|&width| width >= 0);
         self.half = lower;
         for (steps, step) in self.steps.iter_mut().zip(&subtree.step) {
             let step = isa.load(step);
@@ -234,6 +238,13 @@ impl Tables {
             self.children[1][i] = isa.store(isa.add(child, child));
         }
         self.parts.make(isa, subtree, octant, left == 1);
+    }
+
+    /// The functions at a sample of a square, from those at its first.
+    #[inline(always)]
+    fn value_at<I: Isa>(&self, isa: I, first: I::Eight, bit: u32) -> I::Eight {
+        let value = isa.add(first, isa.load(&self.steps[0][bit as usize & 7]));
+        isa.add(value, isa.load(&self.steps[1][bit as usize >> 3 & 7]))
     }
 
     /// A value relative to the centre of a lane's finest voxel, from one
@@ -497,7 +508,9 @@ pub(super) fn draw_node<I: Isa>(
     if record.open != 0 {
         let corner = [record.window.left, record.window.top];
         let drawn = brick.draw_square(walk, corner, record.open);
-        walk.fill.mark_square(&record.window, drawn);
+        if drawn != 0 {
+            walk.fill.mark_square(&record.window, drawn);
+        }
     } else {
         brick.draw_squares(walk);
     }
@@ -540,6 +553,29 @@ impl Brick<'_> {
     /// Draws the open samples of a square; returns those drawn.
     #[inline(always)]
     fn draw_square<I: Isa>(&self, walk: &mut Walk<'_, I>, corner: [i32; 2], open: u64) -> u64 {
+        walk.counters.brick_samples += u64::from(open.count_ones());
+        // All that is the same for all samples is decided here.
+        match (self.record.left == 1, walk.view.search.is_some()) {
+            (false, false) => self.draw_samples::<I, false, false>(walk, corner, open),
+            (true, false) => self.draw_samples::<I, true, false>(walk, corner, open),
+            (false, true) => self.draw_samples::<I, false, true>(walk, corner, open),
+            (true, true) => self.draw_samples::<I, true, true>(walk, corner, open),
+        }
+    }
+
+    /// [`Brick::draw_square`] of a node one level above the finest (`FEW`) or
+    /// two, in a frame without tolerance (`SEARCH`) or with one.
+    ///
+    /// Step by step for all samples, so that there are few branches: the lanes
+    /// that bytes find; of those samples that have any, the first that is
+    /// right; then the nodes.
+    #[inline(always)]
+    fn draw_samples<I: Isa, const FEW: bool, const SEARCH: bool>(
+        &self,
+        walk: &mut Walk<'_, I>,
+        corner: [i32; 2],
+        open: u64,
+    ) -> u64 {
         let isa = walk.isa;
         let (step, origin) = (&self.subtree.step, &self.subtree.origin);
         // The functions at the square's first sample, relative to the lower
@@ -547,54 +583,57 @@ impl Brick<'_> {
         let first = isa.sub(isa.load(&walk.tables.half), isa.load(&self.record.place));
         let first = isa.plus_times(first, isa.load(&step[0]), corner[0] - origin[0]);
         let first = isa.plus_times(first, isa.load(&step[1]), corner[1] - origin[1]);
-        walk.counters.brick_samples += u64::from(open.count_ones());
-        let place = walk.pixels.at(corner[0], corner[1]);
-
-        // First the lanes of all samples, without a branch; then those samples
-        // that have any.
-        let few = self.record.left == 1;
         let mut count = 0;
         let mut left = open;
         while left != 0 {
             let bit = left.trailing_zeros();
             left &= left - 1;
-            let value = self.value_at(isa, &walk.tables, first, bit);
-            let lanes = self.parts.lanes & isa.strips_within(&walk.tables.parts, value, few);
+            let value = walk.tables.value_at(isa, first, bit);
+            let lanes = self.parts.lanes & isa.strips_within(&walk.tables.parts, value, FEW);
             walk.found[count & 63] = (bit, lanes);
             count += usize::from(lanes != 0);
         }
         let mut drawn = 0u64;
+        let mut hits = 0;
         let mut i = 0;
         while i < count {
             let (bit, lanes) = walk.found[i & 63];
             i += 1;
-            let value = self.value_at(isa, &walk.tables, first, bit);
-            let (column, row) = (bit & 7, bit >> 3);
-            let at = [corner[0] + column as i32, corner[1] + row as i32];
-            if let Some(lane) = self.first_inside(walk, lanes, value, at) {
-                let place = place + row as usize * walk.pixels.width + column as usize;
-                self.show(walk, lane, place);
+            if let Some(lane) = self.first_inside::<I, FEW, SEARCH>(walk, first, bit, corner, lanes)
+            {
+                walk.found[hits & 63] = (bit, u64::from(lane));
+                hits += 1;
                 drawn |= 1 << bit;
             }
         }
-        walk.counters.samples_drawn += u64::from(drawn.count_ones());
+        let place = walk.pixels.at(corner[0], corner[1]);
+        let width = walk.pixels.width;
+        let graph = walk.graph;
+        let mut i = 0;
+        while i < hits {
+            let (bit, lane) = walk.found[i & 63];
+            i += 1;
+            let at = place + (bit >> 3) as usize * width + (bit & 7) as usize;
+            let levels = if FEW { 1 } else { 2 };
+            let node = self.parts.node(graph, levels, self.octant, lane as u32);
+            if let Some(shown) = walk.pixels.node.get_mut(at) {
+                *shown = node;
+            }
+        }
+        if walk.pixels.wants_voxels() {
+            self.show_voxels(walk, place, hits);
+        }
+        walk.counters.samples_drawn += hits as u64;
         drawn
     }
 
-    /// The functions at a sample of a square, from those at its first.
-    #[inline(always)]
-    fn value_at<I: Isa>(&self, isa: I, tables: &Tables, first: I::Eight, bit: u32) -> I::Eight {
-        let value = isa.add(first, isa.load(&tables.steps[0][bit as usize & 7]));
-        isa.add(value, isa.load(&tables.steps[1][bit as usize >> 3 & 7]))
-    }
-
-    /// Shows a finest voxel: a lane of the parts.
-    #[inline(always)]
-    fn show<I: Isa>(&self, walk: &mut Walk<'_, I>, lane: u32, place: usize) {
-        let levels = self.record.left;
-        walk.pixels.node[place] = self.parts.node(walk.graph, levels, self.octant, lane);
-        if walk.pixels.wants_voxels() {
-            walk.pixels.voxel[place] = voxel_at(self.corner(lane), self.subtree.finest);
+    /// Shows the finest voxels that were found.
+    #[inline(never)]
+    fn show_voxels<I: Isa>(&self, walk: &mut Walk<'_, I>, place: usize, hits: usize) {
+        for &(bit, lane) in &walk.found[..hits] {
+            let at = place + (bit >> 3) as usize * walk.pixels.width + (bit & 7) as usize;
+            let min = self.corner(lane as u32);
+            walk.pixels.voxel[at] = voxel_at(min, self.subtree.finest);
         }
     }
 
@@ -604,37 +643,42 @@ impl Brick<'_> {
         corner(record.min, record.left, side, self.octant, lane)
     }
 
-    /// The first of the lanes that a sample is inside. `value`: the functions
-    /// relative to the lower bound of a finest voxel in the node's centre.
+    /// The first of the lanes that a sample is inside. `first`: the functions
+    /// at the square's first sample, relative to the lower bound of a finest
+    /// voxel in the node's centre.
     #[inline(always)]
-    fn first_inside<I: Isa>(
+    fn first_inside<I: Isa, const FEW: bool, const SEARCH: bool>(
         &self,
         walk: &mut Walk<'_, I>,
+        first: I::Eight,
+        bit: u32,
+        square: [i32; 2],
         lanes: u64,
-        value: I::Eight,
-        at: [i32; 2],
     ) -> Option<u32> {
         let isa = walk.isa;
+        let value = walk.tables.value_at(isa, first, bit);
         let mut lanes = lanes;
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
-            let from_part = walk.tables.from_part(isa, value, self.record.left, lane);
+            let levels = if FEW { 1 } else { 2 };
+            let from_part = walk.tables.from_part(isa, value, levels, lane);
             if !isa.all_within(from_part, isa.load(&walk.tables.width)) {
                 continue;
             }
-            if walk.view.search.is_none() {
+            if !SEARCH {
                 return Some(lane);
             }
             let [less, width] = &walk.tables.sure;
-            // No width is below zero where something is certain.
-            let sure = isa.sub(from_part, isa.load(less));
-            if width.iter().all(|&w| w >= 0) && isa.all_within(sure, isa.load(width)) {
+            if walk.tables.has_sure
+                && isa.all_within(isa.sub(from_part, isa.load(less)), isa.load(width))
+            {
                 return Some(lane);
             }
             walk.counters.exact_samples += 1;
+            let at = [square[0] + (bit & 7) as i32, square[1] + (bit >> 3) as i32];
             let side = self.subtree.finest_side;
-            if walk.exact.covers(self.corner(lane), side, at) {
+            if isa.covers(walk.exact, self.corner(lane), side, at) {
                 return Some(lane);
             }
         }

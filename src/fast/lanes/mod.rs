@@ -22,6 +22,7 @@ pub(super) use x86::{Avx2, Avx512};
 use super::brick::{Coarse, Parts, Tables};
 use super::canvas::Window;
 use super::clip::ClipRecord;
+use super::planes::Exact;
 use super::screen::ScreenRecord;
 use super::subtree::{LANES, STRIPS, Subtree};
 use super::walk::{Bounds, Walk};
@@ -56,6 +57,9 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
 
     /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
+
+    /// Whether a sample is in a cube's silhouette: [`Exact::covers`] compiled for this set.
+    fn covers(self, exact: &Exact, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool;
 
     /// Eight `f64`.
     type Reals: Reals;

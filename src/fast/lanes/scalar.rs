@@ -5,6 +5,7 @@ use super::reals::ScalarReals;
 use crate::fast::brick::{self, Coarse, Parts, Tables};
 use crate::fast::canvas::Window;
 use crate::fast::clip::{self, ClipRecord};
+use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
 use crate::fast::subtree::{LANES, STRIPS, Subtree};
 use crate::fast::walk::{Bounds, Walk};
@@ -45,6 +46,10 @@ impl Isa for Scalar {
 
     fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
         clip::change(walk, record)
+    }
+
+    fn covers(self, exact: &Exact, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
+        exact.covers(min, side, sample)
     }
 
     type Reals = ScalarReals;

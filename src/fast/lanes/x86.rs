@@ -7,6 +7,7 @@ use super::x86_reals::{Avx2Reals, Avx512Reals};
 use crate::fast::brick::{self, Coarse, ORDER_BYTES, Parts, Tables};
 use crate::fast::canvas::Window;
 use crate::fast::clip::{self, ClipRecord};
+use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
 use crate::fast::subtree::{LANES, STRIPS, Subtree};
 use crate::fast::walk::{Bounds, Walk};
@@ -90,6 +91,17 @@ macro_rules! compiled {
             ) {
                 tables.make_parts(isa, subtree, left, octant);
             }
+
+            #[inline(never)]
+            #[target_feature(enable = $features)]
+            pub(super) fn covers(
+                exact: &Exact,
+                min: [i32; 3],
+                side: i32,
+                sample: [i32; 2],
+            ) -> bool {
+                exact.covers(min, side, sample)
+            }
         }
     };
     ($name:ident) => {
@@ -128,6 +140,11 @@ macro_rules! compiled {
         fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
             // SAFETY: `self` is only made where these features were found.
             unsafe { $name::tables(self, tables, subtree, left, octant) }
+        }
+
+        fn covers(self, exact: &Exact, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::covers(exact, min, side, sample) }
         }
     };
 }
