@@ -377,28 +377,33 @@ impl Parts {
         masks
     }
 
-    /// A child of the node.
-    #[inline(always)]
-    fn child(&self, links: &[u32], child: u8) -> u32 {
-        let before = self.mask & ((1u8 << (child & 7)) - 1);
-        linked(links, self.first.wrapping_add(before.count_ones()))
-    }
-
     /// The node of a lane, `levels` levels below.
     #[inline(always)]
     fn node(&self, graph: &GraphView<'_>, levels: u32, octant: u8, lane: u32) -> u32 {
-        let inner = octant ^ OCCLUSION_ORDER[lane as usize & 7];
+        let octants = u32::from(octant & 7) * 9 ^ u32::from(BY_LANE[lane as usize & 63]);
+        let (outer, inner) = (octants >> 3 & 7, octants & 7);
+        let before = |mask: u64, child: u32| (mask & ((1u64 << child) - 1)).count_ones();
+        let mask = u64::from(self.mask);
         if levels == 1 {
-            return self.child(graph.links, inner);
+            return linked(graph.links, self.first.wrapping_add(before(mask, inner)));
         }
-        let outer = octant ^ OCCLUSION_ORDER[(lane >> 3) as usize & 7];
-        let child = self.child(graph.links, outer);
+        let child = linked(graph.links, self.first.wrapping_add(before(mask, outer)));
         let first = graph.first.get(child as usize).copied().unwrap_or(0);
-        let mask = (self.masks >> (8 * (outer & 7))) as u8;
-        let before = mask & ((1u8 << (inner & 7)) - 1);
-        linked(graph.links, first.wrapping_add(before.count_ones()))
+        let before = before(self.masks >> (8 * outer) & 0xff, inner);
+        linked(graph.links, first.wrapping_add(before))
     }
 }
+
+/// By lane, for octant 0: a child, and in the upper bits the child that it is in.
+static BY_LANE: [u8; 64] = {
+    let mut octants = [0; 64];
+    let mut lane = 0;
+    while lane < 64 {
+        octants[lane] = OCCLUSION_ORDER[lane >> 3] << 3 | OCCLUSION_ORDER[lane & 7];
+        lane += 1;
+    }
+    octants
+};
 
 /// By octant, for lanes of sixteen bytes: the children of a mask's lower and
 /// upper half in occlusion order, and the order itself.

@@ -26,7 +26,30 @@ pub(super) struct Window {
     pub(super) bottom: i32,
 }
 
+/// How large a window is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Extent {
+    /// Without a sample.
+    Empty,
+    /// No larger than a tile.
+    Square,
+    /// Larger.
+    Large,
+}
+
 impl Window {
+    /// How large it is.
+    #[inline(always)]
+    pub(super) fn extent(&self) -> Extent {
+        if self.is_empty() {
+            Extent::Empty
+        } else if self.right - self.left < 8 && self.bottom - self.top < 8 {
+            Extent::Square
+        } else {
+            Extent::Large
+        }
+    }
+
     /// Whether it has no sample.
     #[inline(always)]
     pub(super) fn is_empty(&self) -> bool {
@@ -156,12 +179,27 @@ impl Grid {
 }
 
 /// The lowest columns of a tile, by number of columns.
-const COLUMNS: [u64; 16] = {
-    let mut masks = [0; 16];
+static COLUMNS: [u64; 9] = {
+    let mut masks = [0; 9];
     let mut i = 0;
     while i <= 8 {
         masks[i] = (0xff >> (8 - i)) * LEFT_COLUMN;
         i += 1;
+    }
+    masks
+};
+
+/// The first rows and columns of a tile, by number of rows and columns less one.
+static SQUARES: [[u64; 8]; 8] = {
+    let mut masks = [[0; 8]; 8];
+    let mut rows = 0;
+    while rows < 8 {
+        let mut columns = 0;
+        while columns < 8 {
+            masks[rows][columns] = ((0xff >> (7 - columns)) * LEFT_COLUMN) & (ALL >> (56 - 8 * rows));
+            columns += 1;
+        }
+        rows += 1;
     }
     masks
 };
@@ -224,12 +262,12 @@ impl<'p> Fill<'p> {
             (window.right - window.left) as u32,
             (window.bottom - window.top) as u32,
         );
-        let wanted = COLUMNS[more_x as usize + 1 & 15] & (ALL >> (56 - 8 * more_y));
+        let wanted = SQUARES[more_y as usize & 7][more_x as usize & 7];
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
         // What lies in the four tiles that the window may reach. Those that it
         // does not reach are shifted out or masked.
-        let below = at.wrapping_add(self.grid.tiles_across);
-        let [left, right] = isa.square_of(self.part.tiles, at, below, x, y);
+        let across = self.grid.tiles_across;
+        let [left, right] = isa.square_of(self.part.tiles, at, across, x, y);
         let own = COLUMNS[8 - x as usize];
         ((left ^ right) & own ^ right) & wanted
     }

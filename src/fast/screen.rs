@@ -1,7 +1,7 @@
 //! Records in screen space: places in the lattice of a subtree.
 
 use super::brick;
-use super::canvas::{TILE_LOG2, Window, tiles_of};
+use super::canvas::{Extent, TILE_LOG2, Window, tiles_of};
 use super::clip::ClipRecord;
 use super::lanes::Isa;
 use super::subtree::{LANES, STRIPS, Subtree};
@@ -28,11 +28,8 @@ pub(super) struct ScreenRecord {
 /// What there is to draw in a window: its open samples where it is no larger
 /// than a tile, else 0; `None` if nothing is.
 #[inline(always)]
-fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window) -> Option<u64> {
-    if !walk.switches.off_screen && window.is_empty() {
-        return Some(0);
-    }
-    if window.right - window.left < 8 && window.bottom - window.top < 8 {
+fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window, extent: Extent) -> Option<u64> {
+    if extent == Extent::Square {
         let open = walk.fill.open_in_square(walk.isa, window);
         if open == 0 && walk.switches.hidden {
             walk.counters.skipped_hidden += 1;
@@ -58,12 +55,12 @@ pub(super) fn start<I: Isa>(
     let isa = walk.isa;
     let left = subtree.finest - record.level;
     let bias = subtree.window_bias(left);
-    let (window, is_empty) = isa.window(place, &bias, subtree, &walk.bounds);
-    if is_empty && walk.switches.off_screen {
+    let (window, extent) = isa.window(place, &bias, subtree, &walk.bounds);
+    if extent == Extent::Empty && walk.switches.off_screen {
         walk.counters.skipped_off_screen += 1;
         return;
     }
-    let Some(open) = open_in(walk, &window) else {
+    let Some(open) = open_in(walk, &window, extent) else {
         return;
     };
     let record = ScreenRecord {
@@ -128,12 +125,12 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         order &= order - 1;
         let offset = isa.load(&subtree.child[usize::from(child & 7)]);
         let at = isa.plus_shifted(parent, offset, left);
-        let (window, is_empty) = isa.window(at, &bias, subtree, &walk.bounds);
-        if is_empty && walk.switches.off_screen {
+        let (window, extent) = isa.window(at, &bias, subtree, &walk.bounds);
+        if extent == Extent::Empty && walk.switches.off_screen {
             walk.counters.skipped_off_screen += 1;
             continue;
         }
-        let Some(open) = open_in(walk, &window) else {
+        let Some(open) = open_in(walk, &window, extent) else {
             continue;
         };
         let before = mask & ((1u8 << (child & 7)) - 1);

@@ -20,7 +20,7 @@ pub(super) use scalar::Scalar;
 pub(super) use x86::{Avx2, Avx512};
 
 use super::brick::{Coarse, Parts, Tables};
-use super::canvas::Window;
+use super::canvas::{Extent, Window};
 use super::clip::ClipRecord;
 use super::planes::Exact;
 use super::screen::ScreenRecord;
@@ -107,20 +107,20 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// Lane by lane, `a + (b << places)`.
     fn plus_shifted(self, a: Self::Eight, b: Self::Eight, places: u32) -> Self::Eight;
 
-    /// The samples that a box holds, cut to the band's, and whether there are
-    /// none: `(lane + bias) >> box bits` of the last four lanes, and the origin.
+    /// The samples that a box holds, cut to the band's, and how many they are: `(lane + bias) >> box bits` of the last four lanes, and the origin.
     fn window(
         self,
         place: Self::Eight,
         bias: &[i32; 4],
         subtree: &Subtree,
         bounds: &Bounds,
-    ) -> (Window, bool);
+    ) -> (Window, Extent);
 
     /// The samples from column `x` and row `y` of a tile on, of the tile and the
-    /// one below, moved to column 0; and of those to the right of both, moved
-    /// to column `8 - x`. What is beyond the tiles' end is 0.
-    fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2];
+    /// one below (`across` entries on, less than 2^16), moved to column 0; and
+    /// of those to the right of both, moved to column `8 - x`. What is beyond
+    /// the tiles' end is 0.
+    fn square_of(self, tiles: &[u64], at: usize, across: usize, x: u32, y: u32) -> [u64; 2];
 
     /// Puts `value` to the entries of `rows` that `samples` has bits for, eight
     /// bits a row of `width` entries, from entry `first` on.
@@ -199,12 +199,12 @@ mod tests {
         isa.put(&mut mine, 3, 9, samples, 7);
         Scalar.put(&mut twin, 3, 9, samples, 7);
         assert_eq!(mine, twin);
-        for (at, below) in [(0, 4), (3, 6), (2, 7), (6, 9), (usize::MAX, 3)] {
+        for (at, across) in [(0, 4), (3, 3), (2, 5), (6, 3), (usize::MAX, 3), (0, 70)] {
             let (x, y) = (u32::from(bytes[380] & 7), u32::from(bytes[381] & 7));
             for (x, y) in [(x, y), (x, 0), (0, y)] {
                 assert_eq!(
-                    isa.square_of(&tiles, at, below, x, y),
-                    Scalar.square_of(&tiles, at, below, x, y)
+                    isa.square_of(&tiles, at, across, x, y),
+                    Scalar.square_of(&tiles, at, across, x, y)
                 );
             }
         }

@@ -3,7 +3,7 @@
 use super::Isa;
 use super::reals::ScalarReals;
 use crate::fast::brick::{self, Coarse, Parts, Tables};
-use crate::fast::canvas::Window;
+use crate::fast::canvas::{Extent, Window};
 use crate::fast::clip::{self, ClipRecord};
 use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
@@ -133,7 +133,7 @@ impl Isa for Scalar {
         bias: &[i32; 4],
         subtree: &Subtree,
         bounds: &Bounds,
-    ) -> (Window, bool) {
+    ) -> (Window, Extent) {
         let [left, top, right, bottom]: [i32; 4] = std::array::from_fn(|i| {
             let line = (place[4 + i].wrapping_add(bias[i]) >> subtree.box_bits) + subtree.origin[i];
             line.max(bounds.least[i]).min(bounds.greatest[i])
@@ -144,7 +144,7 @@ impl Isa for Scalar {
             right,
             bottom,
         };
-        (window, window.is_empty())
+        (window, window.extent())
     }
 
     #[inline(always)]
@@ -208,7 +208,8 @@ impl Isa for Scalar {
     }
 
     #[inline(always)]
-    fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
+    fn square_of(self, tiles: &[u64], at: usize, across: usize, x: u32, y: u32) -> [u64; 2] {
+        let below = at.wrapping_add(across);
         let tile = |at: usize| tiles.get(at).copied().unwrap_or(0);
         let column = |upper: u64, lower: u64| match 8 * (y & 7) {
             0 => upper,

@@ -5,7 +5,7 @@ use std::arch::x86_64::*;
 use super::{Isa, Scalar};
 use super::x86_reals::{Avx2Reals, Avx512Reals};
 use crate::fast::brick::{self, Coarse, ORDER_BYTES, Parts, Tables};
-use crate::fast::canvas::Window;
+use crate::fast::canvas::{Extent, Window};
 use crate::fast::clip::{self, ClipRecord};
 use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
@@ -216,10 +216,10 @@ mod eight {
         bias: &[i32; 4],
         subtree: &Subtree,
         bounds: &Bounds,
-    ) -> (Window, bool) {
+    ) -> (Window, Extent) {
         let mut lines = [0i32; 4];
         // SAFETY: see above.
-        let is_empty = unsafe {
+        let extent = unsafe {
             let load = |lanes: &[i32; 4]| lanes.as_ptr().cast::<__m128i>();
             let last = _mm256_extracti128_si256::<1>(place);
             let bits = _mm_cvtsi32_si128(subtree.box_bits as i32);
@@ -229,8 +229,16 @@ mod eight {
             let line = _mm_min_epi32(line, _mm_loadu_si128(load(&bounds.greatest)));
             _mm_storeu_si128(lines.as_mut_ptr().cast(), line);
             let others = _mm_shuffle_epi32::<0b01_00_11_10>(line);
-            let beyond = _mm_cmpgt_epi32(line, others);
-            _mm_movemask_ps(_mm_castsi128_ps(beyond)) & 0b11 != 0
+            // Last less first: the sign tells what is empty, the upper bits
+            // what is more than a square.
+            let more = _mm_sub_epi32(others, line);
+            if _mm_testz_si128(more, _mm_setr_epi32(!7, !7, 0, 0)) != 0 {
+                Extent::Square
+            } else if _mm_movemask_ps(_mm_castsi128_ps(more)) & 0b11 != 0 {
+                Extent::Empty
+            } else {
+                Extent::Large
+            }
         };
         let [left, top, right, bottom] = lines;
         let window = Window {
@@ -239,7 +247,7 @@ mod eight {
             right,
             bottom,
         };
-        (window, is_empty)
+        (window, extent)
     }
 
     /// [`Isa::samples_between`] of halves of places.
@@ -326,16 +334,16 @@ mod eight {
     }
 
     #[inline(always)]
-    pub(super) fn square_of(tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
-        let last = tiles.len().wrapping_sub(2);
-        if at > last || below > last || tiles.len() < 2 {
-            return Scalar.square_of(tiles, at, below, x, y);
+    pub(super) fn square_of(tiles: &[u64], at: usize, across: usize, x: u32, y: u32) -> [u64; 2] {
+        let last = tiles.len().checked_sub(across + 2);
+        if last.is_none_or(|last| at > last) {
+            return Scalar.square_of(tiles, at, across, x, y);
         }
         // SAFETY: see above; the loads are of two entries each, the last of
         // which is in the slice.
         unsafe {
             let upper = _mm_loadu_si128(tiles.as_ptr().add(at).cast());
-            let lower = _mm_loadu_si128(tiles.as_ptr().add(below).cast());
+            let lower = _mm_loadu_si128(tiles.as_ptr().add(at + across).cast());
             let up = _mm_cvtsi32_si128(8 * y as i32);
             let down = _mm_cvtsi32_si128(64 - 8 * y as i32);
             // A shift by 64 leaves nothing.
@@ -505,7 +513,7 @@ macro_rules! eight_lanes {
             bias: &[i32; 4],
             subtree: &Subtree,
             bounds: &Bounds,
-        ) -> (Window, bool) {
+        ) -> (Window, Extent) {
             eight::window(place, bias, subtree, bounds)
         }
 
@@ -515,8 +523,8 @@ macro_rules! eight_lanes {
         }
 
         #[inline(always)]
-        fn square_of(self, tiles: &[u64], at: usize, below: usize, x: u32, y: u32) -> [u64; 2] {
-            eight::square_of(tiles, at, below, x & 7, y & 7)
+        fn square_of(self, tiles: &[u64], at: usize, across: usize, x: u32, y: u32) -> [u64; 2] {
+            eight::square_of(tiles, at, across & 0xffff, x & 7, y & 7)
         }
 
         #[inline(always)]
