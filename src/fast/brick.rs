@@ -598,6 +598,9 @@ impl Brick<'_> {
             walk.found[count & 63] = (bit, lanes);
             count += usize::from(lanes != 0);
         }
+        let place = walk.pixels.at(corner[0], corner[1]);
+        let width = walk.pixels.width;
+        let graph = walk.graph;
         let mut drawn = 0u64;
         let mut hits = 0;
         let mut i = 0;
@@ -609,20 +612,12 @@ impl Brick<'_> {
                 walk.found[hits & 63] = (bit, u64::from(lane));
                 hits += 1;
                 drawn |= 1 << bit;
-            }
-        }
-        let place = walk.pixels.at(corner[0], corner[1]);
-        let width = walk.pixels.width;
-        let graph = walk.graph;
-        let mut i = 0;
-        while i < hits {
-            let (bit, lane) = walk.found[i & 63];
-            i += 1;
-            let at = place + (bit >> 3) as usize * width + (bit & 7) as usize;
-            let levels = if FEW { 1 } else { 2 };
-            let node = self.parts.node(graph, levels, self.octant, lane as u32);
-            if let Some(shown) = walk.pixels.node.get_mut(at) {
-                *shown = node;
+                let at = place + (bit >> 3) as usize * width + (bit & 7) as usize;
+                let levels = if FEW { 1 } else { 2 };
+                let node = self.parts.node(graph, levels, self.octant, lane);
+                if let Some(shown) = walk.pixels.node.get_mut(at) {
+                    *shown = node;
+                }
             }
         }
         if walk.pixels.wants_voxels() {
