@@ -196,7 +196,8 @@ static SQUARES: [[u64; 8]; 8] = {
     while rows < 8 {
         let mut columns = 0;
         while columns < 8 {
-            masks[rows][columns] = ((0xff >> (7 - columns)) * LEFT_COLUMN) & (ALL >> (56 - 8 * rows));
+            masks[rows][columns] =
+                ((0xff >> (7 - columns)) * LEFT_COLUMN) & (ALL >> (56 - 8 * rows));
             columns += 1;
         }
         rows += 1;

@@ -27,10 +27,12 @@ mod canvas;
 mod clip;
 mod counters;
 mod lanes;
+mod parts;
 mod planes;
 mod screen;
 mod subtree;
 mod switches;
+mod tables;
 mod view;
 mod walk;
 
@@ -336,7 +338,7 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         pixels: piece.pixels,
         bounds: Bounds::new(&piece.bounds),
         counters: Counters::default(),
-        tables: brick::Tables::default(),
+        tables: tables::Tables::default(),
         found: [(0, 0); 64],
         is_lost: false,
     };

@@ -331,7 +331,8 @@ impl Outline {
                     bottom: top + side - 1,
                 }
                 .and(window);
-                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(walk.isa, &block) {
+                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(walk.isa, &block)
+                {
                     continue;
                 }
                 let cover = if walk.switches.whole_blocks {
@@ -395,7 +396,8 @@ impl Outline {
                 if samples != 0 {
                     walk.counters.tiles_filled += u64::from(samples == u64::MAX);
                     walk.counters.samples_drawn += u64::from(samples.count_ones());
-                    walk.pixels.show(walk.isa, [left, top], samples, node, voxel);
+                    walk.pixels
+                        .show(walk.isa, [left, top], samples, node, voxel);
                     walk.fill.mark_tile(x, y, samples);
                 }
             }

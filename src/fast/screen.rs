@@ -4,6 +4,7 @@ use super::brick;
 use super::canvas::{Extent, TILE_LOG2, Window, tiles_of};
 use super::clip::ClipRecord;
 use super::lanes::Isa;
+use super::parts;
 use super::subtree::{LANES, STRIPS, Subtree};
 use super::walk::{Walk, voxel_at};
 use crate::project::OCCLUSION_ORDER;
@@ -119,7 +120,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
     walk.counters.skipped_absent += u64::from(mask.count_zeros());
     let bias = subtree.window_bias(left);
     let parent = isa.load(&record.place);
-    let mut order = brick::in_order(octant, mask);
+    let mut order = parts::in_order(octant, mask);
     while order != 0 {
         let child = octant ^ OCCLUSION_ORDER[order.trailing_zeros() as usize & 7];
         order &= order - 1;
@@ -141,7 +142,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         min[1] += beyond[1] & half;
         min[2] += beyond[2] & half;
         let child = ScreenRecord {
-            node: brick::linked(walk.graph.links, slot),
+            node: parts::linked(walk.graph.links, slot),
             left,
             min,
             place: isa.store(at),
@@ -231,7 +232,8 @@ pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, reco
             if samples != 0 {
                 walk.counters.tiles_filled += u64::from(samples == u64::MAX);
                 walk.counters.samples_drawn += u64::from(samples.count_ones());
-                walk.pixels.show(walk.isa, [left, top], samples, record.node, voxel);
+                walk.pixels
+                    .show(walk.isa, [left, top], samples, record.node, voxel);
                 walk.fill.mark_tile(x, y, samples);
             }
         }

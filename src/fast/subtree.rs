@@ -62,7 +62,12 @@ const COARSE_SAMPLES: i64 = 2;
 impl Subtree {
     /// A lattice, with the tables that its records need.
     #[inline(always)]
-    pub(super) fn new<I: Isa>(isa: I, view: &View, record: &ClipRecord, lattice: &Lattice<I>) -> Self {
+    pub(super) fn new<I: Isa>(
+        isa: I,
+        view: &View,
+        record: &ClipRecord,
+        lattice: &Lattice<I>,
+    ) -> Self {
         let finest_side = view.levels[lattice.finest as usize].side;
         let side = view.levels[record.level as usize].side;
         let half_width = isa.store(lattice.half_width);
@@ -78,7 +83,11 @@ impl Subtree {
             // outline: along its edge the function is not quite constant.
             for f in 0..LANES {
                 let along = if f < STRIPS { half_edge[f][f].abs() } else { 0 };
-                doubt[f] = if reach[f] > 0 { reach[f] + 2 * along + 2 } else { 0 };
+                doubt[f] = if reach[f] > 0 {
+                    reach[f] + 2 * along + 2
+                } else {
+                    0
+                };
             }
         }
         let box_width = half_width[ACROSS].max(half_width[ACROSS + 1]);

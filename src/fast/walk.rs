@@ -1,11 +1,11 @@
 //! What the turns of a walk share: the frame's constants, the graph, the
 //! picture in the making.
 
-use super::brick::Tables;
 use super::canvas::{Fill, Pixels, Window};
 use super::counters::Counters;
 use super::planes::Exact;
 use super::switches::Switches;
+use super::tables::Tables;
 use super::view::View;
 use crate::graph::GraphView;
 

@@ -12,6 +12,8 @@ mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 #[cfg(target_arch = "x86_64")]
+mod x86_eight;
+#[cfg(target_arch = "x86_64")]
 mod x86_reals;
 
 pub(super) use reals::Reals;
@@ -19,12 +21,13 @@ pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::{Avx2, Avx512};
 
-use super::brick::{Coarse, Parts, Tables};
 use super::canvas::{Extent, Window};
 use super::clip::ClipRecord;
+use super::parts::Parts;
 use super::planes::Exact;
 use super::screen::ScreenRecord;
 use super::subtree::{LANES, STRIPS, Subtree};
+use super::tables::{Coarse, Tables};
 use super::walk::{Bounds, Walk};
 
 /// An instruction set.
@@ -189,9 +192,8 @@ mod tests {
         isa.square_table(&mut mine, words[93], words[94]);
         Scalar.square_table(&mut twin, words[93], words[94]);
         assert_eq!(mine, twin);
-        let tiles: [u64; 8] = std::array::from_fn(|i| {
-            u64::from_le_bytes(std::array::from_fn(|k| bytes[8 * i + k]))
-        });
+        let tiles: [u64; 8] =
+            std::array::from_fn(|i| u64::from_le_bytes(std::array::from_fn(|k| bytes[8 * i + k])));
         let samples = u64::from_le_bytes(std::array::from_fn(|i| bytes[384 + i]));
         let (mut mine, mut twin) = ([0; 70], [0; 70]);
         // The last rows end where the entries do.

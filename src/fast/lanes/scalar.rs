@@ -2,12 +2,14 @@
 
 use super::Isa;
 use super::reals::ScalarReals;
-use crate::fast::brick::{self, Coarse, Parts, Tables};
+use crate::fast::brick;
 use crate::fast::canvas::{Extent, Window};
 use crate::fast::clip::{self, ClipRecord};
+use crate::fast::parts::{self, Parts};
 use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
 use crate::fast::subtree::{LANES, STRIPS, Subtree};
+use crate::fast::tables::{self, Coarse, Tables};
 use crate::fast::walk::{Bounds, Walk};
 
 /// No instructions but those that every processor of the target has.
@@ -194,7 +196,7 @@ impl Isa for Scalar {
 
     #[inline(always)]
     fn byte_table(self, table: &mut [u8; 64], children: &[i32; 8], shift: u32, few: bool) {
-        brick::byte_table(table, children, shift, few);
+        tables::byte_table(table, children, shift, few);
     }
 
     #[inline(always)]
@@ -243,7 +245,7 @@ impl Isa for Scalar {
 
     #[inline(always)]
     fn masks_in_order(self, masks: u64, octant: u8) -> u64 {
-        brick::masks_in_order(masks, octant)
+        parts::masks_in_order(masks, octant)
     }
 
     #[inline(always)]

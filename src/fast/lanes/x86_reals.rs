@@ -73,10 +73,7 @@ fn sums(low: __m256d, high: __m256d) -> (f64, __m256d) {
         );
         let total = _mm_add_pd(first, second);
         let along_y = _mm_sub_pd(second, first);
-        let along_z = _mm_add_pd(
-            _mm256_castpd256_pd128(sum),
-            _mm256_extractf128_pd::<1>(sum),
-        );
+        let along_z = _mm_add_pd(_mm256_castpd256_pd128(sum), _mm256_extractf128_pd::<1>(sum));
         let along_z = _mm_sub_pd(_mm_unpackhi_pd(along_z, along_z), along_z);
         let along_z = _mm_mul_pd(along_z, _mm_setr_pd(1.0, 0.0));
         let along_x_and_y = _mm_shuffle_pd::<0b01>(total, along_y);
