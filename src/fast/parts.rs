@@ -127,7 +127,7 @@ impl Parts {
     /// The node of a lane, `levels` levels below.
     #[inline(always)]
     pub(super) fn node(&self, graph: &GraphView<'_>, levels: u32, octant: u8, lane: u32) -> u32 {
-        let octants = u32::from(octant & 7) * 9 ^ u32::from(BY_LANE[lane as usize & 63]);
+        let octants = (u32::from(octant & 7) * 9) ^ u32::from(BY_LANE[lane as usize & 63]);
         let (outer, inner) = (octants >> 3 & 7, octants & 7);
         let before = |mask: u64, child: u32| (mask & ((1u64 << child) - 1)).count_ones();
         let mask = u64::from(self.mask);

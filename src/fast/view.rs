@@ -81,8 +81,6 @@ pub(super) struct View {
     pub(super) origin: [f64; 3],
     /// Samples a side of the image root.
     pub(super) root_samples: f64,
-    /// Levels of the image quadtree.
-    pub(super) root_log2: u32,
     /// Fraction bits of screen positions.
     pub(super) frac: u32,
     /// Level of detail in the unit of screen positions.
@@ -135,7 +133,6 @@ impl View {
             depth: setup.depth,
             origin: setup.origin_clip.map(|c| c as f64),
             root_samples: libm::ldexp(1.0, setup.levels as i32),
-            root_log2: setup.levels,
             frac,
             lod_limit: (libm::floor(lod * unit) as i64).max(LEAST_SIZE),
             strip_guard: setup.strip_guard,

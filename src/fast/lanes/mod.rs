@@ -32,9 +32,6 @@ use super::walk::{Bounds, Walk};
 
 /// An instruction set.
 pub(super) trait Isa: Copy + Send + Sync + 'static {
-    /// Its name, as `--isa` has it.
-    const NAME: &'static str;
-
     /// A clip-space record's turn: [`super::clip::turn`] compiled for this set.
     fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord);
 
@@ -97,9 +94,6 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
 
     /// Whether `0 <= a <= b` in all lanes; no lane of `b` is negative.
     fn all_within(self, a: Self::Eight, b: Self::Eight) -> bool;
-
-    /// Whether `|a| > b` in any lane; no lane of `a` is `i32::MIN`.
-    fn any_beyond(self, a: Self::Eight, b: Self::Eight) -> bool;
 
     /// The eight values.
     fn store(self, values: Self::Eight) -> [i32; LANES];
@@ -231,7 +225,6 @@ mod tests {
             isa.within_wide(&wide, words[90], words[91] as u32),
             Scalar.within_wide(&wide, words[90], words[91] as u32)
         );
-        // Sums and products are seen through comparisons with the twin's.
         let (a, b, times) = (eight(0), eight(8), words[92]);
         let pairs = [
             (isa.add(isa.load(&a), isa.load(&b)), Scalar.add(a, b)),
@@ -242,14 +235,10 @@ mod tests {
             ),
         ];
         for (mine, twin) in pairs {
-            assert!(!isa.any_beyond(isa.sub(mine, isa.load(&twin)), isa.load(&[0; LANES])));
+            assert_eq!(isa.store(mine), twin);
         }
         let near: [i32; LANES] = std::array::from_fn(|i| a[i] >> 1);
         let limit: [i32; LANES] = std::array::from_fn(|i| (b[i] >> 1).abs() | 0x2000_0000);
-        assert_eq!(
-            isa.any_beyond(isa.load(&near), isa.load(&limit)),
-            Scalar.any_beyond(near, limit)
-        );
         assert_eq!(
             isa.all_within(isa.load(&near), isa.load(&limit)),
             Scalar.all_within(near, limit)
@@ -261,12 +250,67 @@ mod tests {
             assert!(!isa.all_within(isa.load(&one), isa.load(&[4; LANES])));
             one[lane] = -5;
             assert!(!isa.all_within(isa.load(&one), isa.load(&[5; LANES])));
-            assert!(isa.any_beyond(isa.load(&one), isa.load(&[4; LANES])));
-            assert!(!isa.any_beyond(isa.load(&one), isa.load(&[5; LANES])));
+        }
+    }
+
+    /// All steps on `f64` of a set, and of the scalar twin. `x`: any whole
+    /// numbers below 2^31; `w`: whole numbers from 1 on.
+    fn reals_agree<I: Isa>(isa: I, x: &[f64; 8], y: &[f64; 8], w: &[f64; 8]) {
+        let mine = (isa.reals(x), isa.reals(y), isa.reals(w));
+        let twin = (Scalar.reals(x), Scalar.reals(y), Scalar.reals(w));
+        // Whole numbers, so that all that is compared is exact.
+        let same = |mine: I::Reals, twin| {
+            assert_eq!(isa.store(isa.whole(mine)), Scalar.whole(twin));
+        };
+        let quotients = (mine.0.over(mine.2), twin.0.over(twin.2));
+        same(quotients.0.floor(), quotients.1.floor());
+        same(quotients.0.trunc(), quotients.1.trunc());
+        same(mine.0.abs(), twin.0.abs());
+        same(mine.0.least(mine.1), twin.0.least(twin.1));
+        same(mine.0.greatest(mine.1), twin.0.greatest(twin.1));
+        same(mine.0.is_at_least(mine.1), twin.0.is_at_least(twin.1));
+        same(mine.0.is_at_least(mine.0), twin.0.is_at_least(twin.0));
+        let half = (isa.real(0.5), Scalar.real(0.5));
+        let fused = (mine.0.fused(half.0, half.0), twin.0.fused(half.1, half.1));
+        same(fused.0.floor(), fused.1.floor());
+        let less = (
+            (mine.0 - mine.1) * isa.real(0.25) + mine.0 * isa.real(0.5),
+            (twin.0 - twin.1) * Scalar.real(0.25) + twin.0 * Scalar.real(0.5),
+        );
+        same(less.0.floor(), less.1.floor());
+        assert_eq!(mine.0.any_negative(), twin.0.any_negative());
+        assert_eq!(mine.2.any_negative(), twin.2.any_negative());
+        let scaled = (mine.2 * mine.2.scale_to(9), twin.2 * twin.2.scale_to(9));
+        same(scaled.0.floor(), scaled.1.floor());
+        let (total, edges) = mine.0.sums();
+        let (twin_total, twin_edges) = twin.0.sums();
+        assert_eq!(total, twin_total);
+        assert_eq!(edges.first(), twin_edges.first());
+        for margin in [0.0, 0.25, 2.0] {
+            assert_eq!(
+                isa.samples_between(quotients.0, mine.1, margin),
+                Scalar.samples_between(quotients.1, twin.1, margin)
+            );
         }
     }
 
     proptest! {
+        #[test]
+        fn reals_agree_with_the_scalar_twin(
+            numbers in proptest::collection::vec(-(1i32 << 27)..1 << 27, 24),
+        ) {
+            let at = |from: usize| -> [f64; 8] {
+                std::array::from_fn(|i| f64::from(numbers[from + i]))
+            };
+            let depths = at(16).map(|w| w.abs() + 1.0);
+            if let Some(isa) = Avx2::detect() {
+                reals_agree(isa, &at(0), &at(8), &depths);
+            }
+            if let Some(isa) = Avx512::detect() {
+                reals_agree(isa, &at(0), &at(8), &depths);
+            }
+        }
+
         #[test]
         fn all_sets_agree_with_the_scalar_twin(
             bytes in proptest::collection::vec(any::<u8>(), 400),

@@ -17,8 +17,6 @@ use crate::fast::walk::{Bounds, Walk};
 pub(crate) struct Scalar;
 
 impl Isa for Scalar {
-    const NAME: &'static str = "scalar";
-
     fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
         clip::turn(walk, record);
     }
@@ -171,11 +169,6 @@ impl Isa for Scalar {
     #[inline(always)]
     fn all_within(self, a: [i32; LANES], b: [i32; LANES]) -> bool {
         a.iter().zip(&b).all(|(&a, &b)| a as u32 <= b as u32)
-    }
-
-    #[inline(always)]
-    fn any_beyond(self, a: [i32; LANES], b: [i32; LANES]) -> bool {
-        a.iter().zip(&b).any(|(a, b)| a.wrapping_abs() > *b)
     }
 
     #[inline(always)]

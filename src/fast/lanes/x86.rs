@@ -185,8 +185,6 @@ fn bits_of(low: __m256i, high: __m256i) -> u64 {
 }
 
 impl Isa for Avx2 {
-    const NAME: &'static str = "avx2";
-
     compiled!(avx2);
 
     type Reals = Avx2Reals;
@@ -328,8 +326,6 @@ impl Avx512 {
 }
 
 impl Isa for Avx512 {
-    const NAME: &'static str = "avx512";
-
     compiled!(avx512);
 
     type Reals = Avx512Reals;

@@ -250,15 +250,6 @@ pub(super) fn all_within(a: __m256i, b: __m256i) -> bool {
 }
 
 #[inline(always)]
-pub(super) fn any_beyond(a: __m256i, b: __m256i) -> bool {
-    // SAFETY: see above.
-    unsafe {
-        let beyond = _mm256_cmpgt_epi32(_mm256_abs_epi32(a), b);
-        _mm256_testz_si256(beyond, beyond) == 0
-    }
-}
-
-#[inline(always)]
 pub(super) fn bits(lanes: __m128i) -> u64 {
     // SAFETY: see above.
     unsafe { u64::from(_mm_movemask_epi8(lanes) as u32) }
@@ -372,11 +363,6 @@ macro_rules! eight_lanes {
         #[inline(always)]
         fn all_within(self, a: __m256i, b: __m256i) -> bool {
             eight::all_within(a, b)
-        }
-
-        #[inline(always)]
-        fn any_beyond(self, a: __m256i, b: __m256i) -> bool {
-            eight::any_beyond(a, b)
         }
     };
 }
