@@ -221,8 +221,8 @@ impl Brick<'_> {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
             let levels = if FEW { 1 } else { 2 };
-            let from_part = walk.tables.from_part(isa, value, levels, lane);
-            if !isa.all_within(from_part, isa.load(&walk.tables.width)) {
+            let in_part = walk.tables.in_part(isa, value, levels, lane);
+            if !isa.all_within(in_part, isa.load(&walk.tables.width)) {
                 continue;
             }
             if !SEARCH {
@@ -230,7 +230,7 @@ impl Brick<'_> {
             }
             let [less, width] = &walk.tables.sure;
             if walk.tables.has_sure
-                && isa.all_within(isa.sub(from_part, isa.load(less)), isa.load(width))
+                && isa.all_within(isa.sub(in_part, isa.load(less)), isa.load(width))
             {
                 return Some(lane);
             }

@@ -43,6 +43,9 @@ pub(super) fn start<I: Isa>(walk: &mut Walk<'_, I>) {
 /// have their turns, nearest first.
 #[inline(always)]
 pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) {
+    if walk.is_lost {
+        return;
+    }
     walk.counters.clip_records += 1;
     let view = walk.view;
     let level = &view.levels[record.level as usize];
@@ -113,6 +116,7 @@ pub(super) fn change<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) -> boo
     };
     let subtree = Subtree::new(isa, view, record, &lattice);
     walk.counters.changes += 1;
+    walk.counters.skipped_detail += u64::from(subtree.finest < view.depth);
     walk.tables.forget();
     if subtree.is_coarse {
         walk.tables.make_square(isa, &subtree);

@@ -29,9 +29,10 @@ pub(super) struct Counters {
     pub(super) skipped_off_screen: u64,
     /// Nodes behind what is drawn.
     pub(super) skipped_hidden: u64,
-    /// Children left when all samples of the picture were drawn.
+    /// Nodes whose further children were left because all samples were drawn.
     pub(super) skipped_full: u64,
-    /// Nodes with children that level of detail took for a solid.
+    /// Nodes with children that level of detail took for a solid in clip space,
+    /// and lattices that it ends above the finest voxels.
     pub(super) skipped_detail: u64,
     /// Tiles filled whole by one solid.
     pub(super) tiles_filled: u64,

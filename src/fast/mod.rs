@@ -193,7 +193,9 @@ impl Engine for Fast {
         if self.draw_fast(graph, setup, frame) {
             return Ok(self.counters.stats());
         }
-        self.fallback.render(graph, setup, frame)
+        let mut stats = self.fallback.render(graph, setup, frame)?;
+        stats.push(("handed_to_machine", 1));
+        Ok(stats)
     }
 }
 

@@ -38,7 +38,8 @@ fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window, extent: Extent) -> O
         }
         return Some(open);
     }
-    if walk.switches.hidden && !walk.fill.has_open_tile(window) {
+    // Empty ones come here only where off-screen nodes are looked into.
+    if extent != Extent::Empty && walk.switches.hidden && !walk.fill.has_open_tile(window) {
         walk.counters.skipped_hidden += 1;
         return None;
     }

@@ -203,7 +203,7 @@ impl Tables {
     /// A value relative to the centre of a lane's finest voxel, from one
     /// relative to the centre of a node `levels` levels above.
     #[inline(always)]
-    pub(super) fn from_part<I: Isa>(
+    pub(super) fn in_part<I: Isa>(
         &self,
         isa: I,
         value: I::Eight,

@@ -65,6 +65,17 @@ pub(super) fn shift<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Wor
     }
 }
 
+/// A margin: `a` shifted, not rounded down. For a vertex behind the eye `a` is
+/// negative, and rounding down would narrow the box.
+fn part_of<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Word {
+    let part = shift(dp, a, places);
+    if places > 0 {
+        dp.add(part, Word::from_host(1))
+    } else {
+        part
+    }
+}
+
 /// A position in the image: quadtree node, and whether the box lies inside it.
 pub(super) struct Place {
     pub(super) quad: QuadNode,
@@ -134,7 +145,7 @@ fn bisect<P: Probe, L: Lattice>(
             Halves { low, high }
         }
         &Margin::Grow(grow) => {
-            let margin = w.map(|w| shift(dp, w, grow + below - 1));
+            let margin = w.map(|w| part_of(dp, w, grow + below - 1));
             closed(dp, &relative, &margin)
         }
         Margin::Gap(samples) if below > 0 => {
@@ -150,7 +161,7 @@ fn bisect<P: Probe, L: Lattice>(
             let halves = match constants.grow {
                 None => closed_plain(dp, &relative),
                 Some(grow) => {
-                    let margin = w.map(|w| shift(dp, w, grow - 1));
+                    let margin = w.map(|w| part_of(dp, w, grow - 1));
                     closed(dp, &relative, &margin)
                 }
             };
@@ -276,7 +287,7 @@ fn border<P: Probe, L: Lattice>(
         let (left, right) = match constants.grow {
             None => (from_left.span(dp), from_right.span(dp)),
             Some(grow) => {
-                let margin = pose.w.map(|w| shift(dp, w, grow + below));
+                let margin = pose.w.map(|w| part_of(dp, w, grow + below));
                 let outward = |dp: &mut Datapath<P>, v: &L| {
                     let raised = v.zip(&margin, |v, m| dp.add(v, m));
                     let lowered = v.zip(&margin, |v, m| dp.sub(v, m));

@@ -527,6 +527,10 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 }
 
 /// The eight children's cages.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "lives for one subdivision, on the stack"
+)]
 enum Poses<L> {
     Clip { x: [L; 8], y: [L; 8], w: [L; 8] },
     Screen { x: [L; 8], y: [L; 8] },

@@ -26,6 +26,8 @@ const MAX_CLIP_FRAC: u32 = 30;
 const MAX_SUB_LEVELS: u32 = 24;
 /// Fraction bits of screen positions, unless the format or the user says otherwise.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
+/// Boxes widened by more samples than this may leave their words.
+const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
 /// Bits of a word beyond a screen position's fraction and the levels of the
 /// image: sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
@@ -219,7 +221,9 @@ impl FrameSetup {
         let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
         let (origin_clip, edge_clip) = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
         let reach = reach(&origin_clip, &edge_clip, depth).ok_or(SetupError::OutOfRange)?;
+        let finite = options.tolerance_px.is_finite();
         let has_headroom = reach.fits(format, sub_levels)
+            && (!finite || options.tolerance_px <= MOST_TOLERANCE_WITH_HEADROOM)
             && levels + format.frac() + SCREEN_HEADROOM_BITS <= options.bits;
 
         let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)

@@ -137,8 +137,11 @@ fn engines_agree_and_are_told_in_every_form() {
     assert_eq!(rows[0]["scene"], SCENE);
     assert_eq!(rows[0]["size"], "48x32");
     let median = results[0]["wall"]["median_ms"].as_f64().unwrap();
-    assert_eq!(rows[0]["median_ms"].parse::<f64>().unwrap(), median);
-    assert!(file("a/r.md").contains("| machine | 1 |"));
+    // Numbers read from JSON may differ in their last bit from those written.
+    let told = rows[0]["median_ms"].parse::<f64>().unwrap();
+    assert!((told - median).abs() <= median * 1e-12, "{told} {median}");
+    let markdown = file("a/r.md").replace(' ', "");
+    assert!(markdown.contains("|machine|1|"), "{markdown}");
     assert!(file("a/r.svg").starts_with("<svg") && file("a/r.svg").contains("float-rays"));
 
     // What is there is not replaced, and no time is spent before that is said.

@@ -233,10 +233,24 @@ mod tests {
                 isa.plus_times(isa.load(&a), isa.load(&b), times),
                 Scalar.plus_times(a, b, times),
             ),
+            (isa.negative(isa.load(&a)), Scalar.negative(a)),
+            (
+                isa.plus_shifted(isa.load(&a), isa.load(&b), 3),
+                Scalar.plus_shifted(a, b, 3),
+            ),
         ];
         for (mine, twin) in pairs {
             assert_eq!(isa.store(mine), twin);
         }
+        let squares: [[i16; 64]; STRIPS] = std::array::from_fn(|t| {
+            std::array::from_fn(|i| i16::from(bytes[64 * t + i]).wrapping_mul(257))
+        });
+        // Half widths as they are: twice of them fits sixteen bits.
+        let half = b.map(|half| half & 0x7fff);
+        assert_eq!(
+            isa.square_within(&squares, isa.load(&a), &half),
+            Scalar.square_within(&squares, a, &half)
+        );
         let near: [i32; LANES] = std::array::from_fn(|i| a[i] >> 1);
         let limit: [i32; LANES] = std::array::from_fn(|i| (b[i] >> 1).abs() | 0x2000_0000);
         assert_eq!(

@@ -252,7 +252,7 @@ impl Isa for Avx2 {
             let mut samples = [_mm256_set1_epi8(-1); 4];
             for f in 0..STRIPS {
                 let start = _mm256_broadcastw_epi16(starts[f]);
-                let width = _mm256_set1_epi16(2 * half_width[f] as i16);
+                let width = _mm256_set1_epi16((2 * half_width[f]) as i16);
                 for part in 0..4 {
                     let entries = _mm256_loadu_si256(tables[f].as_ptr().add(16 * part).cast());
                     let value = _mm256_add_epi16(start, entries);
@@ -295,7 +295,7 @@ impl Isa for Avx2 {
     fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
         let mut lanes = 0u64;
         for part in 0..8 {
-            // SAFETY: as in `sixteen`; the load is of 8 entries that the array has.
+            // SAFETY: `self` is only made where these features were found; the load is of 8 entries that the array has.
             let eight = unsafe {
                 let entries = _mm256_loadu_si256(table.as_ptr().add(8 * part).cast());
                 let value = _mm256_add_epi32(_mm256_set1_epi32(start), entries);
@@ -390,7 +390,7 @@ impl Isa for Avx512 {
             let (mut upper, mut lower) = (u32::MAX, u32::MAX);
             for f in 0..STRIPS {
                 let start = _mm512_broadcastw_epi16(starts[f]);
-                let width = _mm512_set1_epi16(2 * half_width[f] as i16);
+                let width = _mm512_set1_epi16((2 * half_width[f]) as i16);
                 let table = tables[f].as_ptr();
                 let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.cast()));
                 upper = _mm512_mask_cmple_epu16_mask(upper, value, width);
@@ -407,7 +407,7 @@ impl Isa for Avx512 {
             return eight::few_strips(coarse, start);
         }
         let cut = eight::cut(coarse, start);
-        // SAFETY: as in `bytes_within`.
+        // SAFETY: `self` is only made where these features were found.
         unsafe {
             let mut lanes = u64::MAX;
             for f in 0..3 {
@@ -423,7 +423,8 @@ impl Isa for Avx512 {
 
     #[inline(always)]
     fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
-        // SAFETY: as in `within`, four times 16 entries.
+        // SAFETY: `self` is only made where these features were found; the
+        // loads are of four times 16 entries, all that the table has.
         unsafe {
             let start = _mm512_set1_epi32(start);
             let width = _mm512_set1_epi32(width as i32);
