@@ -1,19 +1,47 @@
 //! The quickest picture: each sample's own colour, unlit.
 
-use crate::frame::Frame;
+use crate::frame::{Frame, NO_NODE};
 use crate::graph::Graph;
+
+/// Samples that are looked at together: where none shows anything, none is looked up.
+const TOGETHER: usize = 16;
+/// Samples that are worth a thread's while.
+const SHARE: usize = 1 << 15;
 
 /// Writes the colour of each sample's node, as the graph stores it, one entry
 /// a sample, row by row; black where nothing is seen.
 ///
-/// One plain loop on the calling thread. `colors` is made as long as the frame
+/// On the threads of the current pool. `colors` is made as long as the frame
 /// and keeps its memory, so that frames of one size allocate once.
 pub fn flat_colors(graph: &Graph, frame: &Frame, colors: &mut Vec<[u8; 3]>) {
     let of_node: &[[u8; 3]] = &graph.color;
-    colors.clear();
-    // The number of "no node" is beyond every graph's nodes.
-    let color = |&node: &u32| of_node.get(node as usize).copied().unwrap_or_default();
-    colors.extend(frame.node.iter().map(color));
+    colors.resize(frame.node.len(), [0; 3]);
+    write_colors(of_node, &frame.node, colors, rayon::current_num_threads());
+}
+
+/// Halves the samples until each thread has a few shares.
+fn write_colors(of_node: &[[u8; 3]], nodes: &[u32], colors: &mut [[u8; 3]], threads: usize) {
+    if threads > 1 && nodes.len() > SHARE {
+        let half = nodes.len() / 2 / TOGETHER * TOGETHER;
+        let (upper, lower) = nodes.split_at(half);
+        let (to_upper, to_lower) = colors.split_at_mut(half);
+        rayon::join(
+            || write_colors(of_node, upper, to_upper, threads),
+            || write_colors(of_node, lower, to_lower, threads),
+        );
+        return;
+    }
+    let chunks = nodes.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER));
+    for (nodes, colors) in chunks {
+        if nodes.iter().fold(true, |all, &node| all & (node == NO_NODE)) {
+            colors.fill([0; 3]);
+            continue;
+        }
+        for (&node, color) in nodes.iter().zip(colors) {
+            // The number of "no node" is beyond every graph's nodes.
+            *color = of_node.get(node as usize).copied().unwrap_or_default();
+        }
+    }
 }
 
 #[cfg(test)]
