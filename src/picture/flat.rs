@@ -33,7 +33,10 @@ fn write_colors(of_node: &[[u8; 3]], nodes: &[u32], colors: &mut [[u8; 3]], thre
     }
     let chunks = nodes.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER));
     for (nodes, colors) in chunks {
-        if nodes.iter().fold(true, |all, &node| all & (node == NO_NODE)) {
+        if nodes
+            .iter()
+            .fold(true, |all, &node| all & (node == NO_NODE))
+        {
             colors.fill([0; 3]);
             continue;
         }

@@ -262,7 +262,7 @@ impl FrameSetup {
             has_headroom,
             grow_shift: grow_shift(options),
             size_limit: size_limit(options, 1.0).unwrap_or_default(),
-            lod_limit: size_limit(options, options.lod_px),
+            lod_limit: detail_limit(options),
             placement: *placement,
         })
     }
@@ -403,6 +403,16 @@ fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
     (samples > 0.0).then(|| ShiftSum::floor(samples * share))
 }
 
+/// The size of a node that level of detail takes for a solid; `None` for 0.
+/// Under `exact`, where a solid is drawn at every sample of its silhouette and
+/// not at one, it needs no share for pinholes.
+fn detail_limit(options: &SetupOptions) -> Option<ShiftSum> {
+    if options.coverage == Coverage::Exact {
+        return (options.lod_px > 0.0).then(|| ShiftSum::floor(options.lod_px));
+    }
+    size_limit(options, options.lod_px)
+}
+
 /// The view of the object in real numbers.
 struct View {
     /// Clip vectors of a voxel's edges.
@@ -529,7 +539,7 @@ impl View {
     /// Least `W`, by level, at which a node with children is no larger than
     /// the level of detail, wherever in the picture.
     fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
-        match size_limit(options, options.lod_px) {
+        match detail_limit(options) {
             Some(limit) => levels.scaled(self.edges(options).detail_depth(limit.value())),
             None => vec![i64::MAX; levels.bound as usize + 1],
         }
