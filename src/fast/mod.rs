@@ -2,7 +2,7 @@
 //!
 //! What the machine does for records this engine does for samples. Both go
 //! down the graph nearest first and leave what cannot be seen; but the last
-//! two levels are one step here (see [`brick`]): 64 parts, one lane each, and
+//! two levels are one step here (`brick.rs`): 64 parts, one lane each, and
 //! for every open sample the first lane whose outline holds it. That gives
 //! the machine's picture because the picture does not depend on when occluded
 //! records are rejected (`SPEC.md`, section 5), and because all that decides it
