@@ -2,6 +2,7 @@
 
 use hwmodel::{Datapath, Memory, Probe, Stage};
 
+use super::fit::Fill;
 use super::silhouette::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
@@ -31,6 +32,15 @@ impl<'f> Canvas<'f> {
             heat,
             drawn: 0,
             occluded: 0,
+        }
+    }
+
+    /// The fill vectors as the fit sees them; `reject`: whether full quadrants reject.
+    #[inline]
+    pub(super) fn seen_by_fit(&self, reject: bool) -> Fill<'_> {
+        Fill {
+            vectors: self.fill,
+            reject,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use hwmodel::{WideWord, Word};
 
+use super::fit::Place;
 use super::strips::Strips;
 use crate::frame::QuadNode;
 
@@ -77,4 +78,15 @@ pub(super) struct Record<L> {
     pub(super) pose: Pose<L>,
     /// Silhouette planes, in use under the exact rule in clip space.
     pub(super) planes: Planes,
+}
+
+impl<L> Record<L> {
+    /// Where it is in the image.
+    #[inline]
+    pub(super) fn place(&self) -> Place {
+        Place {
+            quad: self.quad,
+            inside: self.inside,
+        }
+    }
 }

@@ -5,7 +5,7 @@ use hwmodel::{Datapath, Memory, Probe, Stage, Word};
 use super::MachineOptions;
 use super::constants::Constants;
 use super::draw::Canvas;
-use super::fit::{self, Fill, Place};
+use super::fit::{self, Place};
 use super::lattice::Lattice;
 use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
@@ -157,17 +157,11 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             self.counts.behind_eye += 1;
             return;
         }
+        let place = record.place();
         let Pose::Clip(clip) = &mut record.pose else {
             return;
         };
-        let fill = Fill {
-            vectors: self.canvas.fill,
-            reject: self.options.reject_filled,
-        };
-        let place = Place {
-            quad: record.quad,
-            inside: record.inside,
-        };
+        let fill = self.canvas.seen_by_fit(self.options.reject_filled);
         let found = fit::clip(
             &mut self.dp,
             &self.constants,
@@ -214,10 +208,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
 
         if let Pose::Clip(clip) = &record.pose {
-            let place = Place {
-                quad: record.quad,
-                inside: record.inside,
-            };
+            let place = record.place();
             if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
                 record.pose = self.changed(record.level, &place, clip);
@@ -490,28 +481,16 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                     x_span: x[child].span(&mut self.dp),
                     y_span: y[child].span(&mut self.dp),
                 };
-                let fill = Fill {
-                    vectors: self.canvas.fill,
-                    reject: self.options.reject_filled,
-                };
-                let place = Place {
-                    quad: parent.quad,
-                    inside: parent.inside,
-                };
+                let fill = self.canvas.seen_by_fit(self.options.reject_filled);
+                let place = parent.place();
                 let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &screen);
                 self.push_at(record(Pose::Screen(screen), parent.planes), found);
             }
             Poses::Strips(strips) => {
                 let Some(subtree) = &self.subtree else { return };
                 let mut strips = strips[child];
-                let fill = Fill {
-                    vectors: self.canvas.fill,
-                    reject: self.options.reject_filled,
-                };
-                let place = Place {
-                    quad: parent.quad,
-                    inside: parent.inside,
-                };
+                let fill = self.canvas.seen_by_fit(self.options.reject_filled);
+                let place = parent.place();
                 let found = fit::strips(
                     &mut self.dp,
                     &self.constants,

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use crate::cli::args::{CoverageName, EngineArgs, Size, Tolerance};
+use crate::cli::args::{CameraArgs, CoverageName, EngineArgs, SceneArgs, Size, Tolerance};
 use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::bench::{Candidate, Scan, Schedule};
@@ -14,6 +14,23 @@ use crate::project::camera::MAX_SIDE;
 
 /// Most pixels of a picture: two gigabytes of samples.
 const MAX_PIXELS: u64 = 1 << 26;
+
+/// Arguments of an experiment on scenes.
+#[derive(Debug, Args)]
+pub(super) struct SceneBenchArgs {
+    /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
+    /// bundled]
+    #[arg(value_name = "SCENE")]
+    pub(super) scenes: Vec<String>,
+    #[command(flatten)]
+    pub(super) measure: MeasureArgs,
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    #[command(flatten)]
+    pub(super) export: ExportArgs,
+}
 
 /// How often, how large, and with which rules.
 #[derive(Debug, Clone, Args)]

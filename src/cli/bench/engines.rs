@@ -1,40 +1,22 @@
 //! `bench engines`: the engines and a stand-in rival, side by side.
 
-use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, MeasureArgs};
+use super::args::SceneBenchArgs;
 use super::context::Context;
 use super::export::{self, Results};
 use super::{subjects, thread_counts};
-use crate::cli::args::{CameraArgs, SceneArgs, ThreadCounts};
+use crate::cli::args::ThreadCounts;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Harness, Plan, engines as experiment, measure};
 
-/// Arguments of `bench engines`.
-#[derive(Debug, Args)]
-pub(super) struct EnginesArgs {
-    /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
-    /// bundled]
-    #[arg(value_name = "SCENE")]
-    scenes: Vec<String>,
-    #[command(flatten)]
-    measure: MeasureArgs,
-    #[command(flatten)]
-    camera: CameraArgs,
-    #[command(flatten)]
-    scene: SceneArgs,
-    #[command(flatten)]
-    export: ExportArgs,
-}
-
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 1024;
 
 pub(super) fn run(
-    args: &EnginesArgs,
+    args: &SceneBenchArgs,
     from_config: Vec<String>,
     threads: Option<&ThreadCounts>,
     console: &Console,

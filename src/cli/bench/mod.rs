@@ -31,7 +31,7 @@ enum Experiment {
     ///
     /// A frame is: clear, traverse, the colour of each sample written. Engines take turns. With --threads
     /// 1,2 those that use threads are measured with each number.
-    Engines(Box<engines::EnginesArgs>),
+    Engines(Box<args::SceneBenchArgs>),
     /// How time grows with the pixels of the picture and the voxels of the scene
     ///
     /// First the picture grows from 64 to 4096 a side (with --size: up to that), for each scene; then terrain
@@ -40,7 +40,7 @@ enum Experiment {
     /// What each technique is worth, by switching it off
     ///
     /// One at a time, on one thread; says what that costs and whether it changes the picture.
-    Ablation(Box<ablation::AblationArgs>),
+    Ablation(Box<args::SceneBenchArgs>),
     /// How far the paper's screen-space midpoints are from exact projection
     VertexError,
 }
