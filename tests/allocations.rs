@@ -6,7 +6,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use shiftvox::fast::{Fast, FastOptions};
-use shiftvox::frame::Frame;
+use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
@@ -85,6 +85,14 @@ fn a_frame_allocates_nothing_after_the_first() {
             assert!(allocations(&mut draw) > 0, "the count counts nothing");
             assert_eq!(allocations(&mut draw), 0);
             assert!(frame.drawn() > 1000);
+            let mut colors = Colors::new(setup.width, setup.height);
+            let of_node: &[[u8; 3]] = &graph.color;
+            let mut draw = || {
+                let drawn = fast.draw_colors(&view, of_node, &setup, &mut colors);
+                drawn.expect("a frame");
+            };
+            assert_eq!(allocations(&mut draw), 0);
+            assert!(colors.words.iter().filter(|&&word| word != 0).count() > 1000);
         }
     }
 }

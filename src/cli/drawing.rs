@@ -6,8 +6,8 @@ use super::args::{Aov, EngineArgs, PictureArgs};
 use super::engines;
 use super::error::{CliError, Kind};
 use super::scenes::Scene;
-use crate::frame::Frame;
-use crate::picture::{Picture, flat_colors, resolve};
+use crate::frame::{Colors, Frame};
+use crate::picture::{Picture, resolve};
 use crate::project::{Camera, FrameSetup, Stats};
 
 /// A drawn picture and what it took.
@@ -51,12 +51,10 @@ pub(super) fn draw(
     let mut times_ms = Vec::new();
     if repeat > 1 {
         // A frame as experiments time it: clear, traverse, colours written.
-        let mut nodes = Frame::nodes_only(setup.width, setup.height);
-        let mut colors = Vec::new();
+        let mut colors = Colors::new(setup.width, setup.height);
         for _ in 0..repeat {
             let started = Instant::now();
-            engine.draw(&graph.view(), &setup, &mut nodes)?;
-            flat_colors(graph, &nodes, &mut colors);
+            engine.draw_colors(&graph.view(), &graph.color, &setup, &mut colors)?;
             std::hint::black_box(&colors);
             times_ms.push(milliseconds_since(started));
         }

@@ -174,8 +174,9 @@ impl Brick<'_> {
                 let at = place + (bit >> 3) as usize * width + (bit & 7) as usize;
                 let levels = if FEW { 1 } else { 2 };
                 let node = self.parts.node(graph, levels, self.octant, lane);
-                if let Some(shown) = walk.pixels.node.get_mut(at) {
-                    *shown = node;
+                let word = walk.pixels.word(node);
+                if let Some(shown) = walk.pixels.shown.get_mut(at) {
+                    *shown = word;
                 }
             }
         }

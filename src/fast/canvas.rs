@@ -6,7 +6,7 @@
 //! as in the image quadtree. A square is what is no larger than a tile, anywhere.
 
 use super::lanes::Isa;
-use crate::frame::NO_NODE;
+use crate::frame::{NO_NODE, color_word};
 
 /// Samples along a tile's side, as a power of two.
 pub(super) const TILE_LOG2: u32 = 3;
@@ -24,6 +24,37 @@ pub(super) struct Window {
     pub(super) top: i32,
     pub(super) right: i32,
     pub(super) bottom: i32,
+}
+
+/// The windows of a record's eight children, by octant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Windows {
+    pub(super) left: [i32; 8],
+    pub(super) top: [i32; 8],
+    pub(super) right: [i32; 8],
+    pub(super) bottom: [i32; 8],
+    /// Of those no larger than a tile, which is meant by the next two: rows
+    /// less one times eight, and columns less one.
+    pub(super) shape: [i32; 8],
+    /// Place of the tile that holds the first sample, in the band.
+    pub(super) tile: [i32; 8],
+    /// Which of them have a sample, one bit each.
+    pub(super) held: u8,
+    /// Which of those are no larger than a tile.
+    pub(super) square: u8,
+}
+
+impl Windows {
+    /// One of them.
+    #[inline(always)]
+    pub(super) fn at(&self, octant: usize) -> Window {
+        Window {
+            left: self.left[octant],
+            top: self.top[octant],
+            right: self.right[octant],
+            bottom: self.bottom[octant],
+        }
+    }
 }
 
 /// How large a window is.
@@ -189,14 +220,14 @@ static COLUMNS: [u64; 9] = {
     masks
 };
 
-/// The first rows and columns of a tile, by number of rows and columns less one.
-static SQUARES: [[u64; 8]; 8] = {
-    let mut masks = [[0; 8]; 8];
+/// The first rows and columns of a tile, by [`Windows::shape`].
+static SQUARES: [u64; 64] = {
+    let mut masks = [0; 64];
     let mut rows = 0;
     while rows < 8 {
         let mut columns = 0;
         while columns < 8 {
-            masks[rows][columns] =
+            masks[8 * rows + columns] =
                 ((0xff >> (7 - columns)) * LEFT_COLUMN) & (ALL >> (56 - 8 * rows));
             columns += 1;
         }
@@ -232,6 +263,11 @@ impl<'p> Fill<'p> {
         fill
     }
 
+    /// Tiles a row, and the place of the band's first tile in the whole picture.
+    pub(super) fn place_of_tiles(&self) -> (i32, i32) {
+        (self.grid.tiles_across as i32, self.first_tile as i32)
+    }
+
     /// Place of the tile in column `x` and row `y` of tiles.
     #[inline(always)]
     fn tile_at(&self, x: i32, y: i32) -> usize {
@@ -263,8 +299,23 @@ impl<'p> Fill<'p> {
             (window.right - window.left) as u32,
             (window.bottom - window.top) as u32,
         );
-        let wanted = SQUARES[more_y as usize & 7][more_x as usize & 7];
+        let shape = more_y << 3 | more_x;
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
+        self.open_in_shape(isa, at, x, y, shape)
+    }
+
+    /// [`Fill::open_in_square`] of the square that begins at column `x` and row
+    /// `y` of the tile at `at`. `shape`: see [`Windows::shape`].
+    #[inline(always)]
+    pub(super) fn open_in_shape<I: Isa>(
+        &self,
+        isa: I,
+        at: usize,
+        x: u32,
+        y: u32,
+        shape: u32,
+    ) -> u64 {
+        let wanted = SQUARES[shape as usize & 63];
         // What lies in the four tiles that the window may reach. Those that it
         // does not reach are shifted out or masked.
         let across = self.grid.tiles_across;
@@ -302,6 +353,10 @@ impl<'p> Fill<'p> {
         let (tile_x, tile_y) = (window.left >> TILE_LOG2, window.top >> TILE_LOG2);
         self.open -= u64::from(samples.count_ones());
         let at = self.tile_at(tile_x, tile_y);
+        if window.right >> TILE_LOG2 == tile_x && window.bottom >> TILE_LOG2 == tile_y {
+            self.mark_at(at, tile_x, tile_y, samples << (8 * y + x));
+            return;
+        }
         let below = at.wrapping_add(self.grid.tiles_across);
         let left = samples << x & !COLUMNS[x as usize];
         let right = samples >> 1 >> (7 - x) & COLUMNS[x as usize];
@@ -328,9 +383,12 @@ impl<'p> Fill<'p> {
         let tiles = window.coarser(TILE_LOG2);
         let blocks = window.coarser(BLOCK_LOG2);
         if blocks.left == blocks.right && blocks.top == blocks.bottom {
-            let (at, _) = self.block_of(tiles.left, tiles.top);
-            let bits = tiles.bits(blocks.left << 3, blocks.top << 3);
-            return self.part.blocks[at] & bits != 0;
+            let shape = (tiles.bottom - tiles.top) << 3 | (tiles.right - tiles.left);
+            let row = (blocks.top - self.first_block_row) as usize;
+            let at = row * self.grid.blocks_across + blocks.left as usize;
+            let first = (tiles.top & 7) << 3 | (tiles.left & 7);
+            let wanted = SQUARES[shape as usize & 63] << first;
+            return self.part.blocks[at] & wanted != 0;
         }
         let mut y = blocks.top;
         while y <= blocks.bottom {
@@ -366,7 +424,10 @@ pub(super) struct Pixels<'f> {
     pub(super) width: usize,
     /// First row of the band.
     pub(super) top: i32,
-    pub(super) node: &'f mut [u32],
+    /// Nodes, or their colours as words.
+    pub(super) shown: &'f mut [u32],
+    /// Colours by node where those are asked for, else empty.
+    pub(super) color: &'f [[u8; 3]],
     /// Empty where voxels are not asked for.
     pub(super) voxel: &'f mut [[i32; 4]],
 }
@@ -376,6 +437,16 @@ impl Pixels<'_> {
     #[inline(always)]
     pub(super) fn wants_voxels(&self) -> bool {
         !self.voxel.is_empty()
+    }
+
+    /// What a sample holds that shows a node.
+    #[inline(always)]
+    pub(super) fn word(&self, node: u32) -> u32 {
+        if self.color.is_empty() {
+            return node;
+        }
+        let color = self.color.get(node as usize);
+        color.map_or(0, |&color| color_word(color))
     }
 
     /// Place of a sample.
@@ -396,7 +467,7 @@ impl Pixels<'_> {
         voxel: [i32; 4],
     ) {
         let first = self.at(x, y);
-        isa.put(self.node, first, self.width, samples, node);
+        isa.put(self.shown, first, self.width, samples, self.word(node));
         if self.wants_voxels() {
             let mut left = samples;
             while left != 0 {
@@ -409,7 +480,8 @@ impl Pixels<'_> {
 
     /// Forgets what was shown.
     pub(super) fn clear(&mut self) {
-        self.node.fill(NO_NODE);
+        let nothing = if self.color.is_empty() { NO_NODE } else { 0 };
+        self.shown.fill(nothing);
         self.voxel.fill(crate::frame::NO_VOXEL);
     }
 }

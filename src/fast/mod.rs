@@ -36,7 +36,7 @@ mod tables;
 mod view;
 mod walk;
 
-use crate::frame::Frame;
+use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use canvas::{BLOCK_LOG2, Fill, FillMemory, FillPart, Grid, Pixels, Window};
@@ -116,10 +116,7 @@ impl Fast {
 
     /// Draws a frame, or says that it does not: `false`. Allocates nothing
     /// when the set-up is that of the last frame.
-    fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
-        if frame.records.is_some() {
-            return false;
-        }
+    fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
         let prepared = match &mut self.prepared {
             Some(prepared) if prepared.setup == *setup => prepared,
             other => other.insert(Prepared {
@@ -137,7 +134,7 @@ impl Fast {
             graph,
             switches: &self.options.switches,
         };
-        let grid = Grid::new(frame.width, frame.height);
+        let grid = Grid::new(setup.width, setup.height);
         self.fill.resize(&grid);
         let threads = match self.options.threads {
             0 => rayon::current_num_threads(),
@@ -148,16 +145,11 @@ impl Fast {
             bounds: Window {
                 left: 0,
                 top: 0,
-                right: frame.width as i32 - 1,
-                bottom: frame.height as i32 - 1,
+                right: setup.width as i32 - 1,
+                bottom: setup.height as i32 - 1,
             },
             fill: self.fill.part(),
-            pixels: Pixels {
-                width: frame.width as usize,
-                top: 0,
-                node: &mut frame.node,
-                voxel: &mut frame.voxel,
-            },
+            pixels,
         };
         let counters = match self.options.instructions.found() {
             #[cfg(target_arch = "x86_64")]
@@ -178,10 +170,31 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
-        if self.draw_fast(graph, setup, frame) {
+        if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
             return Ok(());
         }
         self.fallback.draw(graph, setup, frame)
+    }
+
+    fn draw_colors(
+        &mut self,
+        graph: &GraphView<'_>,
+        of_node: &[[u8; 3]],
+        setup: &FrameSetup,
+        colors: &mut Colors,
+    ) -> Result<(), EngineError> {
+        let pixels = Pixels {
+            width: colors.width as usize,
+            top: 0,
+            shown: &mut colors.words,
+            color: of_node,
+            voxel: &mut [],
+        };
+        // Without colours there is nothing to look up.
+        if !of_node.is_empty() && self.draw_fast(graph, setup, pixels) {
+            return Ok(());
+        }
+        self.fallback.draw_colors(graph, of_node, setup, colors)
     }
 
     fn render(
@@ -190,12 +203,23 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
-        if self.draw_fast(graph, setup, frame) {
+        if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
             return Ok(self.counters.stats());
         }
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.push(("handed_to_machine", 1));
         Ok(stats)
+    }
+}
+
+/// A frame's nodes and voxels.
+fn pixels_of(frame: &mut Frame) -> Pixels<'_> {
+    Pixels {
+        width: frame.width as usize,
+        top: 0,
+        shown: &mut frame.node,
+        color: &[],
+        voxel: &mut frame.voxel,
     }
 }
 
@@ -277,17 +301,18 @@ impl Piece<'_> {
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
         let voxels = samples.min(self.pixels.voxel.len());
         let (fill, fill_rest) = self.fill.split(&self.grid, rows);
-        let (node, node_rest) = self.pixels.node.split_at_mut(samples);
+        let (shown, shown_rest) = self.pixels.shown.split_at_mut(samples);
         let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
-        let width = self.pixels.width;
-        let piece = |bounds: Window, fill, node, voxel| Self {
+        let (width, color) = (self.pixels.width, self.pixels.color);
+        let piece = |bounds: Window, fill, shown, voxel| Self {
             grid: self.grid,
             bounds,
             fill,
             pixels: Pixels {
                 width,
                 top: bounds.top,
-                node,
+                shown,
+                color,
                 voxel,
             },
         };
@@ -297,8 +322,8 @@ impl Piece<'_> {
         };
         let lower = Window { top, ..self.bounds };
         (
-            piece(upper, fill, node, voxel),
-            piece(lower, fill_rest, node_rest, voxel_rest),
+            piece(upper, fill, shown, voxel),
+            piece(lower, fill_rest, shown_rest, voxel_rest),
         )
     }
 
@@ -336,9 +361,9 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         exact: job.exact,
         graph: job.graph,
         switches: job.switches,
+        bounds: Bounds::new(&fill),
         fill,
         pixels: piece.pixels,
-        bounds: Bounds::new(&piece.bounds),
         counters: Counters::default(),
         tables: tables::Tables::default(),
         found: [(0, 0); 64],

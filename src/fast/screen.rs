@@ -1,7 +1,7 @@
 //! Records in screen space: places in the lattice of a subtree.
 
 use super::brick;
-use super::canvas::{Extent, TILE_LOG2, Window, tiles_of};
+use super::canvas::{Extent, TILE_LOG2, Window, Windows, tiles_of};
 use super::clip::ClipRecord;
 use super::lanes::Isa;
 use super::parts;
@@ -44,6 +44,27 @@ fn open_in<I: Isa>(walk: &mut Walk<'_, I>, window: &Window, extent: Extent) -> O
         return None;
     }
     Some(0)
+}
+
+/// [`open_in`] of one of the windows of a record's children.
+#[inline(always)]
+fn open_in_child<I: Isa>(walk: &mut Walk<'_, I>, windows: &Windows, child: u8) -> Option<u64> {
+    let octant = usize::from(child & 7);
+    if windows.square >> octant & 1 == 0 {
+        let window = windows.at(octant);
+        return open_in(walk, &window, window.extent());
+    }
+    let (x, y) = (
+        windows.left[octant] as u32 & 7,
+        windows.top[octant] as u32 & 7,
+    );
+    let (tile, shape) = (windows.tile[octant] as usize, windows.shape[octant] as u32);
+    let open = walk.fill.open_in_shape(walk.isa, tile, x, y, shape);
+    if open == 0 && walk.switches.hidden {
+        walk.counters.skipped_hidden += 1;
+        return None;
+    }
+    Some(open)
 }
 
 /// Goes on with a record that just changed to screen space.
@@ -120,21 +141,22 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
     let left = record.left - 1;
     walk.counters.skipped_absent += u64::from(mask.count_zeros());
     let bias = subtree.window_bias(left);
+    let windows = isa.windows(&record.place, left, &bias, subtree, &walk.bounds);
+    let mut wanted = mask;
+    if walk.switches.off_screen {
+        wanted &= windows.held;
+        walk.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
+    }
     let parent = isa.load(&record.place);
-    let mut order = parts::in_order(octant, mask);
+    let mut order = parts::in_order(octant, wanted);
     while order != 0 {
         let child = octant ^ OCCLUSION_ORDER[order.trailing_zeros() as usize & 7];
         order &= order - 1;
-        let offset = isa.load(&subtree.child[usize::from(child & 7)]);
-        let at = isa.plus_shifted(parent, offset, left);
-        let (window, extent) = isa.window(at, &bias, subtree, &walk.bounds);
-        if extent == Extent::Empty && walk.switches.off_screen {
-            walk.counters.skipped_off_screen += 1;
-            continue;
-        }
-        let Some(open) = open_in(walk, &window, extent) else {
+        let Some(open) = open_in_child(walk, &windows, child & 7) else {
             continue;
         };
+        let offset = isa.load(&subtree.child[usize::from(child & 7)]);
+        let at = isa.plus_shifted(parent, offset, left);
         let before = mask & ((1u8 << (child & 7)) - 1);
         let slot = first.wrapping_add(before.count_ones());
         let mut min = record.min;
@@ -142,15 +164,15 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         min[0] += beyond[0] & half;
         min[1] += beyond[1] & half;
         min[2] += beyond[2] & half;
-        let child = ScreenRecord {
+        let record = ScreenRecord {
             node: parts::linked(walk.graph.links, slot),
             left,
             min,
             place: isa.store(at),
-            window,
+            window: windows.at(usize::from(child & 7)),
             open,
         };
-        step(walk, subtree, &child);
+        step(walk, subtree, &record);
     }
 }
 

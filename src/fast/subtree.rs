@@ -47,6 +47,8 @@ pub(super) struct Subtree {
     pub(super) half_edge: [[i32; LANES]; 3],
     /// By octant, the centre of a child of the finest level relative to its parent's.
     pub(super) child: [[i32; LANES]; 8],
+    /// The box functions of `child`, by function and octant.
+    pub(super) child_box: [[i32; 8]; 2],
     /// The sample that values are relative to: column and row, twice.
     pub(super) origin: [i32; 4],
     /// The octant of all its voxels, if it is one.
@@ -97,6 +99,16 @@ impl Subtree {
         let [x, y, z] = lattice.half_edge;
         let (y_and_z, y_less_z) = (isa.add(y, z), isa.sub(y, z));
         let (z_less_y, neither) = (isa.negative(y_less_z), isa.negative(y_and_z));
+        let child = [
+            isa.store(isa.sub(neither, x)),
+            isa.store(isa.sub(z_less_y, x)),
+            isa.store(isa.sub(y_less_z, x)),
+            isa.store(isa.sub(y_and_z, x)),
+            isa.store(isa.add(neither, x)),
+            isa.store(isa.add(z_less_y, x)),
+            isa.store(isa.add(y_less_z, x)),
+            isa.store(isa.add(y_and_z, x)),
+        ];
         Self {
             finest: lattice.finest,
             finest_side,
@@ -106,16 +118,11 @@ impl Subtree {
             reach,
             doubt,
             half_edge,
-            child: [
-                isa.store(isa.sub(neither, x)),
-                isa.store(isa.sub(z_less_y, x)),
-                isa.store(isa.sub(y_less_z, x)),
-                isa.store(isa.sub(y_and_z, x)),
-                isa.store(isa.add(neither, x)),
-                isa.store(isa.add(z_less_y, x)),
-                isa.store(isa.add(y_less_z, x)),
-                isa.store(isa.add(y_and_z, x)),
+            child_box: [
+                isa.store(by_octant(isa, &half_edge, ACROSS)),
+                isa.store(by_octant(isa, &half_edge, ACROSS + 1)),
             ],
+            child,
             origin: [left, top, left, top],
             // The lowest centre of a voxel that is subdivided is one side of
             // the finest voxels above the lowest corner.
@@ -156,6 +163,21 @@ impl Subtree {
         let (x, y) = (half(ACROSS), half(ACROSS + 1));
         [up - x, up - y, x, y]
     }
+}
+
+/// One function of [`Subtree::child`] by octant, one lane each.
+#[inline(always)]
+fn by_octant<I: Isa>(isa: I, half_edge: &[[i32; LANES]; 3], f: usize) -> I::Eight {
+    /// By axis, which way an octant lies.
+    static SIDES: [[i32; 8]; 3] = [
+        [-1, -1, -1, -1, 1, 1, 1, 1],
+        [-1, -1, 1, 1, -1, -1, 1, 1],
+        [-1, 1, -1, 1, -1, 1, -1, 1],
+    ];
+    let none = isa.load(&[0; LANES]);
+    let x = isa.plus_times(none, isa.load(&SIDES[0]), half_edge[0][f]);
+    let y = isa.plus_times(x, isa.load(&SIDES[1]), half_edge[1][f]);
+    isa.plus_times(y, isa.load(&SIDES[2]), half_edge[2][f])
 }
 
 /// The numbers of a lattice, lane by lane.

@@ -1,7 +1,7 @@
 //! What the turns of a walk share: the frame's constants, the graph, the
 //! picture in the making.
 
-use super::canvas::{Fill, Pixels, Window};
+use super::canvas::{Fill, Pixels};
 use super::counters::Counters;
 use super::planes::Exact;
 use super::switches::Switches;
@@ -36,13 +36,21 @@ pub(super) struct Walk<'w, I> {
 pub(super) struct Bounds {
     pub(super) least: [i32; 4],
     pub(super) greatest: [i32; 4],
+    /// Tiles from one row of tiles to the next.
+    pub(super) tiles_across: i32,
+    /// Place of the band's first tile in the whole picture.
+    pub(super) first_tile: i32,
 }
 
 impl Bounds {
-    pub(super) fn new(window: &Window) -> Self {
+    pub(super) fn new(fill: &Fill<'_>) -> Self {
+        let window = &fill.bounds;
+        let (tiles_across, first_tile) = fill.place_of_tiles();
         Self {
             least: [window.left, window.top, i32::MIN, i32::MIN],
             greatest: [i32::MAX, i32::MAX, window.right, window.bottom],
+            tiles_across,
+            first_tile,
         }
     }
 }

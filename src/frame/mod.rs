@@ -1,7 +1,9 @@
 //! What an engine draws into: one entry for each sample.
 
+mod colors;
 pub mod quadtree;
 
+pub use colors::{Colors, color_word};
 pub use quadtree::{FillVectors, QuadNode};
 
 /// `node` where nothing is seen.

@@ -5,7 +5,6 @@
 //! the voxels agree on every byte of the picture. Rules: `spec/picture.md`.
 
 mod color;
-mod flat;
 mod hash;
 pub mod npy;
 #[cfg(feature = "png")]
@@ -16,7 +15,6 @@ pub mod store;
 
 pub(crate) use color::Linear;
 pub use color::{Background, Shading};
-pub use flat::flat_colors;
 pub use hash::hash;
 pub use resolve::{ResolveError, resolve};
 

@@ -3,7 +3,7 @@
 use hwmodel::Trap;
 
 use super::FrameSetup;
-use crate::frame::Frame;
+use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 
 /// Children by occlusion order, nearest first, for octant 000: exclusive-or
@@ -36,6 +36,24 @@ pub trait Engine {
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
         self.render(graph, setup, frame).map(drop)
+    }
+
+    /// Draws the samples' own colours, as [`Engine::draw`] draws their nodes:
+    /// what a preview shows and what experiments time. `of_node`: colours by
+    /// graph node; `colors` has the size of `setup` and is cleared first.
+    ///
+    /// # Errors
+    /// As [`Engine::render`].
+    fn draw_colors(
+        &mut self,
+        graph: &GraphView<'_>,
+        of_node: &[[u8; 3]],
+        setup: &FrameSetup,
+        colors: &mut Colors,
+    ) -> Result<(), EngineError> {
+        self.draw(graph, setup, colors.nodes())?;
+        colors.take_nodes(of_node);
+        Ok(())
     }
 
     /// Draws into `frame`, which has the size of `setup` and is cleared first.

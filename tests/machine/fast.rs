@@ -9,7 +9,7 @@ use crate::common::*;
 use crate::scenes;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
-use shiftvox::frame::Frame;
+use shiftvox::frame::{Colors, Frame, color_word};
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
 use shiftvox::project::{
@@ -42,7 +42,28 @@ fn draw_fast(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut fast = Fast::new(options, Box::new(fallback));
     let drawn = fast.render(&graph.view(), setup, &mut frame);
+    if drawn.is_ok() {
+        colors_are_the_nodes(&mut fast, graph, setup, &frame);
+    }
     (drawn.map(|_| frame), !asked.load(Ordering::Relaxed))
+}
+
+/// What is drawn in colours is what the nodes that are seen have.
+fn colors_are_the_nodes(fast: &mut Fast, graph: &Graph, setup: &FrameSetup, frame: &Frame) {
+    let of_node: Vec<[u8; 3]> = (0..graph.len() as u32)
+        .map(|node| {
+            let [_, r, g, b] = node.wrapping_mul(0x9e37_79b1).to_be_bytes();
+            [r, g, b]
+        })
+        .collect();
+    let mut colors = Colors::new(setup.width, setup.height);
+    colors.words.fill(3);
+    fast.draw_colors(&graph.view(), &of_node, setup, &mut colors)
+        .expect("drawn before");
+    for (&node, &word) in frame.node.iter().zip(&colors.words) {
+        let color = of_node.get(node as usize);
+        assert_eq!(word, color.map_or(0, |&color| color_word(color)));
+    }
 }
 
 fn draw_machine(graph: &Graph, setup: &FrameSetup) -> Result<Frame, EngineError> {

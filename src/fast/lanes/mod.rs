@@ -21,7 +21,7 @@ pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::{Avx2, Avx512};
 
-use super::canvas::{Extent, Window};
+use super::canvas::{Extent, Window, Windows};
 use super::clip::ClipRecord;
 use super::parts::Parts;
 use super::planes::Exact;
@@ -112,6 +112,17 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
         subtree: &Subtree,
         bounds: &Bounds,
     ) -> (Window, Extent);
+
+    /// [`Isa::window`] of all eight children at once. `place`: their parent's;
+    /// `left`: levels from them to the finest.
+    fn windows(
+        self,
+        place: &[i32; LANES],
+        left: u32,
+        bias: &[i32; 4],
+        subtree: &Subtree,
+        bounds: &Bounds,
+    ) -> Windows;
 
     /// The samples from column `x` and row `y` of a tile on, of the tile and the
     /// one below (`across` entries on, less than 2^16), moved to column 0; and
@@ -267,6 +278,52 @@ mod tests {
         }
     }
 
+    /// The windows of a record and of its children, of a set and of the scalar
+    /// twin. `words`: any numbers.
+    fn windows_agree<I: Isa>(isa: I, words: &[i32], left: u32) {
+        let small = |at: usize| words[at] >> 8;
+        let child: [[i32; LANES]; 8] =
+            std::array::from_fn(|octant| std::array::from_fn(|f| small(8 * octant + f) >> left));
+        let subtree = Subtree {
+            finest: 0,
+            finest_side: 1,
+            step: [[0; LANES]; 2],
+            box_bits: 11 + left,
+            half_width: [0; LANES],
+            reach: [0; LANES],
+            doubt: [0; LANES],
+            half_edge: [[0; LANES]; 3],
+            child,
+            child_box: [4, 5].map(|f| child.map(|functions| functions[f])),
+            origin: [64, 65, 64, 65].map(|at| small(at) & 0xff8),
+            octant: None,
+            is_coarse: false,
+        };
+        let place: [i32; LANES] = [66, 67, 68, 69, 70, 71, 70, 71].map(small);
+        let bias: [i32; 4] = std::array::from_fn(|i| small(72 + i) >> 6);
+        let bounds = Bounds {
+            least: [-40, 0, i32::MIN, i32::MIN],
+            greatest: [i32::MAX, i32::MAX, 4000, small(76) & 0xfff],
+            tiles_across: words[77] & 0x3ff,
+            first_tile: words[78] & 0xffff,
+        };
+        let mine = isa.windows(&place, left, &bias, &subtree, &bounds);
+        let twin = Scalar.windows(&place, left, &bias, &subtree, &bounds);
+        assert_eq!(mine, twin);
+        assert_eq!(
+            isa.window(isa.load(&place), &bias, &subtree, &bounds),
+            Scalar.window(place, &bias, &subtree, &bounds)
+        );
+        for octant in 0..8 {
+            let at = Scalar.plus_shifted(place, child[octant], left);
+            let same_lanes = [at[0], at[1], at[2], at[3], at[4], at[5], at[4], at[5]];
+            let (window, extent) = Scalar.window(same_lanes, &bias, &subtree, &bounds);
+            assert_eq!(twin.at(octant), window);
+            assert_eq!(twin.held >> octant & 1 == 0, extent == Extent::Empty);
+            assert_eq!(twin.square >> octant & 1 != 0, extent == Extent::Square);
+        }
+    }
+
     /// All steps on `f64` of a set, and of the scalar twin. `x`: any whole
     /// numbers below 2^31; `w`: whole numbers from 1 on.
     fn reals_agree<I: Isa>(isa: I, x: &[f64; 8], y: &[f64; 8], w: &[f64; 8]) {
@@ -333,9 +390,11 @@ mod tests {
         ) {
             if let Some(isa) = Avx2::detect() {
                 agrees(isa, &bytes, &words, few);
+                windows_agree(isa, &words, u32::from(bytes[399] & 7));
             }
             if let Some(isa) = Avx512::detect() {
                 agrees(isa, &bytes, &words, few);
+                windows_agree(isa, &words, u32::from(bytes[399] & 7));
             }
         }
     }

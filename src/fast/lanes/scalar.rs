@@ -3,7 +3,7 @@
 use super::Isa;
 use super::reals::ScalarReals;
 use crate::fast::brick;
-use crate::fast::canvas::{Extent, Window};
+use crate::fast::canvas::{Extent, TILE_LOG2, Window, Windows};
 use crate::fast::clip::{self, ClipRecord};
 use crate::fast::parts::{self, Parts};
 use crate::fast::planes::Exact;
@@ -145,6 +145,47 @@ impl Isa for Scalar {
             bottom,
         };
         (window, window.extent())
+    }
+
+    #[inline(always)]
+    fn windows(
+        self,
+        place: &[i32; LANES],
+        left: u32,
+        bias: &[i32; 4],
+        subtree: &Subtree,
+        bounds: &Bounds,
+    ) -> Windows {
+        let line = |i: usize| -> [i32; 8] {
+            std::array::from_fn(|octant| {
+                let place = place[4 + i].wrapping_add(subtree.child_box[i & 1][octant] << left);
+                let line = (place.wrapping_add(bias[i]) >> subtree.box_bits) + subtree.origin[i];
+                line.max(bounds.least[i]).min(bounds.greatest[i])
+            })
+        };
+        let (first_column, first_row, last_column, last_row) = (line(0), line(1), line(2), line(3));
+        let mut windows = Windows {
+            left: first_column,
+            top: first_row,
+            right: last_column,
+            bottom: last_row,
+            shape: [0; 8],
+            tile: [0; 8],
+            held: 0,
+            square: 0,
+        };
+        for octant in 0..8 {
+            let window = windows.at(octant);
+            let (across, down) = (window.right - window.left, window.bottom - window.top);
+            windows.shape[octant] = (down << 3) + across;
+            windows.tile[octant] = (window.top >> TILE_LOG2)
+                .wrapping_mul(bounds.tiles_across)
+                .wrapping_add(window.left >> TILE_LOG2)
+                .wrapping_sub(bounds.first_tile);
+            windows.held |= u8::from(!window.is_empty()) << octant;
+            windows.square |= u8::from(window.extent() == Extent::Square) << octant;
+        }
+        windows
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use super::x86_eight::{self as eight, eight_lanes};
 use super::x86_reals::{Avx2Reals, Avx512Reals};
 use super::{Isa, Scalar};
 use crate::fast::brick;
-use crate::fast::canvas::{Extent, Window};
+use crate::fast::canvas::{Extent, Window, Windows};
 use crate::fast::clip::{self, ClipRecord};
 use crate::fast::parts::Parts;
 use crate::fast::planes::Exact;

@@ -6,7 +6,7 @@
 use std::arch::x86_64::*;
 
 use super::{Isa, Scalar};
-use crate::fast::canvas::{Extent, Window};
+use crate::fast::canvas::{Extent, Window, Windows};
 use crate::fast::parts::ORDER_BYTES;
 use crate::fast::subtree::{LANES, Subtree};
 use crate::fast::tables::Coarse;
@@ -97,6 +97,73 @@ pub(super) fn window(
         bottom,
     };
     (window, extent)
+}
+
+/// [`Isa::windows`].
+#[inline(always)]
+pub(super) fn windows(
+    place: &[i32; LANES],
+    left: u32,
+    bias: &[i32; 4],
+    subtree: &Subtree,
+    bounds: &Bounds,
+) -> Windows {
+    let mut windows = Windows {
+        left: [0; 8],
+        top: [0; 8],
+        right: [0; 8],
+        bottom: [0; 8],
+        shape: [0; 8],
+        tile: [0; 8],
+        held: 0,
+        square: 0,
+    };
+    // SAFETY: see above.
+    unsafe {
+        let bits = _mm_cvtsi32_si128(subtree.box_bits as i32);
+        let left = _mm_cvtsi32_si128(left as i32);
+        let centre = |i: usize| {
+            let offset = _mm256_sll_epi32(load(&subtree.child_box[i]), left);
+            _mm256_add_epi32(_mm256_set1_epi32(place[4 + i]), offset)
+        };
+        let line = |i: usize, centre: __m256i| {
+            let biased = _mm256_add_epi32(centre, _mm256_set1_epi32(bias[i]));
+            let from_origin = _mm256_sra_epi32(biased, bits);
+            _mm256_add_epi32(from_origin, _mm256_set1_epi32(subtree.origin[i]))
+        };
+        let first = |i: usize, centre: __m256i| {
+            _mm256_max_epi32(line(i, centre), _mm256_set1_epi32(bounds.least[i]))
+        };
+        let last = |i: usize, centre: __m256i| {
+            _mm256_min_epi32(line(i, centre), _mm256_set1_epi32(bounds.greatest[i]))
+        };
+        let (across, down) = (centre(0), centre(1));
+        let (left, top) = (first(0, across), first(1, down));
+        let (right, bottom) = (last(2, across), last(3, down));
+        let (across, down) = (_mm256_sub_epi32(right, left), _mm256_sub_epi32(bottom, top));
+        // The sign tells what is empty, the upper bits what is more than a square.
+        let both = _mm256_or_si256(across, down);
+        let more = _mm256_andnot_si256(_mm256_set1_epi32(7), both);
+        let square = _mm256_cmpeq_epi32(more, _mm256_setzero_si256());
+        let row = _mm256_srai_epi32::<3>(top);
+        let from_left = _mm256_srai_epi32::<3>(left);
+        let rows = _mm256_mullo_epi32(row, _mm256_set1_epi32(bounds.tiles_across));
+        let column = _mm256_sub_epi32(from_left, _mm256_set1_epi32(bounds.first_tile));
+        let tile = _mm256_add_epi32(rows, column);
+        let shape = _mm256_add_epi32(_mm256_slli_epi32::<3>(down), across);
+        let put = |to: &mut [i32; 8], lanes: __m256i| {
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), lanes);
+        };
+        put(&mut windows.left, left);
+        put(&mut windows.top, top);
+        put(&mut windows.right, right);
+        put(&mut windows.bottom, bottom);
+        put(&mut windows.shape, shape);
+        put(&mut windows.tile, tile);
+        windows.held = !_mm256_movemask_ps(_mm256_castsi256_ps(both)) as u8;
+        windows.square = _mm256_movemask_ps(_mm256_castsi256_ps(square)) as u8;
+    }
+    windows
 }
 
 /// [`Isa::samples_between`] of halves of places.
@@ -333,6 +400,18 @@ macro_rules! eight_lanes {
             bounds: &Bounds,
         ) -> (Window, Extent) {
             eight::window(place, bias, subtree, bounds)
+        }
+
+        #[inline(always)]
+        fn windows(
+            self,
+            place: &[i32; LANES],
+            left: u32,
+            bias: &[i32; 4],
+            subtree: &Subtree,
+            bounds: &Bounds,
+        ) -> Windows {
+            eight::windows(place, left, bias, subtree, bounds)
         }
 
         #[inline(always)]

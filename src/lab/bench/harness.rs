@@ -13,9 +13,8 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::clock::{Clock, Elapsed};
 use super::statistics::Summary;
-use crate::frame::Frame;
+use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, Progress};
-use crate::picture::flat_colors;
 use crate::project::{Engine, EngineError, FrameSetup, SetupError, Stats};
 
 /// How often each contender draws.
@@ -77,19 +76,11 @@ pub enum BenchError {
     },
 }
 
-/// Sample and colour buffers of one size.
-struct Buffers {
-    frame: Frame,
-    colors: Vec<[u8; 3]>,
-}
-
-impl Buffers {
-    fn new(width: u32, height: u32) -> Self {
-        let frame = Frame::nodes_only(width, height);
-        // Not zero, so that its pages are there before the first frame.
-        let colors = vec![[1; 3]; frame.node.len()];
-        Self { frame, colors }
-    }
+/// A picture whose memory is there before the first frame.
+fn colors(width: u32, height: u32) -> Colors {
+    let mut colors = Colors::new(width, height);
+    colors.words.fill(1);
+    colors
 }
 
 /// Runs contenders. Keeps thread pools and buffers between races.
@@ -97,7 +88,7 @@ pub struct Harness<'p> {
     schedule: Schedule,
     progress: &'p dyn Progress,
     pools: BTreeMap<usize, ThreadPool>,
-    buffers: BTreeMap<(u32, u32), Buffers>,
+    buffers: BTreeMap<(u32, u32), Colors>,
 }
 
 impl<'p> Harness<'p> {
@@ -127,7 +118,7 @@ impl<'p> Harness<'p> {
             let (width, height) = (contender.setup.width, contender.setup.height);
             self.buffers
                 .entry((width, height))
-                .or_insert_with(|| Buffers::new(width, height));
+                .or_insert_with(|| colors(width, height));
         }
         let rounds = self.schedule.warmup + self.schedule.runs.max(1);
         let mut times: Vec<Vec<Elapsed>> = contenders
@@ -216,15 +207,14 @@ impl<'p> Harness<'p> {
             engine,
         } = contender;
         let size = (setup.width, setup.height);
-        let buffers = self
+        let colors = self
             .buffers
             .entry(size)
-            .or_insert_with(|| Buffers::new(size.0, size.1));
+            .or_insert_with(|| Colors::new(size.0, size.1));
         let mut draw = || {
             let clock = Clock::start();
-            let drawn = engine.draw(&graph.view(), setup, &mut buffers.frame);
-            flat_colors(graph, &buffers.frame, &mut buffers.colors);
-            black_box(buffers.colors.as_slice());
+            let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, colors);
+            black_box(colors.words.as_slice());
             (clock.elapsed(), drawn)
         };
         let (elapsed, drawn) = match self.pools.get(threads) {

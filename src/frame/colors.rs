@@ -1,0 +1,102 @@
+//! The quickest picture: each sample's own colour, unlit, as a window wants it.
+
+use super::{Frame, NO_NODE};
+
+/// Samples that are looked at together: where none shows anything, none is looked up.
+const TOGETHER: usize = 16;
+/// Samples that are worth a thread's while.
+const SHARE: usize = 1 << 15;
+
+/// The colours of a frame's samples.
+#[derive(Debug, Clone)]
+pub struct Colors {
+    /// Samples across.
+    pub width: u32,
+    /// Samples down.
+    pub height: u32,
+    /// [`color_word`] of what each sample shows, row by row; 0 where nothing is seen.
+    pub words: Vec<u32>,
+    /// For engines that draw nodes first. Made when it is wanted.
+    nodes: Option<Frame>,
+}
+
+/// A colour as `0xffRRGGBB`.
+#[inline(always)]
+#[must_use]
+pub const fn color_word([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_be_bytes([0xff, r, g, b])
+}
+
+impl Colors {
+    /// A picture that shows nothing.
+    #[must_use]
+    pub fn new(width: u32, height: u32) -> Self {
+        Self {
+            width,
+            height,
+            words: vec![0; width as usize * height as usize],
+            nodes: None,
+        }
+    }
+
+    /// A frame of the same size to draw nodes into, for [`Colors::take_nodes`].
+    pub fn nodes(&mut self) -> &mut Frame {
+        let (width, height) = (self.width, self.height);
+        self.nodes
+            .get_or_insert_with(|| Frame::nodes_only(width, height))
+    }
+
+    /// Takes the colours of the nodes that [`Colors::nodes`] shows, on the
+    /// threads of the current pool. `of_node`: colours by graph node.
+    pub fn take_nodes(&mut self, of_node: &[[u8; 3]]) {
+        if let Some(frame) = &self.nodes {
+            let threads = rayon::current_num_threads();
+            write(of_node, &frame.node, &mut self.words, threads);
+        }
+    }
+}
+
+/// Halves the samples until each thread has a few shares.
+fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) {
+    if threads > 1 && nodes.len() > SHARE {
+        let half = nodes.len() / 2 / TOGETHER * TOGETHER;
+        let (upper, lower) = nodes.split_at(half);
+        let (to_upper, to_lower) = words.split_at_mut(half);
+        rayon::join(
+            || write(of_node, upper, to_upper, threads),
+            || write(of_node, lower, to_lower, threads),
+        );
+        return;
+    }
+    let chunks = nodes.chunks(TOGETHER).zip(words.chunks_mut(TOGETHER));
+    for (nodes, words) in chunks {
+        if nodes
+            .iter()
+            .fold(true, |all, &node| all & (node == NO_NODE))
+        {
+            words.fill(0);
+            continue;
+        }
+        for (&node, word) in nodes.iter().zip(words) {
+            // The number of "no node" is beyond every graph's nodes.
+            *word = of_node
+                .get(node as usize)
+                .map_or(0, |&color| color_word(color));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_become_colors_and_nothing_zero() {
+        let mut colors = Colors::new(2, 2);
+        colors.nodes().node[1] = 2;
+        colors.nodes().node[3] = 1;
+        colors.words.fill(7);
+        colors.take_nodes(&[[9, 9, 9], [1, 2, 3], [4, 5, 6]]);
+        assert_eq!(colors.words, [0, 0xff04_0506, 0, 0xff01_0203]);
+    }
+}
