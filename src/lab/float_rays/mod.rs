@@ -10,6 +10,15 @@
 //! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
 //! where the ray runs upwards; in mirrored space it runs downwards on every axis.
 
+mod arithmetic;
+mod caster;
+mod counted;
+
+use arithmetic::Plain;
+pub use arithmetic::Step;
+use caster::Caster;
+pub use counted::{Counts, count};
+
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -51,7 +60,8 @@ impl Engine for FloatRays {
         for (j, nodes) in rows.enumerate() {
             for (i, node) in nodes.iter_mut().enumerate() {
                 let (origin, direction) = rays.of_sample(i as u32, j as u32);
-                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps) {
+                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps, &mut Plain)
+                {
                     *node = seen;
                     // None where the frame is of nodes alone.
                     if let Some(to) = frame.voxel.get_mut(j * width + i) {
@@ -107,12 +117,16 @@ impl Rays {
         }
     }
 
+    /// Direction of a sample's ray.
+    fn direction(&self, i: u32, j: u32) -> [f64; 3] {
+        let (i, j) = (f64::from(i), f64::from(j));
+        std::array::from_fn(|k| self.first[k] + self.right[k] * i + self.down[k] * j)
+    }
+
     /// Origin and direction of a sample's ray. The origin is where the ray
     /// comes near the cube, so that `f32` keeps its digits for the way inside.
     fn of_sample(&self, i: u32, j: u32) -> ([f32; 3], [f32; 3]) {
-        let (i, j) = (f64::from(i), f64::from(j));
-        let direction: [f64; 3] =
-            std::array::from_fn(|k| self.first[k] + self.right[k] * i + self.down[k] * j);
+        let direction = self.direction(i, j);
         let to_centre: [f64; 3] = std::array::from_fn(|k| 1.5 - self.eye[k]);
         let nearest = dot(to_centre, direction) / dot(direction, direction);
         // Half the cube's diagonal is below 1.
@@ -120,164 +134,6 @@ impl Rays {
         let start = (nearest - 1.0 / length).max(0.0);
         let origin = std::array::from_fn(|k| (self.eye[k] + direction[k] * start) as f32);
         (origin, direction.map(|c| c as f32))
-    }
-}
-
-/// What is put aside when a ray descends: the node above, and where the ray leaves it.
-#[derive(Debug, Clone, Copy, Default)]
-struct Aside {
-    node: u32,
-    exit: f32,
-}
-
-struct Caster<'g> {
-    graph: &'g GraphView<'g>,
-    /// Level at which a node is a voxel.
-    last_level: u32,
-    depth: u32,
-}
-
-impl Caster<'_> {
-    /// The first solid cell on a ray: its node, and its cell as a frame stores it.
-    #[inline]
-    fn cast(
-        &self,
-        origin: [f32; 3],
-        direction: [f32; 3],
-        steps: &mut u64,
-    ) -> Option<(u32, [i32; 4])> {
-        // Octant bit 4 >> k belongs to axis k. Mirrored axes: direction above 0.
-        let mut mirror = 0u8;
-        // The plane at `p` of axis k is crossed at t = p * slope[k] - bias[k]; slope is negative.
-        let mut slope = [0f32; 3];
-        let mut bias = [0f32; 3];
-        for k in 0..3 {
-            slope[k] = -1.0 / direction[k].abs().max(LEAST_SLOPE);
-            bias[k] = slope[k] * origin[k];
-            if direction[k] > 0.0 {
-                mirror |= 4 >> k;
-                bias[k] = 3.0 * slope[k] - bias[k];
-            }
-        }
-        let at = |p: f32, k: usize| p * slope[k] - bias[k];
-        let mut near = at(2.0, 0).max(at(2.0, 1)).max(at(2.0, 2)).max(0.0);
-        let mut exit = at(1.0, 0).min(at(1.0, 1)).min(at(1.0, 2));
-        if near > exit {
-            return None;
-        }
-        let mut node = self.graph.root;
-        let mut mask = self.graph.mask(node);
-        if mask == 0 || self.last_level == 0 {
-            return Some((node, [0; 4]));
-        }
-
-        let mut stack = [Aside::default(); MANTISSA_BITS as usize + 1];
-        // Of the cell looked at: lowest corner in mirrored space, octant in its parent
-        // (mirrored), side, and the bit of the mantissa that the side is.
-        let mut low = [1f32; 3];
-        let mut octant = 0u8;
-        let mut side = 0.5f32;
-        let mut bit = MANTISSA_BITS - 1;
-        for k in 0..3 {
-            if at(1.5, k) > near {
-                octant |= 4 >> k;
-                low[k] = 1.5;
-            }
-        }
-        // Where the parent ends, as put aside last.
-        let mut aside = exit;
-        loop {
-            *steps += 1;
-            let leaves: [f32; 3] = std::array::from_fn(|k| at(low[k], k));
-            let cell_exit = leaves[0].min(leaves[1]).min(leaves[2]);
-            let child_octant = octant ^ mirror;
-            if mask >> child_octant & 1 != 0 && near <= exit {
-                let child_end = exit.min(cell_exit);
-                if near <= child_end
-                    && let Some(child) = self.graph.child(node, child_octant)
-                {
-                    let level = MANTISSA_BITS - bit;
-                    let child_mask = self.graph.mask(child);
-                    if child_mask == 0 || level == self.last_level {
-                        return Some((child, self.cell(low, bit, mirror)));
-                    }
-                    // Descend.
-                    if cell_exit < aside {
-                        stack[bit as usize] = Aside { node, exit };
-                    }
-                    aside = cell_exit;
-                    node = child;
-                    mask = child_mask;
-                    octant = 0;
-                    bit -= 1;
-                    side *= 0.5;
-                    for k in 0..3 {
-                        if side * slope[k] + leaves[k] > near {
-                            octant |= 4 >> k;
-                            low[k] += side;
-                        }
-                    }
-                    exit = child_end;
-                    continue;
-                }
-            }
-            // Advance to the neighbour that the ray enters.
-            let mut turned = 0u8;
-            for k in 0..3 {
-                if leaves[k] <= cell_exit {
-                    turned |= 4 >> k;
-                    low[k] -= side;
-                }
-            }
-            near = cell_exit;
-            octant ^= turned;
-            if octant & turned == 0 {
-                continue;
-            }
-            // It is not in the same parent: ascend to the lowest that holds both.
-            let mut differing = 0u32;
-            for k in 0..3 {
-                if turned & (4 >> k) != 0 {
-                    differing |= low[k].to_bits() ^ (low[k] + side).to_bits();
-                }
-            }
-            bit = 31 - differing.leading_zeros();
-            if bit >= MANTISSA_BITS {
-                return None;
-            }
-            side = f32::from_bits((bit + 127 - MANTISSA_BITS) << MANTISSA_BITS);
-            let above = stack[bit as usize];
-            node = above.node;
-            mask = self.graph.mask(node);
-            exit = above.exit;
-            octant = 0;
-            for k in 0..3 {
-                let place = low[k].to_bits() >> bit;
-                low[k] = f32::from_bits(place << bit);
-                if place & 1 != 0 {
-                    octant |= 4 >> k;
-                }
-            }
-            aside = 0.0;
-        }
-    }
-
-    /// The cell whose lowest corner in mirrored space is `low`.
-    fn cell(&self, low: [f32; 3], bit: u32, mirror: u8) -> [i32; 4] {
-        let level = MANTISSA_BITS - bit;
-        let last = (1u32 << level) - 1;
-        let mut cell = [0, 0, 0, level as i32];
-        for k in 0..3 {
-            let place = low[k].to_bits() >> bit & last;
-            let place = if mirror & (4 >> k) != 0 {
-                last - place
-            } else {
-                place
-            };
-            // Places are below 2^level and depth at most 30.
-            cell[k] = (place << (self.depth - level)) as i32;
-        }
-        cell
     }
 }
 
