@@ -21,6 +21,7 @@ mod fit;
 mod lattice;
 mod planes;
 mod record;
+mod record_bits;
 mod silhouette;
 mod size;
 mod strips;
@@ -37,6 +38,7 @@ use crate::graph::GraphView;
 use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
+pub use record_bits::{Held, RecordField, record_bits, record_fields};
 
 /// How the machine works, beyond what the picture asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,0 +1,158 @@
+//! How many bits a record has on the machine's stack, field by field: what an
+//! architect needs to know of the stack's width.
+//!
+//! Numbers have as many bits as their greatest value needs, coordinates those
+//! of the frame's format. Poses share their bits: a record has one at a time.
+
+use crate::project::{CageKind, Coverage, FrameSetup};
+
+/// A field of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordField {
+    /// Its name.
+    pub name: &'static str,
+    /// Its bits, all parts of it together.
+    pub bits: u32,
+    /// The poses in which a record has it.
+    pub held: Held,
+}
+
+/// When a record has a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Held {
+    /// Always.
+    Always,
+    /// In clip space.
+    InClipSpace,
+    /// In screen space.
+    InScreenSpace,
+}
+
+/// Functions of a lattice under the exact rule: three strips, two boxes.
+const STRIP_FUNCTIONS: u32 = 5;
+/// Silhouette plane coefficients of a record: three planes of three, and
+/// three constants.
+const PLANE_WORDS: u32 = 12;
+
+/// Bits of a number from 0 to `greatest`.
+fn bits_to(greatest: u64) -> u32 {
+    u64::BITS - greatest.leading_zeros()
+}
+
+/// The fields of a frame's records. `nodes`: of the graph.
+#[must_use]
+pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
+    let word = setup.format.bits();
+    let wide = setup.format.wide().bits();
+    let vertices = match setup.options.cage {
+        CageKind::Corners => 8,
+        CageKind::Frame => 4,
+    };
+    let exact = setup.options.coverage == Coverage::Exact;
+    let position = bits_to(1 << setup.level_bound());
+    let field = |name, bits, held| RecordField { name, bits, held };
+    let mut fields = vec![
+        field(
+            "octree node",
+            bits_to(nodes.saturating_sub(1) as u64),
+            Held::Always,
+        ),
+        field(
+            "octree level",
+            bits_to(u64::from(setup.level_bound())),
+            Held::Always,
+        ),
+        // A part of a solid is below its voxel's level; under the exact rule
+        // solids have no parts.
+        field(
+            "level of the voxel",
+            if exact {
+                0
+            } else {
+                bits_to(u64::from(setup.depth))
+            },
+            Held::Always,
+        ),
+        field("solid, inside, pose", 3, Held::Always),
+        field("lowest vertex", 3 * position, Held::Always),
+        // It can be had from the lowest vertex and the level; the paper keeps it.
+        field("highest vertex", 3 * position, Held::Always),
+        field(
+            "quadtree level",
+            bits_to(u64::from(setup.levels)),
+            Held::Always,
+        ),
+        field("quadtree place", 2 * setup.levels, Held::Always),
+        field("clip X, Y, W", 3 * vertices * word, Held::InClipSpace),
+        field("least W", word, Held::InClipSpace),
+    ];
+    if exact {
+        let planes = PLANE_WORDS * wide;
+        fields.push(field("silhouette planes", planes, Held::InClipSpace));
+        fields.push(field("strips", STRIP_FUNCTIONS * wide, Held::InScreenSpace));
+    } else {
+        fields.push(field(
+            "screen x, y",
+            2 * vertices * word,
+            Held::InScreenSpace,
+        ));
+        fields.push(field("box", 4 * word, Held::InScreenSpace));
+    }
+    fields
+}
+
+/// Bits of a record: what it always has, and the larger of its poses.
+#[must_use]
+pub fn record_bits(fields: &[RecordField]) -> u32 {
+    let sum = |held: Held| -> u32 {
+        let of = fields.iter().filter(|field| field.held == held);
+        of.map(|field| field.bits).sum()
+    };
+    sum(Held::Always) + sum(Held::InClipSpace).max(sum(Held::InScreenSpace))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::graph::Placement;
+    use crate::project::{Camera, SetupOptions};
+
+    fn bits(options: SetupOptions, nodes: usize) -> u32 {
+        let camera = Camera {
+            eye: DVec3::new(40.0, 30.0, 20.0),
+            target: DVec3::splat(8.0),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 200,
+            height: 100,
+        };
+        let setup = FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap();
+        assert_eq!(setup.levels, 8);
+        record_bits(&record_fields(&setup, nodes))
+    }
+
+    #[test]
+    fn bits_by_hand() {
+        let options = |coverage, cage| SetupOptions {
+            bits: 32,
+            frac: Some(8),
+            coverage,
+            cage,
+            ..SetupOptions::default()
+        };
+        // Node 10, level 3, flags 3, two corners of three times 0..=16, quadtree
+        // level 0..=8 and 8 bits each way.
+        let always = 10 + 3 + 3 + 2 * 3 * 5 + 4 + 16;
+        let exact = options(Coverage::Exact, CageKind::Frame);
+        let clip = 3 * 4 * 32 + 32 + 12 * 64;
+        assert_eq!(bits(exact, 1024), always + clip);
+        assert_eq!(bits(exact, 1025), always + clip + 1);
+        let any = options(Coverage::Any, CageKind::Corners);
+        // A third of the fraction's bits lies below the finest voxels: levels
+        // to 6, of voxels to 4, places to 64.
+        let always = 10 + 3 + 3 + 3 + 2 * 3 * 7 + 4 + 16;
+        assert_eq!(bits(any, 1024), always + 3 * 8 * 32 + 32);
+    }
+}
