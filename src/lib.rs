@@ -11,6 +11,7 @@ pub mod measure;
 pub mod picture;
 pub mod project;
 pub mod rays;
+pub mod report;
 pub mod scene;
 
 #[cfg(feature = "cli")]

@@ -9,9 +9,9 @@ use serde_json::Value;
 use super::args::ExportArgs;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::lab::bench::plot::{self, Panel};
-use crate::lab::bench::{Cell, Table};
 use crate::picture::store;
+use crate::report::plot::{self, Panel};
+use crate::report::{Cell, Table};
 
 /// The results of an experiment in all forms.
 pub(super) struct Results {

@@ -15,7 +15,7 @@ use super::args::ThreadCounts;
 use super::console::Console;
 use super::error::{CliError, Kind};
 use crate::lab::bench::BenchError;
-use crate::lab::bench::plot::PlotError;
+use crate::report::plot::PlotError;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]

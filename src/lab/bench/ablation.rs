@@ -5,12 +5,12 @@ use serde::Serialize;
 use super::candidate::{Candidate, Family};
 use super::harness::{BenchError, Contender, Harness, Measured};
 use super::measure::{Subject, as_map, counter, picture_of};
-#[cfg(feature = "cli")]
-use super::plot::{Bar, Panel};
 use super::statistics::Summary;
-use super::table::{Cell, Table};
 use crate::measure::CoverageError;
 use crate::project::{FrameSetup, SetupOptions, Stats};
+#[cfg(feature = "cli")]
+use crate::report::plot::{Bar, Panel};
+use crate::report::{Cell, Table};
 
 /// What tables call an engine with everything on.
 pub const WHOLE: &str = "everything on";

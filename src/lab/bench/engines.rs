@@ -2,8 +2,8 @@
 
 use super::measure::Timing;
 #[cfg(feature = "cli")]
-use super::plot::{Bar, Panel, Series};
-use super::table::{Cell, Table};
+use crate::report::plot::{Bar, Chart, Panel, Series};
+use crate::report::{Cell, Table};
 
 /// The times as a table.
 #[must_use]
@@ -78,10 +78,6 @@ fn panel(timings: &[Timing]) -> Panel {
         };
     }
     let at = |t: &Timing| (name(t), (t.pixels() as f64, t.wall.median_ms));
-    Panel::Curves {
-        title: first.scene.clone(),
-        x_label: "pixels".to_owned(),
-        y_label: "ms a frame".to_owned(),
-        series: Series::collect(timings.iter().map(at)),
-    }
+    let series = Series::collect(timings.iter().map(at));
+    Panel::Chart(Chart::growth(&first.scene, "pixels", "ms a frame", series))
 }

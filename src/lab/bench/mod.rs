@@ -12,12 +12,9 @@ pub mod engines;
 mod fit;
 pub mod harness;
 pub mod measure;
-#[cfg(feature = "cli")]
-pub mod plot;
 pub mod scaling;
 mod scan;
 mod statistics;
-mod table;
 
 pub use candidate::{Candidate, Family, MakeEngine, Variant};
 pub use clock::{Clock, Elapsed};
@@ -26,4 +23,3 @@ pub use harness::{BenchError, Contender, Harness, Measured, Schedule};
 pub use measure::{Plan, Subject, Timing, measure};
 pub use scan::Scan;
 pub use statistics::Summary;
-pub use table::{Cell, Table};

@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::fit::PowerLaw;
 use super::measure::Timing;
 #[cfg(feature = "cli")]
-use super::plot::{Panel, Series};
-use super::table::{Cell, Table};
+use crate::report::plot::{Chart, Panel, Series};
+use crate::report::{Cell, Table};
 
 /// The paper's Table I, on its machine and with its scene: pixels a side of a
 /// square picture, and milliseconds as it prints them.
@@ -225,17 +225,10 @@ pub fn panels(growths: &[Growth]) -> Vec<Panel> {
                 let paper = PAPER_TABLE_I.iter().filter_map(|&(side, time)| {
                     Some((f64::from(side * side), time.parse::<f64>().ok()?))
                 });
-                series.push(Series {
-                    name: "the paper's Table I".to_owned(),
-                    points: paper.collect(),
-                });
+                series.push(Series::curve("the paper's Table I", paper));
             }
-            Panel::Curves {
-                title: format!("Time by {}", growing.name()),
-                x_label: growing.name().to_owned(),
-                y_label: "ms a frame".to_owned(),
-                series,
-            }
+            let title = format!("Time by {}", growing.name());
+            Panel::Chart(Chart::growth(&title, growing.name(), "ms a frame", series))
         })
         .collect()
 }

@@ -1,0 +1,335 @@
+//! Curves and points over two axes.
+
+use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
+use plotters::prelude::*;
+
+use super::{Area, COLORS, GREY, PlotError, in_short};
+
+/// Height of a chart, pixels.
+pub(super) const HEIGHT: u32 = 540;
+
+/// How values lie along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal steps; from zero, if all values are above it.
+    Linear,
+    /// Equal factors; values that are not above 0 are left out.
+    Log,
+}
+
+/// An axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What it measures.
+    pub label: String,
+    /// How values lie along it.
+    pub scale: Scale,
+}
+
+/// A point of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Point {
+    /// Along the axis across.
+    pub x: f64,
+    /// Along the axis up.
+    pub y: f64,
+    /// What stands beside it.
+    pub label: Option<String>,
+}
+
+impl From<(f64, f64)> for Point {
+    fn from((x, y): (f64, f64)) -> Self {
+        Self { x, y, label: None }
+    }
+}
+
+/// Points of one name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// What the legend calls it.
+    pub name: String,
+    /// The points, in the order in which they are joined.
+    pub points: Vec<Point>,
+    /// Whether they are joined by a line.
+    pub line: bool,
+    /// Whether each is a dot.
+    pub dots: bool,
+    /// Whether it is grey: there for comparison.
+    pub grey: bool,
+}
+
+impl Series {
+    /// Dots joined by a line.
+    #[must_use]
+    pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        Self {
+            name: name.into(),
+            points: points.into_iter().map(Point::from).collect(),
+            line: true,
+            dots: true,
+            grey: false,
+        }
+    }
+
+    /// Dots alone.
+    #[must_use]
+    pub fn dots(name: impl Into<String>, points: Vec<Point>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            line: false,
+            dots: true,
+            grey: false,
+        }
+    }
+
+    /// Named points, put together by name, in the order in which names come: curves.
+    pub fn collect(points: impl IntoIterator<Item = (String, (f64, f64))>) -> Vec<Self> {
+        let mut all: Vec<Self> = Vec::new();
+        for (name, point) in points {
+            match all.iter_mut().find(|series| series.name == name) {
+                Some(series) => series.points.push(point.into()),
+                None => all.push(Self::curve(name, [point])),
+            }
+        }
+        all
+    }
+}
+
+/// A chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Chart {
+    /// What stands above it.
+    pub title: String,
+    /// The axis across.
+    pub x: Axis,
+    /// The axis up.
+    pub y: Axis,
+    /// What is drawn.
+    pub series: Vec<Series>,
+    /// A level to compare with, such as a noise floor: a broken line, and its name.
+    pub level: Option<(f64, String)>,
+}
+
+impl Chart {
+    /// Curves over two logarithmic axes.
+    #[must_use]
+    pub fn growth(title: &str, x: &str, y: &str, series: Vec<Series>) -> Self {
+        let axis = |label: &str| Axis {
+            label: label.to_owned(),
+            scale: Scale::Log,
+        };
+        Self {
+            title: title.to_owned(),
+            x: axis(x),
+            y: axis(y),
+            series,
+            level: None,
+        }
+    }
+}
+
+/// The powers of ten that enclose some values; a decade for none.
+fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if !(low.is_finite() && high > 0.0) {
+        return 1.0..10.0;
+    }
+    let floor = libm::floor(libm::log10(low));
+    let ceil = libm::ceil(libm::log10(high)).max(floor + 1.0);
+    libm::pow(10.0, floor)..libm::pow(10.0, ceil)
+}
+
+/// From zero, or below the least, to a little above the greatest.
+fn around(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let (low, high) = values.fold((0.0f64, f64::NEG_INFINITY), |(low, high), value| {
+        (low.min(value), high.max(value))
+    });
+    if !high.is_finite() || high <= low {
+        return low..low + 1.0;
+    }
+    let room = (high - low) / 16.0;
+    (if low < 0.0 { low - room } else { 0.0 })..high + room
+}
+
+pub(super) fn draw(area: &Area<'_>, chart: &Chart) -> Result<(), PlotError> {
+    let shown: Vec<(&Series, Vec<&Point>)> = chart
+        .series
+        .iter()
+        .map(|series| {
+            (
+                series,
+                series
+                    .points
+                    .iter()
+                    .filter(|p| has_place(chart, p))
+                    .collect(),
+            )
+        })
+        .collect();
+    let all = || shown.iter().flat_map(|(_, points)| points.iter().copied());
+    let level = chart.level.iter().map(|(at, _)| *at);
+    let level = level.filter(|&at| chart.y.scale == Scale::Linear || at > 0.0);
+    let xs = || all().map(|p| p.x);
+    let ys = || all().map(|p| p.y).chain(level.clone());
+    match (chart.x.scale, chart.y.scale) {
+        (Scale::Log, Scale::Log) => {
+            let (x, y) = (decades(xs()), decades(ys()));
+            on_axes(area, chart, &shown, x.clone().log_scale(), y.log_scale(), x)
+        }
+        (Scale::Log, Scale::Linear) => {
+            let (x, y) = (decades(xs()), around(ys()));
+            on_axes(area, chart, &shown, x.clone().log_scale(), y, x)
+        }
+        (Scale::Linear, Scale::Log) => {
+            let (x, y) = (around(xs()), decades(ys()));
+            on_axes(area, chart, &shown, x.clone(), y.log_scale(), x)
+        }
+        (Scale::Linear, Scale::Linear) => {
+            let (x, y) = (around(xs()), around(ys()));
+            on_axes(area, chart, &shown, x.clone(), y, x)
+        }
+    }
+}
+
+/// Whether a point lies on both axes.
+fn has_place(chart: &Chart, point: &Point) -> bool {
+    let on = |axis: &Axis, at: f64| at.is_finite() && (axis.scale == Scale::Linear || at > 0.0);
+    on(&chart.x, point.x) && on(&chart.y, point.y)
+}
+
+/// Draws on axes of any kind. `across`: the ends of the axis across.
+fn on_axes<X, Y>(
+    area: &Area<'_>,
+    chart: &Chart,
+    shown: &[(&Series, Vec<&Point>)],
+    x: X,
+    y: Y,
+    across: std::ops::Range<f64>,
+) -> Result<(), PlotError>
+where
+    X: AsRangedCoord<Value = f64>,
+    Y: AsRangedCoord<Value = f64>,
+    X::CoordDescType: ValueFormatter<f64>,
+    Y::CoordDescType: ValueFormatter<f64>,
+{
+    let mut drawing = ChartBuilder::on(area)
+        .caption(&chart.title, ("sans-serif", 20))
+        .margin(14)
+        .x_label_area_size(44)
+        .y_label_area_size(64)
+        .build_cartesian_2d(x, y)
+        .map_err(PlotError::of)?;
+    drawing
+        .configure_mesh()
+        .x_desc(&chart.x.label)
+        .y_desc(&chart.y.label)
+        .light_line_style(RGBColor(235, 235, 235))
+        .bold_line_style(RGBColor(205, 205, 205))
+        .x_label_formatter(&|x| in_short(*x))
+        .y_label_formatter(&|y| in_short(*y))
+        .label_style(("sans-serif", 14))
+        .draw()
+        .map_err(PlotError::of)?;
+    if let Some((at, name)) = &chart.level {
+        let ends = [(across.start, *at), (across.end, *at)];
+        let line = DashedLineSeries::new(ends, 6, 5, GREY.stroke_width(1));
+        let drawn = drawing.draw_series(line).map_err(PlotError::of)?;
+        drawn
+            .label(name)
+            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY));
+    }
+    let mut colored = 0;
+    for (series, points) in shown {
+        let (color, stroke) = if series.grey {
+            (GREY, 1)
+        } else {
+            colored += 1;
+            // The second time round the colours, lines are thin.
+            let stroke = if colored <= COLORS.len() { 2 } else { 1 };
+            (COLORS[(colored - 1) % COLORS.len()], stroke)
+        };
+        let style = color.stroke_width(stroke);
+        let joined = if series.line { points.as_slice() } else { &[] };
+        let line = LineSeries::new(joined.iter().map(|p| (p.x, p.y)), style);
+        let drawn = drawing.draw_series(line).map_err(PlotError::of)?;
+        if !series.name.is_empty() {
+            drawn
+                .label(&series.name)
+                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+        }
+        if series.dots {
+            let dots = points
+                .iter()
+                .map(|p| Circle::new((p.x, p.y), 3, color.filled()));
+            drawing.draw_series(dots).map_err(PlotError::of)?;
+        }
+        let labelled = points.iter().filter_map(|p| {
+            let label = p.label.clone()?;
+            let text = Text::new(label, (6, -6), ("sans-serif", 12).into_font());
+            Some(EmptyElement::at((p.x, p.y)) + text)
+        });
+        drawing.draw_series(labelled).map_err(PlotError::of)?;
+    }
+    drawing
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(205, 205, 205))
+        .label_font(("sans-serif", 13))
+        .draw()
+        .map_err(PlotError::of)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_end_at_powers_of_ten() {
+        assert_eq!(decades([3.0, 40.0].into_iter()), 1.0..100.0);
+        assert_eq!(decades([10.0].into_iter()), 10.0..100.0);
+        assert_eq!(decades(std::iter::empty()), 1.0..10.0);
+    }
+
+    #[test]
+    fn plain_axes_begin_at_zero() {
+        assert_eq!(around([16.0, 32.0].into_iter()), 0.0..34.0);
+        assert_eq!(around([-1.0, 15.0].into_iter()), -2.0..16.0);
+        assert_eq!(around(std::iter::empty()), 0.0..1.0);
+    }
+
+    #[test]
+    fn points_without_a_place_are_left_out() {
+        let chart = Chart {
+            level: Some((0.5, "noise".to_owned())),
+            ..Chart::growth(
+                "t",
+                "x",
+                "y",
+                vec![Series::dots(
+                    "s",
+                    vec![
+                        (1.0, 2.0).into(),
+                        (0.0, 2.0).into(),
+                        Point {
+                            x: 2.0,
+                            y: f64::INFINITY,
+                            label: Some("gone".to_owned()),
+                        },
+                        Point {
+                            x: 3.0,
+                            y: 4.0,
+                            label: Some("here".to_owned()),
+                        },
+                    ],
+                )],
+            )
+        };
+        let text = super::super::svg(&[super::super::Panel::Chart(chart)]).unwrap();
+        assert_eq!(text.matches("<circle").count(), 2);
+        assert!(text.contains("here") && text.contains("noise") && !text.contains("gone"));
+    }
+}
