@@ -6,9 +6,9 @@ use super::args::{Aov, EngineArgs, PictureArgs};
 use super::engines;
 use super::error::{CliError, Kind};
 use super::scenes::Scene;
-use crate::frame::{Colors, Frame};
+use crate::frame::Colors;
 use crate::picture::{Picture, resolve};
-use crate::project::{Camera, FrameSetup, Stats};
+use crate::project::{Camera, Contents, Engine, FrameSetup, Stats, Viewer};
 
 /// A drawn picture and what it took.
 pub(super) struct Drawn {
@@ -25,7 +25,105 @@ pub(super) struct Drawn {
 /// Most samples of a picture: about nine gigabytes with all that is made of them.
 const MAX_SAMPLES: u64 = 1 << 27;
 
-/// Draws a scene `repeat` times (at least once) and makes the picture.
+/// A scene that is drawn, once or from many cameras: what is made for a frame
+/// and can stay (engine, frame, and a picture that does not change) does.
+pub(super) struct Drawing<'s> {
+    scene: &'s Scene,
+    engine_args: &'s EngineArgs,
+    picture_args: &'s PictureArgs,
+    viewer: Viewer<'s, Box<dyn Engine>>,
+    /// What the viewer shows.
+    last: Option<Drawn>,
+}
+
+impl<'s> Drawing<'s> {
+    /// Nothing is drawn yet.
+    pub(super) fn new(
+        scene: &'s Scene,
+        engine_args: &'s EngineArgs,
+        picture_args: &'s PictureArgs,
+    ) -> Result<Self, CliError> {
+        let engine = engines::engine(engine_args)?;
+        let contents = match picture_args.aov.contains(&Aov::Records) {
+            true => Contents::Records,
+            false => Contents::Voxels,
+        };
+        Ok(Self {
+            scene,
+            engine_args,
+            picture_args,
+            viewer: Viewer::new(scene.graph.view(), engine, contents),
+            last: None,
+        })
+    }
+
+    /// Draws the scene, unless it was drawn like this the last time, and makes the picture.
+    pub(super) fn draw(&mut self, camera: &Camera) -> Result<&Drawn, CliError> {
+        let setup = self.setup(camera)?;
+        let started = Instant::now();
+        let is_shown = self.viewer.shows(&setup);
+        let stats = self.viewer.render(&setup)?;
+        let times_ms = vec![milliseconds_since(started)];
+        let started = Instant::now();
+        let picture = match self.last.take().filter(|_| is_shown) {
+            Some(last) => last.picture,
+            None => self.resolve(&setup)?,
+        };
+        Ok(self.last.insert(Drawn {
+            picture,
+            setup,
+            stats,
+            times_ms,
+            resolve_ms: milliseconds_since(started),
+        }))
+    }
+
+    /// Times of drawing the same frame so many times, each time all of it, as
+    /// experiments time a frame: clear, traverse, colours written. Milliseconds.
+    fn measure(&self, camera: &Camera, repeat: u32) -> Result<Vec<f64>, CliError> {
+        let setup = self.setup(camera)?;
+        let graph = &self.scene.graph;
+        let mut engine = engines::engine(self.engine_args)?;
+        let mut colors = Colors::new(setup.width, setup.height);
+        let mut times_ms = Vec::new();
+        for _ in 0..repeat {
+            let started = Instant::now();
+            engine.draw_colors(&graph.view(), &graph.color, &setup, &mut colors)?;
+            std::hint::black_box(&colors);
+            times_ms.push(milliseconds_since(started));
+        }
+        Ok(times_ms)
+    }
+
+    fn setup(&self, camera: &Camera) -> Result<FrameSetup, CliError> {
+        let aa_log2 = self.picture_args.aa_log2();
+        let samples = (u64::from(camera.width) * u64::from(camera.height)) << (2 * aa_log2);
+        if samples > MAX_SAMPLES {
+            return Err(CliError::new(
+                Kind::Limit,
+                format!("a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"),
+            )
+            .advise("ask for a smaller --size, or fewer samples with --aa"));
+        }
+        let graph = &self.scene.graph;
+        let options = self.engine_args.options(aa_log2);
+        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
+        Ok(setup)
+    }
+
+    /// The picture of what the viewer shows.
+    fn resolve(&self, setup: &FrameSetup) -> Result<Picture, CliError> {
+        let nothing = Frame::nodes_only(0, 0);
+        let frame = self.viewer.frame().unwrap_or(&nothing);
+        let shading = self.picture_args.shading();
+        let background = self.picture_args.background.unwrap_or_default();
+        let picture = resolve(frame, &self.scene.graph, setup, shading, background)?;
+        Ok(picture)
+    }
+}
+
+/// Draws a scene and makes the picture. With `repeat` above 1 the times are
+/// those of so many frames drawn for that alone.
 pub(super) fn draw(
     scene: &Scene,
     camera: &Camera,
@@ -33,48 +131,18 @@ pub(super) fn draw(
     picture_args: &PictureArgs,
     repeat: u32,
 ) -> Result<Drawn, CliError> {
-    let graph = &scene.graph;
-    let samples =
-        (u64::from(camera.width) * u64::from(camera.height)) << (2 * picture_args.aa_log2());
-    if samples > MAX_SAMPLES {
-        return Err(CliError::new(
-            Kind::Limit,
-            format!("a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"),
-        )
-        .advise("ask for a smaller --size, or fewer samples with --aa"));
-    }
-    let options = engine_args.options(picture_args.aa_log2());
-    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
-    let mut engine = engines::engine(engine_args)?;
-    let with_records = picture_args.aov.contains(&Aov::Records);
-    let mut frame = Frame::new(setup.width, setup.height, with_records);
-    let mut times_ms = Vec::new();
-    if repeat > 1 {
-        // A frame as experiments time it: clear, traverse, colours written.
-        let mut colors = Colors::new(setup.width, setup.height);
-        for _ in 0..repeat {
-            let started = Instant::now();
-            engine.draw_colors(&graph.view(), &graph.color, &setup, &mut colors)?;
-            std::hint::black_box(&colors);
-            times_ms.push(milliseconds_since(started));
-        }
-    }
-    let started = Instant::now();
-    let stats = engine.render(&graph.view(), &setup, &mut frame)?;
-    if repeat <= 1 {
-        times_ms.push(milliseconds_since(started));
-    }
-    let started = Instant::now();
-    let shading = picture_args.shading();
-    let background = picture_args.background.unwrap_or_default();
-    let picture = resolve(&frame, graph, &setup, shading, background)?;
-    Ok(Drawn {
-        picture,
-        setup,
-        stats,
-        times_ms,
-        resolve_ms: milliseconds_since(started),
-    })
+    let mut drawing = Drawing::new(scene, engine_args, picture_args)?;
+    let times_ms = if repeat > 1 {
+        Some(drawing.measure(camera, repeat)?)
+    } else {
+        None
+    };
+    drawing.draw(camera)?;
+    let drawn = drawing.last.map(|drawn| Drawn {
+        times_ms: times_ms.unwrap_or(drawn.times_ms),
+        ..drawn
+    });
+    drawn.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
 }
 
 pub(super) fn milliseconds_since(started: Instant) -> f64 {

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::args::{CameraArgs, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting};
 use super::console::Console;
-use super::drawing::{draw, min_median_max};
+use super::drawing::{Drawing, min_median_max};
 use super::error::CliError;
 use super::fit::Bounds;
 use super::render::{choose_scenes, open};
@@ -80,6 +80,7 @@ pub(super) fn run(
     let scene = open(name, &args.scene, console)?;
     // One distance for all frames, so that the object does not breathe.
     let bounds = Bounds::of(&scene.graph).revolved(scene.up);
+    let mut drawing = Drawing::new(&scene, &args.engine, &args.picture).map_err(|e| e.at(name))?;
     let mut times = Vec::new();
     let mut results = Vec::new();
     console.progress().begin("drawing", u64::from(args.frames));
@@ -88,7 +89,8 @@ pub(super) fn run(
         let camera = args
             .camera
             .camera(&bounds, scene.up, args.picture.size(), turn);
-        let drawn = draw(&scene, &camera, &args.engine, &args.picture, 1)
+        let drawn = drawing
+            .draw(&camera)
             .map_err(|e| e.at(format!("{name}, frame {frame}")))?;
         outputs::write(&drawn.picture, path, &args.picture.aov, args.out.force)?;
         let hash = (args.hash || console.json).then(|| picture::hash(&drawn.picture));
@@ -96,7 +98,7 @@ pub(super) fn run(
             console.data(format!("{hash}  {}", path.display()))?;
         }
         times.extend(&drawn.times_ms);
-        let mut result = report::drawn(&scene, &camera, &drawn, hash.as_deref());
+        let mut result = report::drawn(&scene, &camera, drawn, hash.as_deref());
         result["output"] = json!(path);
         results.push(result);
         console.progress().advance(1);

@@ -22,7 +22,7 @@ pub enum EngineError {
 /// What an engine counted of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
-/// Draws a frame from its recorded input.
+/// Draws a frame from its recorded input, of which alone, and of the graph, the picture is made.
 pub trait Engine {
     /// Draws like [`Engine::render`] and tells of no counts: what an engine
     /// does to tell is then not done, nor timed.
@@ -66,4 +66,24 @@ pub trait Engine {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError>;
+}
+
+impl<E: Engine + ?Sized> Engine for Box<E> {
+    fn draw(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<(), EngineError> {
+        (**self).draw(graph, setup, frame)
+    }
+
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        (**self).render(graph, setup, frame)
+    }
 }

@@ -4,8 +4,10 @@ pub mod camera;
 mod depths;
 pub mod engine;
 pub mod setup;
+pub mod viewer;
 
 pub use camera::{Camera, CameraError};
 pub use depths::STRIP_NORMAL_BITS;
 pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats};
 pub use setup::{CageKind, Coverage, FrameSetup, SetupError, SetupOptions};
+pub use viewer::{Contents, Viewer};

@@ -12,4 +12,5 @@ mod order;
 mod rules;
 mod scenes;
 mod vertex_error;
+mod viewer;
 mod words;

@@ -1,0 +1,155 @@
+//! A picture that stays: drawn anew when the set-up is another, and else left.
+//!
+//! That a frame is unchanged is not found out by looking at buffers and
+//! pointers; it cannot be otherwise. A [`Viewer`] owns the engine and the
+//! frame, hands the frame out to be read alone, and borrows the graph for as
+//! long as it lives, so that nothing that the picture depends on can change
+//! but the set-up, and two set-ups can be compared.
+
+use super::{Engine, EngineError, FrameSetup, Stats};
+use crate::frame::Frame;
+use crate::graph::GraphView;
+
+/// What a viewer's frame holds of each sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Contents {
+    /// The node alone ([`Frame::nodes_only`]).
+    Nodes,
+    /// Node and voxel.
+    #[default]
+    Voxels,
+    /// Node, voxel, and the records worked on.
+    Records,
+}
+
+/// Name of the counter that is 1 where a frame was left as it was.
+pub const FRAMES_UNCHANGED: &str = "frames_unchanged";
+
+/// An engine, what it draws, and what it drew last.
+///
+/// A viewer that draws with set-up `s` shows what a new engine and a new frame
+/// would show with `s`; the tests hold it to that.
+///
+/// A shown frame cannot be changed, and neither can the graph while there is a
+/// viewer of it:
+///
+/// ```compile_fail,E0596
+/// # use shiftvox::project::Viewer;
+/// fn paint_over(viewer: &mut Viewer<'_, impl shiftvox::project::Engine>) {
+///     if let Some(frame) = viewer.frame() {
+///         frame.clear();
+///     }
+/// }
+/// ```
+///
+/// ```compile_fail,E0506
+/// # use shiftvox::{graph::Graph, project::{Engine, FrameSetup, Viewer}};
+/// fn replant(graph: &mut Graph, engine: impl Engine, setup: &FrameSetup) {
+///     let mut viewer = Viewer::new(graph.view(), engine, Default::default());
+///     let _ = viewer.draw(setup);
+///     graph.mask = vec![0].into();
+///     let _ = viewer.draw(setup);
+/// }
+/// ```
+pub struct Viewer<'g, E> {
+    graph: GraphView<'g>,
+    engine: E,
+    contents: Contents,
+    frame: Frame,
+    /// The set-up of what `frame` shows; none before the first drawing, while
+    /// an engine draws, and after one that failed.
+    shown: Option<FrameSetup>,
+    /// What the engine counted of what `frame` shows, where it was asked.
+    stats: Option<Stats>,
+}
+
+impl<E> std::fmt::Debug for Viewer<'_, E> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Viewer")
+            .field("contents", &self.contents)
+            .field("shown", &self.shown)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'g, E: Engine> Viewer<'g, E> {
+    /// A viewer of a graph that shows nothing yet. What the engine draws must
+    /// depend on graph and set-up alone, as it does with every engine of this crate.
+    #[must_use]
+    pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
+        Self {
+            graph,
+            engine,
+            contents,
+            frame: Frame::nodes_only(0, 0),
+            shown: None,
+            stats: None,
+        }
+    }
+
+    /// Makes the frame that of a set-up. Returns whether it was drawn; if not,
+    /// it shows that already.
+    ///
+    /// # Errors
+    /// As [`Engine::draw`]; nothing is shown then.
+    pub fn draw(&mut self, setup: &FrameSetup) -> Result<bool, EngineError> {
+        if self.shows(setup) {
+            return Ok(false);
+        }
+        self.make_room(setup);
+        self.engine.draw(&self.graph, setup, &mut self.frame)?;
+        self.shown = Some(setup.clone());
+        Ok(true)
+    }
+
+    /// [`Viewer::draw`], with what was counted: [`FRAMES_UNCHANGED`] is last.
+    /// Where nothing was drawn it is 1 and all else is 0, for that was the work.
+    ///
+    /// # Errors
+    /// As [`Engine::render`]; nothing is shown then.
+    pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
+        if self.shows(setup) {
+            let last = self.stats.iter().flatten();
+            let mut stats: Stats = last.map(|&(name, _)| (name, 0)).collect();
+            stats.push((FRAMES_UNCHANGED, 1));
+            return Ok(stats);
+        }
+        self.make_room(setup);
+        let mut stats = self.engine.render(&self.graph, setup, &mut self.frame)?;
+        self.shown = Some(setup.clone());
+        self.stats = Some(stats.clone());
+        stats.push((FRAMES_UNCHANGED, 0));
+        Ok(stats)
+    }
+
+    /// The picture: of the last set-up that was drawn, or none.
+    #[must_use]
+    pub fn frame(&self) -> Option<&Frame> {
+        self.shown.as_ref().map(|_| &self.frame)
+    }
+
+    /// Whether the frame is that of this set-up.
+    #[must_use]
+    pub fn shows(&self, setup: &FrameSetup) -> bool {
+        self.shown.as_ref() == Some(setup)
+    }
+
+    /// Shows nothing any more; the next frame is drawn whatever its set-up.
+    pub fn forget(&mut self) {
+        self.shown = None;
+        self.stats = None;
+    }
+
+    /// A frame of the set-up's size; the last one's memory if it has that.
+    fn make_room(&mut self, setup: &FrameSetup) {
+        self.forget();
+        let (width, height) = (setup.width, setup.height);
+        if (self.frame.width, self.frame.height) != (width, height) {
+            self.frame = match self.contents {
+                Contents::Nodes => Frame::nodes_only(width, height),
+                Contents::Voxels => Frame::new(width, height, false),
+                Contents::Records => Frame::new(width, height, true),
+            };
+        }
+    }
+}
