@@ -1,16 +1,17 @@
 //! The only place of the command line that makes engines.
 
 use hwmodel::count::Counter;
+use hwmodel::{Memory, Place, Probe};
 
 use super::args::{EngineArgs, EngineName, Isa};
 use super::error::{CliError, Kind};
 use crate::fast::{Fast, FastOptions, Instructions, Switches};
 use crate::frame::Frame;
 use crate::graph::GraphView;
-use crate::lab::bench::{Candidate, Family, Variant};
+use crate::lab::bench::{Candidate, Family, Frames, Variant};
 use crate::lab::float_rays::FloatRays;
 use crate::machine::{Machine, MachineOptions};
-use crate::project::{Engine, FrameSetup};
+use crate::project::{Engine, EngineError, FrameSetup};
 use crate::rays::Rays;
 
 /// The engine of a name.
@@ -77,7 +78,8 @@ const MACHINE: Candidate = Candidate {
     make: |_| Box::new(Machine::default()),
 };
 
-const FAST: Candidate = Candidate {
+/// The default engine.
+pub(super) const FAST: Candidate = Candidate {
     name: "fast",
     about: "the machine's bits, sample by sample",
     work: "records",
@@ -143,6 +145,7 @@ const FAST_VARIANTS: &[Variant] = &[
             };
             fast(threads, switches)
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "off-screen nodes looked into",
@@ -155,6 +158,7 @@ const FAST_VARIANTS: &[Variant] = &[
             };
             fast(threads, switches)
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "a full picture goes on",
@@ -167,6 +171,7 @@ const FAST_VARIANTS: &[Variant] = &[
             };
             fast(threads, switches)
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "bricks off",
@@ -179,10 +184,11 @@ const FAST_VARIANTS: &[Variant] = &[
             };
             fast(threads, switches)
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "whole blocks off",
-        about: "large solids tile by tile, without looking at blocks first; the picture must be the same",
+        about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles first; the picture must be the same",
         adjust: |_| {},
         make: |threads| {
             let switches = Switches {
@@ -191,18 +197,48 @@ const FAST_VARIANTS: &[Variant] = &[
             };
             fast(threads, switches)
         },
+        frames: Frames::Drawn,
+    },
+    Variant {
+        name: "absent children looked at",
+        about: "above bricks all eight children have their windows looked at, whether they exist or not; the picture must be the same",
+        adjust: |_| {},
+        make: |threads| {
+            let switches = Switches {
+                absent_children: false,
+                ..Switches::default()
+            };
+            fast(threads, switches)
+        },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "level of detail off",
         about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
         make: FAST.make,
+        frames: Frames::Drawn,
     },
     Variant {
         name: "screen space off",
         about: "--tolerance 0: lattices only to find voxels, exact planes decide; the picture may change",
         adjust: |options| options.tolerance_px = 0.0,
         make: FAST.make,
+        frames: Frames::Drawn,
+    },
+    Variant {
+        name: "unchanged frame kept",
+        about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are written. All other rows draw every frame",
+        adjust: |_| {},
+        make: FAST.make,
+        frames: Frames::Kept,
+    },
+    Variant {
+        name: "attributes of all read",
+        about: "colour and normal also of each node that the paper's walk fetches, in its order, not of those seen alone; the picture must be the same",
+        adjust: |_| {},
+        make: FAST.make,
+        frames: Frames::WithAttributesOf(fetched),
     },
 ];
 
@@ -217,6 +253,7 @@ const MACHINE_VARIANTS: &[Variant] = &[
                 ..MachineOptions::default()
             }))
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "fill-vector rejection off",
@@ -228,17 +265,37 @@ const MACHINE_VARIANTS: &[Variant] = &[
                 ..MachineOptions::default()
             }))
         },
+        frames: Frames::Drawn,
     },
     Variant {
         name: "level of detail off",
         about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
         make: MACHINE.make,
+        frames: Frames::Drawn,
     },
     Variant {
         name: "screen space off",
         about: "--tolerance 0: every record stays in clip space, no divides; the picture may change",
         adjust: |options| options.tolerance_px = 0.0,
         make: MACHINE.make,
+        frames: Frames::Drawn,
     },
 ];
+
+/// The nodes that the machine fetches for a frame.
+fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
+    /// Notes the nodes in the order in which they are read.
+    struct Noted(Vec<u32>);
+    impl Probe for Noted {
+        fn read(&mut self, memory: Memory, address: u64, _: Place) {
+            if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
+                self.0.push(node);
+            }
+        }
+    }
+    let mut frame = Frame::nodes_only(setup.width, setup.height);
+    let noted = Noted(Vec::new());
+    let (_, noted) = Machine::default().render_probed(graph, setup, &mut frame, noted)?;
+    Ok(noted.0)
+}

@@ -370,7 +370,7 @@ impl Outline {
                     bottom: top + side - 1,
                 }
                 .and(block);
-                let cover = if cover == Cover::All {
+                let cover = if cover == Cover::All || !walk.switches.whole_blocks {
                     cover
                 } else {
                     self.cover(&tile)

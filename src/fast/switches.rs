@@ -11,8 +11,13 @@ pub struct Switches {
     pub off_screen: bool,
     /// Take two levels, or one, in one step of 64 lanes.
     pub bricks: bool,
-    /// Fill whole blocks of samples inside large solids.
+    /// Fill blocks and tiles of samples inside large solids without looking at
+    /// each sample, and leave those beside them.
     pub whole_blocks: bool,
+    /// Leave children that do not exist at once. Off, above bricks, all eight
+    /// are looked at first. A brick has a lane for each of 64 parts, whether it
+    /// exists or not.
+    pub absent_children: bool,
 }
 
 impl Default for Switches {
@@ -23,6 +28,7 @@ impl Default for Switches {
             off_screen: true,
             bricks: true,
             whole_blocks: true,
+            absent_children: true,
         }
     }
 }

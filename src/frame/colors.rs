@@ -46,13 +46,20 @@ impl Colors {
             .get_or_insert_with(|| Frame::nodes_only(width, height))
     }
 
-    /// Takes the colours of the nodes that [`Colors::nodes`] shows, on the
-    /// threads of the current pool. `of_node`: colours by graph node.
+    /// Takes the colours of the nodes that [`Colors::nodes`] shows. `of_node`:
+    /// colours by graph node.
     pub fn take_nodes(&mut self, of_node: &[[u8; 3]]) {
-        if let Some(frame) = &self.nodes {
-            let threads = rayon::current_num_threads();
-            write(of_node, &frame.node, &mut self.words, threads);
+        if let Some(frame) = self.nodes.take() {
+            self.take(of_node, &frame);
+            self.nodes = Some(frame);
         }
+    }
+
+    /// Takes the colours of the nodes that a frame of this size shows, on the
+    /// threads of the current pool.
+    pub fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
+        let threads = rayon::current_num_threads();
+        write(of_node, &frame.node, &mut self.words, threads);
     }
 }
 

@@ -93,7 +93,7 @@ const SETS: [Instructions; 3] = [
 
 fn any_options() -> impl Strategy<Value = FastOptions> {
     let set = (0..SETS.len()).prop_map(|i| SETS[i]);
-    let switches = proptest::array::uniform5(proptest::bool::weighted(0.85));
+    let switches = proptest::array::uniform6(proptest::bool::weighted(0.85));
     (set, 1..4usize, switches).prop_map(|(instructions, threads, on)| FastOptions {
         threads,
         instructions,
@@ -103,6 +103,7 @@ fn any_options() -> impl Strategy<Value = FastOptions> {
             off_screen: on[2],
             bricks: on[3],
             whole_blocks: on[4],
+            absent_children: on[5],
         },
     })
 }

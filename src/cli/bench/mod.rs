@@ -2,6 +2,7 @@
 
 mod ablation;
 mod args;
+mod coherence;
 mod context;
 mod engines;
 mod export;
@@ -41,6 +42,11 @@ enum Experiment {
     ///
     /// One at a time, on one thread; says what that costs and whether it changes the picture.
     Ablation(Box<args::SceneBenchArgs>),
+    /// What the next frame of a turntable has in common with the last
+    ///
+    /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
+    /// its nodes were seen before, and which samples show the same node. Nothing is timed.
+    Coherence(Box<coherence::CoherenceArgs>),
     /// How far the paper's screen-space midpoints are from exact projection
     VertexError,
 }
@@ -66,6 +72,7 @@ pub(super) fn run(
         Experiment::Engines(args) => engines::run(args, scenes, threads, console),
         Experiment::Scaling(args) => scaling::run(args, scenes, threads, console),
         Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
+        Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::VertexError => vertex_error::run(console),
     }
 }

@@ -8,6 +8,7 @@ use crate::cli::error::CliError;
 use crate::cli::fit::Bounds;
 use crate::cli::scenes::Scene;
 use crate::cli::{render, scenes};
+use crate::graph::Store;
 use crate::lab::bench::Subject;
 use crate::project::Camera;
 
@@ -82,8 +83,10 @@ pub(super) fn open(
         let bounds = Bounds::of(&scene.graph);
         camera.camera(&bounds, scene.up, size, 0.0)
     });
+    let is_mapped = matches!(scene.graph.color, Store::Mapped(..));
     Ok(Subject {
         name: name.to_owned(),
+        file: is_mapped.then(|| name.into()),
         graph: scene.graph,
         camera,
     })

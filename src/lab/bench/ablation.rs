@@ -1,13 +1,16 @@
 //! `bench ablation`: what each technique is worth, by switching it off.
 
+use std::path::Path;
+
 use serde::Serialize;
 
-use super::candidate::{Candidate, Family};
-use super::harness::{BenchError, Contender, Harness, Measured};
+use super::candidate::{Candidate, Family, Frames};
+use super::harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
 use super::measure::{Subject, as_map, counter, picture_of};
+use super::pages;
 use super::statistics::Summary;
 use crate::measure::CoverageError;
-use crate::project::{FrameSetup, SetupOptions, Stats};
+use crate::project::{Contents, FrameSetup, SetupOptions, Stats, Viewer};
 #[cfg(feature = "cli")]
 use crate::report::plot::{Bar, Panel};
 use crate::report::{Cell, Table};
@@ -55,6 +58,11 @@ impl Row {
     pub fn size(&self) -> String {
         format!("{}x{}", self.width, self.height)
     }
+
+    /// The median that disturbs least, as in [`super::Timing`].
+    fn median_ms(&self) -> f64 {
+        self.thread.unwrap_or(self.wall).median_ms
+    }
 }
 
 /// Measures families on a scene, all variants in one race, on one thread.
@@ -75,12 +83,9 @@ pub fn run(
     let mut rows: Vec<Row> = Vec::new();
     for family in families {
         let whole = family.whole;
-        let contender = |variant: &str, setup: FrameSetup, make: super::MakeEngine| Contender {
-            name: format!("{}, {}, {variant}", subject.name, whole.name),
-            graph: &subject.graph,
-            setup,
-            threads: 1,
-            engine: make(1),
+        let contender = |variant: &str, setup: FrameSetup, make: super::MakeEngine| {
+            let name = format!("{}, {}, {variant}", subject.name, whole.name);
+            Contender::alone(name, &subject.graph, setup, make(1))
         };
         rows.push(blank(subject, size, &whole, WHOLE, whole.about));
         contenders.push(contender(WHOLE, setup.clone(), whole.make));
@@ -89,7 +94,8 @@ pub fn run(
             (variant.adjust)(&mut options);
             rows.push(blank(subject, size, &whole, variant.name, variant.about));
             let setup = subject.setup(size, &options)?;
-            contenders.push(contender(variant.name, setup, variant.make));
+            let contender = contender(variant.name, setup, variant.make);
+            contenders.push(with_frames(contender, variant.frames)?);
         }
     }
     // Pictures of the families' wholes come before those of their variants.
@@ -103,8 +109,85 @@ pub fn run(
         row.coverage = CoverageError::between(&frame.voxel, &right);
     })?;
     let mut whole_ms = 0.0;
-    for (row, measured) in rows.iter_mut().zip(measured) {
-        fill_in(row, measured, &mut whole_ms);
+    for ((row, measured), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
+        fill_in(row, measured);
+        if row.variant == WHOLE {
+            whole_ms = row.median_ms();
+        }
+        row.time_ratio = ratio(row.median_ms(), whole_ms);
+        if !contender.attributes.is_empty() {
+            let read = contender.attributes.len() as u64;
+            row.counters.push(("attributes_read", read));
+        }
+    }
+    drop(contenders);
+    if let Some(file) = &subject.file {
+        rows.extend(page_rows(
+            subject,
+            file,
+            &setup,
+            families,
+            &right,
+            harness.schedule(),
+        )?);
+    }
+    Ok(rows)
+}
+
+/// A contender that comes to its frames like this.
+fn with_frames(contender: Contender<'_>, frames: Frames) -> Result<Contender<'_>, BenchError> {
+    let Contender { graph, drawer, .. } = contender;
+    let (drawer, attributes) = match (frames, drawer) {
+        (Frames::Kept, Drawer::Engine(engine)) => {
+            let viewer = Viewer::new(graph.view(), engine, Contents::Voxels);
+            (Drawer::Viewer(viewer), Vec::new())
+        }
+        (Frames::WithAttributesOf(fetched), drawer) => {
+            let nodes = fetched(&graph.view(), &contender.setup);
+            let failed = |source| BenchError::Engine {
+                who: contender.name.clone(),
+                source,
+            };
+            (drawer, nodes.map_err(failed)?)
+        }
+        (_, drawer) => (drawer, Vec::new()),
+    };
+    Ok(Contender {
+        drawer,
+        attributes,
+        ..contender
+    })
+}
+
+/// The rows about pages of the file that a scene is mapped from: of each
+/// family two, whose times are compared with each other.
+fn page_rows(
+    subject: &Subject,
+    file: &Path,
+    setup: &FrameSetup,
+    families: &[Family],
+    right: &[[i32; 4]],
+    schedule: Schedule,
+) -> Result<Vec<Row>, BenchError> {
+    let size = (setup.width, setup.height);
+    let mut rows: Vec<Row> = Vec::new();
+    for family in families {
+        let mut needed: Option<(f64, Vec<[i32; 4]>)> = None;
+        for (reads_all, variant, about) in pages::VARIANTS {
+            let mut engine = (family.whole.make)(1);
+            let measured = pages::measure(file, setup, &mut engine, reads_all, schedule)?;
+            let Some((measured, voxels)) = measured else {
+                continue;
+            };
+            let mut row = blank(subject, size, &family.whole, variant, about);
+            row.work_unit = pages::RESIDENT;
+            fill_in(&mut row, measured);
+            let (needed_ms, picture) = needed.get_or_insert((row.median_ms(), voxels.clone()));
+            row.time_ratio = ratio(row.median_ms(), *needed_ms);
+            row.changed = crate::measure::count_differing(&voxels, picture);
+            row.coverage = CoverageError::between(&voxels, right);
+            rows.push(row);
+        }
     }
     Ok(rows)
 }
@@ -134,16 +217,16 @@ fn blank(
     }
 }
 
-fn fill_in(row: &mut Row, measured: Measured, whole_ms: &mut f64) {
-    let median_ms = measured.thread.unwrap_or(measured.wall).median_ms;
-    if row.variant == WHOLE {
-        *whole_ms = median_ms;
-    }
-    row.time_ratio = median_ms / whole_ms.max(f64::MIN_POSITIVE);
+fn fill_in(row: &mut Row, measured: Measured) {
     row.wall = measured.wall;
     row.thread = measured.thread;
     row.work = counter(&measured.counters, row.work_unit);
     row.counters = measured.counters;
+}
+
+/// A time over another, which is above 0.
+fn ratio(ms: f64, of_ms: f64) -> f64 {
+    ms / of_ms.max(f64::MIN_POSITIVE)
 }
 
 /// The rows as a table.

@@ -1,6 +1,7 @@
 //! Who can be measured: engines by name, and engines with a part switched off.
 
-use crate::project::{Engine, SetupOptions};
+use crate::graph::GraphView;
+use crate::project::{Engine, EngineError, FrameSetup, SetupOptions};
 
 /// Makes an engine for so many threads, 1 or more.
 ///
@@ -23,6 +24,21 @@ pub struct Candidate {
     pub make: MakeEngine,
 }
 
+/// The nodes that a walk fetches, in its order, each as often as it does.
+pub type Fetched = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
+
+/// How a contender comes to a frame, where that is not by the engine alone.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Frames {
+    /// Each is drawn.
+    #[default]
+    Drawn,
+    /// Each is asked of a viewer, which draws it the first time.
+    Kept,
+    /// Each is drawn, and the attributes of all these nodes are read.
+    WithAttributesOf(Fetched),
+}
+
 /// An engine without one of its techniques.
 #[derive(Debug, Clone, Copy)]
 pub struct Variant {
@@ -34,6 +50,8 @@ pub struct Variant {
     pub adjust: fn(&mut SetupOptions),
     /// Makes the engine, if it is the engine that switches it.
     pub make: MakeEngine,
+    /// How it comes to a frame, if it is that.
+    pub frames: Frames,
 }
 
 /// An engine and what can be switched off in it.

@@ -15,7 +15,7 @@ use super::clock::{Clock, Elapsed};
 use super::statistics::Summary;
 use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, Progress};
-use crate::project::{Engine, EngineError, FrameSetup, SetupError, Stats};
+use crate::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
 
 /// How often each contender draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,36 @@ pub struct Contender<'c> {
     /// Threads of the pool that it draws in, 1 or more.
     pub threads: usize,
     /// Who draws.
-    pub engine: Box<dyn Engine + Send>,
+    pub drawer: Drawer<'c>,
+    /// Nodes whose attributes are read besides those that are seen.
+    pub attributes: Vec<u32>,
+}
+
+/// Who draws the frames of a contender.
+pub enum Drawer<'c> {
+    /// An engine, every one.
+    Engine(Box<dyn Engine + Send>),
+    /// A viewer, those that change: the first.
+    Viewer(Viewer<'c, Box<dyn Engine + Send>>),
+}
+
+impl<'c> Contender<'c> {
+    /// A contender that draws every frame, on one thread.
+    pub(super) fn alone(
+        name: String,
+        graph: &'c Graph,
+        setup: FrameSetup,
+        engine: Box<dyn Engine + Send>,
+    ) -> Self {
+        Self {
+            name,
+            graph,
+            setup,
+            threads: 1,
+            drawer: Drawer::Engine(engine),
+            attributes: Vec::new(),
+        }
+    }
 }
 
 /// What a contender took.
@@ -162,6 +191,12 @@ impl<'p> Harness<'p> {
             .collect())
     }
 
+    /// How often each contender draws.
+    #[must_use]
+    pub fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
     /// Forgets the buffers, which the next race makes anew.
     pub fn release_buffers(&mut self) {
         self.buffers.clear();
@@ -184,8 +219,19 @@ impl<'p> Harness<'p> {
     fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let setup = &contender.setup;
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let (graph, engine) = (contender.graph.view(), &mut contender.engine);
-        let mut draw = || engine.render(&graph, setup, &mut frame);
+        let (graph, drawer) = (contender.graph.view(), &mut contender.drawer);
+        let mut draw = || match drawer {
+            Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
+            Drawer::Viewer(viewer) => {
+                viewer.render(setup)?;
+                // What is timed is a frame after that.
+                let stats = viewer.render(setup)?;
+                if let Some(shown) = viewer.frame() {
+                    frame.clone_from(shown);
+                }
+                Ok(stats)
+            }
+        };
         let stats = match self.pools.get(&contender.threads) {
             Some(pool) => pool.install(draw),
             None => draw(),
@@ -204,7 +250,8 @@ impl<'p> Harness<'p> {
             graph,
             setup,
             threads,
-            engine,
+            drawer,
+            attributes,
         } = contender;
         let size = (setup.width, setup.height);
         let colors = self
@@ -213,8 +260,19 @@ impl<'p> Harness<'p> {
             .or_insert_with(|| Colors::new(size.0, size.1));
         let mut draw = || {
             let clock = Clock::start();
-            let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, colors);
+            let drawn = match drawer {
+                Drawer::Engine(engine) => {
+                    engine.draw_colors(&graph.view(), &graph.color, setup, colors)
+                }
+                Drawer::Viewer(viewer) => viewer.draw(setup).map(drop),
+            };
+            if let Drawer::Viewer(viewer) = drawer
+                && let Some(frame) = viewer.frame()
+            {
+                colors.take(&graph.color, frame);
+            }
             black_box(colors.words.as_slice());
+            black_box(sum_of_attributes(graph, attributes));
             (clock.elapsed(), drawn)
         };
         let (elapsed, drawn) = match self.pools.get(threads) {
@@ -227,6 +285,15 @@ impl<'p> Harness<'p> {
         })?;
         Ok(elapsed)
     }
+}
+
+/// Reads colour and normal of some nodes.
+fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
+    let of = |&node: &u32| {
+        let ([red, ..], normal) = (graph.color_of(node), graph.normal_of(node));
+        u64::from(red) + u64::from(normal.0)
+    };
+    nodes.iter().map(of).sum()
 }
 
 #[cfg(test)]
@@ -285,7 +352,8 @@ mod tests {
             graph: &graph,
             setup: setup.clone(),
             threads,
-            engine: Box::new(Scribe(name, Arc::clone(&notes))),
+            drawer: Drawer::Engine(Box::new(Scribe(name, Arc::clone(&notes)))),
+            attributes: Vec::new(),
         };
         let mut contenders = [contender("a", 1), contender("b", 2)];
         let schedule = Schedule { warmup: 1, runs: 2 };

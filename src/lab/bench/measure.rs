@@ -1,9 +1,11 @@
 //! Scenes, sizes, engines and thread counts become contenders and times.
 
+use std::path::PathBuf;
+
 use serde::{Serialize, Serializer};
 
 use super::candidate::Candidate;
-use super::harness::{BenchError, Contender, Harness, Measured};
+use super::harness::{BenchError, Contender, Drawer, Harness, Measured};
 use super::statistics::Summary;
 use crate::frame::Frame;
 use crate::graph::Graph;
@@ -19,6 +21,8 @@ pub struct Subject {
     pub graph: Graph,
     /// The camera; its size in pixels is replaced.
     pub camera: Camera,
+    /// The file that the scene is mapped from, if it is.
+    pub file: Option<PathBuf>,
 }
 
 impl Subject {
@@ -153,7 +157,8 @@ pub fn measure(
                         graph: &subject.graph,
                         setup: setup.clone(),
                         threads,
-                        engine: (candidate.make)(threads),
+                        drawer: Drawer::Engine((candidate.make)(threads)),
+                        attributes: Vec::new(),
                     });
                 }
             }
