@@ -66,13 +66,10 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) {
     let half = level.side / 2;
     let octant = view.octant(record.min, half);
     let child_level = &view.levels[record.level as usize + 1];
-    let leaves_absent = walk.switches.absent_children;
-    if leaves_absent {
-        walk.counters.skipped_absent += u64::from(mask.count_zeros());
-    }
+    walk.counters.skipped_absent += u64::from(mask.count_zeros());
     for nearest in OCCLUSION_ORDER {
         let child = octant ^ nearest;
-        if mask >> child & 1 == 0 && leaves_absent {
+        if mask >> child & 1 == 0 && walk.switches.absent_children {
             continue;
         }
         if walk.fill.open == 0 && walk.switches.full {

@@ -370,5 +370,9 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         is_lost: false,
     };
     clip::start(&mut walk);
+    if !job.switches.absent_children {
+        // They were looked at like others.
+        walk.counters.skipped_absent = 0;
+    }
     (!walk.is_lost).then_some(walk.counters)
 }

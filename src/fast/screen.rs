@@ -107,6 +107,9 @@ fn step<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord
     if record.left <= 2 && !subtree.is_coarse && brick::draw(walk, subtree, record) {
         return;
     }
+    if !walk.switches.absent_children {
+        walk.isa.absent(walk, subtree, record);
+    }
     walk.isa.screen(walk, subtree, record);
 }
 
@@ -139,6 +142,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         None => walk.view.octant(record.min, half),
     };
     let left = record.left - 1;
+    walk.counters.skipped_absent += u64::from(mask.count_zeros());
     let bias = subtree.window_bias(left);
     let windows = isa.windows(&record.place, left, &bias, subtree, &walk.bounds);
     let mut wanted = mask;
@@ -147,11 +151,6 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         walk.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
     }
     let parent = isa.load(&record.place);
-    if walk.switches.absent_children {
-        walk.counters.skipped_absent += u64::from(mask.count_zeros());
-    } else {
-        look_at_absent(walk, subtree, parent, left, !mask);
-    }
     let mut order = parts::in_order(octant, wanted);
     while order != 0 {
         let child = octant ^ OCCLUSION_ORDER[order.trailing_zeros() as usize & 7];
@@ -180,22 +179,23 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
     }
 }
 
-/// Does for children that do not exist what is done for others before their
-/// turn, for who wants to know what leaving them saves.
+/// Does for a record's children that do not exist what is done for others
+/// before their turn, for who wants to know what leaving them saves.
 #[inline(always)]
-fn look_at_absent<I: Isa>(
+pub(super) fn look_at_absent<I: Isa>(
     walk: &mut Walk<'_, I>,
     subtree: &Subtree,
-    parent: I::Eight,
-    left: u32,
-    absent: u8,
+    record: &ScreenRecord,
 ) {
     let isa = walk.isa;
+    let mask = walk.graph.mask(record.node);
+    if mask == 0 {
+        return;
+    }
+    let left = record.left - 1;
     let bias = subtree.window_bias(left);
-    for child in 0..8 {
-        if absent >> child & 1 == 0 {
-            continue;
-        }
+    let parent = isa.load(&record.place);
+    for child in (0..8).filter(|child| mask >> child & 1 == 0) {
         let at = isa.plus_shifted(parent, isa.load(&subtree.child[child]), left);
         let (window, extent) = isa.window(at, &bias, subtree, &walk.bounds);
         if extent == Extent::Empty && walk.switches.off_screen {

@@ -269,9 +269,107 @@ fn ablation_tells_what_a_technique_changes() {
 }
 
 #[test]
+fn ablation_of_the_fast_engine_changes_no_picture() {
+    let folder = folder();
+    let write = |line: &[&str]| {
+        let mut command = Command::cargo_bin("shiftvox").unwrap();
+        command.current_dir(folder.path()).args(line);
+        command.assert().success();
+    };
+    write(&["generate", "gen:terrain,depth=6", "-o", "t.vxg"]);
+    let line = [
+        "ablation",
+        "t.vxg",
+        "--engines",
+        "fast",
+        "--size",
+        "64",
+        "--runs",
+        "1",
+        "--json",
+    ];
+    let document = json_of(&bench(folder.path(), &line).success());
+    let results = document["results"].as_array().unwrap();
+    let row = |variant: &str| {
+        let of_name = results.iter().find(|r| r["variant"] == variant);
+        of_name.unwrap_or_else(|| panic!("{variant}"))
+    };
+    let count = |variant: &str, name: &str| {
+        let counters = &row(variant)["counters"];
+        counters[name]
+            .as_u64()
+            .unwrap_or_else(|| panic!("{variant}, {name}: {counters}"))
+    };
+    for result in results {
+        let may_change = ["level of detail off", "screen space off"];
+        let variant = result["variant"].as_str().unwrap();
+        assert!(
+            result["changed"] == 0 || may_change.contains(&variant),
+            "{result}"
+        );
+    }
+    let whole = "everything on";
+    assert!(count(whole, "samples_drawn") > 500);
+    assert!(count(whole, "skipped_absent_children") > 500);
+    let looked_at = "absent children looked at";
+    assert_eq!(count(looked_at, "skipped_absent_children"), 0);
+    let left = |variant| count(variant, "skipped_hidden") + count(variant, "skipped_off_screen");
+    assert!(left(looked_at) > left(whole));
+    let kept = "unchanged frame kept";
+    assert_eq!(count(kept, "frames_unchanged"), 1);
+    assert_eq!(count(kept, "records"), 0);
+    let all = "attributes of all read";
+    assert!(count(all, "attributes_read") > count(whole, "samples_drawn"));
+    if cfg!(target_os = "linux") {
+        let (some, all) = ("first frame of the file", "first frame, all pages read");
+        assert!(count(some, "pages_resident") <= count(all, "pages_resident"));
+        // Every page but those of the header and between the arrays.
+        assert!(count(all, "pages_resident") + 8 >= count(all, "pages_mapped"));
+    }
+}
+
+#[test]
+fn coherence_falls_with_the_step() {
+    let folder = folder();
+    let line = [
+        "coherence",
+        "gen:menger,depth=3",
+        "--size",
+        "96",
+        "--steps",
+        "0,0.1,5",
+        "--json",
+        "--export-csv",
+        "r.csv",
+        "--export-svg",
+        "r.svg",
+    ];
+    let document = json_of(&bench(folder.path(), &line).success());
+    assert_eq!(document["schema"], "shiftvox.bench coherence");
+    let results = document["results"].as_array().unwrap();
+    let shares = |name: &str| -> Vec<f64> {
+        let of = results.iter().map(|r| r[name].as_f64().unwrap());
+        of.collect()
+    };
+    for name in ["node_share", "sample_share"] {
+        let shares = shares(name);
+        assert_eq!(shares[0], 1.0, "{name}");
+        assert!(shares[0] > shares[1] && shares[1] > shares[2], "{shares:?}");
+    }
+    assert_eq!(results[0]["pairs"], 4);
+    let csv = fs::read_to_string(folder.path().join("r.csv")).unwrap();
+    assert_eq!(rows(&csv).len(), 3);
+    assert!(folder.path().join("r.svg").exists());
+    // The same in every run.
+    let again = [&line[..6], &["--json"]].concat();
+    let again = json_of(&bench(folder.path(), &again).success());
+    assert_eq!(document["results"], again["results"]);
+}
+
+#[test]
 fn wrong_experiments_exit_with_2() {
     let folder = folder();
-    let lines: [&[&str]; 14] = [
+    let lines: [&[&str]; 16] = [
         &[],
         &["speed"],
         &["engines", SCENE, "--scan", "size=64"],
@@ -286,6 +384,8 @@ fn wrong_experiments_exit_with_2() {
         &["ablation", SCENE, "--threads", "2"],
         &["ablation", SCENE, "--engines", "rays"],
         &["vertex-error", "--threads", "1,2"],
+        &["coherence", SCENE, "--steps", "1,361"],
+        &["coherence", SCENE, "--threads", "1,2"],
     ];
     for line in lines {
         let assert = bench(folder.path(), line).code(2);

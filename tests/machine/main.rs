@@ -11,6 +11,7 @@ mod oracle;
 mod order;
 mod rules;
 mod scenes;
+mod seams;
 mod vertex_error;
 mod viewer;
 mod words;

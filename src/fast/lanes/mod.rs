@@ -42,6 +42,9 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     /// A screen-space record's turn: [`super::screen::turn`] compiled for this set.
     fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
 
+    /// `screen::look_at_absent` compiled for this set.
+    fn absent(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
+
     /// Draws a solid tile by tile: `screen::draw_tiles` compiled for this set.
     fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord);
 

@@ -25,6 +25,10 @@ impl Isa for Scalar {
         screen::turn(walk, subtree, record);
     }
 
+    fn absent(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+        screen::look_at_absent(walk, subtree, record);
+    }
+
     fn brick(
         self,
         walk: &mut Walk<'_, Self>,

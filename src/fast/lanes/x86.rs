@@ -65,6 +65,17 @@ macro_rules! compiled {
                 screen::turn(walk, subtree, record);
             }
 
+            #[cold]
+            #[inline(never)]
+            #[target_feature(enable = $features)]
+            pub(super) fn absent(
+                walk: &mut Walk<'_, Set>,
+                subtree: &Subtree,
+                record: &ScreenRecord,
+            ) {
+                screen::look_at_absent(walk, subtree, record);
+            }
+
             #[inline(never)]
             #[target_feature(enable = $features)]
             pub(super) fn tiles(
@@ -125,6 +136,11 @@ macro_rules! compiled {
         fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
             // SAFETY: `self` is only made where these features were found.
             unsafe { $name::screen(walk, subtree, record) }
+        }
+
+        fn absent(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::absent(walk, subtree, record) }
         }
 
         fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {

@@ -12,11 +12,12 @@ use super::candidate::Candidate;
 use super::harness::BenchError;
 use super::measure::Subject;
 #[cfg(feature = "cli")]
-use super::plot::{Panel, Series};
-use super::table::{Cell, Table};
 use crate::frame::NO_NODE;
 use crate::graph::Progress;
 use crate::project::{Camera, Contents, FrameSetup, SetupOptions, Viewer};
+#[cfg(feature = "cli")]
+use crate::report::plot::{Chart, Panel, Series};
+use crate::report::{Cell, Table};
 
 /// Pairs of frames, and what they have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -195,12 +196,9 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
             ]
             .map(|(name, share)| (name.to_owned(), (row.step_degrees, share)))
         });
-        Panel::Curves {
-            title: rows.first().map_or_else(String::new, |r| r.scene.clone()),
-            x_label: "degrees between two frames".to_owned(),
-            y_label: "share".to_owned(),
-            series: Series::collect(points),
-        }
+        let scene = rows.first().map_or("", |row| row.scene.as_str());
+        let across = "degrees between two frames";
+        Panel::Chart(Chart::growth(scene, across, "share", Series::collect(points)))
     };
     rows.chunk_by(|a, b| a.scene == b.scene)
         .map(panel)

@@ -9,7 +9,6 @@ use super::harness::{BenchError, Measured, Schedule};
 use super::statistics::Summary;
 use crate::frame::Frame;
 use crate::graph::{Graph, vxg};
-use crate::picture::flat_colors;
 use crate::project::{Engine, FrameSetup, Stats};
 
 /// Name of the counter of pages that the process holds after a frame.
@@ -48,8 +47,8 @@ pub(super) fn measure(
         who: file.display().to_string(),
         source,
     };
-    let mut frame = Frame::nodes_only(setup.width, setup.height);
-    let mut colors = vec![[1; 3]; frame.node.len()];
+    let mut colors = Colors::new(setup.width, setup.height);
+    colors.words.fill(1);
     let mut times: Vec<Elapsed> = Vec::new();
     let mut counters = Stats::new();
     for round in 0..schedule.warmup + schedule.runs.max(1) {
@@ -60,9 +59,8 @@ pub(super) fn measure(
         if reads_all {
             black_box(sum_of_pages(&graph));
         }
-        let drawn = engine.draw(&graph.view(), setup, &mut frame);
-        flat_colors(&graph, &frame, &mut colors);
-        black_box(colors.as_slice());
+        let drawn = engine.draw_colors(&graph.view(), &graph.color, setup, &mut colors);
+        black_box(colors.words.as_slice());
         let elapsed = clock.elapsed();
         drawn.map_err(failed)?;
         if round >= schedule.warmup {
