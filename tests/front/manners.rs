@@ -251,8 +251,17 @@ fn a_turntable_numbers_its_frames() {
         "3",
         "--size",
         "8",
+        "--json",
     ];
-    shiftvox(folder.path()).args(line).assert().success();
+    let assert = shiftvox(folder.path()).args(line).assert().success();
+    let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
+    let frames = document["frames"].as_array().unwrap();
+    for frame in frames {
+        // Every camera is another, so every frame is drawn; as by itself.
+        assert_eq!(frame["counters"]["frames_unchanged"], 0);
+        assert!(frame["pixels_drawn"].as_u64().unwrap() > 0);
+    }
+    assert_ne!(frames[0]["hash"], frames[1]["hash"]);
     assert_eq!(
         names(&folder.path().join("t")),
         ["00.png", "01.png", "02.png"]
