@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::candidate::{Candidate, Family, Frames};
 use super::harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
 use super::measure::{Subject, as_map, counter, picture_of};
-use super::pages;
+use super::pages::{self, FirstFrames};
 use super::statistics::Summary;
 use crate::measure::CoverageError;
 use crate::project::{Contents, FrameSetup, SetupOptions, Stats, Viewer};
@@ -140,7 +140,7 @@ fn with_frames(contender: Contender<'_>, frames: Frames) -> Result<Contender<'_>
     let (drawer, attributes) = match (frames, drawer) {
         (Frames::Kept, Drawer::Engine(engine)) => {
             let viewer = Viewer::new(graph.view(), engine, Contents::Voxels);
-            (Drawer::Viewer(viewer), Vec::new())
+            (Drawer::Viewer(Box::new(viewer)), Vec::new())
         }
         (Frames::WithAttributesOf(fetched), drawer) => {
             let nodes = fetched(&graph.view(), &contender.setup);
@@ -176,7 +176,7 @@ fn page_rows(
         for (reads_all, variant, about) in pages::VARIANTS {
             let mut engine = (family.whole.make)(1);
             let measured = pages::measure(file, setup, &mut engine, reads_all, schedule)?;
-            let Some((measured, voxels)) = measured else {
+            let Some(FirstFrames { measured, voxels }) = measured else {
                 continue;
             };
             let mut row = blank(subject, size, &family.whole, variant, about);

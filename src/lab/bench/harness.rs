@@ -47,7 +47,7 @@ pub enum Drawer<'c> {
     /// An engine, every one.
     Engine(Box<dyn Engine + Send>),
     /// A viewer, those that change: the first.
-    Viewer(Viewer<'c, Box<dyn Engine + Send>>),
+    Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
 impl<'c> Contender<'c> {

@@ -31,8 +31,16 @@ pub(super) const VARIANTS: [(bool, &str, &str); 2] = [
 /// The smallest page there is: of larger ones several bytes are read.
 const PAGE_BYTES: usize = 4096;
 
+/// What first frames of a file took, and what they show.
+pub(super) struct FirstFrames {
+    /// Times, and pages after the last.
+    pub(super) measured: Measured,
+    /// The voxels seen.
+    pub(super) voxels: Vec<[i32; 4]>,
+}
+
 /// Draws the first frame of a file, so many times, and then a frame with its
-/// voxels, which are returned too. `None`: the file cannot be mapped any more.
+/// voxels, which is not timed. `None`: the file cannot be mapped any more.
 ///
 /// # Errors
 /// When the engine does not finish.
@@ -42,7 +50,7 @@ pub(super) fn measure(
     engine: &mut dyn Engine,
     reads_all: bool,
     schedule: Schedule,
-) -> Result<Option<(Measured, Vec<[i32; 4]>)>, BenchError> {
+) -> Result<Option<FirstFrames>, BenchError> {
     let failed = |source| BenchError::Engine {
         who: file.display().to_string(),
         source,
@@ -83,7 +91,10 @@ pub(super) fn measure(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let drawn = engine.draw(&graph.view(), setup, &mut frame);
     drawn.map_err(failed)?;
-    Ok(Some((measured, frame.voxel)))
+    Ok(Some(FirstFrames {
+        measured,
+        voxels: frame.voxel,
+    }))
 }
 
 /// Reads a byte of every page of a graph's arrays.
