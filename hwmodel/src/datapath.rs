@@ -5,7 +5,7 @@
 //! the restoring divide is built by its user from [`Datapath::divide_step`].
 
 use crate::probe::Memory;
-use crate::{Format, Number, OpClass, Overflow, Place, Probe, Stage, WideWord, Word};
+use crate::{Format, Number, OpClass, Operand, Overflow, Place, Probe, Stage, WideWord, Word};
 
 /// The operation during which a word overflowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -66,7 +66,8 @@ pub struct Datapath<P: Probe> {
 
 impl<P: Probe> Datapath<P> {
     /// A datapath for words of `format`; wide words have twice its bits.
-    pub fn new(format: Format, policy: Overflow, probe: P) -> Self {
+    pub fn new(format: Format, policy: Overflow, mut probe: P) -> Self {
+        probe.begin(format);
         Self {
             format,
             policy,
@@ -147,7 +148,13 @@ impl<P: Probe> Datapath<P> {
     #[inline(always)]
     fn note<T: Number>(&mut self, class: OpClass) {
         if P::ENABLED {
-            self.probe.op(class, self.width::<T>(), self.place, 1);
+            let operand = if T::WIDE {
+                Operand::Wide
+            } else {
+                Operand::Word
+            };
+            let bits = self.width::<T>();
+            self.probe.op_on(operand, class, bits, self.place);
         }
     }
 
@@ -228,9 +235,14 @@ impl<P: Probe> Datapath<P> {
     #[inline(always)]
     pub fn midpoint<T: Number>(&mut self, a: T, b: T) -> T {
         if P::ENABLED {
-            let bits = self.width::<T>();
-            self.probe.op(OpClass::Add, bits + 1, self.place, 1);
-            self.probe.op(OpClass::Shift, bits + 1, self.place, 1);
+            let operand = if T::WIDE {
+                Operand::WideCarry
+            } else {
+                Operand::Carry
+            };
+            let bits = self.width::<T>() + 1;
+            self.probe.op_on(operand, OpClass::Add, bits, self.place);
+            self.probe.op_on(operand, OpClass::Shift, bits, self.place);
         }
         let (a, b) = (a.raw(), b.raw());
         T::from_raw((a & b) + ((a ^ b) >> 1))
@@ -348,7 +360,8 @@ impl<P: Probe> Datapath<P> {
     pub fn longer(&mut self, a: u32, b: u32) -> u32 {
         if P::ENABLED {
             // Lengths run to 64: seven bits.
-            self.probe.op(OpClass::MinMax, 7, self.place, 1);
+            self.probe
+                .op_on(Operand::Short, OpClass::MinMax, 7, self.place);
         }
         a.max(b)
     }
@@ -377,7 +390,8 @@ impl<P: Probe> Datapath<P> {
     #[inline(always)]
     fn logic(&mut self, bits: u32) {
         if P::ENABLED {
-            self.probe.op(OpClass::Logic, bits, self.place, 1);
+            self.probe
+                .op_on(Operand::Short, OpClass::Logic, bits, self.place);
         }
     }
 
@@ -401,7 +415,8 @@ impl<P: Probe> Datapath<P> {
     pub fn divide_step(&mut self, remainder: Word, divisor: Word, bit: bool) -> (Word, bool) {
         if P::ENABLED {
             let bits = self.width::<Word>() + 1;
-            self.probe.op(OpClass::DivideStep, bits, self.place, 1);
+            self.probe
+                .op_on(Operand::Carry, OpClass::DivideStep, bits, self.place);
         }
         // 0 <= remainder < 2^63, so the doubled one fits 64 bits without sign.
         let doubled = ((remainder.0 as u64) << 1) | u64::from(bit);
@@ -429,7 +444,8 @@ impl<P: Probe> Datapath<P> {
     ) -> (Word, bool) {
         if P::ENABLED {
             let bits = self.width::<Word>().saturating_add(place);
-            self.probe.op(OpClass::DivideStep, bits, self.place, 1);
+            self.probe
+                .op_on(Operand::Other, OpClass::DivideStep, bits, self.place);
         }
         let shifted = i128::from(divisor.0) << place.min(63);
         let left = i128::from(remainder.0) - shifted;

@@ -49,5 +49,5 @@ mod word;
 
 pub use datapath::{Datapath, Trap, TrapOp};
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
-pub use probe::{Memory, NoProbe, OpClass, Place, Probe, Stage};
+pub use probe::{Memory, NoProbe, OpClass, Operand, Place, Probe, Stage};
 pub use word::{Number, WideWord, Word};

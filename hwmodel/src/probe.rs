@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::Format;
+
 /// The kinds of operation that the datapath has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -172,6 +174,24 @@ pub struct Place {
     pub level: u32,
 }
 
+/// What an operation works on, as far as the line that calls for it says. The
+/// datapath's format has the widths that go with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Operand {
+    /// A word.
+    Word,
+    /// A word with the carry, one bit more.
+    Carry,
+    /// A wide word.
+    Wide,
+    /// A wide word with the carry.
+    WideCarry,
+    /// A short vector, of a number of bits that is written down.
+    Short,
+    /// Anything else.
+    Other,
+}
+
 /// Sees every operation and every memory access.
 ///
 /// All methods do nothing by default, and [`Probe::ENABLED`] lets the
@@ -180,10 +200,28 @@ pub trait Probe {
     /// Whether anything listens.
     const ENABLED: bool = true;
 
+    /// A datapath of this format is built around the probe.
+    #[inline]
+    fn begin(&mut self, format: Format) {
+        let _ = format;
+    }
+
     /// `times` operations of one class on words of `bits` bits were executed.
     #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
         let _ = (class, bits, place, times);
+    }
+
+    /// One operation on an operand of a kind that is known when the program is
+    /// compiled: what the datapath calls. `bits` follows from the kind and the
+    /// format, or is a number that is written down.
+    ///
+    /// A probe that is faster for knowing the kind has a method of its own;
+    /// for all others it is [`Probe::op`], once.
+    #[inline]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+        let _ = operand;
+        self.op(class, bits, place, 1);
     }
 
     /// A memory was read.
@@ -217,6 +255,16 @@ impl<P: Probe> Probe for &mut P {
     const ENABLED: bool = P::ENABLED;
 
     #[inline]
+    fn begin(&mut self, format: Format) {
+        (**self).begin(format);
+    }
+
+    #[inline]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+        (**self).op_on(operand, class, bits, place);
+    }
+
+    #[inline]
     fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
         (**self).op(class, bits, place, times);
     }
@@ -234,5 +282,66 @@ impl<P: Probe> Probe for &mut P {
     #[inline]
     fn record(&mut self, index: u64, level: u32) {
         (**self).record(index, level);
+    }
+}
+
+/// Two probes that see the same; tuples nest for more.
+impl<A: Probe, B: Probe> Probe for (A, B) {
+    const ENABLED: bool = A::ENABLED || B::ENABLED;
+
+    #[inline]
+    fn begin(&mut self, format: Format) {
+        self.0.begin(format);
+        self.1.begin(format);
+    }
+
+    #[inline]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+        if A::ENABLED {
+            self.0.op_on(operand, class, bits, place);
+        }
+        if B::ENABLED {
+            self.1.op_on(operand, class, bits, place);
+        }
+    }
+
+    #[inline]
+    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+        if A::ENABLED {
+            self.0.op(class, bits, place, times);
+        }
+        if B::ENABLED {
+            self.1.op(class, bits, place, times);
+        }
+    }
+
+    #[inline]
+    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+        if A::ENABLED {
+            self.0.read(memory, address, place);
+        }
+        if B::ENABLED {
+            self.1.read(memory, address, place);
+        }
+    }
+
+    #[inline]
+    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+        if A::ENABLED {
+            self.0.write(memory, address, place);
+        }
+        if B::ENABLED {
+            self.1.write(memory, address, place);
+        }
+    }
+
+    #[inline]
+    fn record(&mut self, index: u64, level: u32) {
+        if A::ENABLED {
+            self.0.record(index, level);
+        }
+        if B::ENABLED {
+            self.1.record(index, level);
+        }
     }
 }

@@ -1,0 +1,220 @@
+//! What a [`Counter`] has counted: cell by cell, and sums.
+
+use std::collections::BTreeMap;
+use std::ops::AddAssign;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Counter, LEVELS, SHORT, add_and_clear};
+use crate::probe::{Memory, OpClass, Stage};
+
+/// How often operations of one kind were executed at one place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct OpCount {
+    /// Class of operation.
+    pub class: OpClass,
+    /// Width of its operands, in bits.
+    pub bits: u32,
+    /// Stage of the record loop.
+    pub stage: Stage,
+    /// Octree level, 0 = root, at most 63.
+    pub level: u32,
+    /// How many were executed, at least 1.
+    pub times: u64,
+}
+
+/// Reads and writes of a memory.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
+pub struct Accesses {
+    /// Reads.
+    pub reads: u64,
+    /// Writes.
+    pub writes: u64,
+}
+
+impl AddAssign for Accesses {
+    fn add_assign(&mut self, other: Self) {
+        self.reads += other.reads;
+        self.writes += other.writes;
+    }
+}
+
+/// How often one memory was accessed from one place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct AccessCount {
+    /// The memory.
+    pub memory: Memory,
+    /// Stage of the record loop.
+    pub stage: Stage,
+    /// Octree level, 0 = root, at most 63.
+    pub level: u32,
+    /// How often; not both are zero.
+    pub accesses: Accesses,
+}
+
+impl Counter {
+    /// Operations of one class in one stage.
+    #[must_use]
+    pub fn ops_at(&self, stage: Stage, class: OpClass) -> u64 {
+        self.sum(|cell| cell.stage == stage && cell.class == class)
+    }
+
+    /// Operations of one class in all stages.
+    #[must_use]
+    pub fn ops_of(&self, class: OpClass) -> u64 {
+        self.sum(|cell| cell.class == class)
+    }
+
+    /// All operations.
+    #[must_use]
+    pub fn ops(&self) -> u64 {
+        self.sum(|_| true)
+    }
+
+    /// Operations of the cells that are wanted.
+    #[must_use]
+    pub fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
+        let cells = self.cells().filter(wanted);
+        cells.map(|cell| cell.times).sum()
+    }
+
+    /// Operations added up by any key, such as
+    /// `|cell| (cell.class, cell.bits)`; keys without operations are absent.
+    #[must_use]
+    pub fn sum_by<K: Ord>(&self, key: impl Fn(&OpCount) -> K) -> BTreeMap<K, u64> {
+        let mut sums = BTreeMap::new();
+        for cell in self.cells() {
+            *sums.entry(key(&cell)).or_default() += cell.times;
+        }
+        sums
+    }
+
+    /// Accesses added up by any key; keys without accesses are absent.
+    #[must_use]
+    pub fn accesses_by<K: Ord>(&self, key: impl Fn(&AccessCount) -> K) -> BTreeMap<K, Accesses> {
+        let mut sums = BTreeMap::<K, Accesses>::new();
+        for cell in self.accesses() {
+            *sums.entry(key(&cell)).or_default() += cell.accesses;
+        }
+        sums
+    }
+
+    /// Reads of one memory.
+    #[must_use]
+    pub fn reads(&self, memory: Memory) -> u64 {
+        let accesses = self.accesses().filter(|cell| cell.memory == memory);
+        accesses.map(|cell| cell.accesses.reads).sum()
+    }
+
+    /// Writes of one memory.
+    #[must_use]
+    pub fn writes(&self, memory: Memory) -> u64 {
+        let accesses = self.accesses().filter(|cell| cell.memory == memory);
+        accesses.map(|cell| cell.accesses.writes).sum()
+    }
+
+    /// Records that had their turn.
+    #[must_use]
+    pub fn records(&self) -> u64 {
+        self.records.iter().sum()
+    }
+
+    /// Records that had their turn, by octree level; levels without are left out.
+    pub fn records_by_level(&self) -> impl Iterator<Item = (u32, u64)> + '_ {
+        let levels = (0u32..).zip(self.records);
+        levels.filter(|(_, records)| *records > 0)
+    }
+
+    /// Width of the widest operation, in bits; 0 if there was none.
+    #[must_use]
+    pub fn widest(&self) -> u32 {
+        self.cells().map(|cell| cell.bits).max().unwrap_or(0)
+    }
+
+    /// All cells that are not zero, by width, then level, stage and class.
+    pub fn cells(&self) -> impl Iterator<Item = OpCount> + '_ {
+        let mut tables: Vec<usize> = (0..self.tables.len()).collect();
+        tables.sort_by_key(|&table| self.tables[table].bits);
+        let places = tables.into_iter().flat_map(|table| {
+            let levels = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
+            levels.map(move |(level, stage)| (table, level, stage))
+        });
+        let cells = places.flat_map(move |(table, level, stage)| {
+            OpClass::ALL.map(|class| OpCount {
+                class,
+                bits: self.tables[table].bits,
+                stage,
+                level: level as u32,
+                times: self.times(table, level, stage, class),
+            })
+        });
+        cells.filter(|cell| cell.times > 0)
+    }
+
+    /// All accesses, by level, then stage and memory.
+    pub fn accesses(&self) -> impl Iterator<Item = AccessCount> + '_ {
+        let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
+        let cells = places.flat_map(move |(level, stage)| {
+            let settled = &self.accesses[level][stage as usize];
+            let fresh = &self.fresh.accesses[stage as usize];
+            let here = u64::from(level == self.level);
+            Memory::ALL.map(|memory| {
+                let [reads, writes] = [0, 1]
+                    .map(|way| settled[way][memory as usize] + here * fresh[way][memory as usize]);
+                AccessCount {
+                    memory,
+                    stage,
+                    level: level as u32,
+                    accesses: Accesses { reads, writes },
+                }
+            })
+        });
+        cells.filter(|cell| cell.accesses != Accesses::default())
+    }
+
+    /// One cell, with what is not settled yet.
+    fn times(&self, table: usize, level: usize, stage: Stage, class: OpClass) -> u64 {
+        let (stage, class_at) = (stage as usize, class as usize);
+        let mut times = self.tables[table].counts[level][stage][class_at];
+        if level == self.level {
+            for (kind, &at) in self.sized.iter().enumerate() {
+                if at == table {
+                    times += self.fresh.sized[kind][stage][class_at];
+                }
+            }
+            if table < SHORT && class == OpClass::Logic {
+                times += self.fresh.short[stage][table];
+            }
+        }
+        times
+    }
+
+    /// Adds the counts of another counter to this one's.
+    pub fn merge(&mut self, other: &Self) {
+        for cell in other.cells() {
+            let table = self.table_of(cell.bits);
+            let counts = &mut self.tables[table].counts[cell.level as usize];
+            counts[cell.stage as usize][cell.class as usize] += cell.times;
+        }
+        for cell in other.accesses() {
+            let counts = &mut self.accesses[cell.level as usize][cell.stage as usize];
+            counts[0][cell.memory as usize] += cell.accesses.reads;
+            counts[1][cell.memory as usize] += cell.accesses.writes;
+        }
+        add_and_clear(&mut self.records, &mut other.records.clone());
+    }
+}
+
+/// Counters are equal that counted the same; the order in which they met it
+/// does not matter.
+impl PartialEq for Counter {
+    fn eq(&self, other: &Self) -> bool {
+        self.records == other.records
+            && self.cells().eq(other.cells())
+            && self.accesses().eq(other.accesses())
+    }
+}
+
+impl Eq for Counter {}
