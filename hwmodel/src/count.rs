@@ -20,12 +20,24 @@ const CLASSES: usize = OpClass::ALL.len();
 const STAGES: usize = Stage::ALL.len();
 const MEMORIES: usize = Memory::ALL.len();
 
-/// Kinds of operand whose width the format says.
-const SIZED: usize = 4;
-/// Operands of fewer bits than this have a place by their number of bits.
-const SHORT: usize = 8;
+/// Counts that stand together: operations of one stage by class, short
+/// operands of one stage by number of bits, or accesses of one stage by memory.
+type Row = [u64; 8];
 
-/// Counts of the operations of one width.
+/// First row, each of one row a stage, of words, of words with their carry, of
+/// wide words, of these with their carry,
+const SIZED: [usize; 4] = [0, STAGES, 2 * STAGES, 3 * STAGES];
+/// of logic on fewer than eight bits, by their number,
+const SHORT: usize = 4 * STAGES;
+/// of reads,
+const READS: usize = 5 * STAGES;
+/// and of writes.
+const WRITES: usize = 6 * STAGES;
+const ROWS: usize = 7 * STAGES;
+
+const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8 && SHORT <= 64 && ROWS <= 128);
+
+/// Counts of operations of a width that is met now and then.
 #[derive(Debug, Clone)]
 struct Table {
     bits: u32,
@@ -33,51 +45,53 @@ struct Table {
     counts: Vec<[[u64; CLASSES]; STAGES]>,
 }
 
-/// Counts since the level last changed.
-#[derive(Debug, Clone, Default)]
-struct Fresh {
-    /// By kind of operand (those that the format sizes), stage and class.
-    sized: [[[u64; CLASSES]; STAGES]; SIZED],
-    /// Logic on few bits, by stage and number of bits.
-    short: [[u64; SHORT]; STAGES],
-    /// By stage; reads by memory, then writes by memory.
-    accesses: [[[u64; MEMORIES]; 2]; STAGES],
-    /// Which rows of `sized` may differ from zero: bit `kind * STAGES + stage`.
-    sized_touched: u64,
-    /// Which rows of `short` (low half) and `accesses` (high half).
-    others_touched: u64,
-}
-
 /// Counts of one or more frames.
+///
+/// ```
+/// use hwmodel::count::Counter;
+/// use hwmodel::{Datapath, Format, Overflow, Stage};
+///
+/// let mut counter = Counter::new();
+/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut counter);
+/// dp.begin_record(0, 3);
+/// dp.stage(Stage::Centre);
+/// let (left, right) = (dp.load(5), dp.load(7));
+/// let middle = dp.midpoint(left, right);
+/// let _ = dp.lt(middle, right);
+///
+/// let by_width = counter.sum_by(|cell| cell.bits);
+/// assert_eq!(by_width.into_iter().collect::<Vec<_>>(), [(24, 1), (25, 2)]);
+/// assert!(counter.cells().all(|cell| cell.level == 3));
+/// # Ok::<(), hwmodel::FormatError>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    fresh: Fresh,
+    /// Counts since the level last changed.
+    fresh: [Row; ROWS],
+    /// Which of the fresh rows may differ from zero, a bit each.
+    touched: [u64; 2],
     /// Level at which `fresh` counts, 0..LEVELS.
     level: usize,
-    /// Where in `tables` the kinds of operand go that the format sizes.
-    sized: [usize; SIZED],
-    /// One for each width, in the order in which they were met.
+    /// Widths of the operands of `SIZED`.
+    widths: [u32; 4],
+    /// By level.
+    settled: Vec<[Row; ROWS]>,
+    /// One for each other width, in the order in which they were met.
     tables: Vec<Table>,
-    /// By level and stage; reads by memory, then writes by memory.
-    accesses: Vec<[[[u64; MEMORIES]; 2]; STAGES]>,
     records: [u64; LEVELS],
 }
 
 impl Default for Counter {
     fn default() -> Self {
-        let mut counter = Self {
-            fresh: Fresh::default(),
+        Self {
+            fresh: [Row::default(); ROWS],
+            touched: [0; 2],
             level: 0,
-            sized: [0; SIZED],
+            widths: [0; 4],
+            settled: vec![[Row::default(); ROWS]; LEVELS],
             tables: Vec::new(),
-            accesses: vec![Default::default(); LEVELS],
             records: [0; LEVELS],
-        };
-        // The tables of short operands stand first, by their number of bits.
-        for bits in 0..SHORT as u32 {
-            counter.table_of(bits);
         }
-        counter
     }
 }
 
@@ -102,35 +116,43 @@ impl Counter {
         })
     }
 
-    /// Adds the fresh counts to the tables.
+    /// Adds the fresh counts to those of their level.
     #[cold]
     #[inline(never)]
     fn settle(&mut self) {
-        let fresh = &mut self.fresh;
-        let mut touched = std::mem::take(&mut fresh.sized_touched);
-        while touched != 0 {
-            let row = touched.trailing_zeros() as usize;
-            touched &= touched - 1;
-            let (kind, stage) = (row / STAGES, row % STAGES);
-            let counts = &mut self.tables[self.sized[kind]].counts[self.level][stage];
-            add_and_clear(counts, &mut fresh.sized[kind][stage]);
-        }
-        let mut touched = std::mem::take(&mut fresh.others_touched);
-        while touched != 0 {
-            let row = touched.trailing_zeros() as usize;
-            touched &= touched - 1;
-            let stage = row % 32;
-            if row < 32 {
-                for (bits, times) in fresh.short[stage].iter_mut().enumerate() {
-                    let counts = &mut self.tables[bits].counts[self.level][stage];
-                    counts[OpClass::Logic as usize] += std::mem::take(times);
-                }
-            } else {
-                let [reads, writes] = &mut self.accesses[self.level][stage];
-                add_and_clear(reads, &mut fresh.accesses[stage][0]);
-                add_and_clear(writes, &mut fresh.accesses[stage][1]);
+        let settled = &mut self.settled[self.level];
+        for (half, touched) in self.touched.iter_mut().enumerate() {
+            let mut touched = std::mem::take(touched);
+            while touched != 0 {
+                let row = half * 64 + touched.trailing_zeros() as usize;
+                touched &= touched - 1;
+                // Bits are set for rows that exist; the limit saves two checks.
+                let row = row.min(ROWS - 1);
+                add_and_clear(&mut settled[row], &mut self.fresh[row]);
             }
         }
+    }
+
+    /// Moves counts of a format's operands into tables, which last longer.
+    fn keep_widths(&mut self) {
+        self.settle();
+        for (first, bits) in SIZED.into_iter().zip(self.widths) {
+            for level in 0..LEVELS {
+                for stage in 0..STAGES {
+                    let row = std::mem::take(&mut self.settled[level][first + stage]);
+                    if row != Row::default() {
+                        let table = self.table_of(bits);
+                        add_and_clear(&mut self.tables[table].counts[level][stage], &mut { row });
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn count_fresh(&mut self, row: usize, column: usize) {
+        self.fresh[row][column] += 1;
+        self.touched[row / 64] |= 1 << (row % 64);
     }
 
     /// Counts operations whose kind of operand is not known beforehand.
@@ -152,9 +174,12 @@ fn add_and_clear<const N: usize>(sums: &mut [u64; N], row: &mut [u64; N]) {
 
 impl Probe for Counter {
     fn begin(&mut self, format: Format) {
-        self.settle();
         let (word, wide) = (format.bits(), format.wide().bits());
-        self.sized = [word, word + 1, wide, wide + 1].map(|bits| self.table_of(bits));
+        let widths = [word, word + 1, wide, wide + 1];
+        if self.widths != widths {
+            self.keep_widths();
+            self.widths = widths;
+        }
     }
 
     #[inline]
@@ -164,33 +189,28 @@ impl Probe for Counter {
 
     #[inline(always)]
     fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
-        let (stage, class_at) = (place.stage as usize, class as usize);
-        let kind = match operand {
-            Operand::Word => 0,
-            Operand::Carry => 1,
-            Operand::Wide => 2,
-            Operand::WideCarry => 3,
-            Operand::Short if class == OpClass::Logic && (bits as usize) < SHORT => {
-                self.fresh.short[stage][bits as usize] += 1;
-                self.fresh.others_touched |= 1 << stage;
-                return;
+        let stage = place.stage as usize;
+        let first = match operand {
+            Operand::Word => SIZED[0],
+            Operand::Carry => SIZED[1],
+            Operand::Wide => SIZED[2],
+            Operand::WideCarry => SIZED[3],
+            Operand::Short if class == OpClass::Logic && bits < 8 => {
+                return self.count_fresh(SHORT + stage, bits as usize);
             }
             Operand::Short | Operand::Other => return self.count(class, bits, place, 1),
         };
-        self.fresh.sized[kind][stage][class_at] += 1;
-        self.fresh.sized_touched |= 1 << (kind * STAGES + stage);
+        self.count_fresh(first + stage, class as usize);
     }
 
     #[inline(always)]
     fn read(&mut self, memory: Memory, _address: u64, place: Place) {
-        self.fresh.accesses[place.stage as usize][0][memory as usize] += 1;
-        self.fresh.others_touched |= 1 << (32 + place.stage as usize);
+        self.count_fresh(READS + place.stage as usize, memory as usize);
     }
 
     #[inline(always)]
     fn write(&mut self, memory: Memory, _address: u64, place: Place) {
-        self.fresh.accesses[place.stage as usize][1][memory as usize] += 1;
-        self.fresh.others_touched |= 1 << (32 + place.stage as usize);
+        self.count_fresh(WRITES + place.stage as usize, memory as usize);
     }
 
     #[inline(always)]

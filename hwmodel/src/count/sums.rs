@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Counter, LEVELS, SHORT, add_and_clear};
+use super::{Counter, LEVELS, READS, Row, SHORT, SIZED, WRITES};
 use crate::probe::{Memory, OpClass, Stage};
 
 /// How often operations of one kind were executed at one place.
@@ -135,19 +135,35 @@ impl Counter {
 
     /// All cells that are not zero, by width, then level, stage and class.
     pub fn cells(&self) -> impl Iterator<Item = OpCount> + '_ {
-        let mut tables: Vec<usize> = (0..self.tables.len()).collect();
-        tables.sort_by_key(|&table| self.tables[table].bits);
-        let places = tables.into_iter().flat_map(|table| {
-            let levels = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
-            levels.map(move |(level, stage)| (table, level, stage))
-        });
-        let cells = places.flat_map(move |(table, level, stage)| {
+        let mut widths: Vec<u32> = self.tables.iter().map(|table| table.bits).collect();
+        widths.extend(self.widths);
+        widths.extend(0..8);
+        widths.sort_unstable();
+        widths.dedup();
+        widths.into_iter().flat_map(|bits| self.cells_of(bits))
+    }
+
+    /// Those of one width.
+    fn cells_of(&self, bits: u32) -> impl Iterator<Item = OpCount> + '_ {
+        let table = self.tables.iter().find(|table| table.bits == bits);
+        let sized = SIZED.into_iter().zip(self.widths);
+        let sized: Vec<usize> = sized.filter(|row| row.1 == bits).map(|row| row.0).collect();
+        let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
+        let cells = places.flat_map(move |(level, stage)| {
+            let mut row = table.map_or([0; 8], |table| table.counts[level][stage as usize]);
+            for first in &sized {
+                add(&mut row, &self.row(level, first + stage as usize));
+            }
+            if bits < 8 {
+                let logic = self.row(level, SHORT + stage as usize)[bits as usize];
+                row[OpClass::Logic as usize] += logic;
+            }
             OpClass::ALL.map(|class| OpCount {
                 class,
-                bits: self.tables[table].bits,
+                bits,
                 stage,
                 level: level as u32,
-                times: self.times(table, level, stage, class),
+                times: row[class as usize],
             })
         });
         cells.filter(|cell| cell.times > 0)
@@ -157,38 +173,28 @@ impl Counter {
     pub fn accesses(&self) -> impl Iterator<Item = AccessCount> + '_ {
         let places = (0..LEVELS).flat_map(|level| Stage::ALL.map(|stage| (level, stage)));
         let cells = places.flat_map(move |(level, stage)| {
-            let settled = &self.accesses[level][stage as usize];
-            let fresh = &self.fresh.accesses[stage as usize];
-            let here = u64::from(level == self.level);
-            Memory::ALL.map(|memory| {
-                let [reads, writes] = [0, 1]
-                    .map(|way| settled[way][memory as usize] + here * fresh[way][memory as usize]);
-                AccessCount {
-                    memory,
-                    stage,
-                    level: level as u32,
-                    accesses: Accesses { reads, writes },
-                }
+            let [reads, writes] =
+                [READS, WRITES].map(|first| self.row(level, first + stage as usize));
+            Memory::ALL.map(|memory| AccessCount {
+                memory,
+                stage,
+                level: level as u32,
+                accesses: Accesses {
+                    reads: reads[memory as usize],
+                    writes: writes[memory as usize],
+                },
             })
         });
         cells.filter(|cell| cell.accesses != Accesses::default())
     }
 
-    /// One cell, with what is not settled yet.
-    fn times(&self, table: usize, level: usize, stage: Stage, class: OpClass) -> u64 {
-        let (stage, class_at) = (stage as usize, class as usize);
-        let mut times = self.tables[table].counts[level][stage][class_at];
+    /// One row, with what is not settled yet.
+    fn row(&self, level: usize, row: usize) -> Row {
+        let mut sum = self.settled[level][row];
         if level == self.level {
-            for (kind, &at) in self.sized.iter().enumerate() {
-                if at == table {
-                    times += self.fresh.sized[kind][stage][class_at];
-                }
-            }
-            if table < SHORT && class == OpClass::Logic {
-                times += self.fresh.short[stage][table];
-            }
+            add(&mut sum, &self.fresh[row]);
         }
-        times
+        sum
     }
 
     /// Adds the counts of another counter to this one's.
@@ -199,11 +205,20 @@ impl Counter {
             counts[cell.stage as usize][cell.class as usize] += cell.times;
         }
         for cell in other.accesses() {
-            let counts = &mut self.accesses[cell.level as usize][cell.stage as usize];
-            counts[0][cell.memory as usize] += cell.accesses.reads;
-            counts[1][cell.memory as usize] += cell.accesses.writes;
+            let rows = &mut self.settled[cell.level as usize];
+            let (stage, memory) = (cell.stage as usize, cell.memory as usize);
+            rows[READS + stage][memory] += cell.accesses.reads;
+            rows[WRITES + stage][memory] += cell.accesses.writes;
         }
-        add_and_clear(&mut self.records, &mut other.records.clone());
+        for (sum, records) in self.records.iter_mut().zip(other.records) {
+            *sum += records;
+        }
+    }
+}
+
+fn add(sums: &mut Row, row: &Row) {
+    for (sum, count) in sums.iter_mut().zip(row) {
+        *sum += count;
     }
 }
 
