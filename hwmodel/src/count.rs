@@ -47,6 +47,10 @@ struct Table {
 
 /// Counts of one or more frames.
 ///
+/// What a [`Datapath`](crate::Datapath) reports is counted at the level of the
+/// record that has its turn (0 before the first), which is that of its place;
+/// operations that are told to [`Probe::op`] directly go by their place.
+///
 /// ```
 /// use hwmodel::count::Counter;
 /// use hwmodel::{Datapath, Format, Overflow, Stage};

@@ -41,10 +41,13 @@
 
 #![forbid(unsafe_code)]
 
+pub mod cost;
 pub mod count;
 mod datapath;
 mod format;
+pub mod memory;
 pub mod probe;
+pub mod statistics;
 mod word;
 
 pub use datapath::{Datapath, Trap, TrapOp};

@@ -1,0 +1,305 @@
+//! Rows of a cost table, and how they are read.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// What a figure measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// Area in two-input NAND gates of the same library.
+    Nand2,
+    /// Area in the source's process, in square micrometres.
+    Um2,
+    /// Area at 45 nm, in square micrometres.
+    Um2At45Nm,
+    /// Delay in the source's process, in picoseconds.
+    DelayPs,
+    /// Energy of one operation or access, in picojoules.
+    EnergyPj,
+}
+
+impl Quantity {
+    /// The quantity in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Nand2 => "area in NAND2 equivalents",
+            Self::Um2 => "area",
+            Self::Um2At45Nm => "area at 45 nm",
+            Self::DelayPs => "delay",
+            Self::EnergyPj => "energy",
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub const fn unit(self) -> &'static str {
+        match self {
+            Self::Nand2 => "NAND2",
+            Self::Um2 | Self::Um2At45Nm => "um2",
+            Self::DelayPs => "ps",
+            Self::EnergyPj => "pJ",
+        }
+    }
+
+    /// The key of its figures in a table.
+    #[must_use]
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Nand2 => "nand2",
+            Self::Um2 => "um2",
+            Self::Um2At45Nm => "um2_45nm",
+            Self::DelayPs => "delay_ps",
+            Self::EnergyPj => "energy_pj",
+        }
+    }
+
+    /// The shipped file that holds such figures.
+    #[must_use]
+    pub const fn file(self) -> &'static str {
+        match self {
+            Self::EnergyPj => "hwmodel/tables/energy.toml",
+            _ => "hwmodel/tables/area.toml",
+        }
+    }
+}
+
+/// What gates were chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Goal {
+    /// Small area.
+    Area,
+    /// Short delay.
+    Delay,
+}
+
+impl Goal {
+    /// The goal in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Area => "for small area",
+            Self::Delay => "for short delay",
+        }
+    }
+}
+
+/// Why a table cannot be read, or has no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum CostError {
+    /// A file is not TOML, or not a cost table.
+    #[error("{file} is no cost table: {message}")]
+    Syntax {
+        /// The file's name.
+        file: String,
+        /// What is wrong, and where.
+        message: String,
+    },
+    /// A row makes no sense.
+    #[error("{file}, row `{operation}`{}: {problem}", of_bits(*width))]
+    Row {
+        /// The file's name.
+        file: String,
+        /// The row's operation.
+        operation: String,
+        /// The row's width, in bits.
+        width: Option<u32>,
+        /// What is wrong.
+        problem: &'static str,
+    },
+    /// No row at all.
+    #[error(
+        "no {} of `{operation}`, asked for at {width} bits{}: add a row with `{}` to a cost table of your own, or to {}",
+        quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
+    )]
+    Missing {
+        /// What was asked for.
+        quantity: Quantity,
+        /// Of which operation.
+        operation: String,
+        /// At which width, in bits.
+        width: u32,
+        /// Under which goal, if that matters.
+        goal: Option<Goal>,
+    },
+    /// Rows, but none near.
+    #[error(
+        "no {} of `{operation}` near {width} bits{}: the widest row has {widest}, and nothing is extrapolated beyond four times that; add a row with `{}` to a cost table of your own, or to {}",
+        quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
+    )]
+    TooWide {
+        /// What was asked for.
+        quantity: Quantity,
+        /// Of which operation.
+        operation: String,
+        /// At which width (or size), in bits (or bytes).
+        width: u64,
+        /// Width (or size) of the widest row.
+        widest: u64,
+        /// Under which goal, if that matters.
+        goal: Option<Goal>,
+    },
+    /// Operations cannot be costed the way that was asked for.
+    #[error(
+        "{times} min/max operations of {width} bits in stage {stage} are not spans of eight values (7 min and 7 max each): pairs are for the corner cage"
+    )]
+    NoSpans {
+        /// How many there are.
+        times: u64,
+        /// Their width, in bits.
+        width: u32,
+        /// The stage in words.
+        stage: &'static str,
+    },
+}
+
+fn of_bits(width: Option<u32>) -> String {
+    width.map_or_else(String::new, |width| format!(" of {width} bits"))
+}
+
+fn in_brackets(goal: Option<Goal>) -> String {
+    goal.map_or_else(String::new, |goal| format!(" ({})", goal.name()))
+}
+
+/// A number, or a range.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Figure {
+    Number(f64),
+    Range([f64; 2]),
+}
+
+/// A row as a file has it.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FileRow {
+    operation: String,
+    width: Option<u32>,
+    goal: Option<Goal>,
+    bytes: Option<u64>,
+    source: String,
+    #[serde(default)]
+    derived: bool,
+    nand2: Option<Figure>,
+    um2: Option<Figure>,
+    um2_45nm: Option<Figure>,
+    delay_ps: Option<Figure>,
+    energy_pj: Option<Figure>,
+}
+
+/// A file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    #[serde(default)]
+    quadratic: Vec<String>,
+    #[serde(default)]
+    sources: BTreeMap<String, String>,
+    #[serde(default)]
+    row: Vec<FileRow>,
+}
+
+/// One figure of one row.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Row {
+    pub(super) width: Option<u32>,
+    pub(super) bytes: Option<u64>,
+    pub(super) low: f64,
+    pub(super) high: f64,
+    pub(super) source: String,
+    pub(super) derived: bool,
+    pub(super) file: String,
+}
+
+/// Which rows belong together: those between which one may interpolate.
+pub(super) type Key = (Quantity, String, Option<Goal>);
+
+/// What a file holds.
+#[derive(Debug, Default)]
+pub(super) struct Parsed {
+    pub(super) quadratic: Vec<String>,
+    pub(super) rows: BTreeMap<Key, Vec<Row>>,
+}
+
+/// Reads a file of rows.
+pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
+    let parsed: File = toml::from_str(text).map_err(|error| CostError::Syntax {
+        file: file.to_owned(),
+        message: error.to_string(),
+    })?;
+    let mut rows = BTreeMap::<Key, Vec<Row>>::new();
+    for row in &parsed.row {
+        let wrong = |problem| CostError::Row {
+            file: file.to_owned(),
+            operation: row.operation.clone(),
+            width: row.width,
+            problem,
+        };
+        if row.operation.trim().is_empty() {
+            return Err(wrong("the operation has no name"));
+        }
+        if row.source.trim().is_empty() {
+            return Err(wrong("the source is empty; every row must name one"));
+        }
+        if row.width == Some(0) {
+            return Err(wrong("a width is at least 1 bit; leave it out for any"));
+        }
+        if row.bytes.is_some() && (row.bytes == Some(0) || row.width.is_none()) {
+            return Err(wrong(
+                "a memory has at least 1 byte, and a width: the bits of an access",
+            ));
+        }
+        let figures = [
+            (Quantity::Nand2, row.nand2),
+            (Quantity::Um2, row.um2),
+            (Quantity::Um2At45Nm, row.um2_45nm),
+            (Quantity::DelayPs, row.delay_ps),
+            (Quantity::EnergyPj, row.energy_pj),
+        ];
+        if figures.iter().all(|(_, figure)| figure.is_none()) {
+            return Err(wrong(
+                "there is no figure: nand2, um2, um2_45nm, delay_ps or energy_pj",
+            ));
+        }
+        for (quantity, figure) in figures {
+            let (low, high) = match figure {
+                None => continue,
+                Some(Figure::Number(number)) => (number, number),
+                Some(Figure::Range([low, high])) => (low, high),
+            };
+            if !(low >= 0.0 && low <= high && high.is_finite()) {
+                return Err(wrong(
+                    "a figure is a number from 0 up, or a range [low, high] of two",
+                ));
+            }
+            let key = (quantity, row.operation.clone(), row.goal);
+            let together = rows.entry(key).or_default();
+            if together
+                .iter()
+                .any(|other| (other.width, other.bytes) == (row.width, row.bytes))
+            {
+                return Err(wrong("there are two such rows"));
+            }
+            let source = parsed.sources.get(&row.source).unwrap_or(&row.source);
+            together.push(Row {
+                width: row.width,
+                bytes: row.bytes,
+                low,
+                high,
+                source: source.clone(),
+                derived: row.derived,
+                file: file.to_owned(),
+            });
+        }
+    }
+    for together in rows.values_mut() {
+        together.sort_by_key(|row| (row.width, row.bytes));
+    }
+    Ok(Parsed {
+        quadratic: parsed.quadratic,
+        rows,
+    })
+}

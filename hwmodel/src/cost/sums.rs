@@ -1,0 +1,314 @@
+//! Sums over a table, line by line: energy of what was counted, area of a
+//! bill of units.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Cost, CostError, CostTable, Goal, MinMaxUnits};
+use crate::count::{Accesses, Counter};
+use crate::memory::Widths;
+use crate::{Memory, OpClass, Stage};
+
+/// How shifts by a constant or by a level's number are built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShiftUnits {
+    /// As wires, by the row `shift_wires`: one shift after another.
+    #[default]
+    Wires,
+    /// As shifters for any number of places, by the rows of `shift_var`.
+    Variable,
+}
+
+/// Choices that the counts leave open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+pub struct Costing {
+    /// How shifts are built.
+    pub shifts: ShiftUnits,
+    /// How spans are found.
+    pub min_max: MinMaxUnits,
+}
+
+/// The operation of a table that a class is costed as. Logic counts as `xor`,
+/// the dearest of its kind.
+#[must_use]
+pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
+    match class {
+        OpClass::Add => "add",
+        OpClass::Sub => "sub",
+        OpClass::Compare => "less",
+        OpClass::MinMax => "min",
+        OpClass::Select => "select",
+        OpClass::Shift => match shifts {
+            ShiftUnits::Wires => "shift_wires",
+            ShiftUnits::Variable => "shift_var",
+        },
+        OpClass::Logic => "xor",
+        OpClass::DivideStep => "divide_step",
+    }
+}
+
+/// So many operations of one kind.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Tally {
+    /// Operation of the cost table, such as `add` or `float_multiply`.
+    pub operation: String,
+    /// Width, in bits.
+    pub width: u32,
+    /// How many.
+    pub times: u64,
+}
+
+/// One line of a sum.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    /// What it is for, in words: a unit's or a memory's name, or the operation.
+    pub name: String,
+    /// Operation of the cost table.
+    pub operation: String,
+    /// Width, in bits.
+    pub width: u32,
+    /// How many operations, accesses or units.
+    pub times: u64,
+    /// What one costs, with its rows and their source.
+    pub each: Cost,
+    /// What all cost together: `times` times the value.
+    pub total: f64,
+}
+
+/// A sum, line by line.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Breakdown {
+    /// The lines, in order of operation and width, or of the bill.
+    pub lines: Vec<Line>,
+    /// Sum of the values.
+    pub total: f64,
+    /// Sum of the low ends.
+    pub low: f64,
+    /// Sum of the high ends.
+    pub high: f64,
+}
+
+impl Breakdown {
+    fn push(&mut self, name: &str, operation: &str, width: u32, times: u64, each: Cost) {
+        let factor = times as f64;
+        self.total += factor * each.value;
+        self.low += factor * each.low;
+        self.high += factor * each.high;
+        self.lines.push(Line {
+            name: name.to_owned(),
+            operation: operation.to_owned(),
+            width,
+            times,
+            total: factor * each.value,
+            each,
+        });
+    }
+
+    /// The sources of all lines, each once, in order of first use.
+    #[must_use]
+    pub fn sources(&self) -> Vec<&str> {
+        let mut sources = Vec::new();
+        for line in &self.lines {
+            if !sources.contains(&line.each.source.as_str()) {
+                sources.push(line.each.source.as_str());
+            }
+        }
+        sources
+    }
+
+    /// Whether a line's figure lies between or beyond the rows of its table.
+    #[must_use]
+    pub fn is_estimated(&self) -> bool {
+        self.lines.iter().any(|line| line.each.is_estimated())
+    }
+}
+
+/// What was counted, as operations of a cost table, by operation and width.
+///
+/// With [`MinMaxUnits::Pairs`], minima and maxima of the stages that find
+/// spans (child box, quadtree fit) become compares and selects.
+///
+/// # Errors
+/// [`CostError::NoSpans`] when those minima and maxima cannot be spans of eight
+/// values, as with the frame cage.
+pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostError> {
+    let mut sums = BTreeMap::<(&str, u32), u64>::new();
+    for ((stage, class, bits), times) in counter.sum_by(|cell| (cell.stage, cell.class, cell.bits))
+    {
+        let spans = matches!(stage, Stage::ChildBox | Stage::QuadtreeFit);
+        if class == OpClass::MinMax && costing.min_max == MinMaxUnits::Pairs && spans {
+            let (of_a_span, _) = MinMaxUnits::Each.compares_and_selects(8);
+            if !times.is_multiple_of(of_a_span) {
+                return Err(CostError::NoSpans {
+                    times,
+                    width: bits,
+                    stage: stage.name(),
+                });
+            }
+            let (compares, selects) = costing.min_max.compares_and_selects(8);
+            *sums.entry(("less", bits)).or_default() += times / of_a_span * compares;
+            *sums.entry(("select", bits)).or_default() += times / of_a_span * selects;
+        } else {
+            let operation = operation_of(class, costing.shifts);
+            *sums.entry((operation, bits)).or_default() += times;
+        }
+    }
+    let tally = |((operation, width), times): ((&str, u32), u64)| Tally {
+        operation: operation.to_owned(),
+        width,
+        times,
+    };
+    Ok(sums.into_iter().map(tally).collect())
+}
+
+/// Energy of all operations that were counted, in picojoules.
+///
+/// ```
+/// use hwmodel::cost::{CostTable, Costing, energy_of};
+/// use hwmodel::count::Counter;
+/// use hwmodel::{OpClass, Place, Probe, Stage};
+///
+/// let mut counter = Counter::new();
+/// let place = Place { stage: Stage::Centre, level: 0 };
+/// counter.op(OpClass::Add, 32, place, 1000);
+/// counter.op(OpClass::Shift, 33, place, 1000); // wires
+/// let energy = energy_of(&counter, &CostTable::load_shipped()?, Costing::default())?;
+/// assert!((energy.total - 100.0).abs() < 1e-9); // pJ
+/// assert!(energy.lines[0].each.source.contains("Horowitz"));
+/// # Ok::<(), hwmodel::cost::CostError>(())
+/// ```
+///
+/// # Errors
+/// When an operation has no row, or for pairs when there are no spans.
+pub fn energy_of(
+    counter: &Counter,
+    table: &CostTable,
+    costing: Costing,
+) -> Result<Breakdown, CostError> {
+    energy_of_tallies(&tallies(counter, costing)?, table)
+}
+
+/// Energy of operations of any kind, in picojoules.
+///
+/// # Errors
+/// When an operation has no row.
+pub fn energy_of_tallies(tallies: &[Tally], table: &CostTable) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for tally in tallies {
+        let each = table.energy(&tally.operation, tally.width)?;
+        sum.push(
+            &tally.operation,
+            &tally.operation,
+            tally.width,
+            tally.times,
+            each,
+        );
+    }
+    Ok(sum)
+}
+
+/// What a memory is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Store {
+    /// SRAM of so many bytes: rows `sram_read` and `sram_write`.
+    Sram {
+        /// Its size, at least 1.
+        bytes: u64,
+    },
+    /// DRAM: rows `dram_read` and `dram_write`.
+    Dram,
+}
+
+/// What each memory is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Stores {
+    /// The record stack.
+    pub stack: Store,
+    /// Graph nodes.
+    pub node: Store,
+    /// Colours and normals.
+    pub attribute: Store,
+    /// Fill vectors.
+    pub fill_vector: Store,
+    /// Pixels.
+    pub pixel: Store,
+}
+
+impl Stores {
+    /// What a memory is made of.
+    #[must_use]
+    pub const fn of(&self, memory: Memory) -> Store {
+        match memory {
+            Memory::Stack => self.stack,
+            Memory::Node => self.node,
+            Memory::Attribute => self.attribute,
+            Memory::FillVector => self.fill_vector,
+            Memory::Pixel => self.pixel,
+        }
+    }
+}
+
+/// Energy of accesses, in picojoules. `accesses` may be a counter's
+/// (`counter.accesses_by(|cell| cell.memory)`), or what a cache lets through.
+///
+/// # Errors
+/// When a row is missing, or a memory is far larger than all rows.
+pub fn memory_energy_of(
+    accesses: &BTreeMap<Memory, Accesses>,
+    widths: &Widths,
+    stores: &Stores,
+    table: &CostTable,
+) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for (&memory, accesses) in accesses {
+        let width = widths.of(memory);
+        for (way, times) in [("read", accesses.reads), ("write", accesses.writes)] {
+            if times == 0 {
+                continue;
+            }
+            let (operation, each) = match stores.of(memory) {
+                Store::Sram { bytes } => {
+                    let operation = format!("sram_{way}");
+                    let each = table.memory_energy(&operation, bytes, width)?;
+                    (operation, each)
+                }
+                Store::Dram => {
+                    let operation = format!("dram_{way}");
+                    let each = table.energy(&operation, width)?;
+                    (operation, each)
+                }
+            };
+            sum.push(memory.name(), &operation, width, times, each);
+        }
+    }
+    Ok(sum)
+}
+
+/// Units of one kind in a design.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub struct Unit {
+    /// What the unit is for, such as "vertex pool".
+    pub name: String,
+    /// Operation of the cost table, such as `midpoint` or `register`.
+    pub operation: String,
+    /// Width, in bits.
+    pub width: u32,
+    /// How many there are.
+    pub count: u64,
+}
+
+/// Area of a bill of units, in NAND2 equivalents.
+///
+/// # Errors
+/// When a unit's operation has no row.
+pub fn area_of(bill: &[Unit], table: &CostTable, goal: Goal) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for unit in bill {
+        let each = table.area(&unit.operation, unit.width, goal)?;
+        sum.push(&unit.name, &unit.operation, unit.width, unit.count, each);
+    }
+    Ok(sum)
+}

@@ -1,0 +1,351 @@
+//! The table: shipped rows, a user's rows over them, and what lies between.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+
+use super::rows::{CostError, Goal, Key, Parsed, Quantity, Row, parse};
+
+/// How a figure comes from its rows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fit {
+    /// It stands in a row.
+    Row,
+    /// It lies between two rows (or is scaled to an access of other bits).
+    Interpolated,
+    /// It lies below the narrowest row or above the widest.
+    Extrapolated,
+}
+
+/// A figure and where it comes from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cost {
+    /// What it measures.
+    pub quantity: Quantity,
+    /// The figure, in the quantity's unit; the middle of its range.
+    pub value: f64,
+    /// Low end of the range.
+    pub low: f64,
+    /// High end of the range; the same as `low` where there is none.
+    pub high: f64,
+    /// How it comes from its rows.
+    pub fit: Fit,
+    /// Whether a row derives its figure from another source's, as the source says.
+    pub derived: bool,
+    /// The rows in words, with the file that has them.
+    pub rows: String,
+    /// What these rows name as their source.
+    pub source: String,
+}
+
+impl Cost {
+    /// Whether no row has just this figure.
+    #[must_use]
+    pub fn is_estimated(&self) -> bool {
+        self.fit != Fit::Row
+    }
+
+    /// Whether it is a range.
+    #[must_use]
+    pub fn is_range(&self) -> bool {
+        self.low < self.high
+    }
+}
+
+/// Cost tables, one over the other.
+///
+/// ```
+/// use hwmodel::cost::{CostTable, Fit, Goal};
+///
+/// let table = CostTable::load_shipped()?;
+/// let adder = table.area("add", 32, Goal::Area)?;
+/// assert_eq!((adder.value, adder.fit), (232.9, Fit::Row));
+/// let wider = table.area("add", 40, Goal::Area)?;
+/// assert_eq!(wider.fit, Fit::Interpolated);
+/// assert_eq!(wider.rows, "`add` of 32 and 48 bits, for small area (hwmodel/tables/area.toml)");
+/// // An own table over it.
+/// let mine = r#"
+///     [[row]]
+///     operation = "add"
+///     width = 32
+///     goal = "area"
+///     nand2 = 200
+///     source = "my synthesis"
+/// "#;
+/// let table = table.with_overrides("mine.toml", mine)?;
+/// assert_eq!(table.area("add", 32, Goal::Area)?.value, 200.0);
+/// // What is not there is an error that says where to add it.
+/// let error = table.energy("cube_root", 32).unwrap_err().to_string();
+/// assert!(error.contains("`cube_root`") && error.contains("energy.toml"));
+/// # Ok::<(), hwmodel::cost::CostError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CostTable {
+    rows: BTreeMap<Key, Vec<Row>>,
+    quadratic: BTreeSet<String>,
+}
+
+/// A width or size this many times beyond the widest row has no answer.
+const FARTHEST: f64 = 4.0;
+
+impl CostTable {
+    /// A table without rows, for one that is all a user's own.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self {
+            rows: BTreeMap::new(),
+            quadratic: BTreeSet::new(),
+        }
+    }
+
+    /// The tables that ship with the crate.
+    ///
+    /// # Errors
+    /// None as long as the shipped files are well formed, which a test sees to.
+    pub fn load_shipped() -> Result<Self, CostError> {
+        Self::empty()
+            .with_overrides(
+                Quantity::Nand2.file(),
+                include_str!("../../tables/area.toml"),
+            )?
+            .with_overrides(
+                Quantity::EnergyPj.file(),
+                include_str!("../../tables/energy.toml"),
+            )
+    }
+
+    /// The same table with rows of another over it; `file` is how errors and
+    /// reports call them.
+    ///
+    /// They take the place of all rows of the same operation, quantity and
+    /// goal (rows without goal take that of both goals'): figures of two
+    /// origins are never mixed by interpolation.
+    ///
+    /// # Errors
+    /// When the text is not TOML or not a cost table, or has a row without
+    /// operation, source or figure, a figure that is negative or not finite,
+    /// or two rows for the same.
+    pub fn with_overrides(mut self, file: &str, text: &str) -> Result<Self, CostError> {
+        let Parsed { quadratic, rows } = parse(file, text)?;
+        for (quantity, operation, goal) in rows.keys() {
+            // A row without goal answers for both, and the other way about
+            // a goal's own rows come before rows without.
+            let goals = match goal {
+                None => vec![None, Some(Goal::Area), Some(Goal::Delay)],
+                goal => vec![*goal],
+            };
+            for goal in goals {
+                self.rows.remove(&(*quantity, operation.clone(), goal));
+            }
+        }
+        self.rows.extend(rows);
+        self.quadratic.extend(quadratic);
+        Ok(self)
+    }
+
+    /// Area of a unit, in NAND2 equivalents.
+    ///
+    /// # Errors
+    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    pub fn area(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
+        self.cost(Quantity::Nand2, operation, width, Some(goal))
+    }
+
+    /// Delay of a unit, in picoseconds, in the process of the source.
+    ///
+    /// # Errors
+    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    pub fn delay(&self, operation: &str, width: u32, goal: Goal) -> Result<Cost, CostError> {
+        self.cost(Quantity::DelayPs, operation, width, Some(goal))
+    }
+
+    /// Energy of an operation, in picojoules.
+    ///
+    /// # Errors
+    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    pub fn energy(&self, operation: &str, width: u32) -> Result<Cost, CostError> {
+        self.cost(Quantity::EnergyPj, operation, width, None)
+    }
+
+    /// Any quantity of an operation at a width in bits.
+    ///
+    /// Between two rows it is interpolated, linearly or (areas and energies
+    /// of the operations that the table lists as quadratic) linearly in the
+    /// square of the width. Below the narrowest row it goes to zero with the
+    /// width or its square; above the widest it goes on from the last two rows
+    /// up to four times the widest. All of that is marked in [`Cost::fit`].
+    ///
+    /// # Errors
+    /// [`CostError::Missing`] or [`CostError::TooWide`].
+    pub fn cost(
+        &self,
+        quantity: Quantity,
+        operation: &str,
+        width: u32,
+        goal: Option<Goal>,
+    ) -> Result<Cost, CostError> {
+        let (rows, goal) = self.rows_of(quantity, operation, width, goal)?;
+        if let [row] = rows.as_slice()
+            && row.width.is_none()
+        {
+            return Ok(cost(quantity, operation, goal, &[(row, 1.0)], Fit::Row));
+        }
+        let square = self.quadratic.contains(operation) && quantity != Quantity::DelayPs;
+        let measure = |width: u32| f64::from(width).powi(if square { 2 } else { 1 });
+        let rows: Vec<(f64, &Row)> = rows
+            .into_iter()
+            .filter_map(|row| row.width.map(|width| (measure(width), row)))
+            .collect();
+        let widest = rows.iter().filter_map(|row| row.1.width).max().unwrap_or(0);
+        if f64::from(width) > FARTHEST * f64::from(widest) {
+            return Err(CostError::TooWide {
+                quantity,
+                operation: operation.to_owned(),
+                width: u64::from(width),
+                widest: u64::from(widest),
+                goal,
+            });
+        }
+        let (weights, fit) = weigh(&rows, measure(width));
+        Ok(cost(quantity, operation, goal, &weights, fit))
+    }
+
+    /// Energy of one access of `bits` bits to a memory of `bytes` bytes, in
+    /// picojoules; `operation` is `sram_read` or `sram_write`.
+    ///
+    /// Between sizes it is interpolated linearly in the square root of the
+    /// size, as the length of wires; below the smallest row it goes to zero
+    /// with it. It is proportional to the bits.
+    ///
+    /// # Errors
+    /// [`CostError::Missing`], or [`CostError::TooWide`] for a memory more
+    /// than four times as long and wide as that of the largest row.
+    pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
+        let quantity = Quantity::EnergyPj;
+        let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
+        let rows: Vec<(f64, &Row)> = rows
+            .into_iter()
+            .filter_map(|row| row.bytes.map(|bytes| ((bytes as f64).sqrt(), row)))
+            .collect();
+        let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
+            return Err(missing(quantity, operation, bits, None));
+        };
+        if bytes as f64 > FARTHEST * FARTHEST * largest as f64 {
+            return Err(CostError::TooWide {
+                quantity,
+                operation: operation.to_owned(),
+                width: bytes,
+                widest: largest,
+                goal: None,
+            });
+        }
+        let (mut weights, mut fit) = weigh(&rows, (bytes as f64).sqrt());
+        for (row, weight) in &mut weights {
+            let scale = f64::from(bits) / f64::from(row.width.unwrap_or(bits).max(1));
+            *weight *= scale;
+            if scale != 1.0 && fit == Fit::Row {
+                fit = Fit::Interpolated;
+            }
+        }
+        Ok(cost(quantity, operation, None, &weights, fit))
+    }
+
+    /// Rows of an operation, of the goal or, if there are none, of no goal.
+    fn rows_of(
+        &self,
+        quantity: Quantity,
+        operation: &str,
+        width: u32,
+        goal: Option<Goal>,
+    ) -> Result<(Vec<&Row>, Option<Goal>), CostError> {
+        for goal in [goal, None] {
+            if let Some(rows) = self.rows.get(&(quantity, operation.to_owned(), goal)) {
+                return Ok((rows.iter().collect(), goal));
+            }
+        }
+        Err(missing(quantity, operation, width, goal))
+    }
+
+    /// All operations that have rows, in order.
+    #[must_use]
+    pub fn operations(&self) -> Vec<&str> {
+        let names: BTreeSet<&str> = self.rows.keys().map(|key| key.1.as_str()).collect();
+        names.into_iter().collect()
+    }
+}
+
+fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) -> CostError {
+    CostError::Missing {
+        quantity,
+        operation: operation.to_owned(),
+        width,
+        goal,
+    }
+}
+
+/// The rows next to a place, each with its part; rows are in order of place
+/// and there is one at least.
+fn weigh<'a>(rows: &[(f64, &'a Row)], at: f64) -> (Vec<(&'a Row, f64)>, Fit) {
+    if let Some(&(_, row)) = rows.iter().find(|row| row.0 == at) {
+        return (vec![(row, 1.0)], Fit::Row);
+    }
+    let after = rows.iter().take_while(|row| row.0 < at).count();
+    let (pair, fit) = match (after, rows) {
+        (_, []) => return (Vec::new(), Fit::Extrapolated),
+        (0, [first, ..]) | (_, [first]) => {
+            return (vec![(first.1, at / first.0)], Fit::Extrapolated);
+        }
+        (after, rows) if after == rows.len() => (&rows[after - 2..], Fit::Extrapolated),
+        (after, rows) => (&rows[after - 1..=after], Fit::Interpolated),
+    };
+    let [(left, low), (right, high)] = [pair[0], pair[1]];
+    let part = (at - left) / (right - left);
+    (vec![(low, 1.0 - part), (high, part)], fit)
+}
+
+/// A figure from its rows.
+fn cost(
+    quantity: Quantity,
+    operation: &str,
+    goal: Option<Goal>,
+    weights: &[(&Row, f64)],
+    fit: Fit,
+) -> Cost {
+    let sum = |figure: fn(&Row) -> f64| -> f64 {
+        let parts = weights.iter().map(|&(row, weight)| weight * figure(row));
+        parts.sum::<f64>().max(0.0)
+    };
+    let (low, high) = (sum(|row| row.low), sum(|row| row.high));
+    let mut widths: Vec<String> = weights
+        .iter()
+        .filter_map(|(row, _)| match (row.bytes, row.width) {
+            (Some(bytes), _) => Some(format!("{bytes}")),
+            (None, width) => width.map(|width| width.to_string()),
+        })
+        .collect();
+    widths.dedup();
+    let unit = if weights.iter().any(|(row, _)| row.bytes.is_some()) {
+        "bytes"
+    } else {
+        "bits"
+    };
+    let widths = match widths.as_slice() {
+        [] => "any width".to_owned(),
+        widths => format!("{} {unit}", widths.join(" and ")),
+    };
+    let goal = goal.map_or_else(String::new, |goal| format!(", {}", goal.name()));
+    let file = weights.first().map_or("", |(row, _)| row.file.as_str());
+    let mut sources: Vec<&str> = weights.iter().map(|(row, _)| row.source.as_str()).collect();
+    sources.dedup();
+    Cost {
+        quantity,
+        value: (low + high) / 2.0,
+        low: low.min(high),
+        high: high.max(low),
+        fit,
+        derived: weights.iter().any(|(row, _)| row.derived),
+        rows: format!("`{operation}` of {widths}{goal} ({file})"),
+        source: sources.join("; "),
+    }
+}

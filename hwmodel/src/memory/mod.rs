@@ -1,0 +1,39 @@
+//! Traffic to the machine's memories: bits by kind, what is touched at all,
+//! how full the stack gets, and the misses of every size of cache in one pass.
+
+mod cache;
+mod curve;
+mod touched;
+mod traffic;
+
+pub use cache::{Cache, CacheError};
+pub use curve::{MissCurve, MissPoint};
+pub use traffic::{MemoryProbe, Widths};
+
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
+
+/// A map from the number of a line or page. The numbers are the machine's
+/// own, small and dense, so a multiplication spreads them well enough.
+type NumberMap<V> = HashMap<u64, V, BuildHasherDefault<NumberHasher>>;
+
+#[derive(Debug, Clone, Copy, Default)]
+struct NumberHasher(u64);
+
+impl Hasher for NumberHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u64(u64::from(byte));
+        }
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        let product = u128::from(self.0 ^ number) * 0x9e37_79b9_7f4a_7c15;
+        // Both ends of the hash are used: by table index and by tag.
+        self.0 = (product >> 64) as u64 ^ product as u64;
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
