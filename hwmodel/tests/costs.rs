@@ -10,7 +10,7 @@ use hwmodel::memory::Widths;
 use hwmodel::{Memory, OpClass, Place, Probe, Stage};
 
 fn shipped() -> CostTable {
-    CostTable::load_shipped().unwrap()
+    CostTable::load_shipped().expect("well-formed tables")
 }
 
 #[track_caller]
