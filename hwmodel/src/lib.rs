@@ -43,6 +43,7 @@
 
 pub mod cost;
 pub mod count;
+pub mod cycles;
 mod datapath;
 mod format;
 pub mod memory;

@@ -1,0 +1,352 @@
+//! The description of a hardware: how wide each part of it is.
+//!
+//! Read from TOML; three descriptions ship in `hwmodel/machines/`, each line
+//! commented: `tiny`, `paper` and `wide`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{OpClass, Stage};
+
+/// Most lanes a hardware may have.
+pub const MAX_LANES: u32 = 256;
+/// Most contexts that a lane may have.
+pub const MAX_CONTEXTS: u32 = 64;
+/// Largest of all other numbers: no sum of a turn's times leaves 64 bits.
+const MAX_NUMBER: u32 = 1 << 24;
+
+/// A hardware.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hardware {
+    /// Its name in reports.
+    pub name: String,
+    /// Clock, MHz; above 0.
+    pub clock_mhz: f64,
+    /// Copies of the record loop's blocks and stack, 1 to [`MAX_LANES`].
+    pub lanes: u32,
+    /// Records that a lane works on in turns, 1 to [`MAX_CONTEXTS`].
+    pub contexts: u32,
+    /// Which records may be worked on at once.
+    pub independence: Independence,
+    /// Further cycles to take a record from another lane's stack.
+    pub steal_cycles: u32,
+    /// Classes of operation that take no unit and no time.
+    #[serde(default)]
+    pub wires: Vec<OpClass>,
+    /// Units of every stage's block, by class of operation.
+    pub units: BTreeMap<OpClass, Unit>,
+    /// Units of some stages' blocks where they differ.
+    #[serde(default)]
+    pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
+    /// The record stack of a lane.
+    pub stack: Stack,
+    /// Graph nodes, for all lanes.
+    pub node_cache: Cache,
+    /// Colours and normals, for all lanes.
+    pub attribute_cache: Cache,
+    /// Fill vectors, for all lanes.
+    pub fill_vectors: Banks,
+    /// Pixels, for all lanes.
+    pub pixels: Pixels,
+}
+
+/// Which children of a record may be worked on at once. What is not
+/// independent waits for the whole subtree of the earlier one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Independence {
+    /// None: one after the other, depth first.
+    None,
+    /// Those of one class of the occlusion order, as the paper has it: the
+    /// nearest; the next three; the next three; the farthest.
+    Classes,
+    /// Those whose image nodes are disjoint.
+    Image,
+    /// Those that either rule lets through.
+    Both,
+}
+
+/// Units of one class of operation in one block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Unit {
+    /// How many; at least 1.
+    pub count: u32,
+    /// Cycles from the last operation's last issue cycle to its result.
+    pub latency: u32,
+    /// Cycles after which a unit takes its next operation; at least 1.
+    pub interval: u32,
+    /// Bits; a wider operation takes `ceil(bits / width)` passes.
+    pub width: u32,
+}
+
+/// A lane's record stack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Stack {
+    /// Records it holds.
+    pub entries: u32,
+    /// Accesses it takes a cycle.
+    pub ports: u32,
+    /// Cycles of a read.
+    pub latency: u32,
+    /// What becomes of a record beyond the last entry.
+    pub overflow: StackOverflow,
+    /// Further cycles to take a record that was spilled.
+    pub spill_cycles: u32,
+}
+
+/// What becomes of a record for which a stack has no entry.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StackOverflow {
+    /// It is written to outer memory in the background, and read back when
+    /// its turn comes.
+    Spill,
+    /// The frame ends with an error.
+    Error,
+}
+
+/// A set-associative cache with least-recently-used replacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Cache {
+    /// Size; a multiple of `ways * line_bytes`.
+    pub bytes: u32,
+    /// Lines of a set.
+    pub ways: u32,
+    /// Bytes of a line.
+    pub line_bytes: u32,
+    /// Bytes of one entry (a node, an attribute).
+    pub entry_bytes: u32,
+    /// Accesses it takes a cycle.
+    pub ports: u32,
+    /// Cycles of a hit.
+    pub hit_latency: u32,
+    /// Further cycles of a miss.
+    pub miss_latency: u32,
+    /// Misses that may be under way at once.
+    pub misses: u32,
+}
+
+/// A memory of banks; an address lies in bank `address mod banks`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Banks {
+    /// Banks.
+    pub banks: u32,
+    /// Reads that a bank takes a cycle.
+    pub read_ports: u32,
+    /// Writes that a bank takes a cycle.
+    pub write_ports: u32,
+    /// Cycles of a read; a write takes one.
+    pub latency: u32,
+}
+
+/// The way out for pixels: ports into a buffer that drains at a fixed rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pixels {
+    /// Writes a cycle into the buffer.
+    pub write_ports: u32,
+    /// Pixels that the buffer holds.
+    pub buffer: u32,
+    /// Cycles from one pixel's leaving to the next one's.
+    pub drain_interval: u32,
+}
+
+/// Why a description is none.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HardwareError {
+    /// Not TOML, or not of these fields.
+    #[error("hardware description: {0}")]
+    Syntax(String),
+    /// A number out of its range.
+    #[error("hardware description: {field} is {value}; it must be {range}")]
+    Range {
+        /// Where, as in the file.
+        field: String,
+        /// What is there.
+        value: String,
+        /// What may be there.
+        range: String,
+    },
+    /// A class of operation that nothing does.
+    #[error(
+        "hardware description: nothing does `{class}`; give it a [units.{class}] \
+         or put it into `wires`"
+    )]
+    NoUnit {
+        /// The class, as in the file.
+        class: String,
+    },
+    /// No description of this name ships.
+    #[error("no hardware of the name `{0}` ships; there are tiny, paper and wide")]
+    NoPreset(String),
+}
+
+/// Names and texts of the descriptions that ship.
+pub const PRESETS: [(&str, &str); 3] = [
+    ("tiny", include_str!("../../machines/tiny.toml")),
+    ("paper", include_str!("../../machines/paper.toml")),
+    ("wide", include_str!("../../machines/wide.toml")),
+];
+
+impl Hardware {
+    /// Reads and checks a description.
+    ///
+    /// # Errors
+    /// With the line where the text is no description, or with the field, its
+    /// value and its range.
+    pub fn from_toml(text: &str) -> Result<Self, HardwareError> {
+        let hardware: Self =
+            toml::from_str(text).map_err(|error| HardwareError::Syntax(error.to_string()))?;
+        hardware.check()?;
+        Ok(hardware)
+    }
+
+    /// One of those that ship: `tiny`, `paper`, `wide`.
+    ///
+    /// # Errors
+    /// Where there is none of that name.
+    pub fn preset(name: &str) -> Result<Self, HardwareError> {
+        let (_, text) = PRESETS
+            .iter()
+            .find(|(of, _)| *of == name)
+            .ok_or_else(|| HardwareError::NoPreset(name.to_owned()))?;
+        Self::from_toml(text)
+    }
+
+    /// The units of a class in a stage's block; `None`: wires.
+    #[must_use]
+    pub fn unit(&self, stage: Stage, class: OpClass) -> Option<Unit> {
+        if let Some(unit) = self.stages.get(&stage).and_then(|units| units.get(&class)) {
+            return Some(*unit);
+        }
+        if self.wires.contains(&class) {
+            return None;
+        }
+        self.units.get(&class).copied()
+    }
+
+    /// Contexts of all lanes.
+    #[must_use]
+    pub fn all_contexts(&self) -> u64 {
+        u64::from(self.lanes) * u64::from(self.contexts)
+    }
+
+    /// Checks every number.
+    ///
+    /// # Errors
+    /// With the first field that is out of its range.
+    pub fn check(&self) -> Result<(), HardwareError> {
+        if !(self.clock_mhz.is_finite() && self.clock_mhz > 0.0) {
+            return Err(out_of_range("clock_mhz", self.clock_mhz, "above 0"));
+        }
+        within("lanes", self.lanes, 1, MAX_LANES)?;
+        within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
+        within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
+        for class in OpClass::ALL {
+            if !self.units.contains_key(&class) && !self.wires.contains(&class) {
+                return Err(HardwareError::NoUnit {
+                    class: key(&class),
+                });
+            }
+        }
+        for (class, unit) in &self.units {
+            unit.check(&format!("units.{}", key(class)))?;
+        }
+        for (stage, units) in &self.stages {
+            for (class, unit) in units {
+                unit.check(&format!("stages.{}.{}", key(stage), key(class)))?;
+            }
+        }
+        let stack = &self.stack;
+        for (field, value, least) in [
+            ("stack.entries", stack.entries, 1),
+            ("stack.ports", stack.ports, 1),
+            ("stack.latency", stack.latency, 0),
+            ("stack.spill_cycles", stack.spill_cycles, 0),
+            ("fill_vectors.banks", self.fill_vectors.banks, 1),
+            ("fill_vectors.read_ports", self.fill_vectors.read_ports, 1),
+            ("fill_vectors.write_ports", self.fill_vectors.write_ports, 1),
+            ("fill_vectors.latency", self.fill_vectors.latency, 0),
+            ("pixels.write_ports", self.pixels.write_ports, 1),
+            ("pixels.buffer", self.pixels.buffer, 1),
+            ("pixels.drain_interval", self.pixels.drain_interval, 0),
+        ] {
+            within(field, value, least, MAX_NUMBER)?;
+        }
+        self.node_cache.check("node_cache")?;
+        self.attribute_cache.check("attribute_cache")
+    }
+}
+
+impl Unit {
+    fn check(&self, at: &str) -> Result<(), HardwareError> {
+        within(&format!("{at}.count"), self.count, 1, MAX_NUMBER)?;
+        within(&format!("{at}.latency"), self.latency, 0, MAX_NUMBER)?;
+        within(&format!("{at}.interval"), self.interval, 1, MAX_NUMBER)?;
+        within(&format!("{at}.width"), self.width, 1, MAX_NUMBER)
+    }
+}
+
+impl Cache {
+    /// Sets.
+    #[must_use]
+    pub fn sets(&self) -> u32 {
+        self.bytes / (self.ways * self.line_bytes)
+    }
+
+    fn check(&self, at: &str) -> Result<(), HardwareError> {
+        for (field, value, least) in [
+            ("bytes", self.bytes, 1),
+            ("ways", self.ways, 1),
+            ("line_bytes", self.line_bytes, 1),
+            ("entry_bytes", self.entry_bytes, 1),
+            ("ports", self.ports, 1),
+            ("hit_latency", self.hit_latency, 0),
+            ("miss_latency", self.miss_latency, 0),
+            ("misses", self.misses, 1),
+        ] {
+            within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
+        }
+        let set = u64::from(self.ways) * u64::from(self.line_bytes);
+        if !u64::from(self.bytes).is_multiple_of(set) {
+            let range = format!("a multiple of ways * line_bytes, {set}");
+            return Err(out_of_range(&format!("{at}.bytes"), self.bytes, &range));
+        }
+        Ok(())
+    }
+}
+
+/// A name as the file has it.
+fn key(of: &impl std::fmt::Debug) -> String {
+    // `MinMax` is `min_max` in the file.
+    let mut name = String::new();
+    for letter in format!("{of:?}").chars() {
+        if letter.is_uppercase() && !name.is_empty() {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_lowercase());
+    }
+    name
+}
+
+fn within(field: &str, value: u32, least: u32, most: u32) -> Result<(), HardwareError> {
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(out_of_range(field, value, &format!("{least} to {most}")))
+    }
+}
+
+fn out_of_range(field: &str, value: impl ToString, range: &str) -> HardwareError {
+    HardwareError::Range {
+        field: field.to_owned(),
+        value: value.to_string(),
+        range: range.to_owned(),
+    }
+}

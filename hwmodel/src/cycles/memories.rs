@@ -1,0 +1,351 @@
+//! Memories under contention: ports, banks, caches, the way out for pixels.
+//!
+//! Accesses are booked in the order in which their stages start; one is
+//! served after all that were booked before it at the same port.
+
+use super::hardware::{Banks, Cache, Hardware, Pixels};
+use super::report::{CacheReport, Cause};
+use super::turn::Access;
+use crate::Memory;
+
+/// A port that takes so many accesses a cycle.
+#[derive(Debug, Clone)]
+pub(super) struct Port {
+    cycle: u64,
+    used: u32,
+    per_cycle: u32,
+    pub(super) accesses: u64,
+}
+
+impl Port {
+    pub(super) fn new(per_cycle: u32) -> Self {
+        Self {
+            cycle: 0,
+            used: 0,
+            per_cycle,
+            accesses: 0,
+        }
+    }
+
+    /// The first cycle from `at` on in which the port takes one more.
+    #[inline]
+    pub(super) fn book(&mut self, at: u64) -> u64 {
+        self.accesses += 1;
+        if at > self.cycle {
+            self.cycle = at;
+            self.used = 1;
+        } else if self.used < self.per_cycle {
+            self.used += 1;
+        } else {
+            self.cycle += 1;
+            self.used = 1;
+        }
+        self.cycle
+    }
+
+    /// Takes nothing more before `until`, but one in it.
+    fn hold(&mut self, until: u64) {
+        if until > self.cycle {
+            self.cycle = until;
+            self.used = 1;
+        }
+    }
+
+    /// Least cycles for what it took.
+    pub(super) fn bound(&self) -> u64 {
+        self.accesses.div_ceil(u64::from(self.per_cycle))
+    }
+}
+
+/// When an access is issued and done, and what it waited for if it did.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Served {
+    pub(super) issued: u64,
+    pub(super) done: u64,
+    pub(super) cause: Cause,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    number: u64,
+    ready: u64,
+}
+
+/// A cache: which lines it holds, most recently used first in each set.
+#[derive(Debug)]
+pub(super) struct CacheState {
+    of: Cache,
+    sets: u64,
+    lines: Vec<Line>,
+    pub(super) port: Port,
+    /// When the misses under way are done, oldest at `misses mod slots`.
+    slots: Vec<u64>,
+    misses: u64,
+    delayed: u64,
+}
+
+impl CacheState {
+    fn new(of: Cache) -> Self {
+        let lines = of.sets() as usize * of.ways as usize;
+        Self {
+            of,
+            sets: u64::from(of.sets()),
+            lines: vec![
+                Line {
+                    number: u64::MAX,
+                    ready: 0
+                };
+                lines
+            ],
+            port: Port::new(of.ports),
+            slots: vec![0; of.misses as usize],
+            misses: 0,
+            delayed: 0,
+        }
+    }
+
+    #[inline]
+    fn access(&mut self, address: u64, at: u64) -> Served {
+        let issued = self.port.book(at);
+        let hit = issued + u64::from(self.of.hit_latency);
+        let number =
+            address.wrapping_mul(u64::from(self.of.entry_bytes)) / u64::from(self.of.line_bytes);
+        let ways = self.of.ways as usize;
+        let start = (number % self.sets) as usize * ways;
+        let set = &mut self.lines[start..start + ways];
+        if let Some(way) = set.iter().position(|line| line.number == number) {
+            let line = set[way];
+            set.copy_within(0..way, 1);
+            set[0] = line;
+            let late = line.ready > hit;
+            self.delayed += u64::from(late);
+            return Served {
+                issued,
+                done: hit.max(line.ready),
+                cause: if late {
+                    Cause::CacheMiss
+                } else {
+                    Cause::MemoryPort
+                },
+            };
+        }
+        let slot = (self.misses % self.slots.len() as u64) as usize;
+        self.misses += 1;
+        let begun = issued.max(self.slots[slot]);
+        self.port.hold(begun);
+        let done = begun + u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
+        self.slots[slot] = done;
+        set.copy_within(0..ways - 1, 1);
+        set[0] = Line {
+            number,
+            ready: done,
+        };
+        Served {
+            issued: begun,
+            done,
+            cause: Cause::CacheMiss,
+        }
+    }
+
+    pub(super) fn report(&self) -> CacheReport {
+        let accesses = self.port.accesses;
+        CacheReport {
+            accesses,
+            misses: self.misses,
+            delayed_hits: self.delayed,
+            hit_rate: if accesses == 0 {
+                1.0
+            } else {
+                1.0 - self.misses as f64 / accesses as f64
+            },
+            bytes_in: self.misses * u64::from(self.of.line_bytes),
+        }
+    }
+
+    /// Least cycles for its misses.
+    pub(super) fn miss_bound(&self) -> u64 {
+        let each = u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
+        self.misses * each / self.slots.len() as u64
+    }
+}
+
+/// Banks with ports for reads and writes.
+#[derive(Debug)]
+pub(super) struct BanksState {
+    of: Banks,
+    reads: Vec<Port>,
+    writes: Vec<Port>,
+}
+
+impl BanksState {
+    fn new(of: Banks) -> Self {
+        let banks = of.banks as usize;
+        Self {
+            of,
+            reads: vec![Port::new(of.read_ports); banks],
+            writes: vec![Port::new(of.write_ports); banks],
+        }
+    }
+
+    #[inline]
+    fn access(&mut self, access: Access, at: u64) -> Served {
+        let bank = (access.address % u64::from(self.of.banks)) as usize;
+        let (issued, latency) = if access.write {
+            (self.writes[bank].book(at), 1)
+        } else {
+            (self.reads[bank].book(at), self.of.latency)
+        };
+        Served {
+            issued,
+            done: issued + u64::from(latency),
+            cause: Cause::BankConflict,
+        }
+    }
+
+    /// All reads and all writes.
+    pub(super) fn accesses(&self) -> (u64, u64) {
+        let all = |ports: &[Port]| ports.iter().map(|port| port.accesses).sum();
+        (all(&self.reads), all(&self.writes))
+    }
+
+    /// Least cycles for the busiest bank.
+    pub(super) fn bound(&self) -> u64 {
+        let ports = self.reads.iter().chain(&self.writes);
+        ports.map(Port::bound).max().unwrap_or(0)
+    }
+}
+
+/// The way out for pixels.
+#[derive(Debug)]
+pub(super) struct PixelsState {
+    of: Pixels,
+    pub(super) port: Port,
+    /// When the pixels in the buffer leave it, oldest at `writes mod buffer`.
+    leaving: Vec<u64>,
+    last: u64,
+}
+
+impl PixelsState {
+    fn new(of: Pixels) -> Self {
+        Self {
+            of,
+            port: Port::new(of.write_ports),
+            leaving: vec![0; of.buffer as usize],
+            last: 0,
+        }
+    }
+
+    #[inline]
+    fn write(&mut self, at: u64) -> Served {
+        let slot = (self.port.accesses % self.leaving.len() as u64) as usize;
+        let ported = self.port.book(at);
+        let issued = ported.max(self.leaving[slot]);
+        self.port.hold(issued);
+        self.last = issued.max(self.last) + u64::from(self.of.drain_interval);
+        self.leaving[slot] = self.last;
+        Served {
+            issued,
+            done: issued + 1,
+            cause: Cause::PixelPort,
+        }
+    }
+
+    /// When the last pixel has left.
+    pub(super) fn last(&self) -> u64 {
+        self.last
+    }
+
+    /// Least cycles for the pixels to leave.
+    pub(super) fn drain_bound(&self) -> u64 {
+        self.port.accesses * u64::from(self.of.drain_interval)
+    }
+}
+
+/// All memories of a hardware.
+#[derive(Debug)]
+pub(super) struct Memories {
+    /// By lane.
+    pub(super) stacks: Vec<Port>,
+    stack_latency: u64,
+    pub(super) nodes: CacheState,
+    pub(super) attributes: CacheState,
+    pub(super) fill: BanksState,
+    pub(super) pixels: PixelsState,
+}
+
+impl Memories {
+    pub(super) fn new(hardware: &Hardware) -> Self {
+        Self {
+            stacks: vec![Port::new(hardware.stack.ports); hardware.lanes as usize],
+            stack_latency: u64::from(hardware.stack.latency),
+            nodes: CacheState::new(hardware.node_cache),
+            attributes: CacheState::new(hardware.attribute_cache),
+            fill: BanksState::new(hardware.fill_vectors),
+            pixels: PixelsState::new(hardware.pixels),
+        }
+    }
+
+    /// Serves an access from cycle `at` on; `lane`: whose stack.
+    #[inline]
+    pub(super) fn serve(&mut self, access: Access, at: u64, lane: usize) -> Served {
+        match access.memory {
+            Memory::Stack => {
+                let issued = self.stacks[lane].book(at);
+                let latency = if access.write { 1 } else { self.stack_latency };
+                Served {
+                    issued,
+                    done: issued + latency,
+                    cause: Cause::MemoryPort,
+                }
+            }
+            Memory::Node => self.nodes.access(access.address, at),
+            Memory::Attribute => self.attributes.access(access.address, at),
+            Memory::FillVector => self.fill.access(access, at),
+            Memory::Pixel => self.pixels.write(at),
+        }
+    }
+}
+
+/// Cycles of an access that waits for nothing, and of one that waits as long
+/// as it ever must when nothing else is under way.
+#[derive(Debug, Clone)]
+pub(super) struct Latencies {
+    /// By memory, then read or write.
+    alone: [[u32; 2]; Memory::ALL.len()],
+    worst: [u64; Memory::ALL.len()],
+}
+
+impl Latencies {
+    pub(super) fn new(hardware: &Hardware) -> Self {
+        let mut alone = [[1; 2]; Memory::ALL.len()];
+        let mut worst = [0; Memory::ALL.len()];
+        let caches = [
+            (Memory::Node, hardware.node_cache),
+            (Memory::Attribute, hardware.attribute_cache),
+        ];
+        alone[Memory::Stack as usize][0] = hardware.stack.latency;
+        alone[Memory::FillVector as usize][0] = hardware.fill_vectors.latency;
+        for (memory, cache) in caches {
+            alone[memory as usize] = [cache.hit_latency; 2];
+        }
+        for memory in Memory::ALL {
+            let [read, write] = alone[memory as usize];
+            worst[memory as usize] = 1 + u64::from(read.max(write));
+        }
+        for (memory, cache) in caches {
+            worst[memory as usize] += u64::from(cache.miss_latency);
+        }
+        worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval);
+        Self { alone, worst }
+    }
+
+    #[inline]
+    pub(super) fn alone(&self, access: Access) -> u32 {
+        self.alone[access.memory as usize][usize::from(access.write)]
+    }
+
+    #[inline]
+    pub(super) fn worst(&self, access: Access) -> u64 {
+        self.worst[access.memory as usize]
+    }
+}

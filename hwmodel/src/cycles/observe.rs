@@ -1,0 +1,111 @@
+//! What can be watched of a simulation.
+
+use super::report::Cause;
+use crate::Stage;
+
+/// The number that the workload's start has among the records.
+pub const START: u64 = u64::MAX;
+
+/// One record's visit of one stage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VisitSpan {
+    /// The record, in the order in which they had their turns, from 0;
+    /// [`START`] for what comes before them.
+    pub record: u64,
+    /// The lane.
+    pub lane: u32,
+    /// The context within the lane.
+    pub context: u32,
+    /// The stage.
+    pub stage: Stage,
+    /// Cycle in which the record came to the stage's block.
+    pub arrives: u64,
+    /// Cycle in which the block took it.
+    pub begins: u64,
+    /// First cycle in which the block can take the next record.
+    pub frees: u64,
+    /// First cycle in which the record can go on.
+    pub ends: u64,
+    /// Cycles of it for which it waited for a memory, and what for.
+    pub stall: Option<(Cause, u64)>,
+}
+
+/// Watches a simulation. Its methods do nothing by default, and where
+/// [`Observer::ENABLED`] is false the first two are not called at all.
+pub trait Observer {
+    /// Whether it wants visits and queues.
+    const ENABLED: bool = true;
+
+    /// A visit begins; its whole course is known by then. Visits come in the
+    /// order in which they begin.
+    fn visit(&mut self, span: &VisitSpan) {
+        let _ = span;
+    }
+
+    /// How many records lie on a lane's stack from `cycle` on, and how many
+    /// of them are ready.
+    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
+        let _ = (cycle, lane, stored, ready);
+    }
+
+    /// Every few thousand records: how far it is.
+    fn progress(&mut self, cycle: u64, records: u64) {
+        let _ = (cycle, records);
+    }
+}
+
+/// Nobody watches.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoObserver;
+
+impl Observer for NoObserver {
+    const ENABLED: bool = false;
+}
+
+/// Calls a function with cycles and records every few thousand records.
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<F>(pub F);
+
+impl<F: FnMut(u64, u64)> Observer for Progress<F> {
+    const ENABLED: bool = false;
+
+    fn progress(&mut self, cycle: u64, records: u64) {
+        (self.0)(cycle, records);
+    }
+}
+
+/// Both watch.
+impl<A: Observer, B: Observer> Observer for (A, B) {
+    const ENABLED: bool = A::ENABLED || B::ENABLED;
+
+    fn visit(&mut self, span: &VisitSpan) {
+        self.0.visit(span);
+        self.1.visit(span);
+    }
+
+    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
+        self.0.queue(cycle, lane, stored, ready);
+        self.1.queue(cycle, lane, stored, ready);
+    }
+
+    fn progress(&mut self, cycle: u64, records: u64) {
+        self.0.progress(cycle, records);
+        self.1.progress(cycle, records);
+    }
+}
+
+impl<O: Observer> Observer for &mut O {
+    const ENABLED: bool = O::ENABLED;
+
+    fn visit(&mut self, span: &VisitSpan) {
+        (**self).visit(span);
+    }
+
+    fn queue(&mut self, cycle: u64, lane: u32, stored: u32, ready: u32) {
+        (**self).queue(cycle, lane, stored, ready);
+    }
+
+    fn progress(&mut self, cycle: u64, records: u64) {
+        (**self).progress(cycle, records);
+    }
+}

@@ -1,0 +1,509 @@
+//! The simulation: contexts, blocks, and which record is next.
+
+use std::collections::VecDeque;
+
+use super::hardware::{Hardware, StackOverflow};
+use super::memories::Memories;
+use super::observe::{Observer, START, VisitSpan};
+use super::report::{
+    Bottleneck, Cause, ContextReport, CycleReport, REPORT_VERSION, SPAN, StackReport, StageReport,
+    Stalls,
+};
+use super::tasks::Tasks;
+use super::turn::{Child, Plan, STAGES, Workload};
+use super::wheel::Wheel;
+use crate::Stage;
+
+const NONE: u32 = u32::MAX;
+/// Records from one sign of progress to the next.
+const PROGRESS: u64 = 1 << 14;
+
+/// Why a simulation ended early.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimulationError<E> {
+    /// The workload failed.
+    #[error(transparent)]
+    Workload(#[from] E),
+    /// A stack without room, on hardware that does not spill.
+    #[error(
+        "record {record} leaves more records than the {entries} entries of lane {lane}'s \
+         stack hold; give it more, or set overflow = \"spill\""
+    )]
+    StackOverflow {
+        /// The record, in the order of turns, from 0.
+        record: u64,
+        /// The lane.
+        lane: u32,
+        /// Entries of its stack.
+        entries: u32,
+    },
+}
+
+/// A lane's block of one stage.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    free_at: u64,
+    /// Contexts that wait, in order; the first has its event set.
+    first: u32,
+    last: u32,
+}
+
+#[derive(Debug, Default)]
+struct Context {
+    lane: u32,
+    number: u32,
+    plan: Plan,
+    children: Vec<Child>,
+    /// The visit that is next or under way.
+    visit: usize,
+    arrived: u64,
+    granted: bool,
+    task: u32,
+    record: u64,
+    /// Lane from whose stack the record comes, and further cycles of taking it.
+    from: u32,
+    steal: u64,
+    spill: u64,
+    /// The next in the line of its block.
+    behind: u32,
+}
+
+#[derive(Debug, Default)]
+struct Lane {
+    /// Ready records, newest last.
+    ready: VecDeque<u32>,
+    /// Records on its stack, ready or not.
+    stored: u64,
+    /// Contexts without a record, a bit each.
+    idle: u64,
+}
+
+/// Runs a workload on a hardware.
+///
+/// # Errors
+/// When the workload fails, or a stack overflows that does not spill.
+pub fn simulate<W: Workload, O: Observer>(
+    hardware: &Hardware,
+    workload: &mut W,
+    observer: &mut O,
+) -> Result<CycleReport, SimulationError<W::Error>> {
+    let mut simulation = Simulation::new(hardware, workload, observer);
+    let end = simulation.run()?;
+    Ok(simulation.report(end))
+}
+
+struct Simulation<'a, W, O> {
+    hardware: &'a Hardware,
+    workload: &'a mut W,
+    observer: &'a mut O,
+    wheel: Wheel,
+    contexts: Vec<Context>,
+    lanes: Vec<Lane>,
+    blocks: Vec<[Block; STAGES]>,
+    memories: Memories,
+    tasks: Tasks,
+    stages: Vec<StageReport>,
+    newly: Vec<u32>,
+    ready: u64,
+    idle: u64,
+    live: u64,
+    records: u64,
+    work: u64,
+    serial: u64,
+    accounted: u64,
+    idle_cycles: ContextReport,
+    stack: StackReport,
+}
+
+impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
+    fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut O) -> Self {
+        let contexts: Vec<_> = (0..hardware.lanes)
+            .flat_map(|lane| (0..hardware.contexts).map(move |number| (lane, number)))
+            .map(|(lane, number)| Context {
+                lane,
+                number,
+                behind: NONE,
+                ..Context::default()
+            })
+            .collect();
+        let lane = || Lane {
+            idle: u64::MAX >> (64 - hardware.contexts),
+            ..Lane::default()
+        };
+        let block = Block {
+            free_at: 0,
+            first: NONE,
+            last: NONE,
+        };
+        let stage = |stage| StageReport {
+            stage,
+            visits: 0,
+            operations: 0,
+            passes: 0,
+            busy: 0,
+            held: 0,
+            utilisation: 0.0,
+            alone: 0,
+            stalls: Stalls::default(),
+        };
+        Self {
+            wheel: Wheel::new(contexts.len()),
+            idle: contexts.len() as u64,
+            contexts,
+            lanes: (0..hardware.lanes).map(|_| lane()).collect(),
+            blocks: vec![[block; STAGES]; hardware.lanes as usize],
+            memories: Memories::new(hardware),
+            tasks: Tasks::new(hardware.independence),
+            stages: Stage::ALL.map(stage).into(),
+            newly: Vec::new(),
+            ready: 0,
+            live: 0,
+            records: 0,
+            work: 0,
+            serial: 0,
+            accounted: 0,
+            idle_cycles: ContextReport::default(),
+            stack: StackReport::default(),
+            hardware,
+            workload,
+            observer,
+        }
+    }
+
+    /// Runs to the end; returns the last turn's last cycle.
+    fn run(&mut self) -> Result<u64, SimulationError<W::Error>> {
+        self.start()?;
+        let mut now = 0;
+        while let Some((at, context)) = self.wheel.take() {
+            now = at;
+            let at_end = {
+                let of = &self.contexts[context as usize];
+                of.visit == of.plan.visits.len()
+            };
+            if at_end {
+                self.end_turn(now, context)?;
+            } else {
+                self.come(now, context);
+            }
+        }
+        Ok(now)
+    }
+
+    /// The workload's start is a turn of lane 0's context 0.
+    fn start(&mut self) -> Result<(), SimulationError<W::Error>> {
+        let task = self.tasks.root();
+        self.lanes[0].idle &= !1;
+        self.idle -= 1;
+        self.live = 1;
+        self.stack.most_live = 1;
+        let of = &mut self.contexts[0];
+        self.workload.start(&mut of.children)?;
+        of.task = task;
+        of.record = START;
+        self.plan(0, 0);
+        Ok(())
+    }
+
+    /// A context's turn has been executed: its visits follow.
+    fn plan(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        self.workload.log().take(&mut of.plan);
+        of.visit = 0;
+        of.arrived = now;
+        of.granted = false;
+        self.work += of.plan.alone;
+        self.serial += of.plan.worst + of.steal + of.spill;
+        for visit in &of.plan.visits {
+            let stage = &mut self.stages[visit.stage as usize];
+            stage.visits += 1;
+            stage.operations += visit.operations;
+            stage.passes += visit.passes;
+            stage.busy += visit.occupied;
+            stage.alone += visit.alone;
+        }
+        self.wheel.set(now, context);
+    }
+
+    /// Idle contexts up to `now`: call before their number or that of the
+    /// waiting records changes.
+    #[inline]
+    fn account(&mut self, now: u64) {
+        let idle = (now - self.accounted) * self.idle;
+        self.accounted = now;
+        if self.tasks.waiting > 0 {
+            self.idle_cycles.order_wait += idle;
+        } else {
+            self.idle_cycles.no_record += idle;
+        }
+    }
+
+    /// A record comes to a block, or to the head of its line.
+    #[inline]
+    fn come(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        let stage = of.plan.visits[of.visit].stage as usize;
+        let block = &mut self.blocks[of.lane as usize][stage];
+        if of.granted {
+            of.granted = false;
+            let next = of.behind;
+            of.behind = NONE;
+            block.first = next;
+            self.begin(now, context);
+            if next != NONE {
+                self.grant(next);
+            }
+        } else if block.first == NONE && block.free_at <= now {
+            self.begin(now, context);
+        } else if block.first == NONE {
+            block.first = context;
+            block.last = context;
+            self.grant(context);
+        } else {
+            let last = block.last;
+            block.last = context;
+            self.contexts[last as usize].behind = context;
+        }
+    }
+
+    /// The head of a block's line goes in when the block is free.
+    fn grant(&mut self, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        of.granted = true;
+        let stage = of.plan.visits[of.visit].stage as usize;
+        let free_at = self.blocks[of.lane as usize][stage].free_at;
+        self.wheel.set(free_at, context);
+    }
+
+    /// A visit begins: its operations are issued, its accesses booked.
+    #[inline]
+    fn begin(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        let visit = &of.plan.visits[of.visit];
+        let report = &mut self.stages[visit.stage as usize];
+        let from = of.from as usize;
+        let issued = now + visit.occupied;
+        let mut frees = issued;
+        let mut ends = issued + u64::from(visit.latency);
+        let mut cause = Cause::MemoryPort;
+        let mut at = now;
+        for &access in &of.plan.accesses[visit.accesses.clone()] {
+            let served = self.memories.serve(access, at, from);
+            at = served.issued;
+            frees = frees.max(at + 1);
+            if served.done > ends {
+                ends = served.done;
+                cause = served.cause;
+            }
+        }
+        let stalled = ends - (now + visit.alone);
+        report.held += frees - issued;
+        report.stalls.add(Cause::BlockBusy, now - of.arrived);
+        report.stalls.add(cause, stalled);
+        if visit.stage == Stage::Pop {
+            report.stalls.add(Cause::Steal, of.steal);
+            report.stalls.add(Cause::StackSpill, of.spill);
+            ends += of.steal + of.spill;
+            // What follows goes to the stack of its own lane.
+            of.from = of.lane;
+        }
+        self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
+        if O::ENABLED {
+            self.observer.visit(&VisitSpan {
+                record: of.record,
+                lane: of.lane,
+                context: of.number,
+                stage: visit.stage,
+                arrives: of.arrived,
+                begins: now,
+                frees,
+                ends,
+                stall: (stalled > 0).then_some((cause, stalled)),
+            });
+        }
+        of.visit += 1;
+        of.arrived = ends;
+        self.wheel.set(ends, context);
+    }
+
+    /// A turn ends: its children lie on the stack, and what waited for it goes on.
+    fn end_turn(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
+        self.account(now);
+        let of = &mut self.contexts[context as usize];
+        let lane = of.lane;
+        let stack = &mut self.lanes[lane as usize];
+        let count = of.children.len() as u64;
+        stack.stored += count;
+        self.live += count;
+        self.live -= 1;
+        self.stack.most_live = self.stack.most_live.max(self.live);
+        self.stack.deepest = self.stack.deepest.max(stack.stored);
+        let over = stack.stored.saturating_sub(u64::from(self.hardware.stack.entries));
+        let spills = over.min(count);
+        if spills > 0 {
+            if self.hardware.stack.overflow == StackOverflow::Error {
+                return Err(SimulationError::StackOverflow {
+                    record: of.record,
+                    lane,
+                    entries: self.hardware.stack.entries,
+                });
+            }
+            self.stack.spilled += spills;
+        }
+        let newly = &mut self.newly;
+        self.tasks.end(
+            of.task,
+            of.plan.alone,
+            (lane, spills as usize),
+            &of.children,
+            newly,
+        );
+        self.ready += newly.len() as u64;
+        for task in newly.drain(..) {
+            let at = self.tasks.lane(task) as usize;
+            self.lanes[at].ready.push_back(task);
+            if O::ENABLED {
+                let of = &self.lanes[at];
+                self.observer
+                    .queue(now, at as u32, of.stored as u32, of.ready.len() as u32);
+            }
+        }
+        self.lanes[lane as usize].idle |= 1 << self.contexts[context as usize].number;
+        self.idle += 1;
+        if self.ready > 0 {
+            self.give(now, context)?;
+            self.wake(now)?;
+        }
+        Ok(())
+    }
+
+    /// Gives ready records to idle contexts: each lane's own first.
+    fn wake(&mut self, now: u64) -> Result<(), SimulationError<W::Error>> {
+        for own in [true, false] {
+            if self.ready == 0 || self.idle == 0 {
+                return Ok(());
+            }
+            for lane in 0..self.lanes.len() {
+                while self.lanes[lane].idle != 0
+                    && self.ready > 0
+                    && (!own || !self.lanes[lane].ready.is_empty())
+                {
+                    let number = self.lanes[lane].idle.trailing_zeros();
+                    self.give(now, lane as u32 * self.hardware.contexts + number)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives an idle context its next record: its own lane's newest, or the
+    /// oldest of the next lane that has one. There must be one.
+    fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
+        let lanes = self.lanes.len();
+        let lane = self.contexts[context as usize].lane as usize;
+        let mut taken = self.lanes[lane].ready.pop_back();
+        for ahead in 1..lanes {
+            if taken.is_some() {
+                break;
+            }
+            taken = self.lanes[(lane + ahead) % lanes].ready.pop_front();
+        }
+        let Some(task) = taken else { return Ok(()) };
+        let record = self.tasks.get(task);
+        let from = record.lane as usize;
+        let stolen = from != lane;
+        self.ready -= 1;
+        self.idle -= 1;
+        self.lanes[from].stored -= 1;
+        self.stack.stolen += u64::from(stolen);
+        if O::ENABLED {
+            let of = &self.lanes[from];
+            self.observer
+                .queue(now, record.lane, of.stored as u32, of.ready.len() as u32);
+        }
+        let of = &mut self.contexts[context as usize];
+        self.lanes[lane].idle &= !(1 << of.number);
+        of.task = task;
+        of.record = self.records;
+        of.from = record.lane;
+        of.steal = u64::from(self.hardware.steal_cycles) * u64::from(stolen);
+        of.spill = u64::from(self.hardware.stack.spill_cycles) * u64::from(record.spilled);
+        self.records += 1;
+        if self.records.is_multiple_of(PROGRESS) {
+            self.observer.progress(now, self.records);
+        }
+        of.children.clear();
+        self.workload.turn(record.item, &mut of.children)?;
+        self.plan(now, context);
+        Ok(())
+    }
+
+    fn report(mut self, end: u64) -> CycleReport {
+        let cycles = end.max(self.memories.pixels.last());
+        self.account(cycles);
+        let per_lane = |sum: u64| sum.div_ceil(u64::from(self.hardware.lanes));
+        let mut bounds = vec![(SPAN.to_owned(), self.tasks.span)];
+        for stage in &mut self.stages {
+            let used = stage.busy + stage.held;
+            let all = (cycles * u64::from(self.hardware.lanes)).max(1);
+            stage.utilisation = used as f64 / all as f64;
+            bounds.push((format!("{} block", stage.stage.name()), per_lane(used)));
+        }
+        let memories = &self.memories;
+        let stack_ports = memories.stacks.iter().map(|port| port.bound()).sum();
+        bounds.push(("stack port".to_owned(), per_lane(stack_ports)));
+        for (name, bound) in [
+            ("node cache port", memories.nodes.port.bound()),
+            ("node cache misses", memories.nodes.miss_bound()),
+            ("attribute cache port", memories.attributes.port.bound()),
+            ("attribute cache misses", memories.attributes.miss_bound()),
+            ("busiest fill-vector bank", memories.fill.bound()),
+            ("pixel port", memories.pixels.port.bound()),
+            ("pixel drain", memories.pixels.drain_bound()),
+        ] {
+            bounds.push((name.to_owned(), bound));
+        }
+        let ratio = |a: u64, b: u64| if b == 0 { 0.0 } else { a as f64 / b as f64 };
+        let (fill_reads, fill_writes) = memories.fill.accesses();
+        let pixels = memories.pixels.port.accesses;
+        let mut report = CycleReport {
+            version: REPORT_VERSION,
+            hardware: self.hardware.name.clone(),
+            lanes: self.hardware.lanes,
+            contexts: self.hardware.contexts,
+            independence: self.hardware.independence,
+            clock_mhz: self.hardware.clock_mhz,
+            cycles,
+            records: self.records,
+            pixels,
+            cycles_per_record: ratio(cycles, self.records),
+            cycles_per_pixel: ratio(cycles, pixels),
+            frames_per_second: self.hardware.clock_mhz * 1e6 / cycles.max(1) as f64,
+            work: self.work,
+            span: self.tasks.span,
+            parallelism: ratio(self.work, self.tasks.span),
+            serial: self.serial,
+            context_cycles: ContextReport {
+                working: self.work,
+                stalled: self.stages.iter().map(|stage| stage.stalls.total()).sum(),
+                ..self.idle_cycles
+            },
+            node_cache: memories.nodes.report(),
+            attribute_cache: memories.attributes.report(),
+            fill_reads,
+            fill_writes,
+            stack: StackReport {
+                most_open: self.tasks.most_open,
+                ..self.stack
+            },
+            stages: self.stages,
+            bounds: Vec::new(),
+            bottleneck: Bottleneck {
+                resource: String::new(),
+                share: 0.0,
+                sentence: String::new(),
+            },
+        };
+        report.conclude(bounds);
+        report
+    }
+}

@@ -1,0 +1,158 @@
+//! Which context has its next event when: a timing wheel.
+//!
+//! Each context has at most one event to come, so that the lists of the wheel
+//! are links between contexts, and nothing is allocated while it turns.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+/// Cycles that the wheel holds; what comes later waits in a heap.
+const SLOTS: usize = 1024;
+const WORDS: usize = SLOTS / 64;
+const NONE: u32 = u32::MAX;
+
+/// Events in the order of their cycles; those of one cycle in the order in
+/// which they were set.
+#[derive(Debug)]
+pub(super) struct Wheel {
+    now: u64,
+    first: Vec<u32>,
+    last: Vec<u32>,
+    next: Vec<u32>,
+    used: [u64; WORDS],
+    late: BinaryHeap<Reverse<(u64, u64, u32)>>,
+    set: u64,
+}
+
+impl Wheel {
+    pub(super) fn new(contexts: usize) -> Self {
+        Self {
+            now: 0,
+            first: vec![NONE; SLOTS],
+            last: vec![NONE; SLOTS],
+            next: vec![NONE; contexts],
+            used: [0; WORDS],
+            late: BinaryHeap::new(),
+            set: 0,
+        }
+    }
+
+    /// Sets a context's event; `at` is not before the last event taken.
+    #[inline]
+    pub(super) fn set(&mut self, at: u64, context: u32) {
+        debug_assert!(at >= self.now, "an event in the past");
+        if at - self.now < SLOTS as u64 {
+            self.append(at, context);
+        } else {
+            self.set += 1;
+            self.late.push(Reverse((at, self.set, context)));
+        }
+    }
+
+    #[inline]
+    fn append(&mut self, at: u64, context: u32) {
+        let slot = at as usize % SLOTS;
+        self.next[context as usize] = NONE;
+        let bit = 1u64 << (slot % 64);
+        if self.used[slot / 64] & bit == 0 {
+            self.used[slot / 64] |= bit;
+            self.first[slot] = context;
+        } else {
+            self.next[self.last[slot] as usize] = context;
+        }
+        self.last[slot] = context;
+    }
+
+    /// Takes the next event: its cycle and its context.
+    #[inline]
+    pub(super) fn take(&mut self) -> Option<(u64, u32)> {
+        let slot = match self.next_slot() {
+            Some(slot) => slot,
+            None => {
+                let &Reverse((at, ..)) = self.late.peek()?;
+                self.advance(at);
+                at as usize % SLOTS
+            }
+        };
+        let ahead = (slot + SLOTS - self.now as usize % SLOTS) % SLOTS;
+        if ahead > 0 {
+            self.advance(self.now + ahead as u64);
+        }
+        let context = self.first[slot];
+        let next = self.next[context as usize];
+        self.first[slot] = next;
+        if next == NONE {
+            self.used[slot / 64] &= !(1 << (slot % 64));
+        }
+        Some((self.now, context))
+    }
+
+    /// The first used slot from now on.
+    #[inline]
+    fn next_slot(&self) -> Option<usize> {
+        let from = self.now as usize % SLOTS;
+        let mut word = from / 64;
+        let mut bits = self.used[word] & (u64::MAX << (from % 64));
+        // Once around, and the part of the first word before `from`.
+        for _ in 0..=WORDS {
+            if bits != 0 {
+                return Some(word * 64 + bits.trailing_zeros() as usize);
+            }
+            word = (word + 1) % WORDS;
+            bits = self.used[word];
+        }
+        None
+    }
+
+    /// Moves on to a cycle; what has come near is taken out of the heap.
+    #[inline]
+    fn advance(&mut self, to: u64) {
+        self.now = to;
+        while let Some(&Reverse((at, _, context))) = self.late.peek() {
+            if at - to >= SLOTS as u64 {
+                break;
+            }
+            self.late.pop();
+            self.append(at, context);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_come_in_order_of_time_then_of_setting() {
+        let times = [5u64, 3, 5, 5000, 0, 1023, 1024, 70_000, 5000, 3];
+        let mut wheel = Wheel::new(times.len());
+        for (context, &at) in times.iter().enumerate() {
+            wheel.set(at, context as u32);
+        }
+        let mut expected: Vec<_> = times.iter().copied().zip(0u32..).collect();
+        expected.sort_by_key(|&(at, _)| at);
+        let taken: Vec<_> = std::iter::from_fn(|| wheel.take()).collect();
+        assert_eq!(taken, expected);
+    }
+
+    #[test]
+    fn agrees_with_a_sorted_list() {
+        let mut wheel = Wheel::new(50);
+        let mut list: Vec<(u64, u64, u32)> = Vec::new();
+        let (mut random, mut order) = (1u64, 0);
+        for context in 0..50 {
+            wheel.set(0, context);
+            list.push((0, u64::from(context), context));
+        }
+        for _ in 0..20_000 {
+            list.sort_unstable();
+            let (at, _, context) = list.remove(0);
+            assert_eq!(wheel.take(), Some((at, context)));
+            random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let ahead = [random >> 60, random >> 52, random >> 50][(random >> 40) as usize % 3];
+            order += 1;
+            wheel.set(at + ahead, context);
+            list.push((at + ahead, 100 + order, context));
+        }
+    }
+}
