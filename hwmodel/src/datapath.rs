@@ -102,6 +102,12 @@ impl<P: Probe> Datapath<P> {
         self.overflows
     }
 
+    /// The probe at work.
+    #[inline]
+    pub fn probe_mut(&mut self) -> &mut P {
+        &mut self.probe
+    }
+
     /// The probe, to read what it saw.
     pub fn into_probe(self) -> P {
         self.probe

@@ -24,6 +24,7 @@ mod record;
 mod record_bits;
 mod silhouette;
 mod size;
+mod steps;
 mod strips;
 mod to_screen;
 mod verdict;
@@ -31,14 +32,19 @@ mod verdict;
 pub(crate) mod vertices;
 mod walk;
 
+use hwmodel::cycles::{Hardware, Observer, TurnLog};
 use hwmodel::{NoProbe, Overflow, Probe};
 
 use crate::frame::{FillVectors, Frame};
 use crate::graph::GraphView;
+use walk::Walk;
+
 use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
 pub use record_bits::{Held, RecordField, record_bits, record_fields};
+use steps::Steps;
+pub use steps::{SimulateError, Simulated};
 
 /// How the machine works, beyond what the picture asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,18 +96,7 @@ impl Machine {
         probe: P,
     ) -> Result<(Stats, P), EngineError> {
         frame.clear();
-        let (levels, width, height) = (setup.levels, setup.width, setup.height);
-        let fill = match &mut self.fill {
-            Some((fill, w, h)) if fill.levels() == levels && (*w, *h) == (width, height) => {
-                fill.clear();
-                fill
-            }
-            other => {
-                &mut other
-                    .insert((FillVectors::new(levels, width, height), width, height))
-                    .0
-            }
-        };
+        let fill = Self::emptied(&mut self.fill, setup);
         match setup.options.cage {
             CageKind::Corners => {
                 walk::run::<P, lattice::Corners>(&self.options, graph, setup, fill, frame, probe)
@@ -110,6 +105,66 @@ impl Machine {
                 walk::run::<P, lattice::Frame>(&self.options, graph, setup, fill, frame, probe)
             }
         }
+    }
+
+    /// Draws a frame on a simulated hardware: each record has its turn in the
+    /// cycle in which `hardware` gets to it, and finds the fill vectors as
+    /// they are by then.
+    ///
+    /// Under [`Independence::None`] and [`Image`] the machine does exactly
+    /// what it does serially, whatever the hardware. Under [`Classes`] and
+    /// [`Both`] the picture is the same where no sample is claimed by two
+    /// children of one class: under the exact rule at tolerance 0.
+    ///
+    /// [`Independence::None`]: hwmodel::cycles::Independence::None
+    /// [`Image`]: hwmodel::cycles::Independence::Image
+    /// [`Classes`]: hwmodel::cycles::Independence::Classes
+    /// [`Both`]: hwmodel::cycles::Independence::Both
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy, or a stack that does not
+    /// spill.
+    pub fn simulate<O: Observer>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        hardware: &Hardware,
+        observer: &mut O,
+    ) -> Result<Simulated, SimulateError> {
+        frame.clear();
+        let fill = Self::emptied(&mut self.fill, setup);
+        let log = TurnLog::new(hardware);
+        let options = &self.options;
+        match setup.options.cage {
+            CageKind::Corners => {
+                let walk =
+                    Walk::<_, lattice::Corners>::new(options, graph, setup, fill, frame, log);
+                Steps::new(walk).run(hardware, observer)
+            }
+            CageKind::Frame => {
+                let walk = Walk::<_, lattice::Frame>::new(options, graph, setup, fill, frame, log);
+                Steps::new(walk).run(hardware, observer)
+            }
+        }
+    }
+
+    /// Fill vectors of the frame's size, with nothing drawn.
+    fn emptied<'f>(
+        fill: &'f mut Option<(FillVectors, u32, u32)>,
+        setup: &FrameSetup,
+    ) -> &'f mut FillVectors {
+        let (levels, width, height) = (setup.levels, setup.width, setup.height);
+        let fits = |(fill, w, h): &(FillVectors, u32, u32)| {
+            fill.levels() == levels && (*w, *h) == (width, height)
+        };
+        if !fill.as_ref().is_some_and(fits) {
+            *fill = None;
+        }
+        let (fill, ..) =
+            fill.get_or_insert_with(|| (FillVectors::new(levels, width, height), width, height));
+        fill.clear();
+        fill
     }
 }
 

@@ -27,20 +27,7 @@ pub(super) fn run<P: Probe, L: Lattice>(
     frame: &mut Frame,
     probe: P,
 ) -> Result<(Stats, P), EngineError> {
-    let mut dp = Datapath::new(setup.format, options.overflow, probe);
-    dp.stage(Stage::Push);
-    let constants = Constants::load(&mut dp, setup);
-    let heat = frame.records.is_some().then(|| vec![0; fill.nodes()]);
-    let mut walk = Walk::<P, L> {
-        dp,
-        constants,
-        options,
-        graph,
-        canvas: Canvas::new(fill, frame, heat),
-        stack: Vec::new(),
-        subtree: None,
-        counts: Counts::default(),
-    };
+    let mut walk = Walk::<P, L>::new(options, graph, setup, fill, frame, probe);
     walk.push_object();
     while let Some(record) = walk.stack.pop() {
         walk.turn(record);
@@ -51,10 +38,7 @@ pub(super) fn run<P: Probe, L: Lattice>(
     if let Some(trap) = walk.dp.trap() {
         return Err(trap.into());
     }
-    let overflows = walk.dp.overflows();
-    let stats = walk.counts.stats(&walk.canvas, overflows);
-    walk.canvas.finish();
-    Ok((stats, walk.dp.into_probe()))
+    Ok(walk.finish())
 }
 
 /// What a frame came to.
@@ -97,19 +81,54 @@ impl Counts {
 pub(super) struct Walk<'a, P: Probe, L> {
     pub(super) dp: Datapath<P>,
     pub(super) constants: Constants,
-    options: &'a MachineOptions,
+    pub(super) options: &'a MachineOptions,
     graph: &'a GraphView<'a>,
     canvas: Canvas<'a>,
-    stack: Vec<Record<L>>,
+    pub(super) stack: Vec<Record<L>>,
     /// The lattice of the record that changed to screen space last, under the
     /// exact rule. Depth first, so its records are done before the next change.
     pub(super) subtree: Option<Subtree>,
     pub(super) counts: Counts,
 }
 
+impl<'a, P: Probe, L: Lattice> Walk<'a, P, L> {
+    /// A walk of a frame, with nothing on its stack.
+    pub(super) fn new(
+        options: &'a MachineOptions,
+        graph: &'a GraphView<'a>,
+        setup: &FrameSetup,
+        fill: &'a mut FillVectors,
+        frame: &'a mut Frame,
+        probe: P,
+    ) -> Self {
+        let mut dp = Datapath::new(setup.format, options.overflow, probe);
+        dp.stage(Stage::Push);
+        let constants = Constants::load(&mut dp, setup);
+        let heat = frame.records.is_some().then(|| vec![0; fill.nodes()]);
+        Self {
+            dp,
+            constants,
+            options,
+            graph,
+            canvas: Canvas::new(fill, frame, heat),
+            stack: Vec::new(),
+            subtree: None,
+            counts: Counts::default(),
+        }
+    }
+
+    /// After the last turn: what it came to.
+    pub(super) fn finish(self) -> (Stats, P) {
+        let overflows = self.dp.overflows();
+        let stats = self.counts.stats(&self.canvas, overflows);
+        self.canvas.finish();
+        (stats, self.dp.into_probe())
+    }
+}
+
 impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// Makes the record of the whole object and pushes it.
-    fn push_object(&mut self) {
+    pub(super) fn push_object(&mut self) {
         let c = &self.constants;
         let dp = &mut self.dp;
         let mut lattice =
@@ -189,7 +208,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 
     /// A record's turn.
-    fn turn(&mut self, mut record: Record<L>) {
+    pub(super) fn turn(&mut self, mut record: Record<L>) {
         self.dp.begin_record(self.counts.records, record.level);
         self.counts.records += 1;
         self.canvas.warm(record.quad);

@@ -250,9 +250,7 @@ impl Hardware {
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
             if !self.units.contains_key(&class) && !self.wires.contains(&class) {
-                return Err(HardwareError::NoUnit {
-                    class: key(&class),
-                });
+                return Err(HardwareError::NoUnit { class: key(&class) });
             }
         }
         for (class, unit) in &self.units {

@@ -274,7 +274,8 @@ impl CycleReport {
             })
             .collect();
         // Stable: equal ones stay in the order in which they were listed.
-        self.bounds.sort_by_key(|bound| std::cmp::Reverse(bound.cycles));
+        self.bounds
+            .sort_by_key(|bound| std::cmp::Reverse(bound.cycles));
         self.bottleneck = self.find_bottleneck(cycles);
     }
 
@@ -289,9 +290,7 @@ impl CycleReport {
                      of the time: more lanes or contexts cannot help, shorter latencies would"
                 )
             } else {
-                format!(
-                    "the {name} is busy {percent:.0} % of the time: widen it, or do less there"
-                )
+                format!("the {name} is busy {percent:.0} % of the time: widen it, or do less there")
             };
             return Bottleneck {
                 resource: name.clone(),
@@ -312,14 +311,19 @@ impl CycleReport {
                 self.stages.iter().map(|stage| stage.stalls.of(cause)).sum()
             };
             // Of equal ones the first.
-            let worst = Cause::ALL.into_iter().rev().max_by_key(|&cause| stall(cause));
-            let waits = worst.filter(|&cause| stall(cause) > 0).map_or_else(
-                String::new,
-                |cause| {
+            let worst = Cause::ALL
+                .into_iter()
+                .rev()
+                .max_by_key(|&cause| stall(cause));
+            let waits = worst
+                .filter(|&cause| stall(cause) > 0)
+                .map_or_else(String::new, |cause| {
                     let part = of(stall(cause)) * 100.0;
-                    format!("; records wait {part:.0} % of it, most of all for: {}", cause.name())
-                },
-            );
+                    format!(
+                        "; records wait {part:.0} % of it, most of all for: {}",
+                        cause.name()
+                    )
+                });
             (
                 "latency",
                 of(working + stalled),

@@ -337,7 +337,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.live -= 1;
         self.stack.most_live = self.stack.most_live.max(self.live);
         self.stack.deepest = self.stack.deepest.max(stack.stored);
-        let over = stack.stored.saturating_sub(u64::from(self.hardware.stack.entries));
+        let over = stack
+            .stored
+            .saturating_sub(u64::from(self.hardware.stack.entries));
         let spills = over.min(count);
         if spills > 0 {
             if self.hardware.stack.overflow == StackOverflow::Error {

@@ -148,7 +148,9 @@ mod tests {
             list.sort_unstable();
             let (at, _, context) = list.remove(0);
             assert_eq!(wheel.take(), Some((at, context)));
-            random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            random = random
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             let ahead = [random >> 60, random >> 52, random >> 50][(random >> 40) as usize % 3];
             order += 1;
             wheel.set(at + ahead, context);
