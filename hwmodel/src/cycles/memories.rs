@@ -311,7 +311,7 @@ impl Memories {
 #[derive(Debug, Clone)]
 pub(super) struct Latencies {
     /// By memory, then read or write.
-    alone: [[u32; 2]; Memory::ALL.len()],
+    alone: [[u64; 2]; Memory::ALL.len()],
     worst: [u64; Memory::ALL.len()],
 }
 
@@ -323,14 +323,14 @@ impl Latencies {
             (Memory::Node, hardware.node_cache),
             (Memory::Attribute, hardware.attribute_cache),
         ];
-        alone[Memory::Stack as usize][0] = hardware.stack.latency;
-        alone[Memory::FillVector as usize][0] = hardware.fill_vectors.latency;
+        alone[Memory::Stack as usize][0] = u64::from(hardware.stack.latency);
+        alone[Memory::FillVector as usize][0] = u64::from(hardware.fill_vectors.latency);
         for (memory, cache) in caches {
-            alone[memory as usize] = [cache.hit_latency; 2];
+            alone[memory as usize] = [u64::from(cache.hit_latency); 2];
         }
         for memory in Memory::ALL {
             let [read, write] = alone[memory as usize];
-            worst[memory as usize] = 1 + u64::from(read.max(write));
+            worst[memory as usize] = 1 + read.max(write);
         }
         for (memory, cache) in caches {
             worst[memory as usize] += u64::from(cache.miss_latency);
@@ -340,7 +340,7 @@ impl Latencies {
     }
 
     #[inline]
-    pub(super) fn alone(&self, access: Access) -> u32 {
+    pub(super) fn alone(&self, access: Access) -> u64 {
         self.alone[access.memory as usize][usize::from(access.write)]
     }
 

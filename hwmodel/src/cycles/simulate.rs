@@ -283,7 +283,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let from = of.from as usize;
         let issued = now + visit.occupied;
         let mut frees = issued;
-        let mut ends = issued + u64::from(visit.latency);
+        let mut ends = issued + visit.latency;
         let mut cause = Cause::MemoryPort;
         let mut at = now;
         for &access in &of.plan.accesses[visit.accesses.clone()] {

@@ -100,23 +100,37 @@ pub(super) struct Access {
     pub(super) write: bool,
 }
 
-#[derive(Debug, Default)]
-struct InStage {
-    passes: [u32; CLASSES],
+/// The stages in the order in which a record visits them.
+const ROUND: [Stage; STAGES] = [
+    Stage::Pop,
+    Stage::Filled,
+    Stage::ToScreen,
+    Stage::OnePixel,
+    Stage::Centre,
+    Stage::Order,
+    Stage::VertexPool,
+    Stage::ChildBox,
+    Stage::QuadtreeFit,
+    Stage::Push,
+    Stage::Draw,
+    Stage::FillUpdate,
+];
+
+/// Operations and the passes that they take.
+#[derive(Debug, Clone, Copy, Default)]
+struct Done {
     operations: u64,
-    accesses: Vec<Access>,
+    passes: u64,
 }
 
 /// The probe of a turn: operations as passes through a hardware's units, and
-/// accesses, by stage. All that a turn does in one stage is one *visit* of
-/// it; visits are in the order in which their stages were met first.
+/// accesses, by stage. All that a turn does in one stage is one *visit* of it.
 #[derive(Debug)]
 pub struct TurnLog {
-    stages: [InStage; STAGES],
-    /// Bit by stage.
+    done: [[Done; CLASSES]; STAGES],
+    accesses: [Vec<Access>; STAGES],
+    /// Stages met, a bit each.
     met: u32,
-    order: [Stage; STAGES],
-    count: usize,
     /// Passes of one operation: by stage, class, width.
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
@@ -126,9 +140,9 @@ pub struct TurnLog {
 /// A unit as the log needs it; `count` 0: wires.
 #[derive(Debug, Clone, Copy, Default)]
 struct Issue {
-    count: u32,
-    latency: u32,
-    interval: u32,
+    count: u64,
+    latency: u64,
+    interval: u64,
 }
 
 impl TurnLog {
@@ -143,9 +157,9 @@ impl TurnLog {
                     continue;
                 };
                 units[stage as usize][class as usize] = Issue {
-                    count: unit.count,
-                    latency: unit.latency,
-                    interval: unit.interval,
+                    count: u64::from(unit.count),
+                    latency: u64::from(unit.latency),
+                    interval: u64::from(unit.interval),
                 };
                 let by_width = &mut passes_of[stage as usize][class as usize];
                 for (bits, passes) in by_width.iter_mut().enumerate() {
@@ -155,30 +169,19 @@ impl TurnLog {
             }
         }
         Self {
-            stages: Default::default(),
+            done: Default::default(),
+            accesses: Default::default(),
             met: 0,
-            order: [Stage::Pop; STAGES],
-            count: 0,
             passes_of,
             units,
             latencies: Latencies::new(hardware),
         }
     }
 
-    #[inline(always)]
-    fn meet(&mut self, stage: Stage) -> &mut InStage {
-        let bit = 1 << stage as u32;
-        if self.met & bit == 0 {
-            self.met |= bit;
-            self.order[self.count] = stage;
-            self.count += 1;
-        }
-        &mut self.stages[stage as usize]
-    }
-
     #[inline]
     fn access(&mut self, memory: Memory, address: u64, stage: Stage, write: bool) {
-        self.meet(stage).accesses.push(Access {
+        self.met |= 1 << stage as u32;
+        self.accesses[stage as usize].push(Access {
             address,
             memory,
             write,
@@ -192,58 +195,68 @@ impl TurnLog {
         plan.accesses.clear();
         plan.alone = 0;
         plan.worst = 0;
-        for &stage in &self.order[..self.count] {
-            let did = &mut self.stages[stage as usize];
-            let (mut occupied, mut latency, mut passes) = (1, 0, 0);
-            for (done, unit) in did.passes.iter_mut().zip(&self.units[stage as usize]) {
-                if *done == 0 {
-                    continue;
-                }
-                let issues = if *done <= unit.count {
+        for stage in ROUND {
+            if self.met >> stage as u32 & 1 != 0 {
+                self.take_stage(stage, plan);
+            }
+        }
+        self.met = 0;
+    }
+
+    #[inline]
+    fn take_stage(&mut self, stage: Stage, plan: &mut Plan) {
+        let (mut occupied, mut latency) = (1, 0);
+        let mut sum = Done::default();
+        let units = &self.units[stage as usize];
+        for (done, unit) in self.done[stage as usize].iter_mut().zip(units) {
+            if done.operations == 0 {
+                continue;
+            }
+            if done.passes > 0 {
+                let issues = if done.passes <= unit.count {
                     1
                 } else {
-                    done.div_ceil(unit.count)
+                    done.passes.div_ceil(unit.count)
                 };
-                occupied = occupied.max(u64::from(issues) * u64::from(unit.interval));
+                occupied = occupied.max(issues * unit.interval);
                 latency = latency.max(unit.latency);
-                passes += u64::from(*done);
-                *done = 0;
             }
-            let mut alone = occupied + u64::from(latency);
-            let first = plan.accesses.len();
-            plan.worst += alone;
-            for &access in &did.accesses {
-                alone = alone.max(u64::from(self.latencies.alone(access)));
-                plan.worst += self.latencies.worst(access);
-            }
-            plan.accesses.extend_from_slice(&did.accesses);
-            did.accesses.clear();
-            plan.alone += alone;
-            plan.visits.push(Visit {
-                stage,
-                occupied,
-                latency,
-                alone,
-                accesses: first..plan.accesses.len(),
-                operations: did.operations,
-                passes,
-            });
-            did.operations = 0;
+            sum.operations += done.operations;
+            sum.passes += done.passes;
+            *done = Done::default();
         }
-        self.count = 0;
-        self.met = 0;
+        let mut alone = occupied + latency;
+        plan.worst += alone;
+        let first = plan.accesses.len();
+        let accesses = &mut self.accesses[stage as usize];
+        for &access in accesses.iter() {
+            alone = alone.max(self.latencies.alone(access));
+            plan.worst += self.latencies.worst(access);
+        }
+        plan.accesses.append(accesses);
+        plan.alone += alone;
+        plan.visits.push(Visit {
+            stage,
+            occupied,
+            latency,
+            alone,
+            accesses: first..plan.accesses.len(),
+            operations: sum.operations,
+            passes: sum.passes,
+        });
     }
 }
 
 impl Probe for TurnLog {
     #[inline(always)]
     fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
-        let stage = place.stage;
+        let (stage, class) = (place.stage as usize, class as usize);
         let width = (bits as usize).min(WIDTHS - 1);
-        let each = self.passes_of[stage as usize][class as usize][width];
-        let here = self.meet(stage);
-        here.passes[class as usize] += u32::from(each) * times;
-        here.operations += u64::from(times);
+        let passes = self.passes_of[stage][class][width];
+        let done = &mut self.done[stage][class];
+        done.operations += u64::from(times);
+        done.passes += u64::from(passes) * u64::from(times);
+        self.met |= 1 << stage;
     }
 
     #[inline]
@@ -264,7 +277,7 @@ pub(super) struct Visit {
     /// Cycles during which its operations are issued, at least 1.
     pub(super) occupied: u64,
     /// Further cycles until their results are there.
-    pub(super) latency: u32,
+    pub(super) latency: u64,
     /// Cycles if it waits for nothing.
     pub(super) alone: u64,
     pub(super) accesses: std::ops::Range<usize>,
