@@ -1,10 +1,89 @@
-//! How many cycles a hardware takes.
+//! How many cycles a hardware takes, and what for.
+//!
+//! Nothing is recorded and replayed: [`simulate`] has a [`Workload`] do one
+//! record's turn at a time, in the order of simulated time, watches through a
+//! probe ([`TurnLog`]) what it does, and lays that out in cycles. So a record
+//! that is worked on early finds less drawn before it than serially, as it
+//! would on the hardware. Only records that are not finished are kept.
+//!
+//! # Rules
+//!
+//! All times are whole cycles. The same input gives the same output.
+//!
+//! 1. **Hardware.** [`Hardware::lanes`] lanes; each has a stack, one block for
+//!    each stage, and [`Hardware::contexts`] contexts. A context has one record
+//!    at a time. Caches, fill vectors and pixels are shared by all lanes.
+//! 2. **Turn.** All that a record does in one stage is one *visit*. Visits are
+//!    made one after the other, in this order: pop, filled?, to screen, one
+//!    pixel?, centre, order, vertex pool, child box, quadtree fit, push, draw,
+//!    fill update; stages in which a record does nothing are left out.
+//!    What a turn reads and writes (fill vectors, pixels) happens, as far as
+//!    other records can see, in the cycle in which it begins.
+//! 3. **Block.** A visit that comes to a block waits until those that came
+//!    before have gone in, and the block is free. Then, in cycle *s*, it begins.
+//!    An operation of *b* bits is `ceil(b / width)` passes; for each class of
+//!    operation, issuing takes `ceil(passes / count) * interval` cycles; the
+//!    largest of these, at least 1, is the visit's *occupancy*. The largest
+//!    latency among the classes that are used is its *latency*. Results are
+//!    there at *s* + occupancy + latency.
+//! 4. **Memory.** The visit's accesses are issued in order, the first not
+//!    before *s*, none before the one before it; each in the first cycle that
+//!    has a port left, after all accesses of visits that began before.
+//!    A read is done `latency` cycles after its issue, a write after 1.
+//!    The block is free again when all operations and accesses are issued
+//!    (an access takes the cycle of its issue); the visit ends when all
+//!    results are there and all accesses are done. What it ends later than it
+//!    would with no other record about, no port short and no miss is *stall*,
+//!    charged to what the access that ended last (of equal ones the first)
+//!    waited for.
+//! 5. **Stack.** A lane's, `ports` accesses a cycle. A record is taken from
+//!    the stack on which it lies; one that lies on another lane's stack takes
+//!    [`Hardware::steal_cycles`] longer in stage *pop*. A record for which a
+//!    stack has no entry is an error or is *spilled*: written out in the
+//!    background and read back in `spill_cycles` more of stage *pop*.
+//! 6. **Cache.** Set-associative, least recently used goes first. A hit is done after
+//!    `hit_latency`. A miss waits for one of the `misses` slots, holding the
+//!    port; it is done after `hit_latency + miss_latency`, and so is, at the
+//!    earliest, a hit on the same line.
+//! 7. **Fill vectors.** An address lies in bank `address mod banks`; each bank has
+//!    its own ports.
+//! 8. **Pixels.** Written into a buffer through ports; one that finds it full
+//!    waits for the oldest to leave. They leave in order, `drain_interval` cycles apart.
+//! 9. **Children** are on the stack of the lane, nearest on top, in the cycle in which the turn ends.
+//!    A child is *ready* when all its earlier siblings that it is not
+//!    independent of ([`Independence::allows`]) are finished with all their
+//!    descendants. Siblings are all that needs to be looked at: descendants stay in
+//!    their ancestor's image node and in its place in the order.
+//! 10. **Next record.** A context whose turn has ended takes, in the same cycle, the
+//!     record of its lane that became ready last; if there is none, the one that became
+//!     ready first of the next lane (cyclically) that has one. Then idle contexts of
+//!     lanes with ready records take those, then other idle contexts steal, lowest numbers first.
+//! 11. **Start.** What the workload does before the first record is a turn of
+//!     lane 0, context 0, in cycle 0.
+//!
+//! # Work and span
+//!
+//! A turn *alone* takes the sum over its visits of the larger of occupancy + latency
+//! and the longest latency of an access that hits. **Work** is the sum over all
+//! turns; **span** is the longest chain of turns alone that had to follow
+//! each other, parent to child and sibling to sibling, in this very execution. No
+//! number of lanes, contexts or ports makes the frame shorter than the span.
+//!
+//! # What is left out
+//!
+//! - Operations of one visit that need each other's results (the levels of a
+//!   fit, the steps of a divide) are charged with one latency: the block is
+//!   taken for a pipeline. For few contexts this is optimistic; raise latencies.
+//! - A turn's effects are seen by others from its first cycle on (rule 2): up to one turn's length too early.
+//! - Passing results from stage to stage takes no time; neither does finding ready records.
 mod hardware;
 mod memories;
 mod observe;
 mod report;
+mod scaling;
 mod simulate;
 mod tasks;
+mod trace;
 mod turn;
 mod wheel;
 
@@ -17,5 +96,7 @@ pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,
 };
+pub use scaling::{LANES, ScalingRow, scaling};
 pub use simulate::{SimulationError, simulate};
+pub use trace::{Recorder, TraceLimit};
 pub use turn::{Child, Region, TurnLog, Workload};
