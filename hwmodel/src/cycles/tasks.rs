@@ -128,7 +128,8 @@ impl Tasks {
             self.finish(task, ready);
             return;
         }
-        self.open += 1;
+        // The workload's start is no record.
+        self.open += u64::from(self.tasks[task as usize].parent != NO_TASK);
         self.most_open = self.most_open.max(self.open);
         for (slot, child) in children.iter().enumerate().rev() {
             let waits = children[..slot]
@@ -175,7 +176,7 @@ impl Tasks {
             of.over = of.over.max(over);
             let (alive, siblings) = (of.alive, of.children);
             if alive == 0 {
-                self.open -= 1;
+                self.open -= u64::from(of.parent != NO_TASK);
                 task = parent;
                 continue;
             }

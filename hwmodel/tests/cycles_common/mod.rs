@@ -1,0 +1,82 @@
+//! A workload that does what a list says, for tests of the cycle model.
+#![expect(unreachable_pub, reason = "a module of several test crates")]
+#![allow(dead_code, reason = "each test uses a part of it")]
+
+use std::convert::Infallible;
+
+use hwmodel::cycles::{Child, Hardware, Region, TurnLog, Workload};
+use hwmodel::{Memory, OpClass, Place, Probe, Stage};
+
+/// What a record does in its turn.
+#[derive(Debug, Clone)]
+pub enum Does {
+    /// So many operations of a class and width.
+    Ops(Stage, OpClass, u32, u32),
+    /// A read.
+    Read(Stage, Memory, u64),
+    /// A write.
+    Write(Stage, Memory, u64),
+}
+
+/// A record: what it does, and its children: record, place, region.
+#[derive(Debug, Clone, Default)]
+pub struct Node {
+    pub does: Vec<Does>,
+    pub children: Vec<(u32, u8, Region)>,
+}
+
+/// Record 0 of the list is the workload's start.
+pub struct Listed<'a> {
+    nodes: &'a [Node],
+    log: TurnLog,
+    /// Items in the order of their turns.
+    pub turns: Vec<u32>,
+}
+
+impl<'a> Listed<'a> {
+    pub fn new(nodes: &'a [Node], hardware: &Hardware) -> Self {
+        Self {
+            nodes,
+            log: TurnLog::new(hardware),
+            turns: Vec::new(),
+        }
+    }
+
+    fn does(&mut self, item: u32, children: &mut Vec<Child>) {
+        let node = &self.nodes[item as usize];
+        for does in &node.does {
+            let at = |stage| Place { stage, level: 0 };
+            match *does {
+                Does::Ops(stage, class, bits, times) => self.log.op(class, bits, at(stage), times),
+                Does::Read(stage, memory, address) => self.log.read(memory, address, at(stage)),
+                Does::Write(stage, memory, address) => self.log.write(memory, address, at(stage)),
+            }
+        }
+        let child = |&(item, place, region): &(u32, u8, Region)| Child {
+            item,
+            place,
+            region,
+        };
+        children.extend(node.children.iter().map(child));
+    }
+}
+
+impl Workload for Listed<'_> {
+    type Error = Infallible;
+
+    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        self.does(0, children);
+        Ok(())
+    }
+
+    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        assert!(children.is_empty());
+        self.turns.push(item);
+        self.does(item, children);
+        Ok(())
+    }
+
+    fn log(&mut self) -> &mut TurnLog {
+        &mut self.log
+    }
+}
