@@ -54,10 +54,12 @@
 //!    independent of ([`Independence::allows`]) are finished with all their
 //!    descendants. Siblings are all that needs to be looked at: descendants stay in
 //!    their ancestor's image node and in its place in the order.
-//! 10. **Next record.** A context whose turn has ended takes, in the same cycle, the
-//!     record of its lane that became ready last; if there is none, the one that became
-//!     ready first of the next lane (cyclically) that has one. Then idle contexts of
-//!     lanes with ready records take those, then other idle contexts steal, lowest numbers first.
+//! 10. **Next record.** A record that becomes ready goes on top of its lane's list, below the
+//!     earlier siblings of its own that are on top. A context whose turn has ended takes, in the
+//!     same cycle, the topmost record of its lane; if there is none, the lowest one
+//!     of the next lane (cyclically) that has one. Then idle contexts of lanes with ready records
+//!     take those, then other idle contexts steal, lowest numbers first. With one context
+//!     this is depth first, nearest first, whatever the independence.
 //! 11. **Start.** What the workload does before the first record is a turn of
 //!     lane 0, context 0, in cycle 0.
 //!

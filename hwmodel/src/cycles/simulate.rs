@@ -362,7 +362,13 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.ready += newly.len() as u64;
         for task in newly.drain(..) {
             let at = self.tasks.lane(task) as usize;
-            self.lanes[at].ready.push_back(task);
+            // On top, but below its own earlier siblings: depth first.
+            let ready = &mut self.lanes[at].ready;
+            let mut place = ready.len();
+            while place > 0 && self.tasks.is_earlier_sibling(ready[place - 1], task) {
+                place -= 1;
+            }
+            ready.insert(place, task);
             if O::ENABLED {
                 let of = &self.lanes[at];
                 self.observer

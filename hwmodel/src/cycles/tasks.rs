@@ -106,6 +106,13 @@ impl Tasks {
         self.tasks[task as usize].lane
     }
 
+    /// Whether `a` is an earlier sibling of `b`.
+    #[inline]
+    pub(super) fn is_earlier_sibling(&self, a: u32, b: u32) -> bool {
+        let (a, b) = (&self.tasks[a as usize], &self.tasks[b as usize]);
+        a.parent == b.parent && a.slot < b.slot
+    }
+
     /// The end of a turn that would have taken `alone` cycles without
     /// contention. Its children lie on the stack of `lane`; `spills` says how
     /// many of them, the nearest (last pushed) ones, found no entry. Tasks

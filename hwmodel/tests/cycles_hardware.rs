@@ -1,0 +1,104 @@
+//! Hardware descriptions: those that ship, and what is wrong with others.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use hwmodel::cycles::{Hardware, Independence, PRESETS, StackOverflow};
+use hwmodel::{OpClass, Stage};
+
+#[test]
+fn what_ships_reads_and_every_line_says_what_it_is() {
+    for (name, text) in PRESETS {
+        let hardware = Hardware::preset(name).unwrap();
+        assert_eq!(hardware.name, name);
+        for line in text.lines() {
+            let is_bare = line.is_empty() || line == "[units]";
+            assert!(
+                is_bare || line.contains('#') || line.starts_with('['),
+                "{name}: {line}"
+            );
+            let is_setting = line.contains('=');
+            assert!(!is_setting || line.contains('#'), "{name}: {line}");
+        }
+    }
+    let paper = Hardware::preset("paper").unwrap();
+    assert_eq!(
+        paper.unit(Stage::VertexPool, OpClass::Add).unwrap().count,
+        57
+    );
+    assert_eq!(paper.unit(Stage::Pop, OpClass::Add).unwrap().count, 8);
+    assert_eq!(paper.unit(Stage::VertexPool, OpClass::Shift), None);
+    assert_eq!(paper.independence, Independence::Both);
+    assert_eq!(paper.stack.overflow, StackOverflow::Spill);
+}
+
+#[test]
+fn a_description_survives_being_written_and_read() {
+    for (name, _) in PRESETS {
+        let hardware = Hardware::preset(name).unwrap();
+        let json = serde_json::to_string(&hardware).unwrap();
+        let back: Hardware = serde_json::from_str(&json).unwrap();
+        assert_eq!(back, hardware);
+    }
+}
+
+/// The error for the tiny hardware with one text replaced.
+fn complaint(from: &str, to: &str) -> String {
+    let (_, tiny) = PRESETS[0];
+    assert!(tiny.contains(from), "{from}");
+    Hardware::from_toml(&tiny.replacen(from, to, 1))
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn wrong_descriptions_are_refused_with_what_and_where() {
+    for (from, to, expected) in [
+        ("lanes = 1", "lanes = 0", "lanes is 0; it must be 1 to 256"),
+        (
+            "contexts = 1",
+            "contexts = 65",
+            "contexts is 65; it must be 1 to 64",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = nan",
+            "clock_mhz is NaN; it must be above 0",
+        ),
+        (
+            "add = { count = 1",
+            "add = { count = 0",
+            "units.add.count is 0",
+        ),
+        (
+            "min_max = { count = 1",
+            "min_max = { count = 0",
+            "units.min_max.count is 0",
+        ),
+        (
+            "bytes = 4096",
+            "bytes = 4100",
+            "node_cache.bytes is 4100; it must be a multiple of ways * line_bytes, 32",
+        ),
+        ("banks = 1", "banks = 0", "fill_vectors.banks is 0"),
+        ("wires = [\"shift\"]", "wires = []", "nothing does `shift`"),
+        ("lanes = 1", "lane = 1", "unknown field `lane`"),
+        ("lanes = 1", "lanes = -1", "lanes"),
+        ("drain_interval = 2", "", "missing field `drain_interval`"),
+        ("\"none\"", "\"some\"", "unknown variant `some`"),
+        (
+            "[stack]",
+            "[stages.draws]\nadd = { count = 1, latency = 0, interval = 1, width = 8 }\n[stack]",
+            "draws",
+        ),
+        (
+            "miss_latency = 40",
+            "miss_latency = 99999999",
+            "node_cache.miss_latency is 99999999",
+        ),
+    ] {
+        let text = complaint(from, to);
+        assert!(text.contains(expected), "{to}: {text}");
+        assert!(text.starts_with("hardware description: "), "{text}");
+    }
+    let text = Hardware::preset("huge").unwrap_err().to_string();
+    assert!(text.contains("tiny, paper and wide"), "{text}");
+}
