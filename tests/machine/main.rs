@@ -3,6 +3,7 @@
 
 mod common;
 mod counts;
+mod cycles;
 mod exact;
 mod fast;
 mod files;
