@@ -6,7 +6,7 @@ use super::args::{Aov, EngineArgs, PictureArgs};
 use super::engines;
 use super::error::{CliError, Kind};
 use super::scenes::Scene;
-use crate::frame::Colors;
+use crate::frame::{Colors, Frame};
 use crate::picture::{Picture, resolve};
 use crate::project::{Camera, Contents, Engine, FrameSetup, Stats, Viewer};
 

@@ -198,7 +198,12 @@ pub fn panels(rows: &[Row]) -> Vec<Panel> {
         });
         let scene = rows.first().map_or("", |row| row.scene.as_str());
         let across = "degrees between two frames";
-        Panel::Chart(Chart::growth(scene, across, "share", Series::collect(points)))
+        Panel::Chart(Chart::growth(
+            scene,
+            across,
+            "share",
+            Series::collect(points),
+        ))
     };
     rows.chunk_by(|a, b| a.scene == b.scene)
         .map(panel)

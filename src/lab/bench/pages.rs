@@ -7,7 +7,7 @@ use std::path::Path;
 use super::clock::{Clock, Elapsed};
 use super::harness::{BenchError, Measured, Schedule};
 use super::statistics::Summary;
-use crate::frame::Colors;
+use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, vxg};
 use crate::project::{Engine, FrameSetup, Stats};
 
