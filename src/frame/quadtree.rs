@@ -59,13 +59,19 @@ const fn level_start(level: u32) -> usize {
     ((1 << (2 * level)) - 1) / 3
 }
 
+/// Nodes of the image quadtree from its root to the samples, at level `levels`.
+#[must_use]
+pub const fn nodes_to(levels: u32) -> usize {
+    level_start(levels + 1)
+}
+
 impl FillVectors {
     /// An empty picture of `width` x `height` samples in a root of `2^levels` a side.
     #[must_use]
     pub fn new(levels: u32, width: u32, height: u32) -> Self {
         let mut fill = Self {
             levels,
-            vectors: vec![0; level_start(levels + 1)],
+            vectors: vec![0; nodes_to(levels)],
             empty_picture: Vec::new(),
         };
         for level in (0..=levels).rev() {
