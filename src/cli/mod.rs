@@ -16,6 +16,7 @@ pub mod fit;
 pub mod generate;
 pub mod info;
 mod manual;
+mod model;
 mod outputs;
 pub mod render;
 mod report;
@@ -83,6 +84,11 @@ enum Verb {
     Generate(generate::GenerateArgs),
     /// Compare two pictures or two .npy buffers
     Compare(compare::CompareArgs),
+    /// Model the light hardware: operations, cycles, memory, area, energy
+    ///
+    /// Draws one frame on the machine, counts what it executes, runs it cycle by cycle on a hardware
+    /// described in TOML, and prices it by tables whose every figure names its source.
+    Model(Box<model::ModelArgs>),
     /// Run an experiment
     Bench(bench::BenchArgs),
     /// Print the completions of a shell
@@ -146,6 +152,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Convert(args)) => convert::run(&args, &console),
         Some(Verb::Generate(args)) => generate::run(&args, &console),
         Some(Verb::Compare(args)) => compare::run(&args, &console),
+        Some(Verb::Model(args)) => model::run(&args, scenes, &console),
         Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
         Some(Verb::Completions(args)) => manual::completions(&args),
         Some(Verb::Man(args)) => manual::man(&args),

@@ -3,4 +3,5 @@
 
 pub mod bench;
 pub mod float_rays;
+pub mod model;
 pub mod vertex_error;

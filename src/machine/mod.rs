@@ -21,7 +21,6 @@ mod fit;
 mod lattice;
 mod planes;
 mod record;
-mod record_bits;
 mod silhouette;
 mod size;
 mod steps;
@@ -42,7 +41,7 @@ use walk::Walk;
 use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
-pub use record_bits::{Held, RecordField, record_bits, record_fields};
+
 use steps::Steps;
 pub use steps::{SimulateError, Simulated};
 

@@ -91,7 +91,8 @@ pub struct Breakdown {
 }
 
 impl Breakdown {
-    fn push(&mut self, name: &str, operation: &str, width: u32, times: u64, each: Cost) {
+    /// Adds a line: `times` times what one costs.
+    pub fn push(&mut self, name: &str, operation: &str, width: u32, times: u64, each: Cost) {
         let factor = times as f64;
         self.total += factor * each.value;
         self.low += factor * each.low;

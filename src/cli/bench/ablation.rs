@@ -54,6 +54,7 @@ pub(super) fn run(
         document: report::document("bench ablation", fields),
         tables: vec![table.clone(), experiment::legend(&families)],
         rows: table,
+        more_tables: Vec::new(),
         preface: context.markdown(schedule),
         panels: experiment::panels(&rows),
     };

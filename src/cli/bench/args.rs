@@ -71,22 +71,22 @@ pub(super) struct MeasureArgs {
 /// Files that the results are written to.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Output")]
-pub(super) struct ExportArgs {
+pub(in crate::cli) struct ExportArgs {
     /// All results, as --json prints them
     #[arg(long, value_name = "FILE")]
-    pub(super) export_json: Option<PathBuf>,
+    pub(in crate::cli) export_json: Option<PathBuf>,
     /// A row for each measurement
     #[arg(long, value_name = "FILE")]
-    pub(super) export_csv: Option<PathBuf>,
+    pub(in crate::cli) export_csv: Option<PathBuf>,
     /// The tables, with machine and command
     #[arg(long, value_name = "FILE")]
-    pub(super) export_markdown: Option<PathBuf>,
+    pub(in crate::cli) export_markdown: Option<PathBuf>,
     /// A plot
     #[arg(long, value_name = "FILE")]
-    pub(super) export_svg: Option<PathBuf>,
+    pub(in crate::cli) export_svg: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long)]
-    pub(super) force: bool,
+    pub(in crate::cli) force: bool,
 }
 
 /// The engines that there are, with a line about each.

@@ -78,6 +78,7 @@ pub(super) fn run(
         document: report::document("bench coherence", json!({ "results": rows })),
         rows: table.clone(),
         tables: vec![table],
+        more_tables: Vec::new(),
         preface: "Shares are exact: the same in every run.\n".to_owned(),
         panels: experiment::panels(&rows),
     };

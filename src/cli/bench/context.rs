@@ -10,7 +10,7 @@ use crate::project::SetupOptions;
 const BUSY: f64 = 0.5;
 
 /// Machine and command, found before the first measurement.
-pub(super) struct Context {
+pub(in crate::cli) struct Context {
     processor: Option<String>,
     threads: usize,
     /// Processes that ran or waited, averaged over the last minute.
@@ -20,7 +20,7 @@ pub(super) struct Context {
 
 impl Context {
     /// What the system tells of itself.
-    pub(super) fn now() -> Self {
+    pub(in crate::cli) fn now() -> Self {
         let command: Vec<String> = std::env::args_os()
             .skip(1)
             .map(|word| word.to_string_lossy().into_owned())
@@ -37,8 +37,13 @@ impl Context {
         }
     }
 
+    /// What was typed.
+    pub(in crate::cli) fn command_line(&self) -> String {
+        self.command.clone()
+    }
+
     /// Says so where other work is likely to show in the times.
-    pub(super) fn warn(&self, console: &Console) {
+    pub(in crate::cli) fn warn(&self, console: &Console) {
         if let Some(load) = self.load.filter(|&load| load > BUSY) {
             console.note(format!(
                 "the machine is not idle (load {load}): trust counters, thread times and minima"
@@ -47,7 +52,7 @@ impl Context {
     }
 
     /// As JSON fields, with how the frames were drawn.
-    pub(super) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
+    pub(in crate::cli) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
         json!({
             "command": self.command,
             "machine": {
@@ -63,7 +68,7 @@ impl Context {
     }
 
     /// As lines of Markdown.
-    pub(super) fn markdown(&self, schedule: Schedule) -> String {
+    pub(in crate::cli) fn markdown(&self, schedule: Schedule) -> String {
         let processor = self
             .processor
             .as_deref()

@@ -49,6 +49,7 @@ pub(super) fn run(
         document: report::document("bench engines", fields),
         tables: vec![rows.clone()],
         rows,
+        more_tables: Vec::new(),
         preface: context.markdown(schedule),
         panels: experiment::panels(&timings),
     };

@@ -14,21 +14,23 @@ use crate::report::plot::{self, Panel};
 use crate::report::{Cell, Table};
 
 /// The results of an experiment in all forms.
-pub(super) struct Results {
+pub(in crate::cli) struct Results {
     /// The JSON document.
-    pub(super) document: Value,
+    pub(in crate::cli) document: Value,
     /// The measurements, one a row: CSV.
-    pub(super) rows: Table,
+    pub(in crate::cli) rows: Table,
     /// What people read: stdout and Markdown.
-    pub(super) tables: Vec<Table>,
+    pub(in crate::cli) tables: Vec<Table>,
+    /// What Markdown has beside those.
+    pub(in crate::cli) more_tables: Vec<Table>,
     /// What stands above the tables in Markdown.
-    pub(super) preface: String,
+    pub(in crate::cli) preface: String,
     /// The plot.
-    pub(super) panels: Vec<Panel>,
+    pub(in crate::cli) panels: Vec<Panel>,
 }
 
 /// Fails before the work where a file would be replaced without `--force`, or two be one.
-pub(super) fn check(args: &ExportArgs) -> Result<(), CliError> {
+pub(in crate::cli) fn check(args: &ExportArgs) -> Result<(), CliError> {
     let paths: Vec<&PathBuf> = [
         &args.export_json,
         &args.export_csv,
@@ -51,7 +53,7 @@ pub(super) fn check(args: &ExportArgs) -> Result<(), CliError> {
 }
 
 /// Writes the files, then prints.
-pub(super) fn write(
+pub(in crate::cli) fn write(
     results: &Results,
     args: &ExportArgs,
     console: &Console,
@@ -67,7 +69,8 @@ pub(super) fn write(
     })?;
     file(&args.export_csv, &|| Ok(results.rows.csv()))?;
     file(&args.export_markdown, &|| {
-        let tables = results.tables.iter().map(Table::markdown);
+        let tables = results.tables.iter().chain(&results.more_tables);
+        let tables = tables.map(Table::markdown);
         let tables: Vec<String> = tables.collect();
         Ok(format!("{}\n{}", results.preface, tables.join("\n")))
     })?;

@@ -1,13 +1,13 @@
 //! `bench`: the experiments, one file each, and what they share.
 
 mod ablation;
-mod args;
+pub(super) mod args;
 mod coherence;
-mod context;
+pub(super) mod context;
 mod engines;
-mod export;
+pub(super) mod export;
 mod scaling;
-mod subjects;
+pub(super) mod subjects;
 mod vertex_error;
 
 use clap::{Args, Subcommand};

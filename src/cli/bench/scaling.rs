@@ -133,6 +133,7 @@ pub(super) fn run(
         document: report::document("bench scaling", fields),
         tables: vec![rows.without(&["pixels"]), experiment::laws_table(&growths)],
         rows,
+        more_tables: Vec::new(),
         preface: context.markdown(schedule),
         panels: experiment::panels(&growths),
     };

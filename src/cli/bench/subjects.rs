@@ -13,7 +13,7 @@ use crate::lab::bench::Subject;
 use crate::project::Camera;
 
 /// What stands for the bundled scene.
-pub(super) const BUNDLED: &str = "bundled";
+pub(in crate::cli) const BUNDLED: &str = "bundled";
 /// Scenes where none is named.
 const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
 
@@ -53,7 +53,7 @@ impl Standpoint {
 }
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(super) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+pub(in crate::cli) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
     if !given.is_empty() {
         given.to_vec()
     } else if !from_config.is_empty() {
@@ -65,7 +65,7 @@ pub(super) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
 
 /// Opens a scene. Terrain, sponge and the bundled tree have their standard
 /// cameras unless the flags say another; all others are fitted into `size`.
-pub(super) fn open(
+pub(in crate::cli) fn open(
     name: &str,
     camera: &CameraArgs,
     scene_args: &SceneArgs,

@@ -1,0 +1,219 @@
+//! Flags of `model`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
+use hwmodel::cycles::{Hardware, PRESETS};
+
+use crate::cli::args::{CameraArgs, EngineArgs, SceneArgs, Size};
+use crate::cli::bench::args::ExportArgs;
+use crate::cli::error::{CliError, Kind};
+use crate::lab::bench::Scan;
+use crate::lab::model::cost::Prices;
+
+/// Arguments of `model`.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ModelArgs {
+    /// Scenes: files, generators, or `bundled` [default: bundled]
+    #[arg(value_name = "SCENE")]
+    pub(super) scenes: Vec<String>,
+    /// Pixels: 512 for a square, or 640x360
+    #[arg(long, value_name = "N|WxH", default_value = "512")]
+    pub(super) size: Size,
+    #[command(flatten)]
+    pub(super) hardware: HardwareArgs,
+    #[command(flatten)]
+    pub(super) tables: TableArgs,
+    #[command(flatten)]
+    pub(super) files: FileArgs,
+    #[command(flatten)]
+    pub(super) export: ExportArgs,
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    #[command(flatten)]
+    pub(super) engine: EngineArgs,
+}
+
+/// What gates are chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum GoalName {
+    /// Small area.
+    #[default]
+    Area,
+    /// Short delay.
+    Delay,
+}
+
+/// How the span of eight values is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+enum SpanName {
+    /// 7 minima and 7 maxima.
+    #[default]
+    Trees,
+    /// In pairs: 10 compares and 14 selects. Corner cages alone.
+    Pairs,
+}
+
+/// The hardware, and what its parts cost.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Hardware")]
+pub(super) struct HardwareArgs {
+    /// Hardware: tiny, paper, wide, or a TOML file like those (--print-hw shows one)
+    #[arg(long = "hw", value_name = "NAME|FILE", default_value = "paper")]
+    hw: String,
+    /// Print the description of the hardware, and do nothing else
+    #[arg(long)]
+    pub(super) print_hw: bool,
+    /// TOML file with costs of your own, which go before the shipped ones
+    #[arg(long, value_name = "FILE")]
+    costs: Option<PathBuf>,
+    /// What gates are chosen for
+    #[arg(long, value_enum, default_value_t)]
+    goal: GoalName,
+    /// How the span of eight values is found, for energy
+    #[arg(long, value_enum, default_value_t)]
+    spans: SpanName,
+    /// Count shifts by constants as shifters, not as wires
+    #[arg(long)]
+    shifters: bool,
+}
+
+/// What is told beside the frame itself.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Tables")]
+pub(super) struct TableArgs {
+    /// Both cages, three drawing rules and tolerances from 0 to inf side by side
+    #[arg(long)]
+    pub(super) rules: bool,
+    /// The same frame with 1 to 64 lanes
+    #[arg(long)]
+    pub(super) lanes: bool,
+    /// The same frame in words of many widths: bits=16..48, or with steps: bits=16..64+4
+    #[arg(long, value_name = "bits=A..B", value_parser = bits_scan)]
+    pub(super) sweep: Option<Scan>,
+    /// Growing pictures of this object, and growing objects in this picture
+    #[arg(long)]
+    pub(super) growth: bool,
+    /// All of these; widths from 16 to 64 in steps of 4, where --sweep says no other
+    #[arg(long)]
+    pub(super) all: bool,
+}
+
+/// Files beside those of every experiment.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct FileArgs {
+    /// One self-contained page with everything, picture and heat map of records
+    #[arg(long, value_name = "FILE")]
+    pub(super) html: Option<PathBuf>,
+    /// Statistics in the manner of gem5: name, value, # description
+    #[arg(long, value_name = "FILE")]
+    pub(super) stats: Option<PathBuf>,
+    /// Heat map of records per pixel, PNG
+    #[arg(long, value_name = "FILE")]
+    pub(super) heat: Option<PathBuf>,
+    /// Trace of the first records: .json for Perfetto, .vcd for waveform viewers
+    #[arg(long, value_name = "FILE")]
+    pub(super) trace: Option<PathBuf>,
+    /// Records of the trace
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    pub(super) trace_records: u64,
+}
+
+fn bits_scan(text: &str) -> Result<Scan, String> {
+    // A range without steps goes by ones.
+    let stepped = if text.contains(['*', '+']) {
+        text.to_owned()
+    } else {
+        format!("{text}+1")
+    };
+    let scan: Scan = stepped.parse()?;
+    if scan.name() != "bits" {
+        return Err(format!("only `bits` can be swept, not `{}`", scan.name()));
+    }
+    let range = hwmodel::MIN_BITS..=hwmodel::MAX_BITS;
+    match scan.values().iter().find(|bits| !range.contains(bits)) {
+        Some(bits) => Err(format!(
+            "a word has {} to {} bits, not {bits}",
+            range.start(),
+            range.end()
+        )),
+        None => Ok(scan),
+    }
+}
+
+/// Reads a file that the user names.
+fn read(path: &PathBuf) -> Result<String, CliError> {
+    std::fs::read_to_string(path)
+        .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
+}
+
+impl HardwareArgs {
+    /// Its description as TOML: a shipped one with its comments, or the user's.
+    pub(super) fn text(&self) -> Result<String, CliError> {
+        if let Some((_, text)) = PRESETS.iter().find(|(name, _)| *name == self.hw) {
+            return Ok((*text).to_owned());
+        }
+        let path = PathBuf::from(&self.hw);
+        if !path.exists() {
+            let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+            return Err(CliError::new(
+                Kind::Input,
+                format!("no hardware and no file is called {}", self.hw),
+            )
+            .advise(format!(
+                "take one of {}, or print one with --print-hw and change it",
+                names.join(", ")
+            )));
+        }
+        read(&path)
+    }
+
+    /// The hardware.
+    pub(super) fn hardware(&self) -> Result<Hardware, CliError> {
+        Hardware::from_toml(&self.text()?)
+            .map_err(|error| CliError::new(Kind::Input, error).at(self.hw.clone()))
+    }
+
+    /// The cost tables and choices.
+    pub(super) fn prices(&self) -> Result<Prices, CliError> {
+        let wrong = |error| CliError::new(Kind::Input, error);
+        let mut table = CostTable::load_shipped().map_err(wrong)?;
+        if let Some(path) = &self.costs {
+            let name = path.display().to_string();
+            table = table.with_overrides(&name, &read(path)?).map_err(wrong)?;
+        }
+        Ok(Prices {
+            table,
+            costing: Costing {
+                shifts: if self.shifters {
+                    ShiftUnits::Variable
+                } else {
+                    ShiftUnits::Wires
+                },
+                min_max: match self.spans {
+                    SpanName::Trees => MinMaxUnits::Each,
+                    SpanName::Pairs => MinMaxUnits::Pairs,
+                },
+            },
+            goal: match self.goal {
+                GoalName::Area => Goal::Area,
+                GoalName::Delay => Goal::Delay,
+            },
+        })
+    }
+}
+
+impl TableArgs {
+    /// Word widths to sweep.
+    pub(super) fn widths(&self) -> Option<Vec<u32>> {
+        match (&self.sweep, self.all) {
+            (Some(scan), _) => Some(scan.values()),
+            (None, true) => Some((16..=64).step_by(4).collect()),
+            (None, false) => None,
+        }
+    }
+}

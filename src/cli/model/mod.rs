@@ -1,0 +1,275 @@
+//! `model`: what a frame costs on the light hardware.
+
+mod args;
+mod output;
+mod page;
+
+use hwmodel::Overflow;
+use hwmodel::cost::Breakdown;
+use hwmodel::cycles::{Hardware, NoObserver, Progress as Ticks, Recorder, ScalingRow, TraceLimit};
+use hwmodel::cycles::{LANES, scaling};
+use hwmodel::memory::Widths;
+
+pub(super) use args::ModelArgs;
+
+use super::bench::subjects;
+use super::console::Console;
+use super::error::{CliError, Kind};
+use crate::lab::bench::Subject;
+use crate::lab::model::ModelError;
+use crate::lab::model::claims::{self, Claim};
+use crate::lab::model::cost::{self, FrameCost, Prices};
+use crate::lab::model::frame::{self, Counted};
+use crate::lab::model::growth::{self, GrowthRow};
+use crate::lab::model::rival::{self, Rival};
+use crate::lab::model::rules::{self, RuleRow};
+use crate::lab::model::sweep::{self, FormatRow};
+use crate::machine::Simulated;
+use crate::project::{FrameSetup, SetupOptions};
+
+/// Everything that the model found of a scene.
+struct Findings {
+    name: String,
+    subject: Subject,
+    setup: FrameSetup,
+    hardware: Hardware,
+    widths: Widths,
+    counted: Counted,
+    simulated: Simulated,
+    /// Whether the hardware's picture is the serial machine's.
+    same_picture: bool,
+    cost: FrameCost,
+    area: Breakdown,
+    rival: Rival,
+    /// Wrong samples of the machine's picture.
+    wrong: crate::measure::CoverageError,
+    claims: Vec<Claim>,
+    rules: Vec<RuleRow>,
+    formats: Vec<FormatRow>,
+    lanes: Vec<ScalingRow>,
+    pictures: Vec<GrowthRow>,
+    objects: Vec<GrowthRow>,
+}
+
+pub(super) fn run(
+    args: &ModelArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    if args.hardware.print_hw {
+        return console.data(args.hardware.text()?.trim_end());
+    }
+    output::check(args)?;
+    let hardware = args.hardware.hardware()?;
+    let prices = args.hardware.prices()?;
+    let mut names = args.scenes.clone();
+    if names.is_empty() {
+        names = from_config;
+    }
+    if names.is_empty() {
+        names = vec![subjects::BUNDLED.to_owned()];
+    }
+    let [name] = names.as_slice() else {
+        return Err(CliError::usage("model looks at one scene at a time"));
+    };
+    let found = find(args, name, hardware, &prices, console).map_err(|e| e.at(name))?;
+    output::write(&found, args, console)
+}
+
+/// Draws, counts and measures.
+fn find(
+    args: &ModelArgs,
+    name: &str,
+    hardware: Hardware,
+    prices: &Prices,
+    console: &Console,
+) -> Result<Findings, CliError> {
+    let size = (args.size.width, args.size.height);
+    let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
+    let options = SetupOptions {
+        bits: args.engine.bits.unwrap_or(BITS),
+        ..args.engine.options(0)
+    };
+    let overflow = args.engine.overflow();
+    let setup = subject.setup(size, &options)?;
+    let graph = &subject.graph;
+    let progress = console.progress();
+
+    progress.begin("counting", 0);
+    let counted = frame::count(graph, &setup, &hardware, overflow)?;
+    progress.end();
+    let (hardware_frame, simulated) = simulate(
+        args, &subject, &setup, &hardware, overflow, &counted, console,
+    )?;
+    let same_picture = hardware_frame.voxel == counted.frame.voxel;
+
+    progress.begin("the exact picture and the ray caster", 0);
+    let exact = frame::reference(&graph.view(), &setup)?;
+    let rival = rival::measure(graph, &setup, &hardware, prices, &exact)?;
+    let wrong = frame::error(&counted.frame, &exact);
+    progress.end();
+
+    let widths = frame::widths(&setup, graph, &hardware);
+    let cost = cost::frame_cost(
+        &counted.counter,
+        &simulated.cycles,
+        &widths,
+        &setup,
+        &hardware,
+        prices,
+    )
+    .map_err(ModelError::from)?;
+    let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let tables = &args.tables;
+    let camera = crate::project::Camera {
+        width: size.0,
+        height: size.1,
+        ..subject.camera
+    };
+    let rules = if tables.rules || tables.all {
+        rules::table(graph, &camera, &options, &hardware, prices, progress)?
+    } else {
+        Vec::new()
+    };
+    let formats = match tables.widths() {
+        Some(widths) => sweep::table(
+            graph, &camera, &options, &widths, &hardware, prices, progress,
+        )?,
+        None => Vec::new(),
+    };
+    let lanes = if tables.lanes || tables.all {
+        progress.begin("1 to 64 lanes", LANES.len() as u64);
+        let rows = scaling(&hardware, &LANES, |hardware| {
+            let drawn = frame::simulate(&graph.view(), &setup, hardware, overflow, &mut NoObserver);
+            progress.advance(1);
+            drawn.map(|(_, simulated)| simulated.cycles)
+        })?;
+        progress.end();
+        rows
+    } else {
+        Vec::new()
+    };
+    let (pictures, objects) = if tables.growth || tables.all {
+        let sides = sides_to(size.0.max(size.1));
+        let pictures = growth::pictures(name, graph, &camera, &sides, &options, progress)?;
+        (pictures, objects(size, &options, console)?)
+    } else {
+        (Vec::new(), Vec::new())
+    };
+    let mut claims = claims::of_frame(&counted);
+    let terrains = objects.iter().filter(|row| row.object.contains("terrain"));
+    let terrains: Vec<GrowthRow> = terrains.cloned().collect();
+    claims.extend(claims::of_growth(&pictures, &terrains));
+    claims.extend(claims::of_hardware(&simulated, same_picture, &setup));
+    Ok(Findings {
+        name: name.to_owned(),
+        setup,
+        hardware,
+        widths,
+        counted,
+        simulated,
+        same_picture,
+        cost,
+        area,
+        rival,
+        wrong,
+        claims,
+        rules,
+        formats,
+        lanes,
+        pictures,
+        objects,
+        subject,
+    })
+}
+
+/// Draws the frame on the hardware, with progress, and writes the trace that was asked for.
+fn simulate(
+    args: &ModelArgs,
+    subject: &Subject,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+    counted: &Counted,
+    console: &Console,
+) -> Result<(crate::frame::Frame, Simulated), CliError> {
+    let view = subject.graph.view();
+    let progress = console.progress();
+    progress.begin("cycles", counted.counter.records());
+    let mut told = 0;
+    let mut ticks = Ticks(|_, records: u64| {
+        progress.advance(records.saturating_sub(told));
+        told = records;
+    });
+    let drawn = match &args.files.trace {
+        None => frame::simulate(&view, setup, hardware, overflow, &mut ticks)?,
+        Some(path) => {
+            let mut recorder = Recorder::new(TraceLimit {
+                records: args.files.trace_records,
+                ..TraceLimit::default()
+            });
+            let mut both = (&mut recorder, ticks);
+            let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
+            output::write_trace(path, &recorder, hardware, args.export.force, console)?;
+            drawn
+        }
+    };
+    progress.end();
+    Ok(drawn)
+}
+
+/// Sides of growing pictures: powers of two from 64 to `most`.
+fn sides_to(most: u32) -> Vec<u32> {
+    std::iter::successors(Some(64u32), |side| side.checked_mul(2))
+        .take_while(|&side| side <= most.max(64))
+        .collect()
+}
+
+/// Width of a word where nothing is said: that for which the shipped hardware is built.
+const BITS: u32 = 32;
+
+/// A terrain and a sponge of growing depth, in one picture size.
+const OBJECTS: [&str; 7] = [
+    "gen:terrain,depth=6",
+    "gen:terrain,depth=7",
+    "gen:terrain,depth=8",
+    "gen:terrain,depth=9",
+    "gen:terrain,depth=10",
+    "gen:menger,depth=3",
+    "gen:menger,depth=5",
+];
+
+fn objects(
+    size: (u32, u32),
+    options: &SetupOptions,
+    console: &Console,
+) -> Result<Vec<GrowthRow>, CliError> {
+    let mut rows = Vec::new();
+    let (camera, scene) = Default::default();
+    for name in OBJECTS {
+        let subject = subjects::open(name, &camera, &scene, size, console)?;
+        let side = size.0.max(size.1);
+        rows.push(growth::row(
+            name,
+            &subject.graph,
+            &subject.camera,
+            side,
+            options,
+        )?);
+    }
+    Ok(rows)
+}
+
+impl From<ModelError> for CliError {
+    fn from(error: ModelError) -> Self {
+        use crate::machine::SimulateError;
+        match error {
+            ModelError::Setup(error) => error.into(),
+            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Engine(error)) => {
+                error.into()
+            }
+            ModelError::Simulate(error) => Self::new(Kind::Limit, error),
+            ModelError::Cost(error) => Self::new(Kind::Input, error),
+        }
+    }
+}

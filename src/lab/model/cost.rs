@@ -1,0 +1,147 @@
+//! Energy of a frame and area of a hardware, by the cost tables.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hwmodel::cost::{
+    Breakdown, CostError, CostTable, Costing, Goal, Store, Stores, Tally, Unit, area_of, energy_of,
+    energy_of_tallies, memory_energy_of, operation_of,
+};
+use hwmodel::count::{Accesses, Counter};
+use hwmodel::cycles::{CacheReport, CycleReport, Hardware};
+use hwmodel::memory::Widths;
+use hwmodel::{Memory, OpClass, Stage};
+use serde::Serialize;
+
+use crate::frame::quadtree::nodes_to;
+use crate::project::FrameSetup;
+
+/// The tables, and the choices that counts leave open.
+#[derive(Debug, Clone)]
+pub struct Prices {
+    /// Areas and energies.
+    pub table: CostTable,
+    /// How shifts and spans are built.
+    pub costing: Costing,
+    /// What gates are chosen for.
+    pub goal: Goal,
+}
+
+/// What a frame costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct FrameCost {
+    /// Energy of the operations, pJ.
+    pub operations: Breakdown,
+    /// Energy of the memories on the chip, pJ.
+    pub on_chip: Breakdown,
+    /// Energy of what goes to outer memory and comes from there, pJ.
+    pub outer: Breakdown,
+}
+
+impl FrameCost {
+    /// All of it, pJ: value, and the ends of its range.
+    #[must_use]
+    pub fn total(&self) -> (f64, f64, f64) {
+        let parts = [&self.operations, &self.on_chip, &self.outer];
+        parts.iter().fold((0.0, 0.0, 0.0), |sum, part| {
+            (sum.0 + part.total, sum.1 + part.low, sum.2 + part.high)
+        })
+    }
+}
+
+/// Bits of the fill vectors of a picture: four for each node of its quadtree.
+#[must_use]
+pub fn fill_vector_bits(setup: &FrameSetup) -> u64 {
+    4 * nodes_to(setup.levels) as u64
+}
+
+/// Bits of a hardware's stacks.
+#[must_use]
+pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
+    u64::from(hardware.lanes) * u64::from(hardware.stack.entries) * u64::from(record_bits)
+}
+
+/// Energy of a frame on a hardware. Accesses to nodes and attributes go to
+/// the hardware's caches, their misses to outer memory, line by line; pixels go to outer memory.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn frame_cost(
+    counter: &Counter,
+    cycles: &CycleReport,
+    widths: &Widths,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<FrameCost, CostError> {
+    let table = &prices.table;
+    let bytes = |bits: u64| Store::Sram {
+        bytes: bits.div_ceil(8).max(1),
+    };
+    let stack = u64::from(hardware.stack.entries) * u64::from(widths.stack_bits);
+    let stores = Stores {
+        stack: bytes(stack),
+        node: bytes(8 * u64::from(hardware.node_cache.bytes)),
+        attribute: bytes(8 * u64::from(hardware.attribute_cache.bytes)),
+        fill_vector: bytes(fill_vector_bits(setup) / u64::from(hardware.fill_vectors.banks)),
+        pixel: Store::Dram,
+    };
+    let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
+    let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
+    let on_chip = memory_energy_of(&accesses, widths, &stores, table)?;
+    let lines = |cache: &CacheReport| cache.bytes_in / 8;
+    let read = |times: u64| Tally {
+        operation: "dram_read".to_owned(),
+        width: 64,
+        times,
+    };
+    let outer = energy_of_tallies(
+        &[
+            read(lines(&cycles.node_cache) + lines(&cycles.attribute_cache)),
+            Tally {
+                operation: "dram_write".to_owned(),
+                width: 64,
+                // A pixel's bits, in words of 64 as neighbours share them.
+                times: (pixels.writes * u64::from(widths.pixel_bits)).div_ceil(64),
+            },
+        ],
+        table,
+    )?;
+    Ok(FrameCost {
+        operations: energy_of(counter, table, prices.costing)?,
+        on_chip,
+        outer,
+    })
+}
+
+/// The units of a hardware's blocks: those of classes that a frame's stages
+/// have a use for, in all lanes.
+#[must_use]
+pub fn bill(counter: &Counter, hardware: &Hardware, prices: &Prices) -> Vec<Unit> {
+    let used: BTreeSet<(Stage, OpClass)> = counter
+        .cells()
+        .map(|cell| (cell.stage, cell.class))
+        .collect();
+    let unit_of = |&(stage, class): &(Stage, OpClass)| {
+        let unit = hardware.unit(stage, class)?;
+        Some(Unit {
+            name: stage.name().to_owned(),
+            operation: operation_of(class, prices.costing.shifts).to_owned(),
+            width: unit.width,
+            count: u64::from(unit.count) * u64::from(hardware.lanes),
+        })
+    };
+    used.iter().filter_map(unit_of).collect()
+}
+
+/// Area of the blocks' units, NAND2 equivalents. Memories, registers between
+/// stages and control are not in it.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn area(
+    counter: &Counter,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<Breakdown, CostError> {
+    area_of(&bill(counter, hardware, prices), &prices.table, prices.goal)
+}

@@ -1,0 +1,152 @@
+//! One frame of the machine, with everything counted.
+
+use hwmodel::Memory;
+use hwmodel::Overflow;
+use hwmodel::count::Counter;
+use hwmodel::cycles::{Hardware, Observer};
+use hwmodel::memory::{MemoryProbe, Widths};
+
+use super::ModelError;
+use super::record::{RecordField, record_bits, record_fields};
+use crate::frame::Frame;
+use crate::graph::{Graph, GraphView};
+use crate::machine::{Machine, MachineOptions, Simulated};
+use crate::measure::CoverageError;
+use crate::project::{Engine, EngineError, FrameSetup, Stats};
+use crate::rays::Rays;
+
+/// Bits of a pixel: red, green and blue.
+pub const PIXEL_BITS: u32 = 24;
+/// Bits of a fill vector.
+pub const FILL_VECTOR_BITS: u32 = 4;
+
+/// What was counted while a frame was drawn.
+#[derive(Debug)]
+pub struct Counted {
+    /// The picture, with records by sample.
+    pub frame: Frame,
+    /// Operations and accesses.
+    pub counter: Counter,
+    /// Where accesses went.
+    pub memory: MemoryProbe,
+    /// The machine's own counters.
+    pub stats: Stats,
+    /// The fields of a record.
+    pub fields: Vec<RecordField>,
+}
+
+impl Counted {
+    /// Bits of a record on the stack.
+    #[must_use]
+    pub fn record_bits(&self) -> u32 {
+        record_bits(&self.fields)
+    }
+
+    /// A counter of the machine by its name; 0 if it has none of that name.
+    #[must_use]
+    pub fn stat(&self, name: &str) -> u64 {
+        let found = self.stats.iter().find(|(n, _)| *n == name);
+        found.map_or(0, |&(_, count)| count)
+    }
+
+    /// Operations a record.
+    #[must_use]
+    pub fn operations_per_record(&self) -> f64 {
+        self.counter.ops() as f64 / self.counter.records().max(1) as f64
+    }
+}
+
+/// Bits that an access of each memory moves.
+#[must_use]
+pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths {
+    Widths {
+        stack_bits: record_bits(&record_fields(setup, graph.len())),
+        node_bits: 8 * hardware.node_cache.entry_bytes,
+        attribute_bits: 8 * hardware.attribute_cache.entry_bytes,
+        fill_vector_bits: FILL_VECTOR_BITS,
+        pixel_bits: PIXEL_BITS,
+    }
+}
+
+/// A machine with an overflow policy.
+fn machine(overflow: Overflow) -> Machine {
+    Machine::new(MachineOptions {
+        overflow,
+        ..MachineOptions::default()
+    })
+}
+
+/// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count(
+    graph: &Graph,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+) -> Result<Counted, EngineError> {
+    let line = hardware.node_cache.line_bytes;
+    let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
+    let mut frame = Frame::new(setup.width, setup.height, true);
+    let (stats, (counter, memory)) = machine(overflow).render_probed(
+        &graph.view(),
+        setup,
+        &mut frame,
+        (Counter::new(), memory),
+    )?;
+    Ok(Counted {
+        frame,
+        counter,
+        memory,
+        stats,
+        fields: record_fields(setup, graph.len()),
+    })
+}
+
+/// Draws a frame and counts operations alone.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count_operations(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    overflow: Overflow,
+) -> Result<(Frame, Counter, Stats), EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let probe = Counter::new();
+    let (stats, counter) = machine(overflow).render_probed(graph, setup, &mut frame, probe)?;
+    Ok((frame, counter, stats))
+}
+
+/// Draws a frame on a hardware, cycle by cycle.
+///
+/// # Errors
+/// When a word overflows under the trap policy, or a stack that does not spill.
+pub fn simulate<O: Observer>(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+    observer: &mut O,
+) -> Result<(Frame, Simulated), ModelError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let simulated = machine(overflow).simulate(graph, setup, &mut frame, hardware, observer)?;
+    Ok((frame, simulated))
+}
+
+/// The exact picture of a frame's view.
+///
+/// # Errors
+/// Never; the oracle's errors are the engines'.
+pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    Rays.render(graph, setup, &mut frame)?;
+    Ok(frame)
+}
+
+/// How far a frame is from the exact one.
+#[must_use]
+pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
+    CoverageError::between(&frame.voxel, &exact.voxel)
+}

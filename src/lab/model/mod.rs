@@ -1,0 +1,57 @@
+//! The hardware model's report: what a frame costs on the light hardware, and
+//! what a ray caster with multipliers would cost instead.
+//!
+//! [`frame`] draws a frame and has everything counted; [`rival`] does the same
+//! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
+//! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
+//! formats, and over pictures and objects; [`claims`] holds the paper's words against the counts.
+//! The other files say it: as tables, as statistics, as a page.
+
+pub mod claims;
+pub mod cost;
+pub mod frame;
+pub mod growth;
+pub mod heat;
+#[cfg(feature = "cli")]
+pub mod plots;
+pub mod record;
+pub mod rival;
+pub mod rules;
+pub mod safe;
+pub mod statistics;
+pub mod sweep;
+pub mod tables;
+
+use hwmodel::cost::CostError;
+
+use crate::machine::SimulateError;
+use crate::project::{EngineError, SetupError};
+
+/// Why the model has no result.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
+    /// The frame cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The machine could not finish the frame.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The hardware could not.
+    #[error(transparent)]
+    Simulate(#[from] SimulateError),
+    /// A figure is missing in the cost tables.
+    #[error(transparent)]
+    Cost(#[from] CostError),
+}
+
+/// Infinity, which JSON has not, as the word `inf`.
+pub(crate) fn infinity_as_word<S: serde::Serializer>(
+    value: &f64,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    if value.is_infinite() {
+        to.serialize_str("inf")
+    } else {
+        to.serialize_f64(*value)
+    }
+}

@@ -1,0 +1,194 @@
+//! Both cages, the drawing rules and tolerances side by side: what exact
+//! perspective costs over the paper's midpoints.
+
+use hwmodel::cycles::{Hardware, NoObserver};
+use hwmodel::{OpClass, Overflow};
+use serde::Serialize;
+
+use super::ModelError;
+use super::cost::{self, Prices};
+use super::frame;
+use super::record::{record_bits, record_fields};
+use crate::graph::{Graph, Progress};
+use crate::machine::SimulateError;
+use crate::measure::CoverageError;
+use crate::project::{CageKind, Camera, Coverage, EngineError, FrameSetup, SetupOptions};
+
+/// Tolerances of the table, pixels.
+pub const TOLERANCES: [f64; 6] = [
+    0.0,
+    1.0 / 64.0,
+    1.0 / 16.0,
+    1.0 / 8.0,
+    1.0 / 4.0,
+    f64::INFINITY,
+];
+
+/// A way to draw, and what it costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct RuleRow {
+    /// How records hold their vertices.
+    pub cage: CageKind,
+    /// Which samples a voxel draws.
+    pub coverage: Coverage,
+    /// Largest deviation in pixels; infinity as the word `inf`.
+    #[serde(serialize_with = "crate::lab::model::infinity_as_word")]
+    pub tolerance_px: f64,
+    /// Bits of a record on the stack.
+    pub record_bits: u32,
+    /// What became of the frame.
+    #[serde(flatten)]
+    pub outcome: Outcome,
+}
+
+/// What became of a frame.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "outcome", rename_all = "snake_case")]
+pub enum Outcome {
+    /// It was drawn.
+    Drawn(Box<Costs>),
+    /// A word overflowed.
+    Trapped {
+        /// Where.
+        trap: String,
+    },
+    /// There is no such frame.
+    Refused {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// What a frame cost, and how far it is from the exact one.
+#[derive(Debug, Clone, Serialize)]
+pub struct Costs {
+    /// Records that had their turn.
+    pub records: u64,
+    /// Operations, but for shifts.
+    pub operations: u64,
+    /// Shifts, most of them wires.
+    pub shifts: u64,
+    /// Steps of the restoring divide, among the operations.
+    pub divide_steps: u64,
+    /// Widest operation, bits.
+    pub widest: u32,
+    /// Cycles on the hardware.
+    pub cycles: u64,
+    /// Records of the deepest stack.
+    pub deepest_stack: u64,
+    /// Energy of the operations, pJ.
+    pub energy_pj: f64,
+    /// Area of the units used, NAND2 equivalents.
+    pub area_nand2: f64,
+    /// Coverage against exact rays of the camera at 64 bits.
+    pub error: CoverageError,
+}
+
+/// Draws one frame and adds up what it costs. `exact`: the true picture.
+///
+/// # Errors
+/// When the cost tables lack a figure, or the hardware cannot go on.
+pub fn measure(
+    graph: &Graph,
+    setup: Result<FrameSetup, crate::project::SetupError>,
+    hardware: &Hardware,
+    prices: &Prices,
+    exact: &crate::frame::Frame,
+) -> Result<(u32, Outcome), ModelError> {
+    let setup = match setup {
+        Ok(setup) => setup,
+        Err(error) => {
+            let reason = error.to_string();
+            return Ok((0, Outcome::Refused { reason }));
+        }
+    };
+    let bits = record_bits(&record_fields(&setup, graph.len()));
+    let (view, overflow) = (graph.view(), Overflow::Trap);
+    let trapped = |trap: String| Ok((bits, Outcome::Trapped { trap }));
+    let (frame, counter, stats) = match frame::count_operations(&view, &setup, overflow) {
+        Ok(drawn) => drawn,
+        Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
+    };
+    let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
+    let simulated = match simulated {
+        Ok((_, simulated)) => simulated,
+        Err(ModelError::Simulate(SimulateError::Engine(EngineError::Trap(trap)))) => {
+            return trapped(trap.to_string());
+        }
+        Err(error) => return Err(error),
+    };
+    let shifts = counter.ops_of(OpClass::Shift);
+    let deepest = stats.iter().find(|(name, _)| *name == "deepest_stack");
+    let energy = hwmodel::cost::energy_of(&counter, &prices.table, prices.costing)?;
+    let costs = Costs {
+        records: counter.records(),
+        operations: counter.ops() - shifts,
+        shifts,
+        divide_steps: counter.ops_of(OpClass::DivideStep),
+        widest: counter.widest(),
+        cycles: simulated.cycles.cycles,
+        deepest_stack: deepest.map_or(0, |&(_, depth)| depth),
+        energy_pj: energy.total,
+        area_nand2: cost::area(&counter, hardware, prices)?.total,
+        error: frame::error(&frame, exact),
+    };
+    Ok((bits, Outcome::Drawn(Box::new(costs))))
+}
+
+/// The table for a view. `base` has everything that the table does not vary.
+///
+/// # Errors
+/// When the camera sees nothing, or the cost tables lack a figure.
+pub fn table(
+    graph: &Graph,
+    camera: &Camera,
+    base: &SetupOptions,
+    hardware: &Hardware,
+    prices: &Prices,
+    progress: &dyn Progress,
+) -> Result<Vec<RuleRow>, ModelError> {
+    let exact = frame::reference(&graph.view(), &true_setup(graph, camera, base)?)?;
+    let cages = [CageKind::Corners, CageKind::Frame];
+    let rules = [Coverage::Any, Coverage::Center, Coverage::Exact];
+    let count = cages.len() * rules.len() * TOLERANCES.len();
+    progress.begin("cages, rules and tolerances", count as u64);
+    let mut rows = Vec::with_capacity(count);
+    for cage in cages {
+        for coverage in rules {
+            for tolerance_px in TOLERANCES {
+                let options = SetupOptions {
+                    cage,
+                    coverage,
+                    tolerance_px,
+                    ..*base
+                };
+                let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options);
+                let (record_bits, outcome) = measure(graph, setup, hardware, prices, &exact)?;
+                rows.push(RuleRow {
+                    cage,
+                    coverage,
+                    tolerance_px,
+                    record_bits,
+                    outcome,
+                });
+                progress.advance(1);
+            }
+        }
+    }
+    progress.end();
+    Ok(rows)
+}
+
+/// The view that errors are measured against: 64 bits, the exact rule.
+pub(super) fn true_setup(
+    graph: &Graph,
+    camera: &Camera,
+    base: &SetupOptions,
+) -> Result<FrameSetup, ModelError> {
+    let options = SetupOptions {
+        aa_log2: base.aa_log2,
+        ..SetupOptions::default()
+    };
+    let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
+    Ok(setup)
+}
