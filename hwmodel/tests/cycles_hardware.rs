@@ -78,6 +78,17 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
             "bytes = 4100",
             "node_cache.bytes is 4100; it must be a multiple of ways * line_bytes, 32",
         ),
+        (
+            "line_bytes = 32",
+            "line_bytes = 4",
+            "node_cache.line_bytes is 4; it must be 8 to",
+        ),
+        ("misses = 1 ", "misses = 0 ", "node_cache.misses is 0"),
+        (
+            "buffer = 4 ",
+            "buffer = 70000 ",
+            "pixels.buffer is 70000; it must be 1 to 65536",
+        ),
         ("banks = 1", "banks = 0", "fill_vectors.banks is 0"),
         ("wires = [\"shift\"]", "wires = []", "nothing does `shift`"),
         ("lanes = 1", "lane = 1", "unknown field `lane`"),
@@ -99,6 +110,10 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         assert!(text.contains(expected), "{to}: {text}");
         assert!(text.starts_with("hardware description: "), "{text}");
     }
+    // What was changed after reading is looked at before anything runs.
+    let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.contexts = 0;
+    assert!(hardware.check().is_err());
     let text = Hardware::preset("huge").unwrap_err().to_string();
     assert!(text.contains("tiny, paper and wide"), "{text}");
 }

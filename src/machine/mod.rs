@@ -121,8 +121,8 @@ impl Machine {
     /// [`Both`]: hwmodel::cycles::Independence::Both
     ///
     /// # Errors
-    /// When a word overflows under the trap policy, or a stack that does not
-    /// spill.
+    /// When the hardware's description is not sound, a word overflows under
+    /// the trap policy, or a stack that does not spill.
     pub fn simulate<O: Observer>(
         &mut self,
         graph: &GraphView<'_>,
@@ -131,6 +131,7 @@ impl Machine {
         hardware: &Hardware,
         observer: &mut O,
     ) -> Result<Simulated, SimulateError> {
+        hardware.check()?;
         frame.clear();
         let fill = Self::emptied(&mut self.fill, setup);
         let log = TurnLog::new(hardware);

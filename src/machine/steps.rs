@@ -7,7 +7,9 @@
 //! record that changed to screen space last, is kept here for every such
 //! record that has descendants left.
 
-use hwmodel::cycles::{self, Child, CycleReport, Hardware, Observer, Region, TurnLog};
+use hwmodel::cycles::{
+    self, Child, CycleReport, Hardware, HardwareError, Observer, Region, TurnLog,
+};
 use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 use serde::Serialize;
 
@@ -36,6 +38,9 @@ pub enum SimulateError {
     /// The machine could not finish the frame.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// The hardware is none.
+    #[error(transparent)]
+    Hardware(#[from] HardwareError),
     /// A stack without room, on hardware that does not spill.
     #[error(
         "record {record} leaves more records than the {entries} entries of lane {lane}'s \
@@ -55,6 +60,7 @@ impl From<cycles::SimulationError<Trap>> for SimulateError {
     fn from(error: cycles::SimulationError<Trap>) -> Self {
         match error {
             cycles::SimulationError::Workload(trap) => Self::Engine(trap.into()),
+            cycles::SimulationError::Hardware(error) => Self::Hardware(error),
             cycles::SimulationError::StackOverflow {
                 record,
                 lane,

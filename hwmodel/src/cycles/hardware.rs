@@ -15,6 +15,10 @@ pub const MAX_LANES: u32 = 256;
 pub const MAX_CONTEXTS: u32 = 64;
 /// Largest of all other numbers: no sum of a turn's times leaves 64 bits.
 const MAX_NUMBER: u32 = 1 << 24;
+/// Largest number of things that the simulation keeps one by one.
+const MAX_KEPT: u32 = 1 << 16;
+/// Shortest line of a cache, bytes.
+const MIN_LINE: u32 = 8;
 
 /// A hardware.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -262,17 +266,17 @@ impl Hardware {
             }
         }
         let stack = &self.stack;
+        within("fill_vectors.banks", self.fill_vectors.banks, 1, MAX_KEPT)?;
+        within("pixels.buffer", self.pixels.buffer, 1, MAX_KEPT)?;
         for (field, value, least) in [
             ("stack.entries", stack.entries, 1),
             ("stack.ports", stack.ports, 1),
             ("stack.latency", stack.latency, 0),
             ("stack.spill_cycles", stack.spill_cycles, 0),
-            ("fill_vectors.banks", self.fill_vectors.banks, 1),
             ("fill_vectors.read_ports", self.fill_vectors.read_ports, 1),
             ("fill_vectors.write_ports", self.fill_vectors.write_ports, 1),
             ("fill_vectors.latency", self.fill_vectors.latency, 0),
             ("pixels.write_ports", self.pixels.write_ports, 1),
-            ("pixels.buffer", self.pixels.buffer, 1),
             ("pixels.drain_interval", self.pixels.drain_interval, 0),
         ] {
             within(field, value, least, MAX_NUMBER)?;
@@ -302,15 +306,15 @@ impl Cache {
         for (field, value, least) in [
             ("bytes", self.bytes, 1),
             ("ways", self.ways, 1),
-            ("line_bytes", self.line_bytes, 1),
+            ("line_bytes", self.line_bytes, MIN_LINE),
             ("entry_bytes", self.entry_bytes, 1),
             ("ports", self.ports, 1),
             ("hit_latency", self.hit_latency, 0),
             ("miss_latency", self.miss_latency, 0),
-            ("misses", self.misses, 1),
         ] {
             within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
         }
+        within(&format!("{at}.misses"), self.misses, 1, MAX_KEPT)?;
         let set = u64::from(self.ways) * u64::from(self.line_bytes);
         if !u64::from(self.bytes).is_multiple_of(set) {
             let range = format!("a multiple of ways * line_bytes, {set}");

@@ -8,6 +8,39 @@ use super::report::{CacheReport, Cause};
 use super::turn::Access;
 use crate::Memory;
 
+/// Division by a number that is a power of two more often than not.
+#[derive(Debug, Clone, Copy)]
+struct Divisor {
+    number: u64,
+    /// Its logarithm, if it is one.
+    places: Option<u32>,
+}
+
+impl Divisor {
+    fn new(number: u32) -> Self {
+        Self {
+            number: u64::from(number),
+            places: number.is_power_of_two().then(|| number.trailing_zeros()),
+        }
+    }
+
+    #[inline]
+    fn quotient(self, of: u64) -> u64 {
+        match self.places {
+            Some(places) => of >> places,
+            None => of / self.number,
+        }
+    }
+
+    #[inline]
+    fn remainder(self, of: u64) -> usize {
+        match self.places {
+            Some(_) => (of & (self.number - 1)) as usize,
+            None => (of % self.number) as usize,
+        }
+    }
+}
+
 /// A port that takes so many accesses a cycle.
 #[derive(Debug, Clone)]
 pub(super) struct Port {
@@ -75,7 +108,8 @@ struct Line {
 #[derive(Debug)]
 pub(super) struct CacheState {
     of: Cache,
-    sets: u64,
+    sets: Divisor,
+    line_bytes: Divisor,
     lines: Vec<Line>,
     pub(super) port: Port,
     /// When the misses under way are done, oldest at `misses mod slots`.
@@ -89,7 +123,8 @@ impl CacheState {
         let lines = of.sets() as usize * of.ways as usize;
         Self {
             of,
-            sets: u64::from(of.sets()),
+            sets: Divisor::new(of.sets()),
+            line_bytes: Divisor::new(of.line_bytes),
             lines: vec![
                 Line {
                     number: u64::MAX,
@@ -108,10 +143,10 @@ impl CacheState {
     fn access(&mut self, address: u64, at: u64) -> Served {
         let issued = self.port.book(at);
         let hit = issued + u64::from(self.of.hit_latency);
-        let number =
-            address.wrapping_mul(u64::from(self.of.entry_bytes)) / u64::from(self.of.line_bytes);
+        let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
+        let number = self.line_bytes.quotient(byte);
         let ways = self.of.ways as usize;
-        let start = (number % self.sets) as usize * ways;
+        let start = self.sets.remainder(number) * ways;
         let set = &mut self.lines[start..start + ways];
         if let Some(way) = set.iter().position(|line| line.number == number) {
             let line = set[way];
@@ -172,7 +207,8 @@ impl CacheState {
 /// Banks with ports for reads and writes.
 #[derive(Debug)]
 pub(super) struct BanksState {
-    of: Banks,
+    banks: Divisor,
+    latency: u32,
     reads: Vec<Port>,
     writes: Vec<Port>,
 }
@@ -181,7 +217,8 @@ impl BanksState {
     fn new(of: Banks) -> Self {
         let banks = of.banks as usize;
         Self {
-            of,
+            banks: Divisor::new(of.banks),
+            latency: of.latency,
             reads: vec![Port::new(of.read_ports); banks],
             writes: vec![Port::new(of.write_ports); banks],
         }
@@ -189,11 +226,11 @@ impl BanksState {
 
     #[inline]
     fn access(&mut self, access: Access, at: u64) -> Served {
-        let bank = (access.address % u64::from(self.of.banks)) as usize;
+        let bank = self.banks.remainder(access.address);
         let (issued, latency) = if access.write {
             (self.writes[bank].book(at), 1)
         } else {
-            (self.reads[bank].book(at), self.of.latency)
+            (self.reads[bank].book(at), self.latency)
         };
         Served {
             issued,

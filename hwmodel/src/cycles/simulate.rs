@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::hardware::{Hardware, StackOverflow};
+use super::hardware::{Hardware, HardwareError, StackOverflow};
 use super::memories::Memories;
 use super::observe::{Observer, START, VisitSpan};
 use super::report::{
@@ -24,6 +24,9 @@ pub enum SimulationError<E> {
     /// The workload failed.
     #[error(transparent)]
     Workload(#[from] E),
+    /// The hardware is none.
+    #[error(transparent)]
+    Hardware(HardwareError),
     /// A stack without room, on hardware that does not spill.
     #[error(
         "record {record} leaves more records than the {entries} entries of lane {lane}'s \
@@ -81,12 +84,13 @@ struct Lane {
 /// Runs a workload on a hardware.
 ///
 /// # Errors
-/// When the workload fails, or a stack overflows that does not spill.
+/// When [`Hardware::check`] fails, the workload fails, or a stack overflows that does not spill.
 pub fn simulate<W: Workload, O: Observer>(
     hardware: &Hardware,
     workload: &mut W,
     observer: &mut O,
 ) -> Result<CycleReport, SimulationError<W::Error>> {
+    hardware.check().map_err(SimulationError::Hardware)?;
     let mut simulation = Simulation::new(hardware, workload, observer);
     let end = simulation.run()?;
     Ok(simulation.report(end))

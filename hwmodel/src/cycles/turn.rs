@@ -100,6 +100,9 @@ pub(super) struct Access {
     pub(super) write: bool,
 }
 
+/// Marks a stage whose memories were accessed; the bits below are classes.
+const ACCESSED: u16 = 1 << CLASSES;
+
 /// The stages in the order in which a record visits them.
 const ROUND: [Stage; STAGES] = [
     Stage::Pop,
@@ -129,8 +132,8 @@ struct Done {
 pub struct TurnLog {
     done: [[Done; CLASSES]; STAGES],
     accesses: [Vec<Access>; STAGES],
-    /// Stages met, a bit each.
-    met: u32,
+    /// By stage, a bit for each class of operation, and [`ACCESSED`].
+    met: [u16; STAGES],
     /// Passes of one operation: by stage, class, width.
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
@@ -146,7 +149,7 @@ struct Issue {
 }
 
 impl TurnLog {
-    /// A log for turns on a hardware.
+    /// A log for turns on a hardware that [`Hardware::check`] finds sound.
     #[must_use]
     pub fn new(hardware: &Hardware) -> Self {
         let mut passes_of = Box::new([[[0; WIDTHS]; CLASSES]; STAGES]);
@@ -164,14 +167,14 @@ impl TurnLog {
                 let by_width = &mut passes_of[stage as usize][class as usize];
                 for (bits, passes) in by_width.iter_mut().enumerate() {
                     // At most 127: it fits.
-                    *passes = (bits as u32).div_ceil(unit.width).max(1) as u8;
+                    *passes = (bits as u32).div_ceil(unit.width.max(1)).max(1) as u8;
                 }
             }
         }
         Self {
             done: Default::default(),
             accesses: Default::default(),
-            met: 0,
+            met: [0; STAGES],
             passes_of,
             units,
             latencies: Latencies::new(hardware),
@@ -180,7 +183,7 @@ impl TurnLog {
 
     #[inline]
     fn access(&mut self, memory: Memory, address: u64, stage: Stage, write: bool) {
-        self.met |= 1 << stage as u32;
+        self.met[stage as usize] |= ACCESSED;
         self.accesses[stage as usize].push(Access {
             address,
             memory,
@@ -196,25 +199,29 @@ impl TurnLog {
         plan.alone = 0;
         plan.worst = 0;
         for stage in ROUND {
-            if self.met >> stage as u32 & 1 != 0 {
+            if self.met[stage as usize] != 0 {
                 self.take_stage(stage, plan);
             }
         }
-        self.met = 0;
     }
 
     #[inline]
     fn take_stage(&mut self, stage: Stage, plan: &mut Plan) {
         let (mut occupied, mut latency) = (1, 0);
         let mut sum = Done::default();
-        let units = &self.units[stage as usize];
-        for (done, unit) in self.done[stage as usize].iter_mut().zip(units) {
-            if done.operations == 0 {
-                continue;
-            }
+        let of = stage as usize;
+        let mut classes = std::mem::take(&mut self.met[of]) & !ACCESSED;
+        while classes != 0 {
+            let class = classes.trailing_zeros() as usize % CLASSES;
+            classes &= classes - 1;
+            let done = std::mem::take(&mut self.done[of][class]);
+            let unit = &self.units[of][class];
             if done.passes > 0 {
                 let issues = if done.passes <= unit.count {
                     1
+                } else if done.passes <= u64::from(u32::MAX) {
+                    // Division of 32 bits is several times as fast.
+                    u64::from((done.passes as u32).div_ceil(unit.count as u32))
                 } else {
                     done.passes.div_ceil(unit.count)
                 };
@@ -223,7 +230,6 @@ impl TurnLog {
             }
             sum.operations += done.operations;
             sum.passes += done.passes;
-            *done = Done::default();
         }
         let mut alone = occupied + latency;
         plan.worst += alone;
@@ -256,7 +262,7 @@ impl Probe for TurnLog {
         let done = &mut self.done[stage][class];
         done.operations += u64::from(times);
         done.passes += u64::from(passes) * u64::from(times);
-        self.met |= 1 << stage;
+        self.met[stage] |= 1 << class;
     }
 
     #[inline]
