@@ -10,13 +10,14 @@ use crate::common::*;
 use crate::scenes;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
-    Hardware, Independence, LANES, NoObserver, Progress, Recorder, TraceLimit, scaling,
+    Child, Hardware, Independence, LANES, NoObserver, Progress, Recorder, Region, TraceLimit,
+    scaling,
 };
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::{Machine, Simulated};
+use shiftvox::machine::{Machine, OCCLUSION_ORDER, Simulated};
 use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
 };
@@ -170,6 +171,66 @@ proptest! {
         hardware in any_hardware(),
     ) {
         agree(&graph, &camera, &settings, &hardware)?;
+    }
+}
+
+/// The classes hold no two children of which one may hide the other: none
+/// whose octant has all bits of the other's (`order.rs` proves that rule).
+#[test]
+fn cycles_classes_are_independent_by_geometry() {
+    let child = |place: usize| Child {
+        item: 0,
+        place: place as u8,
+        region: Region::default(),
+    };
+    let mut allowed = 0;
+    for later in 0..8 {
+        for earlier in 0..later {
+            let may_hide =
+                OCCLUSION_ORDER[earlier] & OCCLUSION_ORDER[later] == OCCLUSION_ORDER[later];
+            let allows = Independence::Classes.allows(&child(earlier), &child(later));
+            assert!(!(may_hide && allows), "places {earlier} and {later}");
+            allowed += u32::from(allows);
+        }
+    }
+    // Three pairs in each class of three.
+    assert_eq!(allowed, 6);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// The paper's claim on hardware that does its best to break it: many
+    /// contexts, and misses so slow that classmates overtake one another.
+    #[test]
+    fn cycles_classmates_may_overtake_one_another(
+        graph in any_octree(4, 0.4),
+        camera in any_camera(16.0, 30..90),
+        lines in 1..16u32,
+        cage in prop_oneof![Just(CageKind::Frame), Just(CageKind::Corners)],
+    ) {
+        let settings = SetupOptions {
+            cage,
+            tolerance_px: 0.0,
+            coverage: Coverage::Exact,
+            lod_px: 0.0,
+            ..SetupOptions::default()
+        };
+        let mut hardware = Hardware::preset("wide").unwrap();
+        let cache = &mut hardware.node_cache;
+        (cache.ways, cache.line_bytes, cache.bytes) = (1, 8, 8 * lines);
+        cache.miss_latency = 700;
+        hardware.lanes = 3;
+        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &settings) else {
+            return Ok(());
+        };
+        let (right, _) = serial(&graph, &setup).expect("a frame");
+        for independence in [Independence::Classes, Independence::Both] {
+            hardware.independence = independence;
+            let (drawn, simulated) = simulated(&graph, &setup, &hardware);
+            prop_assert!(drawn == right, "{independence:?}: another picture");
+            is_sound(&simulated, &hardware)?;
+        }
     }
 }
 

@@ -64,9 +64,12 @@ pub enum Independence {
     /// None: one after the other, depth first.
     None,
     /// Those of one class of the occlusion order, as the paper has it: the
-    /// nearest; the next three; the next three; the farthest.
+    /// nearest; the next three; the next three; the farthest. They never
+    /// occlude one another, but where samples are not claimed by exact rays
+    /// two may claim the same one; then the first to come has it.
     Classes,
-    /// Those whose image nodes are disjoint.
+    /// Those whose image nodes are disjoint. What meets in the picture keeps
+    /// the serial order, so that everything comes out as it does serially.
     Image,
     /// Those that either rule lets through.
     Both,

@@ -71,6 +71,15 @@
 //! each other, parent to child and sibling to sibling, in this very execution. No
 //! number of lanes, contexts or ports makes the frame shorter than the span.
 //!
+//! # What holds, and what does not
+//!
+//! Cycles are never below any bound of the report, and never above
+//! [`CycleReport::serial`]. With one context, which works in the serial order,
+//! no part that is made faster or wider makes a frame slower. With several that
+//! is not so: records then meet in another order (the anomalies of list
+//! scheduling, Graham 1969). Of 2000 improvements of random hardware on random
+//! records, 95 made the frame slower, at worst by 12 % (`tests/cycles_properties.rs`).
+//!
 //! # What is left out
 //!
 //! - Operations of one visit that need each other's results (the levels of a
