@@ -4,4 +4,5 @@
 mod bench;
 mod buffers;
 mod manners;
+mod model;
 mod resolve;

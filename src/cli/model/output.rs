@@ -258,7 +258,7 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
         tables::stages(&found.counted, cycles),
         tables::memories(&found.counted, &found.widths, cycles),
         tables::bounds(cycles),
-        tables::side_by_side(&found.counted, &found.cost, &found.rival),
+        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.rival),
         tables::claims(&found.claims),
     ];
     if !found.rules.is_empty() {

@@ -11,7 +11,6 @@ use serde::Serialize;
 use super::candidate::Candidate;
 use super::harness::BenchError;
 use super::measure::Subject;
-#[cfg(feature = "cli")]
 use crate::frame::NO_NODE;
 use crate::graph::Progress;
 use crate::project::{Camera, Contents, FrameSetup, SetupOptions, Viewer};

@@ -16,6 +16,7 @@ use super::rival::Rival;
 use super::rules::{Costs, Outcome, RuleRow};
 use super::sweep::FormatRow;
 use crate::lab::float_rays::Step;
+use crate::measure::CoverageError;
 use crate::report::{Cell, Table};
 
 /// A number with some digits after the point.
@@ -313,7 +314,12 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
 
 /// The light hardware and the ray caster, side by side.
 #[must_use]
-pub fn side_by_side(counted: &Counted, cost: &FrameCost, rival: &Rival) -> Table {
+pub fn side_by_side(
+    counted: &Counted,
+    wrong: &CoverageError,
+    cost: &FrameCost,
+    rival: &Rival,
+) -> Table {
     let mut table = Table::new(
         "The light hardware beside a ray caster in 32-bit floating point, same view",
         &["what", "light_hardware", "ray_caster"],
@@ -392,7 +398,7 @@ pub fn side_by_side(counted: &Counted, cost: &FrameCost, rival: &Rival) -> Table
     row("  high end", micro(light.2), micro(ray.2));
     row(
         "wrong pixels (coverage)",
-        Cell::None,
+        Cell::from(wrong.extra + wrong.missing),
         Cell::from(rival.error.extra + rival.error.missing),
     );
     table

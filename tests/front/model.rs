@@ -1,0 +1,243 @@
+//! `model`: what it prints, what it writes, what it refuses.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+
+fn shiftvox() -> Command {
+    Command::cargo_bin("shiftvox").expect("built beside the tests")
+}
+
+/// Runs and reads the JSON document.
+fn document(args: &[&str]) -> Value {
+    let output = shiftvox()
+        .args(args)
+        .arg("--json")
+        .output()
+        .expect("it runs");
+    let told = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{told}");
+    serde_json::from_slice(&output.stdout).expect("a JSON document")
+}
+
+const SCENE: [&str; 4] = ["model", "gen:menger,depth=3", "--size", "64"];
+
+fn with(more: &[&'static str]) -> Vec<&'static str> {
+    [&SCENE[..], more].concat()
+}
+
+#[test]
+fn the_document_adds_up() {
+    let found = document(&SCENE);
+    assert_eq!(found["schema"], "shiftvox.model");
+    assert_eq!(found["schema_version"], 1);
+    let cells = found["operations"].as_array().expect("cells");
+    let sum: u64 = cells.iter().filter_map(|c| c["times"].as_u64()).sum();
+    let stat = |name: &str| {
+        let list = found["statistics"]["statistics"]
+            .as_array()
+            .expect("a list");
+        let found = list.iter().find(|s| s["name"] == name);
+        found.unwrap_or_else(|| panic!("{name}"))["value"].clone()
+    };
+    assert_eq!(stat("machine.ops.total"), sum);
+    assert_eq!(stat("machine.ops.multiply"), 0);
+    let cycles = &found["simulated"]["cycles"];
+    let number = |value: &Value| value.as_u64().expect("a number");
+    assert!(number(&cycles["span"]) <= number(&cycles["cycles"]));
+    assert!(number(&cycles["cycles"]) <= number(&cycles["serial"]));
+    // Fill vectors: four bits a node of a quadtree of six levels below its root.
+    assert_eq!(found["fill_vector_bits"], 4 * (4u64.pow(7) - 1) / 3);
+    // Every figure names its rows and their source.
+    for part in ["operations", "on_chip", "outer"] {
+        let lines = found["cost"][part]["lines"].as_array().expect("lines");
+        assert!(!lines.is_empty(), "{part}");
+        for line in lines {
+            for key in ["rows", "source"] {
+                let text = line["each"][key].as_str().expect("text");
+                assert!(!text.is_empty(), "{part}: {line}");
+            }
+        }
+    }
+    assert!(found["ray_caster"]["counts"]["cells"].as_u64() > Some(1000));
+    let claims = found["claims"].as_array().expect("claims");
+    assert!(
+        claims.iter().all(|claim| claim["holds"] != false),
+        "{claims:?}"
+    );
+}
+
+#[test]
+fn tables_of_rules_formats_lanes_and_growth() {
+    let found = document(&with(&["--rules", "--sweep", "bits=16..32+8", "--lanes"]));
+    let rules = found["rules"].as_array().expect("rules");
+    assert_eq!(rules.len(), 2 * 3 * 6);
+    let exact = |row: &&Value| row["coverage"] == "exact" && row["tolerance_px"] == 0.0;
+    for row in rules.iter().filter(exact) {
+        let error = &row["error"];
+        let wrong = ["extra", "missing", "wrong_voxel"].map(|key| error[key].as_u64());
+        assert_eq!(row["outcome"], "drawn");
+        assert_eq!(row["divide_steps"], 0);
+        assert!(
+            wrong.iter().all(|w| *w <= Some(2)),
+            "32 bits, tolerance 0: {row}"
+        );
+    }
+    assert!(rules.iter().any(|row| row["tolerance_px"] == "inf"));
+    let formats = found["formats"].as_array().expect("formats");
+    let widths: Vec<u64> = formats.iter().filter_map(|f| f["bits"].as_u64()).collect();
+    assert_eq!(widths, [16, 24, 32]);
+    let area = |at: usize| formats[at]["area_nand2"].as_f64().expect("an area");
+    assert!(area(0) < area(1) && area(1) < area(2));
+    let depth = |at: usize| formats[at]["safe"]["depth"].as_u64().unwrap_or(0);
+    assert!(depth(0) < depth(1) && depth(1) < depth(2));
+    let lanes = found["lanes"].as_array().expect("lanes");
+    assert_eq!(lanes.len(), 7);
+    assert_eq!(lanes[0]["speedup"], 1.0);
+}
+
+#[test]
+fn files_are_written_once() {
+    let folder = TempDir::new().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let files = [
+        "r.html",
+        "stats.txt",
+        "heat.png",
+        "t.json",
+        "r.md",
+        "r.csv",
+        "r.svg",
+        "r.json",
+    ];
+    let flags = [
+        "--html",
+        "--stats",
+        "--heat",
+        "--trace",
+        "--export-markdown",
+        "--export-csv",
+        "--export-svg",
+        "--export-json",
+    ];
+    let mut command = shiftvox();
+    command.args(SCENE);
+    for (flag, name) in flags.iter().zip(files) {
+        command.args([*flag, &path(name)]);
+    }
+    command.assert().success();
+    let text = |name: &str| std::fs::read_to_string(path(name)).expect("written");
+    let html = text("r.html");
+    assert!(html.starts_with("<!doctype html>") && html.contains("data:image/png;base64,"));
+    assert!(
+        html.contains("<svg") && !html.contains("http://localhost") && !html.contains("<script")
+    );
+    assert!(text("stats.txt").contains("Begin Simulation Statistics"));
+    assert!(text("r.csv").lines().count() > 100);
+    assert!(text("r.md").contains("Area of the units"));
+    let trace: Value = serde_json::from_str(&text("t.json")).expect("trace events");
+    assert!(
+        trace["traceEvents"]
+            .as_array()
+            .is_some_and(|e| e.len() > 100)
+    );
+    assert_eq!(
+        &std::fs::read(path("heat.png")).expect("written")[1..4],
+        b"PNG"
+    );
+    // Not a second time, unless told to; and before the work.
+    let again = ["--html".to_owned(), path("r.html")];
+    shiftvox().args(SCENE).args(&again).assert().failure();
+    shiftvox()
+        .args(SCENE)
+        .args(&again)
+        .arg("--force")
+        .assert()
+        .success();
+    let wave = path("t.vcd");
+    shiftvox()
+        .args(SCENE)
+        .args(["--trace", &wave])
+        .assert()
+        .success();
+    assert!(text("t.vcd").contains("$enddefinitions"));
+}
+
+#[test]
+fn hardware_and_costs_of_one_s_own() {
+    let folder = TempDir::new().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let printed = shiftvox()
+        .args(["model", "--print-hw", "--hw", "tiny"])
+        .output()
+        .expect("it runs");
+    let tiny = String::from_utf8(printed.stdout).expect("text");
+    let mine = tiny.replace("name = \"tiny\"", "name = \"mine\"");
+    assert_ne!(tiny, mine);
+    std::fs::write(path("mine.toml"), &mine).expect("written");
+    let hw = ["--hw".to_owned(), path("mine.toml")];
+    let found = shiftvox()
+        .args(SCENE)
+        .args(&hw)
+        .arg("--json")
+        .output()
+        .expect("it runs");
+    let found: Value = serde_json::from_slice(&found.stdout).expect("a document");
+    assert_eq!(found["hardware"]["name"], "mine");
+
+    let costs =
+        "row = [{ operation = \"add\", width = 32, energy_pj = 1000.0, source = \"mine\" }]\n";
+    std::fs::write(path("costs.toml"), costs).expect("written");
+    let energy = |args: &[String]| {
+        let output = shiftvox()
+            .args(SCENE)
+            .args(args)
+            .arg("--json")
+            .output()
+            .expect("it runs");
+        let found: Value = serde_json::from_slice(&output.stdout).expect("a document");
+        found["cost"]["operations"]["total"]
+            .as_f64()
+            .expect("a number")
+    };
+    let dear = energy(&["--costs".to_owned(), path("costs.toml")]);
+    assert!(dear > 100.0 * energy(&[]));
+    // What is wrong is said, with the exit code of bad input.
+    for (name, text) in [
+        ("a.toml", "lanes = 0"),
+        ("b.toml", "row = [{ operation = \"add\" }]"),
+    ] {
+        std::fs::write(path(name), text).expect("written");
+        let flag = if name == "a.toml" { "--hw" } else { "--costs" };
+        let failed = shiftvox()
+            .args(SCENE)
+            .args([flag, &path(name)])
+            .assert()
+            .code(4);
+        let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(told.contains(name), "{told}");
+    }
+    shiftvox()
+        .args(SCENE)
+        .args(["--hw", "none-such"])
+        .assert()
+        .code(4);
+    shiftvox()
+        .args(SCENE)
+        .args(["--sweep", "bits=8..12"])
+        .assert()
+        .code(2);
+    shiftvox()
+        .args(SCENE)
+        .args(["--trace", "x.txt"])
+        .assert()
+        .code(2);
+}
+
+#[test]
+fn a_word_that_overflows_is_told() {
+    let narrow = ["--bits", "16", "--frac", "12"];
+    let failed = shiftvox().args(SCENE).args(narrow).assert().code(5);
+    let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+    assert!(told.contains("a word of"), "{told}");
+}
