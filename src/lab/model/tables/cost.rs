@@ -1,0 +1,150 @@
+//! What a frame costs, and what the ray caster does.
+
+use hwmodel::cost::{Breakdown, Fit};
+use hwmodel::{Memory, OpClass};
+
+use super::{micro, number};
+use crate::lab::float_rays::Step;
+use crate::lab::model::cost::FrameCost;
+use crate::lab::model::frame::Counted;
+use crate::lab::model::rival::Rival;
+use crate::measure::CoverageError;
+use crate::report::{Cell, Table};
+
+/// A sum of costs line by line, each with its rows and source.
+#[must_use]
+pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
+    let mut table = Table::new(
+        title,
+        &[
+            "for",
+            "operation",
+            "bits",
+            "times",
+            "each",
+            unit,
+            "figure",
+            "rows",
+            "source",
+        ],
+    );
+    for line in sum.lines.iter().filter(|line| line.times > 0) {
+        let each = &line.each;
+        let mut figure = match each.fit {
+            Fit::Row => "row",
+            Fit::Interpolated => "interpolated",
+            Fit::Extrapolated => "extrapolated",
+        }
+        .to_owned();
+        if each.derived {
+            figure += ", derived";
+        }
+        if each.is_range() {
+            figure += &format!(", {:.3} to {:.3}", each.low, each.high);
+        }
+        table.rows.push(vec![
+            Cell::Text(line.name.clone()),
+            Cell::Text(line.operation.clone()),
+            Cell::from(u64::from(line.width)),
+            Cell::from(line.times),
+            number(each.value, 4),
+            number(line.total, 1),
+            Cell::Text(figure),
+            Cell::Text(each.rows.clone()),
+            Cell::Text(each.source.clone()),
+        ]);
+    }
+    table
+}
+
+/// The light hardware and the ray caster, side by side.
+#[must_use]
+pub fn side_by_side(
+    counted: &Counted,
+    wrong: &CoverageError,
+    cost: &FrameCost,
+    rival: &Rival,
+) -> Table {
+    let mut table = Table::new(
+        "The light hardware beside a ray caster in 32-bit floating point, same view",
+        &["what", "light_hardware", "ray_caster"],
+    );
+    let counter = &counted.counter;
+    let by_class = counter.sum_by(|cell| cell.class);
+    let of = |class: OpClass| by_class.get(&class).copied().unwrap_or(0);
+    let counts = &rival.counts;
+    let mut row = |what: &str, light: Cell, ray: Cell| {
+        table.rows.push(vec![Cell::from(what), light, ray]);
+    };
+    row(
+        "multiplies",
+        Cell::from(0),
+        Cell::from(counts.of(Step::FloatMultiply)),
+    );
+    row(
+        "divides",
+        Cell::from(0),
+        Cell::from(counts.of(Step::FloatDivide)),
+    );
+    row(
+        "divide steps (subtract and select)",
+        Cell::from(of(OpClass::DivideStep)),
+        Cell::None,
+    );
+    row(
+        "adds and subtracts (integer; float)",
+        Cell::from(of(OpClass::Add) + of(OpClass::Sub)),
+        Cell::from(counts.of(Step::FloatAdd)),
+    );
+    row(
+        "compares, minima, maxima",
+        Cell::from(of(OpClass::Compare) + of(OpClass::MinMax)),
+        Cell::from(counts.of(Step::FloatCompare) + counts.of(Step::FloatMinMax)),
+    );
+    row("selects", Cell::from(of(OpClass::Select)), Cell::None);
+    row(
+        "logic, integer adds, variable shifts",
+        Cell::from(of(OpClass::Logic)),
+        Cell::from(counts.of(Step::Logic) + counts.of(Step::IntegerAdd) + counts.of(Step::Shift)),
+    );
+    row(
+        "shifts by constants (wires)",
+        Cell::from(of(OpClass::Shift)),
+        Cell::None,
+    );
+    row(
+        "records; cells that rays looked at",
+        Cell::from(counter.records()),
+        Cell::from(counts.cells),
+    );
+    row(
+        "node reads",
+        Cell::from(counter.reads(Memory::Node)),
+        Cell::from(counts.of(Step::NodeRead)),
+    );
+    row(
+        "energy of operations, uJ",
+        micro(cost.operations.total),
+        micro(rival.cost.operations.total),
+    );
+    row(
+        "energy of memories on the chip, uJ",
+        micro(cost.on_chip.total),
+        micro(rival.cost.on_chip.total),
+    );
+    row(
+        "energy of outer memory, uJ",
+        micro(cost.outer.total),
+        micro(rival.cost.outer.total),
+    );
+    let (light, ray) = (cost.total(), rival.cost.total());
+    row("energy, uJ", micro(light.0), micro(ray.0));
+    row("  low end", micro(light.1), micro(ray.1));
+    row("  high end", micro(light.2), micro(ray.2));
+    row(
+        "wrong pixels (coverage)",
+        Cell::from(wrong.extra + wrong.missing),
+        Cell::from(rival.error.extra + rival.error.missing),
+    );
+    table
+}

@@ -1,0 +1,31 @@
+//! The model's results as tables.
+
+mod cost;
+mod frame;
+mod repeats;
+
+pub use cost::{breakdown, side_by_side};
+pub use frame::{
+    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
+};
+pub use repeats::{claims, formats, growth, lanes, rules};
+
+use crate::report::Cell;
+
+/// A number with some digits after the point.
+fn number(value: f64, digits: usize) -> Cell {
+    if value.is_finite() {
+        Cell::Number(value, digits)
+    } else {
+        Cell::None
+    }
+}
+
+fn percent(share: f64) -> Cell {
+    number(100.0 * share, 1)
+}
+
+/// Picojoules as microjoules.
+fn micro(pj: f64) -> Cell {
+    number(pj / 1e6, 3)
+}
