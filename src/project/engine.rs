@@ -78,6 +78,16 @@ impl<E: Engine + ?Sized> Engine for Box<E> {
         (**self).draw(graph, setup, frame)
     }
 
+    fn draw_colors(
+        &mut self,
+        graph: &GraphView<'_>,
+        of_node: &[[u8; 3]],
+        setup: &FrameSetup,
+        colors: &mut Colors,
+    ) -> Result<(), EngineError> {
+        (**self).draw_colors(graph, of_node, setup, colors)
+    }
+
     fn render(
         &mut self,
         graph: &GraphView<'_>,
@@ -85,5 +95,67 @@ impl<E: Engine + ?Sized> Engine for Box<E> {
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
         (**self).render(graph, setup, frame)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::Placement;
+    use crate::project::{Camera, SetupOptions};
+
+    /// Marks what it was asked for.
+    struct Marks;
+
+    impl Engine for Marks {
+        fn draw_colors(
+            &mut self,
+            _: &GraphView<'_>,
+            _: &[[u8; 3]],
+            _: &FrameSetup,
+            colors: &mut Colors,
+        ) -> Result<(), EngineError> {
+            colors.words.fill(5);
+            Ok(())
+        }
+
+        fn render(
+            &mut self,
+            _: &GraphView<'_>,
+            _: &FrameSetup,
+            frame: &mut Frame,
+        ) -> Result<Stats, EngineError> {
+            frame.node.fill(0);
+            Ok(Stats::new())
+        }
+    }
+
+    #[test]
+    fn a_boxed_engine_draws_as_it_does_unboxed() {
+        let graph = GraphView {
+            depth: 0,
+            root: 0,
+            mask: &[],
+            first: &[],
+            links: &[],
+        };
+        let camera = Camera {
+            eye: glam::DVec3::splat(3.0),
+            target: glam::DVec3::ZERO,
+            up: glam::DVec3::Z,
+            fov_degrees: 60.0,
+            width: 2,
+            height: 2,
+        };
+        let options = SetupOptions::default();
+        let setup = FrameSetup::new(&camera, &Placement::default(), 0, &options).unwrap();
+        let mut colors = Colors::new(2, 2);
+        let mut boxed: Box<dyn Engine> = Box::new(Marks);
+        // Through the box's own implementation, not the engine's.
+        Engine::draw_colors(&mut boxed, &graph, &[], &setup, &mut colors).unwrap();
+        assert_eq!(colors.words, [5; 4]);
+        let mut frame = Frame::new(2, 2, false);
+        Engine::draw(&mut boxed, &graph, &setup, &mut frame).unwrap();
+        assert_eq!(frame.node, [0; 4]);
     }
 }
