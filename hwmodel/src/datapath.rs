@@ -5,7 +5,9 @@
 //! the restoring divide is built by its user from [`Datapath::divide_step`].
 
 use crate::probe::Memory;
-use crate::{Format, Number, OpClass, Operand, Overflow, Place, Probe, Stage, WideWord, Word};
+use crate::{
+    Format, Number, OpClass, Operand, Overflow, Place, Probe, Stage, WideWord, Wires, Word,
+};
 
 /// The operation during which a word overflowed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -142,6 +144,18 @@ impl<P: Probe> Datapath<P> {
     pub fn write(&mut self, memory: Memory, address: u64) {
         if P::ENABLED {
             self.probe.write(memory, address, self.place);
+        }
+    }
+
+    /// Shows a probe what crosses the border of a block: its inputs, and what
+    /// it made of them. Nothing is left of it where no probe taps.
+    #[inline(always)]
+    pub fn tap(&mut self, block: impl Into<u32>, stimulus: &impl Wires, expected: &impl Wires) {
+        if P::TAPS && self.probe.is_tapping() {
+            let (mut into, mut out) = (Vec::new(), Vec::new());
+            stimulus.show(&mut into);
+            expected.show(&mut out);
+            self.probe.tap(block.into(), &into, &out);
         }
     }
 

@@ -49,9 +49,11 @@ mod format;
 pub mod memory;
 pub mod probe;
 pub mod statistics;
+pub mod tap;
 mod word;
 
 pub use datapath::{Datapath, Trap, TrapOp};
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
 pub use probe::{Memory, NoProbe, OpClass, Operand, Place, Probe, Stage};
+pub use tap::{Short, Signal, SignalKind, Wires};
 pub use word::{Number, WideWord, Word};

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Format;
+use crate::{Format, Signal};
 
 /// The kinds of operation that the datapath has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -200,6 +200,10 @@ pub trait Probe {
     /// Whether anything listens.
     const ENABLED: bool = true;
 
+    /// Whether anything listens at the borders of blocks. Apart from
+    /// [`Probe::ENABLED`], so that who counts operations pays nothing for it.
+    const TAPS: bool = false;
+
     /// A datapath of this format is built around the probe.
     #[inline]
     fn begin(&mut self, format: Format) {
@@ -241,6 +245,19 @@ pub trait Probe {
     fn record(&mut self, index: u64, level: u32) {
         let _ = (index, level);
     }
+
+    /// Whether [`Probe::tap`] is wanted by now; asked only where `TAPS` is set.
+    #[inline]
+    fn is_tapping(&self) -> bool {
+        Self::TAPS
+    }
+
+    /// A block had `stimulus` on its inputs and gave `expected`. What block
+    /// `block` is, is between the machine and its probe.
+    #[inline]
+    fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
+        let _ = (block, stimulus, expected);
+    }
 }
 
 /// No probe: every call vanishes at compile time.
@@ -253,6 +270,7 @@ impl Probe for NoProbe {
 
 impl<P: Probe> Probe for &mut P {
     const ENABLED: bool = P::ENABLED;
+    const TAPS: bool = P::TAPS;
 
     #[inline]
     fn begin(&mut self, format: Format) {
@@ -283,11 +301,22 @@ impl<P: Probe> Probe for &mut P {
     fn record(&mut self, index: u64, level: u32) {
         (**self).record(index, level);
     }
+
+    #[inline]
+    fn is_tapping(&self) -> bool {
+        (**self).is_tapping()
+    }
+
+    #[inline]
+    fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
+        (**self).tap(block, stimulus, expected);
+    }
 }
 
 /// Two probes that see the same; tuples nest for more.
 impl<A: Probe, B: Probe> Probe for (A, B) {
     const ENABLED: bool = A::ENABLED || B::ENABLED;
+    const TAPS: bool = A::TAPS || B::TAPS;
 
     #[inline]
     fn begin(&mut self, format: Format) {
@@ -342,6 +371,21 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
         }
         if B::ENABLED {
             self.1.record(index, level);
+        }
+    }
+
+    #[inline]
+    fn is_tapping(&self) -> bool {
+        self.0.is_tapping() || self.1.is_tapping()
+    }
+
+    #[inline]
+    fn tap(&mut self, block: u32, stimulus: &[Signal], expected: &[Signal]) {
+        if A::TAPS && self.0.is_tapping() {
+            self.0.tap(block, stimulus, expected);
+        }
+        if B::TAPS && self.1.is_tapping() {
+            self.1.tap(block, stimulus, expected);
         }
     }
 }

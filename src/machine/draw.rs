@@ -1,9 +1,10 @@
 //! Drawing samples, and telling the fill vectors (paper, 3.3).
 
-use hwmodel::{Datapath, Memory, Probe, Stage};
+use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::fit::Fill;
 use super::silhouette::{Cover, Silhouette};
+use super::taps::Block;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
 
@@ -84,7 +85,13 @@ impl<'f> Canvas<'f> {
         let mut bits = FULL;
         loop {
             dp.write(Memory::FillVector, self.fill.address(quad) as u64);
+            let before = self.fill.vector(quad);
             let vector = self.fill.set(quad, bits);
+            dp.tap(
+                Block::FillUpdate,
+                &(Short::unsigned(before, 4), Short::unsigned(bits, 4)),
+                &(Short::unsigned(vector, 4), vector == FULL),
+            );
             if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
                 break;
             }

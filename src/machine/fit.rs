@@ -5,12 +5,13 @@
 //! exactly one, that quadrant is next; else the node is found. Where a record
 //! ends does not depend on what is drawn, only whether it is rejected does.
 
-use hwmodel::{Datapath, Memory, Probe, Stage, WideWord, Word};
+use hwmodel::{Datapath, Memory, Probe, Short, Stage, WideWord, Word};
 
 use super::constants::{Constants, Margin};
 use super::lattice::Lattice;
 use super::record::{Clip, Planes, Screen};
 use super::strips::{ACROSS, DOWN, Strips, Subtree};
+use super::taps::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -23,10 +24,16 @@ struct Halves {
 
 /// The four quadrants (`y << 1 | x`) that halves along x and y leave. Four
 /// gates on the comparators' outputs, a part of the 4-bit and that follows.
-fn quadrants(x: Halves, y: Halves) -> u8 {
+fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
     let across = (u8::from(x.low) * 0b0101) | (u8::from(x.high) * 0b1010);
     let down = (u8::from(y.low) * 0b0011) | (u8::from(y.high) * 0b1100);
-    across & down
+    let both = across & down;
+    dp.tap(
+        Block::Quadrants,
+        &(x.low, x.high, y.low, y.high),
+        &Short::unsigned(both, 4),
+    );
+    both
 }
 
 /// The fill vectors as the fit sees them.
@@ -44,7 +51,19 @@ impl Fill<'_> {
             return quadrants == 0;
         }
         dp.read(Memory::FillVector, self.vectors.address(quad) as u64);
-        dp.and_bits(4, quadrants, !self.vectors.vector(quad) & FULL) == 0
+        let vector = self.vectors.vector(quad);
+        let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
+        let choice = only(quadrants);
+        dp.tap(
+            Block::NodeChoice,
+            &(Short::unsigned(quadrants, 4), Short::unsigned(vector, 4)),
+            &(
+                rejects,
+                choice.is_some(),
+                Short::unsigned(choice.unwrap_or(0), 2),
+            ),
+        );
+        rejects
     }
 }
 
@@ -74,6 +93,14 @@ fn part_of<P: Probe>(dp: &mut Datapath<P>, a: Word, places: i32) -> Word {
     } else {
         part
     }
+}
+
+/// The margin of a whole cage.
+fn widening<P: Probe, L: Lattice>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
+    let margin = w.map(|w| part_of(dp, w, places));
+    let places = Short::signed(places, PLACES_BITS);
+    dp.tap(Block::MarginGrow, &(w, places), &margin);
+    margin
 }
 
 /// A position in the image: quadtree node, and whether the box lies inside it.
@@ -142,11 +169,16 @@ fn bisect<P: Probe, L: Lattice>(
             let (low, high) = relative.span(dp);
             let low = dp.is_negative(low);
             let high = dp.is_positive(high) || !low;
-            Halves { low, high }
+            let halves = Halves { low, high };
+            let none = w.map(|_| Word::ZERO);
+            tap_bisector(dp, (x, w, &none), (false, false), &relative, halves);
+            halves
         }
         &Margin::Grow(grow) => {
-            let margin = w.map(|w| part_of(dp, w, grow + below - 1));
-            closed(dp, &relative, &margin)
+            let margin = widening(dp, w, grow + below - 1);
+            let halves = closed(dp, &relative, &margin);
+            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
+            halves
         }
         Margin::Gap(samples) if below > 0 => {
             // Narrowed: the sum of shifted widths, taken with the other sign.
@@ -154,25 +186,48 @@ fn bisect<P: Probe, L: Lattice>(
                 let sum = sum_of_shifts(dp, w, samples.shifts(), below);
                 dp.neg(sum)
             });
-            closed(dp, &relative, &margin)
+            let node = Short::unsigned(below.unsigned_abs(), LEVEL_BITS);
+            dp.tap(Block::MarginGap, &(w, node), &margin);
+            let halves = closed(dp, &relative, &margin);
+            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
+            halves
         }
         Margin::Gap(_) => {
             // At a sample there is one sample point, in the middle.
-            let halves = match constants.grow {
-                None => closed_plain(dp, &relative),
+            let (halves, margin) = match constants.grow {
+                None => (closed_plain(dp, &relative), w.map(|_| Word::ZERO)),
                 Some(grow) => {
-                    let margin = w.map(|w| part_of(dp, w, grow - 1));
-                    closed(dp, &relative, &margin)
+                    let margin = widening(dp, w, grow - 1);
+                    (closed(dp, &relative, &margin), margin)
                 }
             };
             let both = halves.low && halves.high;
-            Halves {
+            let halves = Halves {
                 low: both,
                 high: both,
-            }
+            };
+            tap_bisector(dp, (x, w, &margin), (true, true), &relative, halves);
+            halves
         }
     };
     (relative, halves)
+}
+
+/// Shows the test of a clip-space box against a bisector. `kind`: whether
+/// the comparisons are closed, and whether both halves must hold the sample.
+#[inline(always)]
+fn tap_bisector<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    box_and_margin: (&L, &L, &L),
+    kind: (bool, bool),
+    relative: &L,
+    halves: Halves,
+) {
+    dp.tap(
+        Block::BisectorClip,
+        &(box_and_margin, kind),
+        &(relative, halves.low, halves.high),
+    );
 }
 
 /// `a` times a factor, as shifted copies of `a`, each `extra` places further right.
@@ -212,11 +267,13 @@ fn closed_plain<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L) -> Hal
 
 /// The coordinates in the left half (doubled) or in the right half (as tested).
 fn rebase<P: Probe, L: Lattice>(dp: &mut Datapath<P>, right: bool, x: &L, tested: L) -> L {
-    if right {
+    let inner = if right {
         tested
     } else {
         x.map(|x| dp.shl(x, 1))
-    }
+    };
+    dp.tap(Block::HalfClip, &(x, tested, right), &inner);
+    inner
 }
 
 /// Whether a box leaves a node by at most the node's width.
@@ -228,7 +285,9 @@ fn near_node<P: Probe, L: Lattice>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
         dp.sub(x, double)
     });
     let (_, high) = to_right.span(dp);
-    !dp.is_negative(low) && !dp.is_positive(high)
+    let near = !dp.is_negative(low) && !dp.is_positive(high);
+    dp.tap(Block::NearNode, &(x, w), &near);
+    near
 }
 
 /// Planes relative to a quadrant: `c' = 2c + bx a + by b`.
@@ -261,6 +320,8 @@ pub(super) fn rebased<P: Probe>(
     if quadrant & 2 != 0 {
         to = dp.add(to, b);
     }
+    let quadrant = Short::unsigned(quadrant, 2);
+    dp.tap(Block::PlaneQuadrant, &([a, b], c, quadrant), &to);
     to
 }
 
@@ -284,10 +345,12 @@ fn border<P: Probe, L: Lattice>(
     for x in [&pose.x, &pose.y] {
         let from_left = *x;
         let from_right = x.zip(&pose.w, |x, w| dp.sub(x, w));
+        let mut border_margin = pose.w.map(|_| Word::ZERO);
         let (left, right) = match constants.grow {
             None => (from_left.span(dp), from_right.span(dp)),
             Some(grow) => {
-                let margin = pose.w.map(|w| part_of(dp, w, grow + below));
+                let margin = widening(dp, &pose.w, grow + below);
+                border_margin = margin;
                 let outward = |dp: &mut Datapath<P>, v: &L| {
                     let raised = v.zip(&margin, |v, m| dp.add(v, m));
                     let lowered = v.zip(&margin, |v, m| dp.sub(v, m));
@@ -298,14 +361,23 @@ fn border<P: Probe, L: Lattice>(
                 (outward(dp, &from_left), outward(dp, &from_right))
             }
         };
-        if dp.is_negative(left.1) || dp.is_positive(right.0) {
+        let is_wider = constants.grow.is_some();
+        let outside = dp.is_negative(left.1) || dp.is_positive(right.0);
+        let within = !outside
+            && if is_wider {
+                dp.is_positive(left.0) && dp.is_negative(right.1)
+            } else {
+                !dp.is_negative(left.0) && !dp.is_positive(right.1)
+            };
+        dp.tap(
+            Block::BorderClip,
+            &(x, &pose.w, &border_margin, is_wider),
+            &(outside, within),
+        );
+        if outside {
             return Border::Outside;
         }
-        inside &= if constants.grow.is_some() {
-            dp.is_positive(left.0) && dp.is_negative(right.1)
-        } else {
-            !dp.is_negative(left.0) && !dp.is_positive(right.1)
-        };
+        inside &= within;
     }
     if inside {
         Border::Inside
@@ -325,7 +397,7 @@ pub(super) fn clip_quadrants<P: Probe, L: Lattice>(
     let below = constants.levels - quad.level;
     let (far_x, x) = bisect(dp, constants, below, &pose.x, &pose.w);
     let (far_y, y) = bisect(dp, constants, below, &pose.y, &pose.w);
-    (quadrants(x, y), [far_x, far_y])
+    (quadrants(dp, x, y), [far_x, far_y])
 }
 
 /// A clip-space voxel relative to a quadrant of its node.
@@ -352,7 +424,7 @@ pub(super) fn screen_quadrants<P: Probe, L: Lattice>(
     let below = constants.levels - quad.level;
     let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
     let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
-    quadrants(x, y)
+    quadrants(dp, x, y)
 }
 
 /// Fits a screen-space voxel. `None`: rejected.
@@ -431,24 +503,30 @@ pub(super) fn strips_quadrants<P: Probe>(
         let high = half_widths[function - ACROSS];
         let low = dp.neg(high);
         let value = pose.value[function];
-        if below == 0 {
+        let halves = if below == 0 {
             let both = dp.le(low, value) && dp.le(value, high);
-            return Halves {
+            Halves {
                 low: both,
                 high: both,
-            };
-        }
-        // The last sample of the near half, and the first of the far half.
-        let one = subtree.box_step(dp, function, 0);
-        let half = subtree.box_step(dp, function, below - 1);
-        let far = dp.add(value, half);
-        let near = dp.sub(far, one);
-        Halves {
-            low: dp.le(low, near),
-            high: dp.le(far, high),
-        }
+            }
+        } else {
+            // The last sample of the near half, and the first of the far half.
+            let one = subtree.box_step(dp, function, 0);
+            let half = subtree.box_step(dp, function, below - 1);
+            let far = dp.add(value, half);
+            let near = dp.sub(far, one);
+            Halves {
+                low: dp.le(low, near),
+                high: dp.le(far, high),
+            }
+        };
+        let node = Short::unsigned(below, LEVEL_BITS);
+        let box_of = (value, high, subtree.sample_step(function), node);
+        dp.tap(Block::BisectorStrips, &box_of, &(halves.low, halves.high));
+        halves
     };
-    quadrants(halves(ACROSS), halves(DOWN))
+    let (across, down) = (halves(ACROSS), halves(DOWN));
+    quadrants(dp, across, down)
 }
 
 /// A box against the samples of a node that is cut by the picture's border.
@@ -471,11 +549,16 @@ fn strips_border<P: Probe>(
         let before = dp.sub(first, one);
         let last = dp.sub(after, one);
         let low = dp.neg(high);
-        if dp.lt(last, low) || dp.lt(high, first) {
+        let outside = dp.lt(last, low) || dp.lt(high, first);
+        // Neither the sample before the first nor the one after the last is held.
+        let within = !outside && dp.lt(before, low) && dp.lt(high, after);
+        let node = Short::unsigned(below, LEVEL_BITS);
+        let box_of = (first, high, subtree.sample_step(function), node);
+        dp.tap(Block::BorderStrips, &box_of, &(outside, within));
+        if outside {
             return Border::Outside;
         }
-        // Neither the sample before the first nor the one after the last is held.
-        inside &= dp.lt(before, low) && dp.lt(high, after);
+        inside &= within;
     }
     if inside {
         Border::Inside
@@ -502,7 +585,7 @@ fn screen_halves<P: Probe>(
     (low, high): (Word, Word),
 ) -> Halves {
     let bisector = i64::from(2 * column + 1) << below;
-    match &constants.margin {
+    let halves = match &constants.margin {
         Margin::Gap(_) if below == 0 => {
             let middle = at_half_samples(constants, bisector);
             let both = dp.le(low, middle) && dp.le(middle, high);
@@ -526,7 +609,17 @@ fn screen_halves<P: Probe>(
             let high = dp.lt(middle, high) || !low;
             Halves { low, high }
         }
-    }
+    };
+    let node = (
+        Short::unsigned(column, NODE_BITS),
+        Short::unsigned(below, LEVEL_BITS),
+    );
+    dp.tap(
+        Block::BisectorScreen,
+        &(low, high, node),
+        &(halves.low, halves.high),
+    );
+    halves
 }
 
 fn screen_border<P: Probe, L: Lattice>(
@@ -540,10 +633,17 @@ fn screen_border<P: Probe, L: Lattice>(
     for (column, (low, high)) in [(quad.x, pose.x_span), (quad.y, pose.y_span)] {
         let left = at_half_samples(constants, i64::from(column) << (below + 1));
         let right = at_half_samples(constants, i64::from(column + 1) << (below + 1));
-        if dp.lt(high, left) || dp.lt(right, low) {
+        let outside = dp.lt(high, left) || dp.lt(right, low);
+        let within = !outside && dp.le(left, low) && dp.le(high, right);
+        let node = (
+            Short::unsigned(column, NODE_BITS),
+            Short::unsigned(below, LEVEL_BITS),
+        );
+        dp.tap(Block::BorderScreen, &(low, high, node), &(outside, within));
+        if outside {
             return Border::Outside;
         }
-        inside &= dp.le(left, low) && dp.le(high, right);
+        inside &= within;
     }
     if inside {
         Border::Inside

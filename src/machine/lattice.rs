@@ -5,10 +5,10 @@
 //! shifts, and between which values all its vertices lie. Two lattices make a
 //! cage in screen space (x, y), three in clip space (X, Y, W).
 
-use hwmodel::{Datapath, Probe, Word};
+use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
 /// One coordinate of eight vertices.
-pub(super) trait Lattice: Copy + std::fmt::Debug {
+pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// The vertices of a parallelepiped with this corner and these edges
     /// (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
@@ -63,6 +63,12 @@ fn parallelepiped<P: Probe>(dp: &mut Datapath<P>, corner: Word, [x, y, z]: [Word
 /// Eight corners in Morton order (`x << 2 | y << 1 | z`).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Corners([Word; 8]);
+
+impl Wires for Corners {
+    fn show(&self, to: &mut Vec<Signal>) {
+        self.0.show(to);
+    }
+}
 
 #[cfg(test)]
 impl Corners {
@@ -169,6 +175,12 @@ impl Lattice for Corners {
 pub(super) struct Frame {
     corner: Word,
     edges: [Word; 3],
+}
+
+impl Wires for Frame {
+    fn show(&self, to: &mut Vec<Signal>) {
+        (self.corner, self.edges).show(to);
+    }
 }
 
 impl Lattice for Frame {

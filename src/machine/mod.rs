@@ -25,6 +25,7 @@ mod silhouette;
 mod size;
 mod steps;
 mod strips;
+mod taps;
 mod to_screen;
 mod verdict;
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub use crate::project::OCCLUSION_ORDER;
 
 use steps::Steps;
 pub use steps::{SimulateError, Simulated};
+pub use taps::Block;
 
 /// How the machine works, beyond what the picture asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

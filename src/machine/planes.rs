@@ -7,12 +7,13 @@
 //! octree by shifts and adds of constants, and down the quadtree by
 //! `c' = 2c + bx a + by b`.
 
-use hwmodel::{Datapath, Probe, WideWord, Word};
+use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
 use super::constants::Constants;
 use super::fit::rebased;
 use super::record::Planes;
 use super::silhouette::{Cover, Silhouette};
+use super::taps::{Block, LEVEL_BITS};
 
 /// On which side of a plane all samples of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,6 +24,14 @@ enum Side {
     Negative,
     /// The plane is none: the edge's line holds the eye. It counts for neither.
     Nowhere,
+}
+
+impl Side {
+    /// On two wires: 0 both, 1 positive, 2 negative, 3 nowhere.
+    #[inline]
+    fn wires(self) -> Short {
+        Short::unsigned(self as u8, 2)
+    }
 }
 
 /// `a x + b y + c` over a node, `x` and `y` from 0 to 1.
@@ -74,6 +83,8 @@ impl Plane {
         } else if below == 0 {
             self.side = self.of_sample(dp);
         }
+        let plane = (self.ab, self.c, below == 0);
+        dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
     /// The side of the node's middle; on the plane itself, of a point right
@@ -146,8 +157,12 @@ impl PlaneSilhouette {
             let moved_k = combine(dp, here, across[l], false);
             let moved_l = combine(dp, here, across[k], true);
             let moved_both = combine(dp, moved_k, across[k], true);
-            [here, moved_k, moved_l, moved_both].map(|plane| Plane::new(dp, plane))
+            [here, moved_k, moved_l, moved_both]
         });
+        let side = Short::unsigned(side_shift, LEVEL_BITS);
+        let axes = (constants.axis_ab, cube.planes.axis_c);
+        dp.tap(Block::CubePlanes, &(cube.planes.edge, axes, side), &edges);
+        let edges = edges.map(|planes| planes.map(|plane| Plane::new(dp, plane)));
         let front = if cube.before_eye {
             None
         } else {
@@ -163,6 +178,7 @@ impl PlaneSilhouette {
         constants: &Constants,
         cube: &Cube<'_>,
     ) -> Option<(Plane, Side)> {
+        let mut front = None;
         for axis in 0..3 {
             let upwards = dp.le(constants.eye_ceil[axis], cube.min[axis]);
             let downwards = dp.le(cube.max[axis], constants.eye_floor[axis]);
@@ -173,35 +189,22 @@ impl PlaneSilhouette {
                 } else {
                     Side::Negative
                 };
-                return Some((plane, side));
+                front = Some((axis, plane, side));
+                break;
             }
         }
-        None
+        let eye = (constants.eye_floor, constants.eye_ceil);
+        let (axis, side) = front.map_or((0, Side::Both), |(axis, _, side)| (axis as u8, side));
+        dp.tap(
+            Block::CubeFront,
+            &(cube.min, cube.max, eye, constants.positive),
+            &(front.is_some(), Short::unsigned(axis, 2), side.wires()),
+        );
+        front.map(|(_, plane, side)| (plane, side))
     }
-}
 
-fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord; 3] {
-    let [a, b] = constants.axis_ab[axis];
-    [a, b, planes.axis_c[axis]]
-}
-
-fn combine<P: Probe>(
-    dp: &mut Datapath<P>,
-    a: [WideWord; 3],
-    b: [WideWord; 3],
-    add: bool,
-) -> [WideWord; 3] {
-    std::array::from_fn(|i| {
-        if add {
-            dp.add(a[i], b[i])
-        } else {
-            dp.sub(a[i], b[i])
-        }
-    })
-}
-
-impl Silhouette for PlaneSilhouette {
-    fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
+    /// What the sides of all planes come to, as far as they are found.
+    fn resolve<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
         for edges in &mut self.edges {
             let (mut positive, mut negative, mut open) = (false, false, false);
@@ -227,6 +230,42 @@ impl Silhouette for PlaneSilhouette {
             }
         }
         if all { Cover::All } else { Cover::Some }
+    }
+}
+
+fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord; 3] {
+    let [a, b] = constants.axis_ab[axis];
+    [a, b, planes.axis_c[axis]]
+}
+
+fn combine<P: Probe>(
+    dp: &mut Datapath<P>,
+    a: [WideWord; 3],
+    b: [WideWord; 3],
+    add: bool,
+) -> [WideWord; 3] {
+    std::array::from_fn(|i| {
+        if add {
+            dp.add(a[i], b[i])
+        } else {
+            dp.sub(a[i], b[i])
+        }
+    })
+}
+
+impl Silhouette for PlaneSilhouette {
+    #[inline]
+    fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
+        let cover = self.resolve(dp, below);
+        let sides = self
+            .edges
+            .map(|planes| planes.map(|plane| plane.side.wires()));
+        let front = self
+            .front
+            .map_or((Side::Both, Side::Both), |(plane, side)| (plane.side, side));
+        let front = (self.front.is_some(), front.0.wires(), front.1.wires());
+        dp.tap(Block::PlaneCover, &(sides, front), &cover.wires());
+        cover
     }
 
     fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, _below: u32) -> Self {
@@ -262,5 +301,13 @@ pub(super) fn of_child<P: Probe>(
             }
         }
     }
+    let axes = (constants.axis_ab, parent.axis_c);
+    let half = Short::unsigned(half_shift, LEVEL_BITS);
+    let octant = Short::unsigned(octant, 3);
+    dp.tap(
+        Block::ChildPlanes,
+        &(parent.edge, axes, half, octant),
+        &planes.edge,
+    );
     planes
 }

@@ -2,7 +2,7 @@
 //! quadtree, whole quadrants are accepted or refused, samples decided by
 //! their centres.
 
-use hwmodel::{Datapath, Probe};
+use hwmodel::{Datapath, Probe, Short};
 
 /// What is known of a quadtree node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,6 +13,14 @@ pub(super) enum Cover {
     Some,
     /// All are.
     All,
+}
+
+impl Cover {
+    /// On two wires: 0 outside, 1 mixed, 2 covered.
+    #[inline]
+    pub(super) fn wires(self) -> Short {
+        Short::unsigned(self as u8, 2)
+    }
 }
 
 /// A silhouette relative to a quadtree node.

@@ -1,11 +1,12 @@
 //! How large a record is in samples, and which sample holds its centre.
 
-use hwmodel::{Datapath, Probe, Word};
+use hwmodel::{Datapath, Probe, Short, Word};
 
 use super::constants::Constants;
 use super::fit::sum_of_shifts;
 use super::lattice::Lattice;
 use super::record::{Clip, Record, Screen};
+use super::taps::{Block, LEVEL_BITS, NODE_BITS};
 use crate::frame::QuadNode;
 use crate::project::setup::ShiftSum;
 
@@ -22,6 +23,11 @@ pub(super) fn clip_at_most<P: Probe, L: Lattice>(
     below: u32,
 ) -> bool {
     let most = sum_of_shifts(dp, clip.w_min, limit.shifts(), below as i32);
+    dp.tap(
+        Block::SizeLimit,
+        &(clip.w_min, Short::unsigned(below, LEVEL_BITS)),
+        &most,
+    );
     let edges_w = clip.w.edges(dp);
     [&clip.x, &clip.y].into_iter().all(|x| {
         let edges_x = x.edges(dp);
@@ -33,7 +39,9 @@ pub(super) fn clip_at_most<P: Probe, L: Lattice>(
             let greater = dp.max(here, there);
             size = dp.add(size, greater);
         }
-        dp.le(size, most)
+        let fits = dp.le(size, most);
+        dp.tap(Block::SizeClip, &(edges_x, edges_w, most), &fits);
+        fits
     })
 }
 
@@ -52,7 +60,9 @@ pub(super) fn screen_at_most<P: Probe, L: Lattice>(
         .into_iter()
         .all(|(low, high)| {
             let size = dp.sub(high, low);
-            dp.le(size, limit)
+            let fits = dp.le(size, limit);
+            dp.tap(Block::SizeScreen, &(low, high, limit), &fits);
+            fits
         })
 }
 
@@ -67,6 +77,8 @@ pub(super) fn clip_sample<P: Probe, L: Lattice>(
 ) -> Option<QuadNode> {
     let mut x = clip.x.centre(dp);
     let mut y = clip.y.centre(dp);
+    dp.tap(Block::CageCentre, &clip.x, &x);
+    dp.tap(Block::CageCentre, &clip.y, &y);
     if !record.inside {
         for v in [x, y] {
             if dp.is_negative(v) || !dp.lt(v, w) {
@@ -80,7 +92,9 @@ pub(super) fn clip_sample<P: Probe, L: Lattice>(
             let doubled = dp.shl(*v, 1);
             let beyond = dp.sub(doubled, w);
             let right = !dp.is_negative(beyond);
-            *v = dp.select(right, beyond, doubled);
+            let inner = dp.select(right, beyond, doubled);
+            dp.tap(Block::CentreHalf, &(*v, w), &(right, inner));
+            *v = inner;
             u8::from(right)
         };
         let column = half(&mut x);
@@ -101,6 +115,7 @@ pub(super) fn screen_sample<P: Probe, L: Lattice>(
     let below = constants.levels - record.quad.level;
     let mut column = |lattice: &L, node: u32| {
         let centre = lattice.centre(dp);
+        dp.tap(Block::CageCentre, lattice, &centre);
         let position = dp.shr(centre, constants.screen_frac);
         let first = Word::from_host(i64::from(node) << below);
         let last = Word::from_host((i64::from(node + 1) << below) - 1);
@@ -111,6 +126,11 @@ pub(super) fn screen_sample<P: Probe, L: Lattice>(
         // overflowed anywhere.
         let position = dp.min(position, last);
         let position = dp.max(position, first);
+        let place = (
+            Short::unsigned(node, NODE_BITS),
+            Short::unsigned(below, LEVEL_BITS),
+        );
+        dp.tap(Block::CentreSample, &(centre, place), &position);
         Some(position.to_host() as u32)
     };
     let x = column(&screen.x, record.quad.x)?;

@@ -11,10 +11,11 @@
 //! without gap or overlap. The products that a lattice needs are made by
 //! shifts and adds, when it is made.
 
-use hwmodel::{Datapath, Probe, WideWord, Word};
+use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
 use super::constants::Constants;
 use super::silhouette::{Cover, Silhouette};
+use super::taps::{Block, LEVEL_BITS};
 use crate::project::STRIP_NORMAL_BITS;
 
 /// Linear functions of an outline: three strips, the box across, the box down.
@@ -56,6 +57,7 @@ impl Mean {
         let z_low = dp.add(z_edge[0], z_edge[1]);
         let z_high = dp.add(z_edge[2], z_edge[3]);
         let z = dp.add(z_low, z_high);
+        dp.tap(Block::StripMean, &vertices, &(sum, [x, y, z]));
         (sum, [x, y, z])
     }
 }
@@ -118,6 +120,22 @@ impl Subtree {
             let sum = dp.add(x, y);
             dp.add(sum, z)
         });
+        dp.tap(
+            Block::StripLattice,
+            &(
+                mean.sum,
+                mean.edges,
+                Short::unsigned(level, LEVEL_BITS),
+                constants.lod_limit_screen,
+            ),
+            &(
+                Short::unsigned(levels, LEVEL_BITS),
+                step,
+                half_edge,
+                half_width,
+                value,
+            ),
+        );
         let subtree = Self {
             step,
             half_edge,
@@ -132,6 +150,11 @@ impl Subtree {
         self.finest
     }
 
+    /// What one sample adds to a function of the box, as [`Self::box_step`] shifts it.
+    pub(super) fn sample_step(&self, function: usize) -> WideWord {
+        self.step[function][function - ACROSS]
+    }
+
     /// What a step of `2^places` samples adds to a function of the box.
     pub(super) fn box_step<P: Probe>(
         &self,
@@ -139,7 +162,7 @@ impl Subtree {
         function: usize,
         places: u32,
     ) -> WideWord {
-        dp.shl(self.step[function][function - ACROSS], places)
+        dp.shl(self.sample_step(function), places)
     }
 
     /// Half the width of a voxel of octree level `level`.
@@ -182,6 +205,8 @@ impl Subtree {
                     children[i << 2 | j << 1 | 1].value[function] = dp.sub(value, z);
                 }
             }
+            let values = children.map(|child| child.value[function]);
+            dp.tap(Block::StripChildren, &(value, [x, y, z]), &values);
         }
         children
     }
@@ -217,6 +242,13 @@ impl Subtree {
                 moved = dp.add(moved, step);
             }
         }
+        let quadrant = Short::unsigned(quadrant, 2);
+        let below = Short::unsigned(below, LEVEL_BITS);
+        dp.tap(
+            Block::StripQuadrant,
+            &(value, self.step[function], quadrant, below),
+            &moved,
+        );
         moved
     }
 }
@@ -393,14 +425,20 @@ impl<'s> StripSilhouette<'s> {
         }
         let high = self.half_width[function];
         let low = dp.neg(high);
-        if dp.lt(greatest, low) || dp.lt(high, least) {
-            return Cover::None;
-        }
-        if dp.le(low, least) && dp.le(greatest, high) {
+        let cover = if dp.lt(greatest, low) || dp.lt(high, least) {
+            Cover::None
+        } else if dp.le(low, least) && dp.le(greatest, high) {
             Cover::All
         } else {
             Cover::Some
-        }
+        };
+        let below = Short::unsigned(below, LEVEL_BITS);
+        dp.tap(
+            Block::StripCover,
+            &(value, high, self.subtree.step[function], below),
+            &cover.wires(),
+        );
+        cover
     }
 }
 

@@ -1,13 +1,14 @@
 //! The change from clip space to screen space: the one place where the
 //! machine divides, bit by bit, with subtractions and shifts.
 
-use hwmodel::{Datapath, Probe, Stage, Word};
+use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
 use super::lattice::Lattice;
 use super::record::{Clip, Screen};
 use super::strips::Mean;
+use super::taps::{Block, LEVEL_BITS, PLACES_BITS};
 use crate::project::setup::SCREEN_GUARD_SHIFT;
 
 /// Integer bits of a quotient: positions from -4 to 12 node widths.
@@ -27,7 +28,9 @@ pub(super) fn may_change<P: Probe, L: Lattice>(
         return false;
     };
     dp.stage(Stage::ToScreen);
-    !dp.lt(pose.w_min, least) && (place.inside || within_guard(dp, constants, place, pose))
+    let deep = !dp.lt(pose.w_min, least);
+    dp.tap(Block::ChangeDepth, &(pose.w_min, least), &deep);
+    deep && (place.inside || within_guard(dp, constants, place, pose))
 }
 
 /// The vertices in screen space, of a record that may change.
@@ -112,7 +115,10 @@ fn within_guard<P: Probe, L: Lattice>(
             beyond(dp, left_over, w, places)
         });
         let (high, _) = to_right.span(dp);
-        !dp.is_negative(low) && !dp.is_negative(high)
+        let near = !dp.is_negative(low) && !dp.is_negative(high);
+        let places = Short::signed(places, PLACES_BITS);
+        dp.tap(Block::ChangeGuard, &(x, &pose.w, places), &near);
+        near
     })
 }
 
@@ -143,5 +149,7 @@ fn divide<P: Probe>(dp: &mut Datapath<P>, x: Word, w: Word, fraction_bits: u32) 
         remainder = rest;
         quotient = dp.shift_in(quotient, bit);
     }
+    let places = Short::unsigned(fraction_bits, LEVEL_BITS);
+    dp.tap(Block::ToScreenDivide, &(x, w, places), &quotient);
     quotient
 }

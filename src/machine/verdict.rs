@@ -5,6 +5,7 @@ use hwmodel::Probe;
 use super::lattice::Lattice;
 use super::record::{Pose, Record};
 use super::size;
+use super::taps::Block;
 use super::walk::Walk;
 use crate::project::Coverage;
 
@@ -138,7 +139,12 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 .get(record.level as usize)
                 .copied()
                 .flatten()
-                .is_some_and(|least| self.dp.le(least, clip.w_min)),
+                .is_some_and(|least| {
+                    let solid = self.dp.le(least, clip.w_min);
+                    self.dp
+                        .tap(Block::DetailDepth, &(clip.w_min, least), &solid);
+                    solid
+                }),
             Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.lod_limit_screen),
             Pose::Strips(_) => self
                 .subtree

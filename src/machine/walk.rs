@@ -1,6 +1,6 @@
 //! The record loop.
 
-use hwmodel::{Datapath, Memory, Probe, Stage, Word};
+use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
 
 use super::MachineOptions;
 use super::constants::Constants;
@@ -11,6 +11,7 @@ use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
 use super::strips::{ACROSS, DOWN, StripSilhouette, Strips, Subtree};
+use super::taps::Block;
 use super::to_screen;
 use super::verdict::Verdict;
 use crate::frame::quadtree::FULL;
@@ -220,7 +221,10 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             let address = self.canvas.fill.address(record.quad);
             self.dp.read(Memory::FillVector, address as u64);
             let vector = self.canvas.fill.vector(record.quad);
-            if self.dp.and_bits(4, vector, FULL) == FULL {
+            let full = self.dp.and_bits(4, vector, FULL) == FULL;
+            self.dp
+                .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
+            if full {
                 self.counts.already_full += 1;
                 return;
             }
@@ -339,6 +343,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let sample = match &record.pose {
             Pose::Clip(clip) => {
                 let w = clip.w.centre(&mut self.dp);
+                self.dp.tap(Block::CageCentre, &clip.w, &w);
                 if self.dp.lt(w, self.constants.near) {
                     return;
                 }
@@ -401,6 +406,9 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let centre: [Word; 3] =
             std::array::from_fn(|k| self.dp.midpoint(record.min[k], record.max[k]));
 
+        self.dp
+            .tap(Block::Centre, &(record.min, record.max), &centre);
+
         self.dp.stage(Stage::Order);
         let octant = (0..3).fold(0u8, |bits, k| {
             // The centre is on the positive side where the eye is below it.
@@ -410,17 +418,25 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             .options
             .order
             .map(|nearest| self.dp.xor_bits(3, octant, nearest));
+        self.dp.tap(
+            Block::OctantOrder,
+            &(centre, self.constants.eye_floor),
+            &(
+                Short::unsigned(octant, 3),
+                order.map(|child| Short::unsigned(child, 3)),
+            ),
+        );
 
         self.dp.stage(Stage::VertexPool);
         let poses: Poses<L> = match &record.pose {
             Pose::Clip(clip) => Poses::Clip {
-                x: clip.x.children(&mut self.dp),
-                y: clip.y.children(&mut self.dp),
-                w: clip.w.children(&mut self.dp),
+                x: vertex_pool(&mut self.dp, &clip.x),
+                y: vertex_pool(&mut self.dp, &clip.y),
+                w: vertex_pool(&mut self.dp, &clip.w),
             },
             Pose::Screen(screen) => Poses::Screen {
-                x: screen.x.children(&mut self.dp),
-                y: screen.y.children(&mut self.dp),
+                x: vertex_pool(&mut self.dp, &screen.x),
+                y: vertex_pool(&mut self.dp, &screen.y),
             },
             Pose::Strips(strips) => {
                 let Some(subtree) = &self.subtree else { return };
@@ -452,6 +468,11 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
         let min = std::array::from_fn(|k| self.dp.select(upper[k], centre[k], parent.min[k]));
         let max = std::array::from_fn(|k| self.dp.select(upper[k], parent.max[k], centre[k]));
+        self.dp.tap(
+            Block::ChildCorners,
+            &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
+            &(min, max),
+        );
         let level = parent.level + 1;
         let child = octant as usize;
         let record = |pose, planes| Record {
@@ -472,7 +493,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         };
         match poses {
             Poses::Clip { x, y, w } => {
-                let (w_min, w_max) = w[child].span(&mut self.dp);
+                let (w_min, w_max) = child_span(&mut self.dp, &w[child]);
                 let clip = Clip {
                     x: x[child],
                     y: y[child],
@@ -497,8 +518,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 let screen = Screen {
                     x: x[child],
                     y: y[child],
-                    x_span: x[child].span(&mut self.dp),
-                    y_span: y[child].span(&mut self.dp),
+                    x_span: child_span(&mut self.dp, &x[child]),
+                    y_span: child_span(&mut self.dp, &y[child]),
                 };
                 let fill = self.canvas.seen_by_fit(self.options.reject_filled);
                 let place = parent.place();
@@ -522,6 +543,22 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             }
         }
     }
+}
+
+/// One coordinate of the eight children's cages.
+#[inline(always)]
+fn vertex_pool<P: Probe, L: Lattice>(dp: &mut Datapath<P>, parent: &L) -> [L; 8] {
+    let children = parent.children(dp);
+    dp.tap(Block::VertexPool, parent, &children);
+    children
+}
+
+/// One coordinate of a child's box.
+#[inline(always)]
+fn child_span<P: Probe, L: Lattice>(dp: &mut Datapath<P>, child: &L) -> (Word, Word) {
+    let span = child.span(dp);
+    dp.tap(Block::ChildSpan, child, &span);
+    span
 }
 
 /// The eight children's cages.

@@ -1,0 +1,170 @@
+//! What a logic analyser sees: the values on the wires into and out of a block.
+//!
+//! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap); a
+//! [`Probe`](crate::Probe) whose `TAPS` is set takes rows of [`Signal`]s from there. Nothing
+//! comes back, and where nobody listens nothing is left of the call.
+
+use crate::{Format, WideWord, Word};
+
+/// How wide a signal is, and how it is to be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum SignalKind {
+    /// A word: two's complement, the format's bits.
+    Word,
+    /// A wide word: two's complement, the wide format's bits.
+    Wide,
+    /// A number of so many bits (1 to 64), never negative.
+    Unsigned(u32),
+    /// A two's complement number of so many bits (1 to 64).
+    Signed(u32),
+}
+
+impl SignalKind {
+    /// Width in bits, for a datapath of words of `format`.
+    #[must_use]
+    pub const fn bits(self, format: Format) -> u32 {
+        match self {
+            Self::Word => format.bits(),
+            Self::Wide => format.wide().bits(),
+            Self::Unsigned(bits) | Self::Signed(bits) => bits,
+        }
+    }
+
+    /// Whether the highest bit is a sign.
+    #[must_use]
+    pub const fn is_signed(self) -> bool {
+        !matches!(self, Self::Unsigned(_))
+    }
+}
+
+/// A value on the wires of a block's border.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Signal {
+    /// Its width and sign.
+    pub kind: SignalKind,
+    /// Its value, in units of its last place.
+    pub value: i64,
+}
+
+/// A short number that is no word: a level, a quadrant, a vector of bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Short(Signal);
+
+impl Short {
+    /// A number that is never negative, on `bits` wires.
+    #[inline(always)]
+    #[must_use]
+    pub fn unsigned(value: impl Into<u32>, bits: u32) -> Self {
+        Self(Signal {
+            kind: SignalKind::Unsigned(bits),
+            value: i64::from(value.into()),
+        })
+    }
+
+    /// A two's complement number on `bits` wires.
+    #[inline(always)]
+    #[must_use]
+    pub fn signed(value: i32, bits: u32) -> Self {
+        Self(Signal {
+            kind: SignalKind::Signed(bits),
+            value: i64::from(value),
+        })
+    }
+}
+
+/// What can be shown at a block's border.
+pub trait Wires {
+    /// Adds its signals, the most significant first.
+    fn show(&self, to: &mut Vec<Signal>);
+}
+
+impl Wires for Word {
+    fn show(&self, to: &mut Vec<Signal>) {
+        to.push(Signal {
+            kind: SignalKind::Word,
+            value: self.0,
+        });
+    }
+}
+
+impl Wires for WideWord {
+    fn show(&self, to: &mut Vec<Signal>) {
+        to.push(Signal {
+            kind: SignalKind::Wide,
+            value: self.0,
+        });
+    }
+}
+
+impl Wires for Short {
+    fn show(&self, to: &mut Vec<Signal>) {
+        to.push(self.0);
+    }
+}
+
+impl Wires for bool {
+    fn show(&self, to: &mut Vec<Signal>) {
+        to.push(Signal {
+            kind: SignalKind::Unsigned(1),
+            value: i64::from(*self),
+        });
+    }
+}
+
+impl<T: Wires + ?Sized> Wires for &T {
+    fn show(&self, to: &mut Vec<Signal>) {
+        (**self).show(to);
+    }
+}
+
+impl<T: Wires, const N: usize> Wires for [T; N] {
+    fn show(&self, to: &mut Vec<Signal>) {
+        for part in self {
+            part.show(to);
+        }
+    }
+}
+
+macro_rules! wires_of_tuples {
+    ($(($($part:ident)+))+) => {$(
+        impl<$($part: Wires),+> Wires for ($($part,)+) {
+            #[expect(non_snake_case, reason = "parts are named like their types")]
+            fn show(&self, to: &mut Vec<Signal>) {
+                let ($($part,)+) = self;
+                $($part.show(to);)+
+            }
+        }
+    )+};
+}
+
+wires_of_tuples! { (A B) (A B C) (A B C D) (A B C D E) }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signals_in_order() {
+        let mut row = Vec::new();
+        let word = Word::from_host(-5);
+        (
+            word,
+            [true, false],
+            &(Short::unsigned(3u8, 4), WideWord::ZERO),
+        )
+            .show(&mut row);
+        let format = Format::new(24, 8).unwrap();
+        let seen: Vec<_> = row
+            .iter()
+            .map(|s| (s.value, s.kind.bits(format), s.kind.is_signed()))
+            .collect();
+        let expected = [
+            (-5, 24, true),
+            (1, 1, false),
+            (0, 1, false),
+            (3, 4, false),
+            (0, 48, true),
+        ];
+        assert_eq!(seen, expected);
+    }
+}

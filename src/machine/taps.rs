@@ -1,0 +1,160 @@
+//! The blocks whose borders a probe can tap: what a designer would build, and
+//! test, each alone. `shiftvox model --vectors` writes what crosses them.
+
+/// A block of the machine that works without memory: its outputs follow from
+/// its inputs and the frame's constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Block {
+    /// Is the quadtree node full?
+    Filled,
+    /// May a record's depth change to screen space?
+    ChangeDepth,
+    /// Does a record's box leave the picture by little enough to change?
+    ChangeGuard,
+    /// A quotient, bit by bit.
+    ToScreenDivide,
+    /// Eight vertices to their sum and sums of edges.
+    StripMean,
+    /// A lattice's constants from them.
+    StripLattice,
+    /// Is a node, by its depth, within the level of detail?
+    DetailDepth,
+    /// Extent that a clip-space record of one sample may have.
+    SizeLimit,
+    /// Is a clip-space record no larger, along one axis?
+    SizeClip,
+    /// Is a screen-space box no larger, along one axis?
+    SizeScreen,
+    /// The centre of a voxel in object space.
+    Centre,
+    /// Octant bits, and the children in order.
+    OctantOrder,
+    /// The children's vertices, one coordinate.
+    VertexPool,
+    /// The children's values of a strip function.
+    StripChildren,
+    /// A child's silhouette planes.
+    ChildPlanes,
+    /// A child's corners in object space.
+    ChildCorners,
+    /// The least and the greatest of a child's vertices, one coordinate.
+    ChildSpan,
+    /// What boxes are widened by in clip space.
+    MarginGrow,
+    /// What boxes are narrowed by in clip space.
+    MarginGap,
+    /// A clip-space box and the edges of a node, along one axis.
+    BorderClip,
+    /// A clip-space box and a bisector.
+    BisectorClip,
+    /// Does a clip-space box leave a node by at most its width, along one axis?
+    NearNode,
+    /// One coordinate of a clip-space cage in the left or the right half.
+    HalfClip,
+    /// A plane's constant in a quadrant.
+    PlaneQuadrant,
+    /// A screen-space box and the edges of a node, along one axis.
+    BorderScreen,
+    /// A screen-space box and a bisector.
+    BisectorScreen,
+    /// A lattice's box and the samples of a node, along one axis.
+    BorderStrips,
+    /// A lattice's box and the samples on either side of a bisector.
+    BisectorStrips,
+    /// A strip function's value in a quadrant.
+    StripQuadrant,
+    /// Two halves along each axis to quadrants.
+    Quadrants,
+    /// Overlapped quadrants and fill vector to: rejected, or which one.
+    NodeChoice,
+    /// The middle of a cage, one coordinate.
+    CageCentre,
+    /// In which half a centre lies, and where there.
+    CentreHalf,
+    /// The sample that holds a screen-space centre, along one axis.
+    CentreSample,
+    /// The planes of a cube's twelve edges.
+    CubePlanes,
+    /// From which side rays reach a cube that is not before the eye.
+    CubeFront,
+    /// On which side of a plane a node's samples are.
+    PlaneSide,
+    /// Sides of a cube's planes to: covered, outside, mixed.
+    PlaneCover,
+    /// A strip and a node's samples: covered, outside, mixed.
+    StripCover,
+    /// Bits set in a fill vector.
+    FillUpdate,
+}
+
+impl Block {
+    /// All blocks, in the order of their numbers.
+    pub const ALL: [Self; 40] = [
+        Self::Filled,
+        Self::ChangeDepth,
+        Self::ChangeGuard,
+        Self::ToScreenDivide,
+        Self::StripMean,
+        Self::StripLattice,
+        Self::DetailDepth,
+        Self::SizeLimit,
+        Self::SizeClip,
+        Self::SizeScreen,
+        Self::Centre,
+        Self::OctantOrder,
+        Self::VertexPool,
+        Self::StripChildren,
+        Self::ChildPlanes,
+        Self::ChildCorners,
+        Self::ChildSpan,
+        Self::MarginGrow,
+        Self::MarginGap,
+        Self::BorderClip,
+        Self::BisectorClip,
+        Self::NearNode,
+        Self::HalfClip,
+        Self::PlaneQuadrant,
+        Self::BorderScreen,
+        Self::BisectorScreen,
+        Self::BorderStrips,
+        Self::BisectorStrips,
+        Self::StripQuadrant,
+        Self::Quadrants,
+        Self::NodeChoice,
+        Self::CageCentre,
+        Self::CentreHalf,
+        Self::CentreSample,
+        Self::CubePlanes,
+        Self::CubeFront,
+        Self::PlaneSide,
+        Self::PlaneCover,
+        Self::StripCover,
+        Self::FillUpdate,
+    ];
+}
+
+impl From<Block> for u32 {
+    fn from(block: Block) -> Self {
+        block as Self
+    }
+}
+
+/// Wires of an octree or quadtree level, or of a shift by levels.
+pub(super) const LEVEL_BITS: u32 = 6;
+/// Wires of a signed number of places to shift by.
+pub(super) const PLACES_BITS: u32 = 8;
+/// Wires of a quadtree node's row or column.
+pub(super) const NODE_BITS: u32 = 20;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_places_in_the_list() {
+        for (number, &block) in (0u32..).zip(&Block::ALL) {
+            assert_eq!(u32::from(block), number);
+        }
+    }
+}
