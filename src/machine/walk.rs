@@ -430,19 +430,20 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.dp.stage(Stage::VertexPool);
         let poses: Poses<L> = match &record.pose {
             Pose::Clip(clip) => Poses::Clip {
-                x: vertex_pool(&mut self.dp, &clip.x),
-                y: vertex_pool(&mut self.dp, &clip.y),
-                w: vertex_pool(&mut self.dp, &clip.w),
+                x: clip.x.children(&mut self.dp),
+                y: clip.y.children(&mut self.dp),
+                w: clip.w.children(&mut self.dp),
             },
             Pose::Screen(screen) => Poses::Screen {
-                x: vertex_pool(&mut self.dp, &screen.x),
-                y: vertex_pool(&mut self.dp, &screen.y),
+                x: screen.x.children(&mut self.dp),
+                y: screen.y.children(&mut self.dp),
             },
             Pose::Strips(strips) => {
                 let Some(subtree) = &self.subtree else { return };
                 Poses::Strips(subtree.children(&mut self.dp, record.level + 1, strips))
             }
         };
+        self.tap_vertices(&record.pose, &poses);
         for &child in order.iter().rev() {
             let node = if record.solid {
                 Some(record.node)
@@ -453,6 +454,24 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 Some(node) => self.push_child(record, child, node, &centre, &poses),
                 None => self.counts.absent_children += 1,
             }
+        }
+    }
+
+    /// Shows the children's cages as they come from the vertex pool.
+    #[inline(always)]
+    fn tap_vertices(&mut self, parent: &Pose<L>, children: &Poses<L>) {
+        match (parent, children) {
+            (Pose::Clip(clip), Poses::Clip { x, y, w }) => {
+                self.dp.tap(Block::VertexPool, &clip.x, x);
+                self.dp.tap(Block::VertexPool, &clip.y, y);
+                self.dp.tap(Block::VertexPool, &clip.w, w);
+            }
+            (Pose::Screen(screen), Poses::Screen { x, y }) => {
+                self.dp.tap(Block::VertexPool, &screen.x, x);
+                self.dp.tap(Block::VertexPool, &screen.y, y);
+            }
+            // A lattice's children are shown function by function.
+            _ => {}
         }
     }
 
@@ -493,13 +512,14 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         };
         match poses {
             Poses::Clip { x, y, w } => {
-                let (w_min, w_max) = child_span(&mut self.dp, &w[child]);
+                let (w_min, w_max) = w[child].span(&mut self.dp);
                 let clip = Clip {
                     x: x[child],
                     y: y[child],
                     w: w[child],
                     w_min,
                 };
+                self.dp.tap(Block::ChildSpan, &clip.w, &(w_min, w_max));
                 let planes = if self.constants.coverage == Coverage::Exact {
                     self.dp.stage(Stage::VertexPool);
                     planes::of_child(
@@ -518,9 +538,11 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 let screen = Screen {
                     x: x[child],
                     y: y[child],
-                    x_span: child_span(&mut self.dp, &x[child]),
-                    y_span: child_span(&mut self.dp, &y[child]),
+                    x_span: x[child].span(&mut self.dp),
+                    y_span: y[child].span(&mut self.dp),
                 };
+                self.dp.tap(Block::ChildSpan, &screen.x, &screen.x_span);
+                self.dp.tap(Block::ChildSpan, &screen.y, &screen.y_span);
                 let fill = self.canvas.seen_by_fit(self.options.reject_filled);
                 let place = parent.place();
                 let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &screen);
@@ -543,22 +565,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             }
         }
     }
-}
-
-/// One coordinate of the eight children's cages.
-#[inline(always)]
-fn vertex_pool<P: Probe, L: Lattice>(dp: &mut Datapath<P>, parent: &L) -> [L; 8] {
-    let children = parent.children(dp);
-    dp.tap(Block::VertexPool, parent, &children);
-    children
-}
-
-/// One coordinate of a child's box.
-#[inline(always)]
-fn child_span<P: Probe, L: Lattice>(dp: &mut Datapath<P>, child: &L) -> (Word, Word) {
-    let span = child.span(dp);
-    dp.tap(Block::ChildSpan, child, &span);
-    span
 }
 
 /// The eight children's cages.

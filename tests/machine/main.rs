@@ -13,6 +13,7 @@ mod order;
 mod rules;
 mod scenes;
 mod seams;
+mod vectors;
 mod vertex_error;
 mod viewer;
 mod words;

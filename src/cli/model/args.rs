@@ -121,6 +121,13 @@ pub(super) struct FileArgs {
     /// Records of the trace
     #[arg(long, value_name = "N", default_value_t = 2000)]
     pub(super) trace_records: u64,
+    /// Folder of test vectors of each block ($readmemh), with a manifest
+    #[arg(long, value_name = "DIR")]
+    pub(super) vectors: Option<PathBuf>,
+    /// Records of the test vectors
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) vector_records: u64,
 }
 
 fn bits_scan(text: &str) -> Result<Scan, String> {

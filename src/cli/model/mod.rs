@@ -3,6 +3,7 @@
 mod args;
 mod output;
 mod page;
+mod vectors;
 
 use hwmodel::Overflow;
 use hwmodel::cost::Breakdown;
@@ -60,6 +61,7 @@ pub(super) fn run(
         return console.data(args.hardware.text()?.trim_end());
     }
     output::check(args)?;
+    vectors::check(args)?;
     let hardware = args.hardware.hardware()?;
     let prices = args.hardware.prices()?;
     let mut names = args.scenes.clone();
@@ -98,6 +100,7 @@ fn find(
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
+    vectors::write(args, name, graph, &setup, overflow, console)?;
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
     )?;

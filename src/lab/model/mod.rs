@@ -21,6 +21,8 @@ pub mod safe;
 pub mod statistics;
 pub mod sweep;
 pub mod tables;
+#[cfg(feature = "cli")]
+pub mod vectors;
 
 use hwmodel::cost::CostError;
 

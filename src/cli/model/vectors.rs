@@ -1,0 +1,70 @@
+//! `--vectors`: test vectors for who builds the hardware.
+
+use hwmodel::Overflow;
+
+use super::ModelArgs;
+use crate::cli::console::Console;
+use crate::cli::error::{CliError, Kind};
+use crate::graph::Graph;
+use crate::lab::model::vectors::{self, FolderError, Request, VectorsError};
+use crate::project::FrameSetup;
+
+/// Fails before the work where something would be replaced.
+pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
+    match &args.files.vectors {
+        Some(folder) => Ok(vectors::check_free(folder, args.export.force)?),
+        None => Ok(()),
+    }
+}
+
+/// Writes the vectors that are asked for.
+pub(super) fn write(
+    args: &ModelArgs,
+    scene: &str,
+    graph: &Graph,
+    setup: &FrameSetup,
+    overflow: Overflow,
+    console: &Console,
+) -> Result<(), CliError> {
+    let Some(folder) = &args.files.vectors else {
+        return Ok(());
+    };
+    let request = Request {
+        scene,
+        records: args.files.vector_records,
+        overflow,
+        folder,
+        overwrite: args.export.force,
+    };
+    let recorded = vectors::write(&graph.view(), setup, &request)?;
+    console.note(format!(
+        "{}: {} rows of {} blocks written",
+        folder.display(),
+        recorded.rows,
+        recorded.blocks
+    ));
+    Ok(())
+}
+
+impl From<FolderError> for CliError {
+    fn from(error: FolderError) -> Self {
+        match error {
+            FolderError::Store(error) => error.into(),
+            FolderError::Foreign { .. } => {
+                Self::new(Kind::Run, error).advise("give another name, or empty the folder")
+            }
+        }
+    }
+}
+
+impl From<VectorsError> for CliError {
+    fn from(error: VectorsError) -> Self {
+        match error {
+            VectorsError::Engine(error) => error.into(),
+            VectorsError::Folder(error) => error.into(),
+            VectorsError::Store(error) => error.into(),
+            VectorsError::Misfit(_) => Self::new(Kind::Limit, error),
+            VectorsError::Unknown(_) | VectorsError::Manifest(_) => Self::new(Kind::Run, error),
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Test vectors of the machine's blocks, for whoever builds them in hardware.
+//!
+//! For the first records of a frame, all that went into and came out of each
+//! block, as `$readmemh` files: one row a line, a file of inputs and one of
+//! outputs a block, and a manifest that names every bit. The rows are what
+//! the machine itself computed while it drew. `docs/vectors.md` says how to use them.
+
+mod blocks;
+mod folder;
+mod manifest;
+mod ports;
+mod readme;
+mod recorder;
+
+use std::path::Path;
+
+use hwmodel::Overflow;
+
+pub use blocks::{Description, absence, describe};
+pub use folder::{FolderError, check_free};
+pub use ports::{Field, Ports};
+
+use crate::frame::Frame;
+use crate::graph::GraphView;
+use crate::machine::{Machine, MachineOptions};
+use crate::picture::store::{self, StoreError};
+use crate::project::{EngineError, FrameSetup};
+use recorder::Recorder;
+
+/// Version of the manifest and of what blocks there are.
+pub const SCHEMA: u32 = 1;
+
+/// What is to be recorded, and where.
+#[derive(Debug, Clone, Copy)]
+pub struct Request<'a> {
+    /// The scene's name, for the manifest.
+    pub scene: &'a str,
+    /// Records from the frame's first on; what leads to the first is recorded too.
+    pub records: u64,
+    /// What a result that does not fit its word becomes.
+    pub overflow: Overflow,
+    /// The folder; its parents are made.
+    pub folder: &'a Path,
+    /// Whether older vectors there are replaced.
+    pub overwrite: bool,
+}
+
+/// What was recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Recorded {
+    /// Blocks with rows.
+    pub blocks: usize,
+    /// Rows of all blocks.
+    pub rows: u64,
+}
+
+/// Why there are no vectors. Whatever stood in the folder's place still does.
+#[derive(Debug, thiserror::Error)]
+pub enum VectorsError {
+    /// The machine could not finish the frame.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The folder cannot be written.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// A file in it cannot.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// A value is too large for the wires that the manifest gives it: a
+    /// constant of the frame beyond its word.
+    #[error("a value at block {0} does not fit its wires: use wider words")]
+    Misfit(&'static str),
+    /// A block that the manifest does not know.
+    #[error("the machine has no block {0}")]
+    Unknown(u32),
+    /// The manifest has no text.
+    #[error("{0}")]
+    Manifest(#[from] serde_json::Error),
+}
+
+/// Draws a frame and records the borders of the machine's blocks.
+///
+/// # Errors
+/// See [`VectorsError`].
+pub fn write(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    request: &Request<'_>,
+) -> Result<Recorded, VectorsError> {
+    folder::write(request.folder, request.overwrite, |folder| {
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let mut machine = Machine::new(MachineOptions {
+            overflow: request.overflow,
+            ..MachineOptions::default()
+        });
+        let recorder = Recorder::new(folder, setup, request.records);
+        let (stats, recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
+        let recordings = recorder.finish()?;
+        let manifest = manifest::document(setup, request, &stats, &recordings);
+        let text = serde_json::to_string_pretty(&manifest)? + "\n";
+        store::write(&folder.join(folder::MANIFEST), text.as_bytes(), false)?;
+        let readme = readme::text(setup.format, &recordings);
+        store::write(&folder.join(folder::README), readme.as_bytes(), false)?;
+        Ok(Recorded {
+            blocks: recordings.iter().filter(|r| r.rows > 0).count(),
+            rows: recordings.iter().map(|r| r.rows).sum(),
+        })
+    })
+}

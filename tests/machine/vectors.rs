@@ -1,0 +1,840 @@
+//! Test vectors, replayed: every row of every block computed again from the
+//! files alone, in plain integers, by what `SPEC.md` and the manifest say.
+//! Nothing here knows the machine.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+use hwmodel::Overflow;
+use serde_json::Value;
+use shiftvox::graph::Graph;
+use shiftvox::lab::model::vectors::{self, Request};
+use shiftvox::project::{CageKind, Camera, Coverage, SetupOptions};
+
+use super::common::{camera, octree, setup, sierpinski, solid};
+
+/// A row: its fields' values by name, and in order.
+#[derive(Default)]
+struct Row {
+    names: BTreeMap<String, usize>,
+    values: Vec<i128>,
+}
+
+impl Row {
+    fn get(&self, name: &str) -> i128 {
+        match self.names.get(name) {
+            Some(&at) => self.values[at],
+            None => panic!("no field {name}"),
+        }
+    }
+
+    fn flag(&self, name: &str) -> bool {
+        self.get(name) != 0
+    }
+
+    /// Fields `name_x`, `name_y`, `name_z`.
+    fn axes(&self, name: &str) -> [i128; 3] {
+        ["x", "y", "z"].map(|axis| self.get(&format!("{name}_{axis}")))
+    }
+
+    /// Fields `name_a`, `name_b`, `name_c`.
+    fn plane(&self, name: &str) -> [i128; 3] {
+        ["a", "b", "c"].map(|c| self.get(&format!("{name}_{c}")))
+    }
+
+    /// The numbers of a cage: eight or four.
+    fn cage(&self, name: &str) -> Cage {
+        if self.names.contains_key(&format!("{name}_corner")) {
+            let mut numbers = vec![self.get(&format!("{name}_corner"))];
+            numbers.extend(self.axes(&format!("{name}_edge")));
+            Cage(numbers)
+        } else {
+            Cage((0..8).map(|i| self.get(&format!("{name}_{i}"))).collect())
+        }
+    }
+}
+
+/// One coordinate of eight vertices: themselves, or a corner and three edges.
+#[derive(Clone, PartialEq, Debug)]
+struct Cage(Vec<i128>);
+
+impl Cage {
+    fn vertices(&self) -> Vec<i128> {
+        match self.0[..] {
+            [corner, x, y, z] => (0..8)
+                .map(|i| corner + (i >> 2 & 1) * x + (i >> 1 & 1) * y + (i & 1) * z)
+                .collect(),
+            _ => self.0.clone(),
+        }
+    }
+
+    fn least(&self) -> i128 {
+        *self.vertices().iter().min().unwrap()
+    }
+
+    fn greatest(&self) -> i128 {
+        *self.vertices().iter().max().unwrap()
+    }
+
+    fn each(&self, f: impl Fn(i128) -> i128) -> Self {
+        Self(self.0.iter().map(|&v| f(v)).collect())
+    }
+
+    /// `self * a + other * b`.
+    fn with(&self, a: i128, other: &Self, b: i128) -> Self {
+        let numbers = self.0.iter().zip(&other.0);
+        Self(numbers.map(|(&v, &w)| a * v + b * w).collect())
+    }
+
+    fn children(&self) -> Vec<Self> {
+        if let [corner, x, y, z] = self.0[..] {
+            // Towards zero, as `/` does.
+            let halves = [x / 2, y / 2, z / 2];
+            return (0..8i128)
+                .map(|c| {
+                    let [x, y, z] = halves;
+                    let moved = corner + (c >> 2) * x + (c >> 1 & 1) * y + (c & 1) * z;
+                    Self(vec![moved, x, y, z])
+                })
+                .collect();
+        }
+        // The 27 points: a coordinate of 1 is the midpoint of 0 and 2; z is
+        // resolved last, so it is the outermost midpoint.
+        fn point(corners: &[i128], at: [usize; 3]) -> i128 {
+            for k in [2, 1, 0] {
+                if at[k] == 1 {
+                    let (mut low, mut high) = (at, at);
+                    (low[k], high[k]) = (0, 2);
+                    let sum = point(corners, low) + point(corners, high);
+                    return sum.div_euclid(2);
+                }
+            }
+            corners[at[0] / 2 * 4 + at[1] / 2 * 2 + at[2] / 2]
+        }
+        (0..8)
+            .map(|c| {
+                let corner = |v: usize| {
+                    let at = [2, 1, 0].map(|bit| (c >> bit & 1) + (v >> bit & 1));
+                    point(&self.0, at)
+                };
+                Self((0..8).map(corner).collect())
+            })
+            .collect()
+    }
+}
+
+/// `a * 2^places`, rounded down.
+fn scaled(a: i128, places: i128) -> i128 {
+    if places >= 0 {
+        a << places
+    } else {
+        a.div_euclid(1 << (-places).min(100))
+    }
+}
+
+/// Constants of the manifest.
+struct Constants {
+    depth: i128,
+    fraction: i128,
+    guard: i128,
+    shifts: Vec<i128>,
+}
+
+impl Constants {
+    /// The extent that `size_limit` and `margin_gap` have in common.
+    fn share(&self, a: i128, below: i128) -> i128 {
+        self.shifts.iter().map(|s| scaled(a, -(s + below))).sum()
+    }
+}
+
+fn bits(flags: &[bool]) -> Vec<i128> {
+    flags.iter().map(|&f| i128::from(f)).collect()
+}
+
+/// What a block gives for a row.
+fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128> {
+    let get = |name: &str| row.get(name);
+    match block {
+        "filled" => bits(&[get("vector") == 15]),
+        "change_depth" | "detail_depth" => bits(&[get("w_min") >= get("least")]),
+        "change_guard" => {
+            let (x, w, places) = (row.cage("x"), row.cage("w"), get("places"));
+            // Times 2^places where that is a multiple, so that nothing is rounded.
+            let (by, part) = (1 << places.max(0), 1 << (-places).max(0));
+            let left = x.with(by, &w, part).least();
+            let right = w.with(by, &x, -by).with(1, &w, part).least();
+            bits(&[left >= 0 && right >= 0])
+        }
+        "to_screen_divide" => {
+            let (x, w) = (get("x"), get("w"));
+            assert!(w > 0 && -4 * w <= x && x < 12 * w, "{x} / {w}");
+            vec![((x + 4 * w) << get("fraction_bits")).div_euclid(w)]
+        }
+        "strip_mean" => {
+            let at: Vec<i128> = (0..8).map(|i| get(&format!("position_{i}"))).collect();
+            let edge = |bit: usize| -> i128 {
+                let signed = at.iter().enumerate();
+                signed
+                    .map(|(i, v)| if i >> bit & 1 == 1 { *v } else { -v })
+                    .sum()
+            };
+            vec![at.iter().sum(), edge(2), edge(1), edge(0)]
+        }
+        "strip_lattice" => strip_lattice(row, constants),
+        "size_limit" => vec![constants.share(get("w_min"), get("below"))],
+        "size_clip" => {
+            let (x, w) = (row.axes("edge_x"), row.axes("edge_w"));
+            let size: i128 = (0..3).map(|k| x[k].abs().max((x[k] - w[k]).abs())).sum();
+            bits(&[size <= get("most")])
+        }
+        "size_screen" => bits(&[get("high") - get("low") <= get("limit")]),
+        "centre" => {
+            let (min, max) = (row.axes("min"), row.axes("max"));
+            (0..3).map(|k| (min[k] + max[k]).div_euclid(2)).collect()
+        }
+        "octant_order" => {
+            let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+            let octant = (0..3).map(|k| i128::from(centre[k] > eye[k]) << (2 - k));
+            let octant: i128 = octant.sum();
+            let mut out = vec![octant];
+            out.extend([7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest));
+            out
+        }
+        "vertex_pool" => {
+            let children = row.cage("parent").children();
+            children.into_iter().flat_map(|child| child.0).collect()
+        }
+        "strip_children" => {
+            let half = row.axes("half_edge");
+            let child = |c: usize| -> i128 {
+                let terms = (0..3).map(|k| half[k] * if c >> (2 - k) & 1 == 1 { -1 } else { 1 });
+                get("value") + terms.sum::<i128>()
+            };
+            (0..8).map(child).collect()
+        }
+        "child_planes" => {
+            let octant = get("octant");
+            let has = |k: usize| octant >> (2 - k) & 1;
+            let moved = |j: usize| {
+                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                let (plane, along_k, along_l) = (edge(row, j), axis(row, k), axis(row, l));
+                let half = 1 << get("half");
+                [0, 1, 2].map(|c| plane[c] + half * (has(l) * along_k[c] - has(k) * along_l[c]))
+            };
+            (0..3).flat_map(moved).collect()
+        }
+        "child_corners" => {
+            let (min, max, centre) = (row.axes("min"), row.axes("max"), row.axes("centre"));
+            let upper = |k: usize| get("octant") >> (2 - k) & 1 == 1;
+            let low = (0..3).map(|k| if upper(k) { centre[k] } else { min[k] });
+            let high = (0..3).map(|k| if upper(k) { max[k] } else { centre[k] });
+            low.chain(high).collect()
+        }
+        "child_span" => {
+            let child = row.cage("child");
+            vec![child.least(), child.greatest()]
+        }
+        "margin_grow" => {
+            let places = get("places");
+            let more = i128::from(places > 0);
+            row.cage("w").each(|w| scaled(w, -places) + more).0
+        }
+        "margin_gap" => {
+            let below = get("below");
+            row.cage("w").each(|w| -constants.share(w, below)).0
+        }
+        "border_clip" => {
+            let (x, w, m) = (row.cage("x"), row.cage("w"), row.cage("margin"));
+            let right = x.with(1, &w, -1);
+            let outside = x.with(1, &m, 1).greatest() < 0 || right.with(1, &m, -1).least() > 0;
+            let (low, high) = (x.with(1, &m, -1).least(), right.with(1, &m, 1).greatest());
+            let strict = i128::from(row.flag("wider"));
+            bits(&[outside, !outside && low >= strict && high <= -strict])
+        }
+        "bisector_clip" => {
+            let (x, w, m) = (row.cage("x"), row.cage("w"), row.cage("margin"));
+            let relative = x.with(2, &w, -1);
+            let (mut low, mut high);
+            if row.flag("closed") {
+                low = relative.with(1, &m, -1).least() <= 0;
+                high = relative.with(1, &m, 1).greatest() >= 0;
+            } else {
+                low = relative.least() < 0;
+                high = relative.greatest() > 0 || !low;
+            }
+            if row.flag("sample") {
+                (low, high) = (low && high, low && high);
+            }
+            let mut out = relative.0;
+            out.extend(bits(&[low, high]));
+            out
+        }
+        "near_node" => {
+            let (x, w) = (row.cage("x"), row.cage("w"));
+            bits(&[x.with(1, &w, 1).least() >= 0 && x.with(1, &w, -2).greatest() <= 0])
+        }
+        "half_clip" if row.flag("right") => row.cage("far").0,
+        "half_clip" => row.cage("x").each(|x| 2 * x).0,
+        "plane_quadrant" => {
+            let [a, b, c] = row.plane("plane");
+            let quadrant = get("quadrant");
+            vec![2 * c + (quadrant & 1) * a + (quadrant >> 1) * b]
+        }
+        "border_screen" => {
+            let (low, high, node) = (get("low"), get("high"), get("node"));
+            let unit = get("below") + constants.fraction;
+            let (left, right) = (node << unit, (node + 1) << unit);
+            let outside = high < left || low > right;
+            bits(&[outside, !outside && left <= low && high <= right])
+        }
+        "bisector_screen" => {
+            let unit = get("below") + constants.fraction - 1;
+            let bisector = scaled(2 * get("node") + 1, unit);
+            let low = get("low") < bisector;
+            bits(&[low, get("high") > bisector || !low])
+        }
+        "border_strips" => {
+            let (value, half, step) = (get("value"), get("half_width"), get("step"));
+            // All samples of the node, one after the other, are a step apart.
+            let last = value + step * ((1 << get("below")) - 1);
+            let outside = last < -half || value > half;
+            let within = value - step < -half && last + step > half;
+            bits(&[outside, !outside && within])
+        }
+        "bisector_strips" => {
+            let (value, half, step) = (get("value"), get("half_width"), get("step"));
+            let below = get("below");
+            if below == 0 {
+                return bits(&[value.abs() <= half; 2]);
+            }
+            let first_right = value + step * (1 << (below - 1));
+            bits(&[first_right - step >= -half, first_right <= half])
+        }
+        "strip_quadrant" => {
+            let quadrant = get("quadrant");
+            let side = 1 << (get("below") - 1);
+            let across = (quadrant & 1) * get("step_x") + (quadrant >> 1) * get("step_y");
+            vec![get("value") + side * across]
+        }
+        "quadrants" => {
+            let x = [row.flag("low_half_x"), row.flag("high_half_x")];
+            let y = [row.flag("low_half_y"), row.flag("high_half_y")];
+            let bit = |q: usize| i128::from(x[q & 1] && y[q >> 1]) << q;
+            vec![(0..4).map(bit).sum()]
+        }
+        "node_choice" => {
+            let overlapped = get("overlapped");
+            let among: Vec<i128> = (0..4).filter(|q| overlapped >> q & 1 == 1).collect();
+            let rejected = among.iter().all(|q| get("vector") >> q & 1 == 1);
+            let single = among.len() == 1;
+            let quadrant = if single { among[0] } else { 0 };
+            vec![i128::from(rejected), i128::from(single), quadrant]
+        }
+        "cage_centre" => vec![match row.cage("cage").0[..] {
+            [corner, x, y, z] => corner + (x + y + z).div_euclid(2),
+            ref corners => (corners[0] + corners[7]).div_euclid(2),
+        }],
+        "centre_half" => {
+            let beyond = 2 * get("value") - get("w");
+            let right = beyond >= 0;
+            vec![
+                i128::from(right),
+                if right { beyond } else { 2 * get("value") },
+            ]
+        }
+        "centre_sample" => {
+            let (node, below) = (get("node"), get("below"));
+            let sample = get("centre").div_euclid(1 << constants.fraction);
+            vec![sample.clamp(node << below, ((node + 1) << below) - 1)]
+        }
+        "cube_planes" => {
+            let side = 1 << get("side");
+            let planes = |j: usize| {
+                let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+                let (here, along_k, along_l) = (edge(row, j), axis(row, k), axis(row, l));
+                // The edge itself, moved along k, along l, along both.
+                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(by_k, by_l)| {
+                    [0, 1, 2].map(|c| here[c] + side * (by_l * along_k[c] - by_k * along_l[c]))
+                })
+            };
+            (0..3).flat_map(planes).flatten().collect()
+        }
+        "cube_front" => {
+            let (min, max) = (row.axes("min"), row.axes("max"));
+            let (floor, ceil) = (row.axes("eye_floor"), row.axes("eye_ceil"));
+            let outside = (0..3).find(|&k| ceil[k] <= min[k] || max[k] <= floor[k]);
+            outside.map_or(vec![0, 0, 0], |k| {
+                let same = (ceil[k] <= min[k]) == row.flag("positive");
+                vec![1, k as i128, if same { 1 } else { 2 }]
+            })
+        }
+        "plane_side" => vec![plane_side(row.plane("plane"), row.flag("sample"))],
+        "plane_cover" => vec![plane_cover(row)],
+        "strip_cover" => {
+            let (value, half) = (get("value"), get("half_width"));
+            let far = (1 << get("below")) - 1;
+            let (x, y) = (get("step_x") * far, get("step_y") * far);
+            let corners = [value, value + x, value + y, value + x + y];
+            let (least, greatest) = (corners.iter().min().unwrap(), corners.iter().max().unwrap());
+            let cover = if *greatest < -half || *least > half {
+                0
+            } else if -half <= *least && *greatest <= half {
+                2
+            } else {
+                1
+            };
+            vec![cover]
+        }
+        "fill_update" => {
+            let after = get("vector") | get("bits");
+            vec![after, i128::from(after == 15)]
+        }
+        other => panic!("no rule for block {other}"),
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn edge(row: &Row, j: usize) -> [i128; 3] {
+    row.plane(&format!("edge_{}", AXES[j]))
+}
+
+fn axis(row: &Row, l: usize) -> [i128; 3] {
+    row.plane(&format!("axis_{}", AXES[l]))
+}
+
+/// The side of the open node's samples: at its corners the function takes all
+/// its extremes, and a sample is moved right, then down, by next to nothing.
+fn plane_side([a, b, c]: [i128; 3], is_sample: bool) -> i128 {
+    let corners = [c, c + a, c + b, c + a + b];
+    if corners == [0; 4] {
+        3
+    } else if corners.iter().all(|&v| v >= 0) {
+        1
+    } else if corners.iter().all(|&v| v <= 0) {
+        2
+    } else if is_sample {
+        let middle = [2 * c + a + b, a, b];
+        match middle.into_iter().find(|&v| v != 0) {
+            Some(v) if v > 0 => 1,
+            Some(_) => 2,
+            None => 3,
+        }
+    } else {
+        0
+    }
+}
+
+fn plane_cover(row: &Row) -> i128 {
+    let mut all = true;
+    for axis in AXES {
+        let sides: Vec<i128> = (0..4)
+            .map(|i| row.get(&format!("side_{axis}_{i}")))
+            .collect();
+        let (above, below) = (sides.contains(&1), sides.contains(&2));
+        if !(above && below) {
+            if !sides.contains(&0) {
+                return 0;
+            }
+            all = false;
+        }
+    }
+    if row.flag("front") {
+        let side = row.get("front_side");
+        if side == 0 {
+            all = false;
+        } else if side != row.get("wanted") {
+            // Where an axis is not settled, the front has not been looked at yet;
+            // its side is then the last one, for which the record was still alive.
+            return 0;
+        }
+    }
+    if all { 2 } else { 1 }
+}
+
+/// `SPEC.md`, section 9.
+fn strip_lattice(row: &Row, constants: &Constants) -> Vec<i128> {
+    const NORMAL_BITS: u32 = 11;
+    let sum = [row.get("sum_x"), row.get("sum_y")];
+    let edges = [row.axes("edge_x"), row.axes("edge_y")];
+    let extent = |c: usize| -> i128 { edges[c].iter().map(|e| e.abs()).sum() };
+    let mut size = extent(0).max(extent(1));
+    let mut levels = 0;
+    // Sums of four edges have two bits more than positions.
+    while row.get("level") + levels < constants.depth && size > row.get("limit") << 2 {
+        size = size.div_euclid(2);
+        levels += 1;
+    }
+    let fine = (levels - 2).max(0).min(constants.fraction) + constants.guard;
+    let places = constants.fraction + 3 - fine;
+
+    // Gradients: strips along the edges, turned by a right angle; then the box.
+    let towards_zero = |v: i128, shift: i128| v.signum() * scaled(v.abs(), shift);
+    let mut gradients: Vec<[i128; 2]> = (0..3)
+        .map(|k| {
+            let (x, y) = (edges[0][k], edges[1][k]);
+            let longest = x.abs().max(y.abs());
+            if longest == 0 {
+                return [0, 0];
+            }
+            let length = 128 - longest.leading_zeros();
+            let shift = i128::from(NORMAL_BITS) - i128::from(length);
+            [-towards_zero(y, shift), towards_zero(x, shift)]
+        })
+        .collect();
+    gradients.extend([[1 << NORMAL_BITS, 0], [0, 1 << NORMAL_BITS]]);
+
+    let half_sample = 1 << (constants.fraction + 2);
+    let (mut steps, mut halves, mut widths, mut values) = (vec![], vec![], vec![], vec![]);
+    for [gx, gy] in gradients {
+        steps.extend([gx << fine, gy << fine]);
+        let centre = gx * (sum[0] - half_sample) + gy * (sum[1] - half_sample);
+        values.push(-scaled(centre, -places));
+        let half = [0, 1, 2].map(|k| {
+            let product = gx * edges[0][k] + gy * edges[1][k];
+            let places = places + levels;
+            if places <= 0 {
+                scaled(product, -places)
+            } else {
+                // To the nearest, halves up.
+                scaled(product + (1 << (places - 1)), -places)
+            }
+        });
+        widths.push(half.iter().map(|h| h.abs()).sum());
+        halves.extend(half);
+    }
+    [vec![levels], steps, halves, widths, values].concat()
+}
+
+/// A file's rows, as the manifest says that they are packed.
+fn read(folder: &Path, ports: &Value) -> Vec<Row> {
+    let fields = ports["fields"].as_array().unwrap();
+    let names: BTreeMap<String, usize> = fields
+        .iter()
+        .enumerate()
+        .map(|(at, field)| (field["name"].as_str().unwrap().to_owned(), at))
+        .collect();
+    assert_eq!(names.len(), fields.len(), "a name twice");
+    let number = |value: &Value| value.as_u64().unwrap() as usize;
+    let (width, digits) = (number(&ports["bits"]), number(&ports["digits"]));
+    let text = fs::read_to_string(folder.join(ports["file"].as_str().unwrap())).unwrap();
+    let lines = text.lines().filter(|line| !line.starts_with("//"));
+    let row = |line: &str| {
+        assert_eq!(line.len(), digits, "{line}");
+        let all: Vec<bool> = line
+            .chars()
+            .flat_map(|digit| {
+                let digit = digit.to_digit(16).expect("a hexadecimal digit");
+                (0..4).rev().map(move |bit| digit >> bit & 1 == 1)
+            })
+            .collect();
+        let (padding, all) = all.split_at(all.len() - width);
+        assert!(padding.len() < 4 && !padding.contains(&true));
+        let mut end = width;
+        let values = fields
+            .iter()
+            .map(|field| {
+                let (bits, lowest) = (number(&field["bits"]), number(&field["lowest_bit"]));
+                assert_eq!(lowest + bits, end, "fields without gaps");
+                end = lowest;
+                let part = &all[width - lowest - bits..width - lowest];
+                let value = part.iter().fold(0i128, |v, &bit| v << 1 | i128::from(bit));
+                let is_negative = field["signed"].as_bool().unwrap() && part[0];
+                value - (i128::from(is_negative) << bits)
+            })
+            .collect();
+        assert_eq!(end, 0);
+        Row {
+            names: names.clone(),
+            values,
+        }
+    };
+    lines.map(row).collect()
+}
+
+/// Rows that are not what their block gives, the first told; and rows by block.
+fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
+    let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(manifest["schema"], 1);
+    let number = |name: &str| i128::from(manifest["constants"][name].as_i64().unwrap());
+    let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
+    let constants = Constants {
+        depth: number("depth"),
+        fraction: number("screen_fraction_bits"),
+        guard: number("strip_guard"),
+        shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
+    };
+    let mut files = BTreeSet::from(["manifest.json".to_owned(), "README.txt".to_owned()]);
+    let mut wrong = None;
+    let mut counts = BTreeMap::new();
+    for block in manifest["blocks"].as_array().unwrap() {
+        let name = block["name"].as_str().unwrap();
+        let rows = block["rows"].as_u64().unwrap() as usize;
+        counts.insert(name.to_owned(), rows);
+        if rows == 0 {
+            assert!(!block["reason"].as_str().unwrap().is_empty(), "{name}");
+            assert!(block["stimulus"]["file"].is_null() && block["expected"]["file"].is_null());
+            continue;
+        }
+        assert!(block["reason"].is_null());
+        for ports in ["stimulus", "expected"] {
+            files.insert(block[ports]["file"].as_str().unwrap().to_owned());
+        }
+        let stimulus = read(folder, &block["stimulus"]);
+        let expected = read(folder, &block["expected"]);
+        assert_eq!((stimulus.len(), expected.len()), (rows, rows), "{name}");
+        for (at, (into, out)) in stimulus.iter().zip(&expected).enumerate() {
+            let found = replay(name, into, &constants);
+            if found != out.values && wrong.is_none() {
+                let (values, out) = (&into.values, &out.values);
+                wrong = Some(format!(
+                    "{name}, row {at}: {values:?} -> {out:?}, not {found:?}"
+                ));
+            }
+        }
+    }
+    let there: BTreeSet<String> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    assert_eq!(there, files);
+    (wrong, counts)
+}
+
+/// Scenes and cameras: a sponge-like thing from outside, a fractal from near,
+/// a dense cube with the eye within, near its middle.
+fn scenes() -> Vec<(&'static str, Graph, Camera)> {
+    let blob = octree(4, &|[x, y, z]| {
+        (x * 7 + y * 5 + z * 3) % 4 < 2 && x + y > z / 2
+    });
+    vec![
+        (
+            "blob",
+            blob,
+            camera([30.0, 24.0, 20.0], [8.0, 8.0, 6.0], 48),
+        ),
+        (
+            "tetrahedra",
+            sierpinski(5),
+            camera([40.0, -9.0, 20.0], [16.0, 16.0, 16.0], 37),
+        ),
+        (
+            "inside",
+            octree(3, &|[x, y, z]| x != 3 && (y + z) % 5 != 2),
+            camera([3.4, 3.7, 3.5], [8.0, 5.0, 4.0], 40),
+        ),
+        (
+            "cube",
+            solid(3),
+            camera([11.0, 10.0, 14.0], [4.0, 4.0, 4.0], 33),
+        ),
+    ]
+}
+
+fn options(coverage: Coverage, cage: CageKind, tolerance_px: f64, bits: u32) -> SetupOptions {
+    SetupOptions {
+        bits,
+        coverage,
+        cage,
+        tolerance_px,
+        ..SetupOptions::default()
+    }
+}
+
+/// Records a frame and replays it.
+fn round_trip(
+    graph: &Graph,
+    camera: &Camera,
+    options: &SetupOptions,
+    records: u64,
+) -> (Option<String>, BTreeMap<String, usize>) {
+    let shelter = tempfile::tempdir().unwrap();
+    let folder = shelter.path().join("vectors");
+    let request = Request {
+        scene: "a test",
+        records,
+        overflow: Overflow::Trap,
+        folder: &folder,
+        overwrite: false,
+    };
+    let recorded = vectors::write(&graph.view(), &setup(graph, camera, options), &request).unwrap();
+    let (wrong, counts) = replay_folder(&folder);
+    let rows: usize = counts.values().sum();
+    assert_eq!(rows as u64, recorded.rows);
+    assert_eq!(
+        counts.values().filter(|&&rows| rows > 0).count(),
+        recorded.blocks
+    );
+    (wrong, counts)
+}
+
+const COVERAGES: [Coverage; 3] = [Coverage::Any, Coverage::Center, Coverage::Exact];
+const CAGES: [CageKind; 2] = [CageKind::Corners, CageKind::Frame];
+const TOLERANCES: [f64; 3] = [0.0, 0.125, f64::INFINITY];
+
+/// Every row of every block, for every scene, rule, cage, tolerance and two words.
+#[test]
+fn rows_are_what_the_blocks_give() {
+    let mut sums: BTreeMap<String, usize> = BTreeMap::new();
+    for (name, graph, camera) in scenes() {
+        for coverage in COVERAGES {
+            for cage in CAGES {
+                for tolerance in TOLERANCES {
+                    for bits in [24, 32] {
+                        let options = options(coverage, cage, tolerance, bits);
+                        let (wrong, counts) = round_trip(&graph, &camera, &options, 150);
+                        let at = format!("{name}, {coverage:?}, {cage:?}, {tolerance}, {bits}");
+                        assert_eq!(wrong, None, "{at}");
+                        for (block, rows) in counts {
+                            *sums.entry(block).or_default() += rows;
+                        }
+                    }
+                }
+            }
+        }
+    }
+    // None is there that nothing came to.
+    for (block, rows) in sums {
+        assert!(rows > 0, "{block} has no rows anywhere");
+    }
+}
+
+/// Wide words too, and a level of detail.
+#[test]
+fn rows_of_wide_words_and_coarse_frames() {
+    let (_, graph, camera) = scenes().swap_remove(0);
+    for coverage in COVERAGES {
+        for lod_px in [0.0, 3.0] {
+            let options = SetupOptions {
+                lod_px,
+                aa_log2: 1,
+                ..options(coverage, CageKind::Frame, 1.0 / 64.0, 64)
+            };
+            let (wrong, _) = round_trip(&graph, &camera, &options, 100);
+            assert_eq!(wrong, None, "{coverage:?}, {lod_px}");
+        }
+    }
+}
+
+/// Blocks that a frame must come to have rows, and those that it cannot have
+/// say why.
+#[test]
+fn blocks_have_rows_where_they_should() {
+    let (_, graph, camera) = scenes().swap_remove(0);
+    let always = [
+        "filled",
+        "centre",
+        "octant_order",
+        "vertex_pool",
+        "child_corners",
+        "child_span",
+        "border_clip",
+        "bisector_clip",
+        "half_clip",
+        "near_node",
+        "quadrants",
+        "node_choice",
+        "fill_update",
+        "change_depth",
+        "detail_depth",
+        "size_limit",
+        "size_clip",
+    ];
+    let of_exact = [
+        "strip_mean",
+        "strip_lattice",
+        "strip_children",
+        "strip_quadrant",
+        "strip_cover",
+        "border_strips",
+        "bisector_strips",
+        "child_planes",
+        "plane_quadrant",
+        "margin_gap",
+    ];
+    let of_planes = ["cube_planes", "plane_side", "plane_cover"];
+    let of_samples = ["size_screen", "border_screen", "bisector_screen"];
+    let of_centres = ["cage_centre", "centre_sample"];
+    for coverage in COVERAGES {
+        for cage in CAGES {
+            let options = options(coverage, cage, 0.125, 32);
+            let (_, counts) = round_trip(&graph, &camera, &options, 100_000);
+            let has = |blocks: &[&str], expected: bool| {
+                for block in blocks {
+                    assert_eq!(
+                        counts[*block] > 0,
+                        expected,
+                        "{coverage:?} {cage:?} {block}"
+                    );
+                }
+            };
+            let exact = coverage == Coverage::Exact;
+            has(&always, true);
+            has(&["to_screen_divide", "margin_grow"], true);
+            has(&of_exact, exact);
+            has(&of_samples, !exact);
+            has(&of_centres, coverage == Coverage::Center);
+        }
+    }
+    let exact = options(Coverage::Exact, CageKind::Frame, 0.0, 32);
+    let (_, counts) = round_trip(&graph, &camera, &exact, 100_000);
+    for block in of_planes {
+        assert!(counts[block] > 0, "{block}");
+    }
+    for block in [
+        "strip_lattice",
+        "to_screen_divide",
+        "change_depth",
+        "margin_grow",
+    ] {
+        assert_eq!(counts[block], 0, "{block}");
+    }
+    // The eye inside: some cubes lie beside it.
+    let (_, graph, camera) = scenes().swap_remove(2);
+    let (_, counts) = round_trip(&graph, &camera, &exact, 100_000);
+    assert!(counts["cube_front"] > 0);
+}
+
+/// A file with one bit changed is found out.
+#[test]
+fn a_wrong_bit_is_found() {
+    let (_, graph, camera) = scenes().swap_remove(0);
+    let shelter = tempfile::tempdir().unwrap();
+    let folder = shelter.path().join("vectors");
+    let request = Request {
+        scene: "a test",
+        records: 20,
+        overflow: Overflow::Trap,
+        folder: &folder,
+        overwrite: false,
+    };
+    let options = options(Coverage::Exact, CageKind::Corners, 0.125, 24);
+    vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+    assert_eq!(replay_folder(&folder).0, None);
+    for file in [
+        "vertex_pool.out.hex",
+        "centre.in.hex",
+        "node_choice.out.hex",
+    ] {
+        let path = folder.join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        let last = text
+            .trim_end()
+            .chars()
+            .last()
+            .unwrap()
+            .to_digit(16)
+            .unwrap();
+        let digit = char::from_digit(last ^ 2, 16).unwrap();
+        let mut broken = text.trim_end().to_owned();
+        broken.pop();
+        broken.push(digit);
+        fs::write(&path, broken + "\n").unwrap();
+        let (wrong, _) = replay_folder(&folder);
+        let block = file.split('.').next().unwrap();
+        assert!(wrong.is_some_and(|w| w.starts_with(block)), "{file}");
+        fs::write(&path, text).unwrap();
+    }
+}
