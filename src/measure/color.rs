@@ -41,7 +41,7 @@ impl ColorError {
     /// # Errors
     /// When the sizes differ.
     pub fn between(a: Colors<'_>, b: Colors<'_>) -> Result<Self, SizeError> {
-        check_sizes(a, b)?;
+        check_sizes((a.0, a.1), (b.0, b.1))?;
         let linear = Linear::new();
         let (mut differing, mut max_abs) = (0u64, 0u8);
         let (mut sum_abs, mut sum_srgb) = (0u64, 0u64);
@@ -89,7 +89,7 @@ impl ColorError {
 /// # Errors
 /// When the sizes differ.
 pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeError> {
-    check_sizes(a, b)?;
+    check_sizes((a.0, a.1), (b.0, b.1))?;
     let pixel = |(p, q): (&[u8; 4], &[u8; 4])| {
         let alpha = p[3].abs_diff(q[3]);
         let channel = |c: usize| p[c].abs_diff(q[c]).saturating_add(alpha).saturating_mul(4);
@@ -98,14 +98,12 @@ pub fn difference(a: Colors<'_>, b: Colors<'_>) -> Result<Vec<[u8; 4]>, SizeErro
     Ok(a.2.iter().zip(b.2).map(pixel).collect())
 }
 
-fn check_sizes(a: Colors<'_>, b: Colors<'_>) -> Result<(), SizeError> {
-    if (a.0, a.1) == (b.0, b.1) {
+/// Refuses two sizes that are not the same.
+pub(super) fn check_sizes(a: (u32, u32), b: (u32, u32)) -> Result<(), SizeError> {
+    if a == b {
         return Ok(());
     }
-    Err(SizeError {
-        a: (a.0, a.1),
-        b: (b.0, b.1),
-    })
+    Err(SizeError { a, b })
 }
 
 fn decibel(mse: f64) -> f64 {
@@ -117,7 +115,7 @@ fn decibel(mse: f64) -> f64 {
 }
 
 /// The colour that is seen on black.
-fn on_black([r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
+pub(super) fn on_black([r, g, b, alpha]: [u8; 4]) -> [u8; 3] {
     [r, g, b].map(|c| ((u32::from(c) * u32::from(alpha) + 127) / 255) as u8)
 }
 

@@ -44,6 +44,21 @@ impl CoverageError {
     }
 }
 
+/// Pixels of `test` that show something else than the reference: where both
+/// show something, the voxel of `test` neither is that of `reference` nor holds
+/// it. So a coarser voxel in the right place, as level of detail draws it, is not counted.
+/// Voxels are given as in a frame of an object of `depth` levels.
+#[must_use]
+pub fn count_elsewhere(test: &[[i32; 4]], reference: &[[i32; 4]], depth: u32) -> u64 {
+    let holds = |outer: &[i32; 4], inner: &[i32; 4]| {
+        let levels = (depth as i32 - outer[3]).clamp(0, 31);
+        (0..3).all(|k| (outer[k] ^ inner[k]) as u32 >> levels == 0) || levels > 30
+    };
+    let both = test.iter().zip(reference);
+    both.filter(|(t, r)| t[3] >= 0 && r[3] >= 0 && !holds(t, r))
+        .count() as u64
+}
+
 /// Entries at which two sequences differ; what only one of them has counts too.
 pub fn count_differing<T: PartialEq>(a: &[T], b: &[T]) -> u64 {
     let both = a.iter().zip(b).filter(|(x, y)| x != y).count();
@@ -69,5 +84,17 @@ mod tests {
         assert_eq!(error, expected);
         assert_eq!(error.differing(), 3);
         assert_eq!(count_differing(&[1, 2, 3], &[1, 5]), 2);
+    }
+
+    #[test]
+    fn a_coarser_voxel_in_its_place_is_not_elsewhere() {
+        let none = [0, 0, 0, -1];
+        let fine = [5, 6, 7, 3];
+        // Of a depth of 3: level 2 holds two voxels a side.
+        let reference = [fine, fine, fine, fine, none];
+        let test = [fine, [4, 6, 6, 2], [0, 6, 6, 2], [5, 6, 6, 3], fine];
+        assert_eq!(count_elsewhere(&test, &reference, 3), 2);
+        assert_eq!(count_elsewhere(&[[0, 0, 0, 0]], &[fine], 3), 0);
+        assert_eq!(count_elsewhere(&[none], &[fine], 3), 0);
     }
 }

@@ -1,14 +1,22 @@
-//! How far two pictures are apart: colours and coverage.
+//! How far two pictures are apart: colours, coverage, depths, and films of them.
 //!
 //! What each number is, is written where it is computed; none of them is
 //! rounded. Pictures of different sizes are not compared.
 
 mod color;
 mod coverage;
+mod flicker;
+mod flip;
+mod share;
+mod spread;
 mod ssim;
 
 pub use color::{ColorError, Colors, difference};
-pub use coverage::{CoverageError, count_differing};
+pub use coverage::{CoverageError, count_differing, count_elsewhere};
+pub use flicker::{Flicker, LinearPicture};
+pub use flip::{Flip, FlipMap, PIXELS_PER_DEGREE};
+pub use share::{CoverageBias, ShareError, Shares, is_thin};
+pub use spread::Spread;
 
 /// Why two pictures cannot be compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
