@@ -2,6 +2,7 @@
 //! Each gives plain data and a table. What was found: `spec/lab.md`.
 
 pub mod bench;
+pub mod error;
 pub mod float_rays;
 pub mod model;
 pub mod vertex_error;

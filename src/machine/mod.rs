@@ -20,6 +20,7 @@ mod draw;
 mod fit;
 mod lattice;
 mod planes;
+mod positions;
 mod record;
 mod silhouette;
 mod size;
@@ -42,7 +43,7 @@ use walk::Walk;
 use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
-
+pub use positions::{Positions, Space, visit_positions};
 use steps::Steps;
 pub use steps::{SimulateError, Simulated};
 pub use taps::Block;

@@ -10,6 +10,7 @@ pub mod npy;
 #[cfg(feature = "png")]
 pub mod png;
 mod resolve;
+mod shade;
 mod sight;
 pub mod store;
 
@@ -17,6 +18,7 @@ pub(crate) use color::Linear;
 pub use color::{Background, Shading};
 pub use hash::hash;
 pub use resolve::{ResolveError, resolve};
+pub use shade::Shader;
 
 /// `depth` where nothing is seen.
 pub const NO_DEPTH: f32 = f32::INFINITY;

@@ -2,13 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::color::{Light, Linear};
-use super::sight::Sight;
+use super::shade::Shader;
 use super::{Background, NO_DEPTH, Picture, Shading};
-use glam::DVec3;
-
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
-use crate::graph::{Graph, PackedNormal};
+use crate::graph::Graph;
 use crate::project::FrameSetup;
 
 /// Why a frame and its set-up make no picture.
@@ -83,12 +80,7 @@ pub fn resolve(
 /// What all pixels of a picture share.
 struct Resolver<'f> {
     frame: &'f Frame,
-    graph: &'f Graph,
-    sight: Sight,
-    light: Light,
-    linear: Linear,
-    /// Linear light of the background; `None`: transparent.
-    background: Option<[u32; 3]>,
+    shader: Shader<'f>,
     origin_index: [i64; 3],
     aa: u32,
 }
@@ -101,20 +93,9 @@ impl<'f> Resolver<'f> {
         shading: Shading,
         background: Background,
     ) -> Self {
-        let sight = Sight::new(setup);
-        let light = Light::new(shading, sight.axes());
-        let linear = Linear::new();
-        let background = match background {
-            Background::None => None,
-            Background::Color(color) => Some(linear.decode(color)),
-        };
         Self {
             frame,
-            graph,
-            sight,
-            light,
-            linear,
-            background,
+            shader: Shader::new(graph, setup, shading, background),
             origin_index: setup.placement.origin_index,
             aa: setup.options.aa_log2,
         }
@@ -141,7 +122,7 @@ impl<'f> Resolver<'f> {
                     records += all[at];
                 }
                 let light = if self.frame.node[at] == NO_NODE {
-                    self.background.unwrap_or([0; 3])
+                    self.shader.background().unwrap_or([0; 3])
                 } else {
                     seen += 1;
                     let middle = (i, j) == (side >> 1, side >> 1);
@@ -166,14 +147,10 @@ impl<'f> Resolver<'f> {
         pixel: Option<&mut Pixel>,
     ) -> Result<[u32; 3], ResolveError> {
         let (node, voxel) = (self.frame.node[at], self.frame.voxel[at]);
-        let meeting = self.sight.meet(x, y, voxel);
-        let packed = self.graph.normal.get(node as usize).copied();
-        let normal = packed
-            .and_then(PackedNormal::decode)
-            .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
+        let surface = self.shader.surface(x, y, node, voxel);
         if let Some(pixel) = pixel {
-            pixel.depth = meeting.depth as f32;
-            pixel.normal = normal.as_vec3().to_array();
+            pixel.depth = surface.meeting.depth as f32;
+            pixel.normal = surface.normal.as_vec3().to_array();
             for k in 0..3 {
                 let index = i64::from(voxel[k]) + self.origin_index[k];
                 pixel.voxel[k] = i32::try_from(index).map_err(|_| ResolveError::Index)?;
@@ -181,20 +158,17 @@ impl<'f> Resolver<'f> {
             pixel.voxel[3] = voxel[3];
             pixel.node = node as i32;
         }
-        let color = self.graph.color.get(node as usize).copied();
-        let share = self.light.on(normal);
-        let light = self.linear.decode(color.unwrap_or_default());
-        Ok(light.map(|channel| (channel * share) >> 8))
+        Ok(self.shader.light_of(node, &surface))
     }
 
     /// The mean of a pixel's samples, of which `seen` show a voxel.
     fn mix(&self, sum: [u32; 3], seen: u32) -> [u8; 4] {
         let samples_log2 = 2 * self.aa;
         let half = (1u32 << samples_log2) >> 1;
-        if self.background.is_some() {
+        if self.shader.background().is_some() {
             // All samples count, so their number is a power of two.
             let mean = sum.map(|channel| (channel + half) >> samples_log2);
-            let [r, g, b] = self.linear.encode(mean);
+            let [r, g, b] = self.shader.encode(mean);
             return [r, g, b, 255];
         }
         if seen == 0 {
@@ -203,21 +177,7 @@ impl<'f> Resolver<'f> {
         let alpha = ((seen << 8) - seen + half) >> samples_log2;
         // PNG stores colours that are not premultiplied: the host divides.
         let mean = sum.map(|channel| (channel + seen / 2) / seen);
-        let [r, g, b] = self.linear.encode(mean);
+        let [r, g, b] = self.shader.encode(mean);
         [r, g, b, alpha as u8]
-    }
-}
-
-/// Cosine above which a normal is taken to point away from the eye.
-const AWAY: f64 = 0.25;
-
-/// A normal turned to the side from which it is seen. A thin wall has two
-/// sides and one normal; the rounded corners of a solid, whose normals lean
-/// away by a little, keep theirs.
-fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
-    if normal.dot(ray) > AWAY {
-        -normal
-    } else {
-        normal
     }
 }

@@ -48,6 +48,45 @@ impl Engine for Rays {
     }
 }
 
+/// Single rays of a frame: what [`Rays`] draws, asked for sample by sample,
+/// for pictures of so many samples that no frame would hold them.
+pub struct Caster<'g> {
+    graph: &'g GraphView<'g>,
+    view: View,
+    is_narrow: bool,
+}
+
+/// Most levels of an image root whose rays can be asked for: components of
+/// rays are at most `2^18`.
+pub const MAX_CASTER_LEVELS: u32 = 17;
+
+impl<'g> Caster<'g> {
+    /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`]
+    /// levels. With more of them than a picture needs (`setup.levels` raised, nothing
+    /// else changed), the samples are those of a finer grid in the same picture.
+    #[must_use]
+    pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
+        debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
+        let view = View::new(setup);
+        let is_narrow = view.fits_i128();
+        Self {
+            graph,
+            view,
+            is_narrow,
+        }
+    }
+
+    /// Graph node and voxel, as a frame stores them, that sample `(x, y)` sees.
+    #[must_use]
+    pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, [i32; 4])> {
+        if self.is_narrow {
+            Walk::<i128>::new(self.graph, &self.view, x, y).nearest()
+        } else {
+            Walk::<Wide>::new(self.graph, &self.view, x, y).nearest()
+        }
+    }
+}
+
 /// Draws every row, on all threads; returns how many cubes were tested.
 fn render_rows<N: Number>(graph: &GraphView<'_>, view: &View, frame: &mut Frame) -> u64 {
     let width = frame.width as usize;

@@ -1,0 +1,323 @@
+//! Where the machine holds a voxel's vertices: a window for measurements.
+//!
+//! The way from the root to some voxels is walked with the machine's own
+//! arithmetic, without a picture: each record in the quadtree's root, changed
+//! to screen space where the set-up lets it change.
+
+use hwmodel::{Datapath, NoProbe, Overflow, Word};
+
+use super::constants::Constants;
+use super::fit::Place;
+use super::lattice::{Corners, Frame, Lattice};
+use super::record::{Clip, Screen};
+use super::strips::{Strips, Subtree};
+use super::to_screen;
+use crate::frame::QuadNode;
+use crate::project::{CageKind, Coverage, FrameSetup};
+
+/// How a record holds its vertices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Space {
+    /// In clip space, where halving is exact.
+    Clip,
+    /// On the screen, where it is an approximation.
+    Screen,
+}
+
+/// The vertices of one record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Positions {
+    /// Octree level, 0 = root.
+    pub level: u32,
+    /// The voxel's lowest corner, finest voxels.
+    pub corner: [i64; 3],
+    /// How they are held.
+    pub space: Space,
+    /// Vertices in Morton order: samples across and down, from the picture's
+    /// top left. `None`: not before the eye.
+    pub samples: [Option<[f64; 2]>; 8],
+}
+
+/// Tells `visit` of the records of some voxels and of all their ancestors,
+/// each once. Voxels are given as in a frame: lowest corner in finest voxels,
+/// and level; those below a level that level of detail ends at are left out.
+/// Returns whether all arithmetic stayed within its words.
+pub fn visit_positions(
+    setup: &FrameSetup,
+    voxels: &[[i32; 4]],
+    visit: &mut dyn FnMut(&Positions),
+) -> bool {
+    let mut ways: Vec<Way> = voxels.iter().map(|voxel| Way::to(setup, voxel)).collect();
+    ways.sort_unstable();
+    ways.dedup();
+    match setup.options.cage {
+        CageKind::Corners => Descent::<Corners>::run(setup, &ways, visit),
+        CageKind::Frame => Descent::<Frame>::run(setup, &ways, visit),
+    }
+}
+
+/// The way from the root to a voxel: octants, three bits each from bit 93 downwards.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Way {
+    octants: u128,
+    level: u32,
+}
+
+/// Place of the first octant's lowest bit.
+const FIRST_OCTANT: u32 = 90;
+
+impl Way {
+    fn to(setup: &FrameSetup, voxel: &[i32; 4]) -> Self {
+        let level = voxel[3].max(0) as u32;
+        let octants = (0..level.min(setup.depth)).fold(0u128, |octants, step| {
+            let bit = setup.depth - 1 - step;
+            let octant = (0..3).fold(0u128, |octant, k| {
+                octant << 1 | (voxel[k] >> bit & 1) as u128
+            });
+            octants | octant << (FIRST_OCTANT - 3 * step)
+        });
+        Self { octants, level }
+    }
+
+    fn octant(&self, step: u32) -> usize {
+        (self.octants >> (FIRST_OCTANT - 3 * step) & 7) as usize
+    }
+}
+
+enum Held<L> {
+    Clip(Clip<L>),
+    Screen(Screen<L>),
+    Strips(Subtree, Strips),
+}
+
+struct Descent<'v, L> {
+    dp: Datapath<NoProbe>,
+    constants: Constants,
+    setup: &'v FrameSetup,
+    visit: &'v mut dyn FnMut(&Positions),
+    lattice: std::marker::PhantomData<L>,
+}
+
+const PLACE: Place = Place {
+    quad: QuadNode::ROOT,
+    inside: false,
+};
+
+impl<'v, L: Lattice> Descent<'v, L> {
+    fn run(setup: &'v FrameSetup, ways: &[Way], visit: &'v mut dyn FnMut(&Positions)) -> bool {
+        let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
+        let constants = Constants::load(&mut dp, setup);
+        let mut lattice =
+            |c: usize| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]);
+        let (x, y, w) = (lattice(0), lattice(1), lattice(2));
+        let (w_min, _) = w.span(&mut dp);
+        let mut descent = Self {
+            dp,
+            constants,
+            setup,
+            visit,
+            lattice: std::marker::PhantomData,
+        };
+        descent.node(0, [0; 3], Held::Clip(Clip { x, y, w, w_min }), ways);
+        descent.dp.trap().is_none()
+    }
+
+    /// A record, and those below it on the ways.
+    fn node(&mut self, level: u32, corner: [i64; 3], held: Held<L>, ways: &[Way]) {
+        if ways.is_empty() || self.dp.trap().is_some() {
+            return;
+        }
+        let held = self.changed(level, held);
+        let positions = Positions {
+            level,
+            corner,
+            space: match held {
+                Held::Clip(_) => Space::Clip,
+                _ => Space::Screen,
+            },
+            samples: self.samples(level, &held),
+        };
+        if self.dp.trap().is_none() {
+            (self.visit)(&positions);
+        }
+        let ends = matches!(&held, Held::Strips(subtree, _) if level >= subtree.finest());
+        let deeper = |way: &Way| way.level > level;
+        if ends || level >= self.setup.depth || !ways.iter().any(deeper) {
+            return;
+        }
+        let children = self.children(level, held);
+        let side = 1i64 << (self.setup.depth - level - 1);
+        for (octant, child) in children.into_iter().enumerate() {
+            let below: Vec<Way> = ways
+                .iter()
+                .copied()
+                .filter(|way| deeper(way) && way.octant(level) == octant)
+                .collect();
+            let axis = |k: usize| corner[k] + side * (octant as i64 >> (2 - k) & 1);
+            self.node(level + 1, [axis(0), axis(1), axis(2)], child, &below);
+        }
+    }
+
+    /// A record as it is after its turn began.
+    fn changed(&mut self, level: u32, held: Held<L>) -> Held<L> {
+        let Held::Clip(clip) = held else { return held };
+        if !to_screen::may_change(&mut self.dp, &self.constants, level, &PLACE, &clip) {
+            return Held::Clip(clip);
+        }
+        if self.constants.coverage == Coverage::Exact {
+            let mean = to_screen::mean(&mut self.dp, &self.constants, &PLACE, &clip);
+            let (subtree, strips) = Subtree::new(&mut self.dp, &self.constants, level, &mean);
+            return Held::Strips(subtree, strips);
+        }
+        Held::Screen(to_screen::change(
+            &mut self.dp,
+            &self.constants,
+            &PLACE,
+            &clip,
+        ))
+    }
+
+    fn children(&mut self, level: u32, held: Held<L>) -> [Held<L>; 8] {
+        let dp = &mut self.dp;
+        match held {
+            Held::Clip(clip) => {
+                let [x, y, w] = [clip.x, clip.y, clip.w].map(|lattice| lattice.children(dp));
+                std::array::from_fn(|i| {
+                    let (w_min, _) = w[i].span(dp);
+                    let (x, y, w) = (x[i], y[i], w[i]);
+                    Held::Clip(Clip { x, y, w, w_min })
+                })
+            }
+            Held::Screen(screen) => {
+                let [x, y] = [screen.x, screen.y].map(|lattice| lattice.children(dp));
+                std::array::from_fn(|i| {
+                    Held::Screen(Screen {
+                        x: x[i],
+                        y: y[i],
+                        ..screen
+                    })
+                })
+            }
+            Held::Strips(subtree, strips) => subtree
+                .children(dp, level + 1, &strips)
+                .map(|child| Held::Strips(subtree.clone(), child)),
+        }
+    }
+
+    fn samples(&mut self, level: u32, held: &Held<L>) -> [Option<[f64; 2]>; 8] {
+        let dp = &mut self.dp;
+        let number = |word: Word| word.to_host() as f64;
+        match held {
+            Held::Clip(clip) => {
+                let root = libm::ldexp(1.0, self.setup.levels as i32);
+                let [x, y, w] = [clip.x, clip.y, clip.w].map(|lattice| lattice.vertices(dp));
+                std::array::from_fn(|i| {
+                    let depth = number(w[i]);
+                    let at = [x[i], y[i]].map(|c| number(c) / depth * root);
+                    (depth > 0.0).then_some(at)
+                })
+            }
+            Held::Screen(screen) => {
+                let unit = libm::ldexp(1.0, -(self.setup.format.frac() as i32));
+                let (x, y) = (screen.x.vertices(dp), screen.y.vertices(dp));
+                std::array::from_fn(|i| Some([x[i], y[i]].map(|c| number(c) * unit)))
+            }
+            Held::Strips(subtree, strips) => subtree.vertices(level, strips).map(Some),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use crate::graph::Placement;
+    use crate::machine::vertices::screen_corners;
+    use crate::project::{Camera, SetupOptions};
+
+    const DEPTH: u32 = 4;
+
+    fn set_up(options: &SetupOptions) -> FrameSetup {
+        let camera = Camera {
+            eye: DVec3::new(90.0, -70.0, 80.0),
+            target: DVec3::splat(8.0),
+            up: DVec3::Z,
+            fov_degrees: 10.0,
+            width: 256,
+            height: 256,
+        };
+        FrameSetup::new(&camera, &Placement::default(), DEPTH, options).unwrap()
+    }
+
+    fn found(setup: &FrameSetup, voxels: &[[i32; 4]]) -> Vec<Positions> {
+        let mut found = Vec::new();
+        assert!(visit_positions(setup, voxels, &mut |p| found.push(*p)));
+        found
+    }
+
+    #[test]
+    fn ancestors_come_once_and_lead_there() {
+        let setup = set_up(&SetupOptions::default());
+        let voxels = [[5, 6, 7, 4], [5, 6, 6, 4], [5, 6, 7, 4], [8, 0, 0, 1]];
+        let found = found(&setup, &voxels);
+        let places: Vec<_> = found.iter().map(|p| (p.level, p.corner)).collect();
+        // The root, [0..8], [4..8], [4, 6, 6], the two voxels; and the octant.
+        let expected = [
+            (0, [0, 0, 0]),
+            (1, [0, 0, 0]),
+            (2, [4, 4, 4]),
+            (3, [4, 6, 6]),
+            (4, [5, 6, 6]),
+            (4, [5, 6, 7]),
+            (1, [8, 0, 0]),
+        ];
+        assert_eq!(places, expected);
+    }
+
+    #[test]
+    fn the_papers_vertices_are_those_of_the_loop() {
+        let setup = set_up(&SetupOptions {
+            cage: CageKind::Corners,
+            tolerance_px: f64::INFINITY,
+            coverage: Coverage::Any,
+            ..SetupOptions::default()
+        });
+        let last = *found(&setup, &[[5, 6, 7, 4]]).last().unwrap();
+        // 5, 6, 7 are 0101, 0110, 0111: octants from the top.
+        let expected = screen_corners(&setup, 0, &[0, 7, 3, 5]).unwrap();
+        for corner in 0..8 {
+            let expected = [0, 1].map(|c| expected[c][corner] as f64 / 65536.0);
+            assert_eq!(last.samples[corner], Some(expected));
+        }
+        assert_eq!(last.space, Space::Screen);
+    }
+
+    #[test]
+    fn all_rules_and_spaces_are_near_the_truth() {
+        let truth = set_up(&SetupOptions {
+            tolerance_px: 0.0,
+            ..SetupOptions::default()
+        });
+        let voxel = [[5, 6, 7, 4]];
+        let truth = *found(&truth, &voxel).last().unwrap();
+        assert_eq!(truth.space, Space::Clip);
+        for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+            for cage in [CageKind::Corners, CageKind::Frame] {
+                let setup = set_up(&SetupOptions {
+                    coverage,
+                    cage,
+                    tolerance_px: 0.5,
+                    ..SetupOptions::default()
+                });
+                let held = *found(&setup, &voxel).last().unwrap();
+                assert_eq!(held.space, Space::Screen, "{coverage:?} {cage:?}");
+                for (held, truth) in held.samples.iter().zip(truth.samples) {
+                    let (held, truth) = (held.unwrap(), truth.unwrap());
+                    let off = libm::hypot(held[0] - truth[0], held[1] - truth[1]);
+                    assert!(off > 0.0 && off < 0.5, "{coverage:?} {cage:?}: {off}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! What a sample looks like: surface, light, and colours in linear light.
+
+use glam::DVec3;
+
+use super::color::{Light, Linear};
+use super::sight::{Meeting, Sight};
+use super::{Background, Shading};
+use crate::graph::{Graph, PackedNormal};
+use crate::project::FrameSetup;
+
+/// Shows samples of one frame. What it says of a sample depends on where the
+/// sample is, and not on whether its neighbours are drawn: so it serves
+/// pictures of any number of samples.
+pub struct Shader<'g> {
+    graph: &'g Graph,
+    sight: Sight,
+    light: Light,
+    linear: Linear,
+    /// Linear light of the background; `None`: transparent.
+    background: Option<[u32; 3]>,
+}
+
+/// What is seen at a sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surface {
+    /// Where the ray meets the voxel.
+    pub(super) meeting: Meeting,
+    /// Unit normal, world directions.
+    pub(super) normal: DVec3,
+}
+
+impl<'g> Shader<'g> {
+    /// The samples of a frame. `setup.levels` says how fine they are.
+    #[must_use]
+    pub fn new(
+        graph: &'g Graph,
+        setup: &FrameSetup,
+        shading: Shading,
+        background: Background,
+    ) -> Self {
+        let sight = Sight::new(setup);
+        let light = Light::new(shading, sight.axes());
+        let linear = Linear::new();
+        let background = match background {
+            Background::None => None,
+            Background::Color(color) => Some(linear.decode(color)),
+        };
+        Self {
+            graph,
+            sight,
+            light,
+            linear,
+            background,
+        }
+    }
+
+    /// Linear light, 0..=65535 a channel, of sample `(x, y)` that sees a
+    /// node's voxel, given as in a frame.
+    #[must_use]
+    pub fn light(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> [u32; 3] {
+        self.light_of(node, &self.surface(x, y, node, voxel))
+    }
+
+    /// Linear light of a sample that sees nothing; `None`: it is transparent.
+    #[must_use]
+    pub fn background(&self) -> Option<[u32; 3]> {
+        self.background
+    }
+
+    /// The sRGB colour whose linear light is nearest.
+    #[must_use]
+    pub fn encode(&self, light: [u32; 3]) -> [u8; 3] {
+        self.linear.encode(light)
+    }
+
+    pub(super) fn surface(&self, x: u32, y: u32, node: u32, voxel: [i32; 4]) -> Surface {
+        let meeting = self.sight.meet(x, y, voxel);
+        let packed = self.graph.normal.get(node as usize).copied();
+        let normal = packed
+            .and_then(PackedNormal::decode)
+            .map_or(meeting.face, |normal| towards_eye(normal, meeting.ray));
+        Surface { meeting, normal }
+    }
+
+    pub(super) fn light_of(&self, node: u32, surface: &Surface) -> [u32; 3] {
+        let color = self.graph.color.get(node as usize).copied();
+        let share = self.light.on(surface.normal);
+        let light = self.linear.decode(color.unwrap_or_default());
+        light.map(|channel| (channel * share) >> 8)
+    }
+}
+
+/// Cosine above which a normal is taken to point away from the eye.
+const AWAY: f64 = 0.25;
+
+/// A normal turned to the side from which it is seen. A thin wall has two
+/// sides and one normal; the rounded corners of a solid, whose normals lean
+/// away by a little, keep theirs.
+fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
+    if normal.dot(ray) > AWAY {
+        -normal
+    } else {
+        normal
+    }
+}
