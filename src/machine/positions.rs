@@ -4,6 +4,8 @@
 //! arithmetic, without a picture: each record in the quadtree's root, changed
 //! to screen space where the set-up lets it change.
 
+use std::rc::Rc;
+
 use hwmodel::{Datapath, NoProbe, Overflow, Word};
 
 use super::constants::Constants;
@@ -87,7 +89,7 @@ impl Way {
 enum Held<L> {
     Clip(Clip<L>),
     Screen(Screen<L>),
-    Strips(Subtree, Strips),
+    Strips(Rc<Subtree>, Strips),
 }
 
 struct Descent<'v, L> {
@@ -167,7 +169,7 @@ impl<'v, L: Lattice> Descent<'v, L> {
         if self.constants.coverage == Coverage::Exact {
             let mean = to_screen::mean(&mut self.dp, &self.constants, &PLACE, &clip);
             let (subtree, strips) = Subtree::new(&mut self.dp, &self.constants, level, &mean);
-            return Held::Strips(subtree, strips);
+            return Held::Strips(Rc::new(subtree), strips);
         }
         Held::Screen(to_screen::change(
             &mut self.dp,
@@ -200,7 +202,7 @@ impl<'v, L: Lattice> Descent<'v, L> {
             }
             Held::Strips(subtree, strips) => subtree
                 .children(dp, level + 1, &strips)
-                .map(|child| Held::Strips(subtree.clone(), child)),
+                .map(|child| Held::Strips(Rc::clone(&subtree), child)),
         }
     }
 

@@ -78,7 +78,12 @@ pub(in crate::cli) fn write(
     if console.json {
         return console.document(&results.document);
     }
-    let tables: Vec<String> = results.tables.iter().map(in_text).collect();
+    print(&results.tables, console)
+}
+
+/// What tables look like on a terminal, one below the other.
+pub(super) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
+    let tables: Vec<String> = tables.iter().map(in_text).collect();
     console.data(tables.join("\n\n"))
 }
 

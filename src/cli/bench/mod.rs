@@ -5,7 +5,9 @@ pub(super) mod args;
 mod coherence;
 pub(super) mod context;
 mod engines;
+mod error;
 pub(super) mod export;
+mod picture_export;
 mod scaling;
 pub(super) mod subjects;
 mod vertex_error;
@@ -42,6 +44,13 @@ enum Experiment {
     ///
     /// One at a time, on one thread; says what that costs and whether it changes the picture.
     Ablation(Box<args::SceneBenchArgs>),
+    /// How far pictures are from the truth, and what they take: by drawing rule, tolerance, cage, word
+    /// format, level of detail and samples a pixel
+    ///
+    /// Each is compared with exact rays through the same points, and with a reference of 16 x 16 exact rays
+    /// a pixel. A second reference gives the noise floor. All draw in turn, on one thread; beside each time
+    /// stand the operations of the machine, which are the same in every run.
+    Error(Box<error::ErrorArgs>),
     /// What the next frame of a turntable has in common with the last
     ///
     /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
@@ -72,6 +81,7 @@ pub(super) fn run(
         Experiment::Engines(args) => engines::run(args, scenes, threads, console),
         Experiment::Scaling(args) => scaling::run(args, scenes, threads, console),
         Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
+        Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::VertexError => vertex_error::run(console),
     }
@@ -100,7 +110,7 @@ impl From<BenchError> for CliError {
         match error {
             BenchError::Engine { who, source } => Self::from(source).at(who),
             BenchError::Setup(error) => error.into(),
-            BenchError::Threads { .. } => Self::new(Kind::Run, error),
+            BenchError::Picture(_) | BenchError::Threads { .. } => Self::new(Kind::Run, error),
         }
     }
 }

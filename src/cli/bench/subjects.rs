@@ -53,14 +53,31 @@ impl Standpoint {
 }
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(in crate::cli) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+pub(super) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+    names_or(given, from_config, &DEFAULT)
+}
+
+/// The same with other scenes where none is named.
+pub(super) fn names_or(
+    given: &[String],
+    from_config: Vec<String>,
+    default: &[&str],
+) -> Vec<String> {
     if !given.is_empty() {
         given.to_vec()
     } else if !from_config.is_empty() {
         from_config
     } else {
-        DEFAULT.map(str::to_owned).into()
+        default.iter().map(|&name| name.to_owned()).collect()
     }
+}
+
+/// A scene's name as part of a file's: letters, digits, and hyphens between them.
+pub(super) fn file_stem(name: &str) -> String {
+    let name = name.strip_prefix("gen:").unwrap_or(name);
+    let letters = |c: char| !c.is_ascii_alphanumeric();
+    let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
+    words.join("-")
 }
 
 /// Opens a scene. Terrain, sponge and the bundled tree have their standard
@@ -116,6 +133,12 @@ fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_files() {
+        let stems = ["gen:terrain,depth=8", "a/b c.vox", BUNDLED].map(file_stem);
+        assert_eq!(stems, ["terrain-depth-8", "a-b-c-vox", "bundled"]);
+    }
 
     #[test]
     fn standard_cameras_are_the_benchmarks() {

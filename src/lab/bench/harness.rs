@@ -95,6 +95,9 @@ pub enum BenchError {
     /// A frame cannot be set up.
     #[error(transparent)]
     Setup(#[from] SetupError),
+    /// Samples make no picture, or none that can be compared.
+    #[error("{0}")]
+    Picture(String),
     /// The system gave no threads.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

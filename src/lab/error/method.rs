@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::project::{Camera, Stats};
 
 /// A way to draw a scene: an engine with its settings, or any other renderer.
-pub trait Method {
+pub trait Method: Send {
     /// Which family it is of, such as `voxels`: methods of one family have the
     /// same settings by name and order.
     fn family(&self) -> &'static str;
@@ -40,6 +40,9 @@ pub trait Method {
     /// # Errors
     /// When the frame cannot be finished.
     fn show(&mut self) -> Result<Shown, Refused>;
+
+    /// Lets go of what was made for a camera.
+    fn end(&mut self);
 }
 
 /// Why a method has no picture: an overflow, a view that collapses.

@@ -1,15 +1,25 @@
 //! Run time against error.
 //!
 //! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
-//! many exact rays; [`measure`] measures methods on a scene, error and time;
-//! [`pareto`] says which of them are worth having.
+//! many exact rays; [`measure()`] measures methods on a scene, error and time;
+//! [`beaten_by`] and the plots say which of them are worth having.
 
+mod measure;
 mod method;
+mod pareto;
+mod picture_error;
 mod reference;
+mod tables;
 mod vertices;
 mod voxels;
 
+pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
+#[cfg(feature = "cli")]
+pub use pareto::panels;
+pub use pareto::{beaten_by, dominated};
+pub use picture_error::{Judge, PictureError};
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
+pub use tables::{rows, table, vertex_table};
 pub use vertices::vertex_levels;
 pub use voxels::{Look, VoxelMethod, tolerance_in_words};

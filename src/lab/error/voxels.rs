@@ -41,6 +41,7 @@ pub struct VoxelMethod<'g> {
     graph: &'g Graph,
     options: SetupOptions,
     engine_name: &'static str,
+    make: MakeEngine,
     engine: Box<dyn Engine + Send>,
     look: Look,
     ready: Option<Ready>,
@@ -72,6 +73,7 @@ impl<'g> VoxelMethod<'g> {
             graph,
             options,
             engine_name,
+            make,
             engine: make(1),
             look,
             ready: None,
@@ -244,6 +246,11 @@ impl Method for VoxelMethod<'_> {
             }),
             remark: handed.then(|| "drawn by the machine".to_owned()),
         })
+    }
+
+    fn end(&mut self) {
+        self.ready = None;
+        self.engine = (self.make)(1);
     }
 }
 

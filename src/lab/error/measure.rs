@@ -1,0 +1,421 @@
+//! Methods on a scene: what is wrong with their pictures, and what they took.
+
+use std::hint::black_box;
+use std::sync::Arc;
+
+use rayon::ThreadPoolBuilder;
+use serde::{Serialize, Serializer};
+
+use super::method::{Method, Refused, Shown, VertexLevel, over_levels};
+use super::picture_error::{Judge, PictureError};
+use super::reference::{Reference, Sampling, cast};
+use super::voxels::Look;
+use crate::frame::Frame;
+use crate::graph::Progress;
+use crate::lab::bench::{BenchError, Clock, Schedule, Subject, Summary};
+use crate::measure::{CoverageError, Spread, count_elsewhere};
+use crate::picture::{Background, Picture, resolve};
+use crate::project::{Camera, Engine, FrameSetup, SetupOptions, Stats};
+use crate::rays::Rays;
+
+/// What is measured, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// Pixels across and down.
+    pub size: (u32, u32),
+    /// How often each method draws.
+    pub schedule: Schedule,
+    /// Strata of a reference's pixel along each axis, as a power of two.
+    pub strata_log2: u32,
+    /// How samples become colours.
+    pub look: Look,
+}
+
+/// Seeds of the reference and of the second one, whose distance is the noise floor.
+const SEEDS: [u64; 2] = [1, 2];
+
+/// Most methods that draw in turn, and so have their buffers in memory at one time.
+const MOST_IN_TURN: usize = 64;
+
+/// What one method's picture of a scene came to.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    /// What samples see against exact rays through the same points, if the method has samples of voxels.
+    pub samples: Option<SampleError>,
+    /// Depths at pixels, against exact rays, finest voxels.
+    pub depth_voxels: Option<Spread>,
+    /// Distances of vertices from their exact projections, pixels.
+    pub vertex_px: Option<Spread>,
+    /// The same by octree level.
+    pub vertex_levels: Vec<VertexLevel>,
+    /// Against the reference.
+    pub picture: PictureError,
+    /// Wall time of a frame, one thread.
+    pub wall: Summary,
+    /// Processor time of a frame.
+    pub thread: Option<Summary>,
+    /// What it counted; the first is its work.
+    #[serde(serialize_with = "as_map")]
+    pub counters: Stats,
+    /// Anything else.
+    pub remark: Option<String>,
+}
+
+/// What samples see against exact rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct SampleError {
+    /// By kind; `wrong_voxel` has coarser voxels in it too.
+    #[serde(flatten)]
+    pub coverage: CoverageError,
+    /// Samples that show a voxel which neither is nor holds the right one.
+    pub elsewhere: u64,
+}
+
+impl SampleError {
+    /// Extra and missing, as a part of what is covered.
+    #[must_use]
+    pub fn wrong_share(&self) -> f64 {
+        let wrong = self.coverage.extra + self.coverage.missing;
+        wrong as f64 / self.coverage.covered.max(1) as f64
+    }
+}
+
+/// A method on a scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// What the method is called.
+    pub method: String,
+    /// Its family.
+    pub family: &'static str,
+    /// Its settings.
+    #[serde(serialize_with = "as_map")]
+    pub settings: Vec<(&'static str, String)>,
+    /// The word that plots colour it by.
+    pub kind: String,
+    /// What came of it, or why nothing did.
+    #[serde(serialize_with = "outcome_or_reason")]
+    pub outcome: Result<Outcome, Refused>,
+}
+
+/// All methods on a scene.
+#[derive(Debug, Clone, Serialize)]
+pub struct SceneErrors {
+    /// The scene.
+    pub scene: String,
+    /// Its finest voxels.
+    pub voxels: u64,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Samples of a pixel of the reference.
+    pub reference_samples: u32,
+    /// What a second reference of another seed is from the first.
+    pub noise_floor: PictureError,
+    /// The methods.
+    pub rows: Vec<Row>,
+    /// The reference.
+    #[serde(skip)]
+    pub reference: Arc<Reference>,
+    /// The methods' pictures, in the order of rows; empty for those without.
+    #[serde(skip)]
+    pub pictures: Vec<Vec<[u8; 4]>>,
+}
+
+fn as_map<S: Serializer, V: Serialize>(
+    entries: &[(&'static str, V)],
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    to.collect_map(entries.iter().map(|(name, value)| (name, value)))
+}
+
+fn outcome_or_reason<S: Serializer>(
+    outcome: &Result<Outcome, Refused>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    match outcome {
+        Ok(outcome) => outcome.serialize(to),
+        Err(Refused(reason)) => to.collect_map([("refused", reason)]),
+    }
+}
+
+/// References, each cast once for a scene, a camera and a sampling.
+#[derive(Default)]
+pub struct References {
+    cast: Vec<(String, Camera, Sampling, Arc<Reference>)>,
+}
+
+impl References {
+    /// The reference of a subject from a camera, from memory if it was cast before.
+    ///
+    /// # Errors
+    /// When the camera cannot see.
+    pub fn of(
+        &mut self,
+        subject: &Subject,
+        camera: &Camera,
+        sampling: Sampling,
+        look: Look,
+        progress: &dyn Progress,
+    ) -> Result<Arc<Reference>, BenchError> {
+        let same = |(scene, from, with, _): &&(String, Camera, Sampling, Arc<Reference>)| {
+            (scene, from, with) == (&subject.name, camera, &sampling)
+        };
+        if let Some((.., known)) = self.cast.iter().find(same) {
+            return Ok(Arc::clone(known));
+        }
+        let setup = truth(subject, camera, 0)?;
+        let background = Background::Color(look.background);
+        let reference = cast(
+            &subject.graph,
+            &setup,
+            look.shading,
+            background,
+            sampling,
+            progress,
+        );
+        let reference = Arc::new(reference);
+        let entry = (
+            subject.name.clone(),
+            *camera,
+            sampling,
+            Arc::clone(&reference),
+        );
+        self.cast.push(entry);
+        Ok(reference)
+    }
+}
+
+/// The integers that exact rays start from: the default format's, whatever a
+/// method has, so that a narrow format's view counts as its error.
+fn truth(subject: &Subject, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, BenchError> {
+    let options = SetupOptions {
+        aa_log2,
+        ..SetupOptions::default()
+    };
+    let graph = &subject.graph;
+    Ok(FrameSetup::new(
+        camera,
+        &graph.placement,
+        graph.depth,
+        &options,
+    )?)
+}
+
+/// What exact rays see at the sample points of a picture.
+struct Exact {
+    aa_log2: u32,
+    voxel: Vec<[i32; 4]>,
+    picture: Picture,
+}
+
+impl Exact {
+    fn new(
+        subject: &Subject,
+        camera: &Camera,
+        aa_log2: u32,
+        look: Look,
+    ) -> Result<Self, BenchError> {
+        let setup = truth(subject, camera, aa_log2)?;
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let failed = |reason: String| BenchError::Picture(reason);
+        Rays.render(&subject.graph.view(), &setup, &mut frame)
+            .map_err(|e| failed(e.to_string()))?;
+        let background = Background::Color(look.background);
+        let picture = resolve(&frame, &subject.graph, &setup, look.shading, background)
+            .map_err(|e| failed(e.to_string()))?;
+        Ok(Self {
+            aa_log2,
+            voxel: frame.voxel,
+            picture,
+        })
+    }
+}
+
+/// Measures methods on a scene, from its camera.
+///
+/// Every method shows a picture, which is judged; then all that did draw in
+/// turn, on one thread, and are timed.
+///
+/// # Errors
+/// When the camera cannot see, or there is no thread. A method without a
+/// picture is no error but a row that says why.
+pub fn measure(
+    subject: &Subject,
+    methods: &mut [Box<dyn Method + '_>],
+    plan: &Plan,
+    references: &mut References,
+    progress: &dyn Progress,
+) -> Result<SceneErrors, BenchError> {
+    let camera = Camera {
+        width: plan.size.0,
+        height: plan.size.1,
+        ..subject.camera
+    };
+    let sampling = |seed| Sampling {
+        strata_log2: plan.strata_log2,
+        seed,
+    };
+    let mut reference = |seed| references.of(subject, &camera, sampling(seed), plan.look, progress);
+    let (reference, second) = (reference(SEEDS[0])?, reference(SEEDS[1])?);
+    let judge = Judge::new(&reference);
+    let mismatch = |e: crate::measure::SizeError| BenchError::Picture(e.to_string());
+    let noise_floor = judge
+        .judge(&second.rgba, &second.shares)
+        .map_err(mismatch)?;
+
+    let mut exact: Vec<Exact> = Vec::new();
+    let mut shown: Vec<Result<(Shown, Judged), Refused>> = Vec::new();
+    progress.begin("judging pictures", methods.len() as u64);
+    for method in &mut *methods {
+        let drawn = method.begin(&camera).and_then(|()| method.show());
+        method.end();
+        let aa = |shown: &Shown| shown.samples.as_ref().map_or(0, |samples| samples.aa_log2);
+        if let Ok(shown) = &drawn
+            && !exact.iter().any(|exact| exact.aa_log2 == aa(shown))
+        {
+            exact.push(Exact::new(subject, &camera, aa(shown), plan.look)?);
+        }
+        shown.push(match drawn {
+            Ok(shown) => {
+                let exact = exact.iter().find(|exact| exact.aa_log2 == aa(&shown));
+                let judged = judged(&shown, exact, &judge, subject).map_err(mismatch)?;
+                Ok((shown, judged))
+            }
+            Err(refused) => Err(refused),
+        });
+        progress.advance(1);
+    }
+    progress.end();
+
+    let taking_part: Vec<bool> = shown.iter().map(Result::is_ok).collect();
+    let mut times = Vec::new();
+    for (heat, taking_part) in methods
+        .chunks_mut(MOST_IN_TURN)
+        .zip(taking_part.chunks(MOST_IN_TURN))
+    {
+        times.extend(race(heat, taking_part, &camera, plan.schedule, progress)?);
+    }
+    let mut rows = Vec::new();
+    let mut pictures = Vec::new();
+    for ((method, shown), (wall, thread)) in methods.iter().zip(shown).zip(times) {
+        let outcome = shown.map(|(shown, judged)| {
+            pictures.push(shown.picture.rgba);
+            Outcome {
+                samples: judged.samples,
+                depth_voxels: judged.depth_voxels,
+                vertex_px: over_levels(&shown.vertices),
+                vertex_levels: shown.vertices,
+                picture: judged.picture,
+                wall,
+                thread,
+                counters: shown.counters,
+                remark: shown.remark,
+            }
+        });
+        if outcome.is_err() {
+            pictures.push(Vec::new());
+        }
+        rows.push(Row {
+            method: method.name(),
+            family: method.family(),
+            settings: method.settings(),
+            kind: method.kind(),
+            outcome,
+        });
+    }
+    Ok(SceneErrors {
+        scene: subject.name.clone(),
+        voxels: subject.graph.voxels,
+        width: camera.width,
+        height: camera.height,
+        reference_samples: 1 << (2 * plan.strata_log2),
+        noise_floor,
+        rows,
+        reference,
+        pictures,
+    })
+}
+
+struct Judged {
+    samples: Option<SampleError>,
+    depth_voxels: Option<Spread>,
+    picture: PictureError,
+}
+
+fn judged(
+    shown: &Shown,
+    exact: Option<&Exact>,
+    judge: &Judge<'_>,
+    subject: &Subject,
+) -> Result<Judged, crate::measure::SizeError> {
+    let graph = &subject.graph;
+    let samples = shown
+        .samples
+        .as_ref()
+        .zip(exact)
+        .map(|(samples, exact)| SampleError {
+            coverage: CoverageError::between(&samples.voxel, &exact.voxel),
+            elsewhere: count_elsewhere(&samples.voxel, &exact.voxel, graph.depth),
+        });
+    let voxel = graph.placement.voxel_size;
+    let depth_voxels =
+        exact.map(|exact| Spread::of_depths(&shown.picture.depth, &exact.picture.depth, voxel));
+    Ok(Judged {
+        samples,
+        depth_voxels,
+        picture: judge.judge(&shown.picture.rgba, &shown.shares)?,
+    })
+}
+
+/// Times of frames drawn in turn, on one thread: wall, and processor time.
+type Times = Vec<(Summary, Option<Summary>)>;
+
+fn race(
+    methods: &mut [Box<dyn Method + '_>],
+    taking_part: &[bool],
+    camera: &Camera,
+    schedule: Schedule,
+    progress: &dyn Progress,
+) -> Result<Times, BenchError> {
+    let pool = ThreadPoolBuilder::new().num_threads(1).build();
+    let pool = pool.map_err(|e| BenchError::Threads {
+        threads: 1,
+        reason: e.to_string(),
+    })?;
+    let rounds = schedule.warmup + schedule.runs.max(1);
+    for method in &mut *methods {
+        // One that refuses has drawn nothing before, and does not take part.
+        let _ = method.begin(camera);
+    }
+    let mut wall: Vec<Vec<f64>> = vec![Vec::new(); methods.len()];
+    let mut thread: Vec<Vec<Option<f64>>> = vec![Vec::new(); methods.len()];
+    progress.begin("measuring", u64::from(rounds));
+    for round in 0..rounds {
+        for (place, method) in methods.iter_mut().enumerate() {
+            if !taking_part[place] {
+                continue;
+            }
+            let elapsed = pool.install(|| {
+                let clock = Clock::start();
+                // It drew this frame before, so it does not fail now; if it did, there were no time.
+                let drawn = black_box(method.draw());
+                let elapsed = clock.elapsed();
+                drawn.map(|()| elapsed)
+            });
+            let Ok(elapsed) = elapsed else { continue };
+            if round >= schedule.warmup {
+                wall[place].push(elapsed.wall_ms);
+                thread[place].push(elapsed.thread_ms);
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    methods.iter_mut().for_each(|method| method.end());
+    let of = |(wall, thread): (Vec<f64>, Vec<Option<f64>>)| {
+        let thread: Option<Vec<f64>> = thread.into_iter().collect();
+        (Summary::of(&wall), thread.map(|times| Summary::of(&times)))
+    };
+    Ok(wall.into_iter().zip(thread).map(of).collect())
+}
