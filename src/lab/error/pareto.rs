@@ -34,9 +34,12 @@ fn work(outcome: &Outcome) -> f64 {
     outcome.counters.first().map_or(f64::NAN, |c| c.1 as f64)
 }
 
+/// What is less by a smaller part than this is not worth mentioning.
+const WORTH_MENTIONING: f64 = 0.01;
+
 /// By row, the method of the same family that beats it with the least work:
 /// no more work, no more wrong coverage, no greater error of the picture, and one of
-/// them less.
+/// them less by a hundredth or more.
 #[must_use]
 pub fn beaten_by(rows: &[Row]) -> Vec<Option<String>> {
     let standings: Vec<_> = rows
@@ -49,7 +52,9 @@ pub fn beaten_by(rows: &[Row]) -> Vec<Option<String>> {
         let better = others.filter_map(|(row, other)| {
             let other = (*other)?;
             let same = row.family == rows[place].family;
-            (same && beats(&other, &own)).then_some((other[0], row))
+            let less = |(q, p): (&f64, &f64)| *q < p * (1.0 - WORTH_MENTIONING);
+            let clearly = other.iter().zip(&own).any(less);
+            (same && clearly && beats(&other, &own)).then_some((other[0], row))
         });
         better
             .min_by(|a, b| a.0.total_cmp(&b.0))
@@ -65,6 +70,11 @@ enum Across {
     Time,
     Work,
 }
+
+/// Points nearer to each other than this part of their values would have
+/// their names on top of each other.
+#[cfg(feature = "cli")]
+const CLOSE: f64 = 0.12;
 
 /// What plots have up.
 #[cfg(feature = "cli")]
@@ -123,12 +133,13 @@ fn chart(scene: &SceneErrors, across: Across, up: Up) -> Chart {
             grey.points.push((x, y).into());
             continue;
         }
-        let twin = front.contains(&(x, y));
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < CLOSE;
+        let twin = front.iter().any(|&(u, v)| near(u, x) && near(v, y));
         front.push((x, y));
         let point = Point {
             x,
             y,
-            // Of methods in one place the first is named.
+            // Of methods beside each other the first is named.
             label: (!twin).then(|| row.method.clone()),
         };
         match kinds.iter_mut().find(|kind| kind.name == row.kind) {

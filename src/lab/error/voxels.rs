@@ -86,6 +86,19 @@ impl<'g> VoxelMethod<'g> {
         &self.options
     }
 
+    /// `handed`: whether the fast engine left the frame to the machine.
+    fn remark(&self, handed: bool) -> Option<String> {
+        let o = &self.options;
+        let is_paper = (o.cage, o.coverage) == (CageKind::Corners, Coverage::Any)
+            && o.tolerance_px.is_infinite();
+        match (is_paper, handed) {
+            (true, true) => Some("the paper's; drawn by the machine".to_owned()),
+            (true, false) => Some("the paper's".to_owned()),
+            (false, true) => Some("drawn by the machine".to_owned()),
+            (false, false) => None,
+        }
+    }
+
     fn counters(&self, setup: &FrameSetup) -> Result<Stats, Refused> {
         let mut frame = Frame::nodes_only(setup.width, setup.height);
         let drawn =
@@ -244,7 +257,7 @@ impl Method for VoxelMethod<'_> {
                 aa_log2,
                 voxel: frame.voxel,
             }),
-            remark: handed.then(|| "drawn by the machine".to_owned()),
+            remark: self.remark(handed),
         })
     }
 

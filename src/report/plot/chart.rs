@@ -273,9 +273,14 @@ where
         });
         drawing.draw_series(labelled).map_err(PlotError::of)?;
     }
+    let places: Vec<(i32, i32)> = shown
+        .iter()
+        .flat_map(|(_, points)| points.iter().map(|p| drawing.backend_coord(&(p.x, p.y))))
+        .collect();
+    let corner = legend_corner(drawing.plotting_area().get_pixel_range(), &places);
     drawing
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperLeft)
+        .position(corner)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(205, 205, 205))
         .label_font(("sans-serif", 13))
@@ -283,9 +288,50 @@ where
         .map_err(PlotError::of)
 }
 
+/// The corner of the plotting area with the fewest points in it; of equal
+/// ones the upper left comes first. Everything in pixels of the picture.
+fn legend_corner(
+    (across, down): (std::ops::Range<i32>, std::ops::Range<i32>),
+    places: &[(i32, i32)],
+) -> SeriesLabelPosition {
+    // The room of a legend of seven lines.
+    const ROOM: (i32, i32) = (240, 180);
+    let left = across.start..across.start + ROOM.0;
+    let right = across.end - ROOM.0..across.end;
+    let upper = down.start..down.start + ROOM.1;
+    let lower = down.end - ROOM.1..down.end;
+    let corners = [
+        (&left, &upper, SeriesLabelPosition::UpperLeft),
+        (&right, &upper, SeriesLabelPosition::UpperRight),
+        (&left, &lower, SeriesLabelPosition::LowerLeft),
+        (&right, &lower, SeriesLabelPosition::LowerRight),
+    ];
+    let within = |x: &std::ops::Range<i32>, y: &std::ops::Range<i32>| {
+        let inside = places
+            .iter()
+            .filter(|p| x.contains(&p.0) && y.contains(&p.1));
+        inside.count()
+    };
+    corners
+        .into_iter()
+        .min_by_key(|(x, y, _)| within(x, y))
+        .map_or(SeriesLabelPosition::UpperLeft, |corner| corner.2)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn legends_go_where_no_points_are() {
+        let area = || (60..880, 40..500);
+        let corner = |places: &[(i32, i32)]| format!("{:?}", legend_corner(area(), places));
+        let is = |p: SeriesLabelPosition| format!("{p:?}");
+        assert_eq!(corner(&[]), is(SeriesLabelPosition::UpperLeft));
+        let upper = [(100, 60), (800, 60)];
+        assert_eq!(corner(&upper[..1]), is(SeriesLabelPosition::UpperRight));
+        assert_eq!(corner(&upper), is(SeriesLabelPosition::LowerLeft));
+    }
 
     #[test]
     fn axes_end_at_powers_of_ten() {
