@@ -3,6 +3,7 @@
 
 pub mod bench;
 pub mod error;
+pub mod flicker;
 pub mod float_rays;
 pub mod model;
 pub mod vertex_error;

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::args::{ExportArgs, check_sizes};
 use super::context::Context;
 use super::export::{self, Results};
-use super::picture_export::{self as pictures, PictureExportArgs};
+use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use super::subjects;
 use crate::cli::args::{
     CageName, CameraArgs, CoverageName, EngineArgs, SceneArgs, Size, Tolerance,
@@ -62,7 +62,9 @@ pub(super) struct ErrorArgs {
     #[command(flatten)]
     export: ExportArgs,
     #[command(flatten)]
-    pictures: PictureExportArgs,
+    page: PagesArgs,
+    #[command(flatten)]
+    strips: StripsArgs,
 }
 
 /// How references are sampled.
@@ -252,7 +254,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
-    pictures::check(&args.pictures, &args.export, &names)?;
+    pictures::check(&args.page, &args.export, &names)?;
     let square = (DEFAULT_SIDE, DEFAULT_SIDE);
     let size = args.size.map_or(square, |size| (size.width, size.height));
     check_reference_size(size)?;
@@ -348,14 +350,14 @@ fn write(
         .iter()
         .map(|scene| (scene.scene.clone(), experiment::panels(scene)))
         .collect();
-    if let Some(folder) = &args.pictures.strips {
+    if let Some(folder) = &args.strips.strips {
         write_strips(folder, scenes, args.export.force)?;
         console.note(format!("{}: strips written", folder.display()));
     }
     pictures::write_plots(&args.export, &panels, console)?;
     let preface = context.markdown(schedule);
     let page = || page(scenes, &preface);
-    pictures::write_page(&args.pictures, &args.export, page, console)?;
+    pictures::write_page(&args.page, &args.export, page, console)?;
     let results = Results {
         document: report::document("bench error", fields),
         rows: experiment::rows(scenes),

@@ -7,6 +7,7 @@ pub(super) mod context;
 mod engines;
 mod error;
 pub(super) mod export;
+mod flicker;
 mod picture_export;
 mod scaling;
 pub(super) mod subjects;
@@ -51,6 +52,11 @@ enum Experiment {
     /// a pixel. A second reference gives the noise floor. All draw in turn, on one thread; beside each time
     /// stand the operations of the machine, which are the same in every run.
     Error(Box<error::ErrorArgs>),
+    /// How restless pictures are when the camera moves a little
+    ///
+    /// Films of a turntable, a dolly and a pan of less than a pixel, against films of references. Flicker is
+    /// what changes from frame to frame other than in the reference; pop, what level of detail alone changes. Nothing is timed.
+    Flicker(Box<flicker::FlickerArgs>),
     /// What the next frame of a turntable has in common with the last
     ///
     /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
@@ -82,6 +88,7 @@ pub(super) fn run(
         Experiment::Scaling(args) => scaling::run(args, scenes, threads, console),
         Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
         Experiment::Error(args) => error::run(args, scenes, console),
+        Experiment::Flicker(args) => flicker::run(args, scenes, console),
         Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::VertexError => vertex_error::run(console),
     }

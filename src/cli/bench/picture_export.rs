@@ -13,13 +13,19 @@ use crate::picture::{png, store};
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
 
-/// Files beside those of every experiment.
+/// A page beside the files of every experiment.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Output")]
-pub(super) struct PictureExportArgs {
+pub(super) struct PagesArgs {
     /// One page with tables, plots and pictures, which needs no other file
     #[arg(long, value_name = "FILE")]
     pub(super) export_html: Option<PathBuf>,
+}
+
+/// Pictures beside the files of every experiment.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct StripsArgs {
     /// Folder for strips of pictures: result, reference, and difference four times as bright
     #[arg(long, value_name = "DIR")]
     pub(super) strips: Option<PathBuf>,
@@ -30,7 +36,7 @@ const SCENE_FIELD: &str = "{scene}";
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(
-    args: &PictureExportArgs,
+    args: &PagesArgs,
     export: &ExportArgs,
     scenes: &[String],
 ) -> Result<(), CliError> {
@@ -94,7 +100,7 @@ pub(super) fn write_plots(
 
 /// Writes a page, if one is wanted.
 pub(super) fn write_page(
-    args: &PictureExportArgs,
+    args: &PagesArgs,
     export: &ExportArgs,
     page: impl FnOnce() -> Result<Page, CliError>,
     console: &Console,

@@ -141,7 +141,7 @@ pub fn run(
 }
 
 /// A camera that went around its target, about the direction that is up.
-fn turned(camera: &Camera, degrees: f64) -> Camera {
+pub(in crate::lab) fn turned(camera: &Camera, degrees: f64) -> Camera {
     let axis = camera.up.normalize_or_zero();
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let offset = camera.eye - camera.target;

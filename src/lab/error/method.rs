@@ -41,6 +41,20 @@ pub trait Method: Send {
     /// When the frame cannot be finished.
     fn show(&mut self) -> Result<Shown, Refused>;
 
+    /// Draws the frame once more, and its picture alone.
+    ///
+    /// # Errors
+    /// When the frame cannot be finished.
+    fn picture(&mut self) -> Result<Picture, Refused>;
+
+    /// Draws the picture with the decisions of level of detail that another
+    /// camera would make, from the camera that it is ready for; `None` of what
+    /// has no such decisions.
+    ///
+    /// # Errors
+    /// When the frame cannot be finished.
+    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused>;
+
     /// Lets go of what was made for a camera.
     fn end(&mut self);
 }

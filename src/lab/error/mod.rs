@@ -4,6 +4,7 @@
 //! many exact rays; [`measure()`] measures methods on a scene, error and time;
 //! [`beaten_by`] and the plots say which of them are worth having.
 
+mod cut;
 mod measure;
 mod method;
 mod pareto;
@@ -13,6 +14,7 @@ mod tables;
 mod vertices;
 mod voxels;
 
+pub use cut::cut_at;
 pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
 #[cfg(feature = "cli")]

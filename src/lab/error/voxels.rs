@@ -3,13 +3,14 @@
 use hwmodel::count::Counter;
 use hwmodel::{Memory, Stage};
 
+use super::cut::cut_at;
 use super::method::{Method, Refused, Samples, Shown};
 use super::vertices::vertex_levels;
 use crate::frame::{Colors, Frame, NO_NODE};
 use crate::graph::Graph;
 use crate::lab::bench::MakeEngine;
 use crate::machine::{Machine, record_bits, record_fields};
-use crate::picture::{Background, Shading, resolve};
+use crate::picture::{Background, Picture, Shading, resolve};
 use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 
 /// How samples become colours.
@@ -259,6 +260,40 @@ impl Method for VoxelMethod<'_> {
             }),
             remark: self.remark(handed),
         })
+    }
+
+    fn picture(&mut self) -> Result<Picture, Refused> {
+        let Some(Ready { setup, .. }) = &self.ready else {
+            return Err(Refused::because("no camera yet"));
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        self.engine
+            .draw(&self.graph.view(), setup, &mut frame)
+            .map_err(Refused::because)?;
+        let background = Background::Color(self.look.background);
+        resolve(&frame, self.graph, setup, self.look.shading, background).map_err(Refused::because)
+    }
+
+    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
+        let Some(Ready { camera, .. }) = &self.ready else {
+            return Err(Refused::because("no camera yet"));
+        };
+        if self.options.lod_px == 0.0 {
+            return Ok(None);
+        }
+        let (placement, depth) = (&self.graph.placement, self.graph.depth);
+        let setup_of = |camera: &Camera, options: &SetupOptions| {
+            FrameSetup::new(camera, placement, depth, options).map_err(Refused::because)
+        };
+        let cut = cut_at(self.graph, &setup_of(other, &self.options)?);
+        // What the cut says is a solid is one; nothing else is.
+        let options = SetupOptions {
+            lod_px: 0.0,
+            ..self.options
+        };
+        let mut on_cut = VoxelMethod::new(&cut, (self.engine_name, self.make), options, self.look);
+        on_cut.begin(camera)?;
+        on_cut.picture().map(Some)
     }
 
     fn end(&mut self) {

@@ -1,0 +1,186 @@
+//! `bench flicker`: films of a camera that moves a little.
+
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::args::ExportArgs;
+use super::error::{SCENES, check_reference_size};
+use super::export::{self, Results};
+use super::picture_export::{self as pictures, PagesArgs};
+use super::subjects;
+use crate::cli::args::{CameraArgs, SceneArgs, Size};
+use crate::cli::console::Console;
+use crate::cli::error::CliError;
+use crate::cli::{engines, report};
+use crate::lab::error::{Look, Method, References, VoxelMethod};
+use crate::lab::flicker::{self as experiment, Films, Motion, Plan};
+use crate::project::{CageKind, Coverage, SetupOptions};
+use crate::report::html::Page;
+
+/// Pixels a side where nothing is said.
+const DEFAULT_SIDE: u32 = 128;
+
+/// How the camera moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MotionName {
+    /// Half a degree around the target.
+    Turntable,
+    /// A hundredth of the way towards the target.
+    Dolly,
+    /// An eighth of a pixel to the right.
+    Pan,
+}
+
+/// Arguments of `bench flicker`.
+#[derive(Debug, Args)]
+pub(super) struct FlickerArgs {
+    /// Scenes: files, generators, or `bundled` [default: bundled gen:terrain,depth=9
+    /// gen:menger,depth=5 gen:wires,depth=8 gen:truss,depth=8]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<String>,
+    /// How the camera moves from frame to frame [default: all]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    motions: Vec<MotionName>,
+    /// Frames of a film
+    #[arg(long, value_name = "N", default_value_t = 13,
+          value_parser = clap::value_parser!(u32).range(2..=1000))]
+    frames: u32,
+    /// Pixels: 512 for a square, or 640x360 [default: 128]
+    #[arg(long, value_name = "N|WxH")]
+    size: Option<Size>,
+    /// Exact rays of the reference along each axis of a pixel
+    #[arg(long, value_name = "N", default_value = "8",
+          value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
+    reference_samples: String,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    export: ExportArgs,
+    #[command(flatten)]
+    page: PagesArgs,
+}
+
+impl FlickerArgs {
+    fn motions(&self) -> Vec<Motion> {
+        let wanted = |motion: &Motion| {
+            let is_named = |name: &MotionName| match name {
+                MotionName::Turntable => matches!(motion, Motion::Turntable { .. }),
+                MotionName::Dolly => matches!(motion, Motion::Dolly { .. }),
+                MotionName::Pan => matches!(motion, Motion::Pan { .. }),
+            };
+            self.motions.is_empty() || self.motions.iter().any(is_named)
+        };
+        Motion::ALL.into_iter().filter(wanted).collect()
+    }
+}
+
+/// Drawing rules and samples a pixel; the paper; and the default without level of detail.
+fn options() -> Vec<SetupOptions> {
+    let mut all = Vec::new();
+    for aa_log2 in [0, 1, 2] {
+        for coverage in [Coverage::Exact, Coverage::Center, Coverage::Any] {
+            all.push(SetupOptions {
+                coverage,
+                aa_log2,
+                ..SetupOptions::default()
+            });
+        }
+    }
+    all.push(SetupOptions {
+        lod_px: 0.0,
+        ..SetupOptions::default()
+    });
+    all.push(SetupOptions {
+        coverage: Coverage::Any,
+        cage: CageKind::Corners,
+        tolerance_px: f64::INFINITY,
+        ..SetupOptions::default()
+    });
+    all
+}
+
+pub(super) fn run(
+    args: &FlickerArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    let names = subjects::names_or(&args.scenes, from_config, &SCENES);
+    export::check(&args.export)?;
+    pictures::check(&args.page, &args.export, &names)?;
+    let square = (DEFAULT_SIDE, DEFAULT_SIDE);
+    let size = args.size.map_or(square, |size| (size.width, size.height));
+    check_reference_size(size)?;
+    let samples: u32 = args.reference_samples.parse().unwrap_or(8);
+    let plan = Plan {
+        size,
+        frames: args.frames,
+        strata_log2: samples.ilog2(),
+        look: Look::default(),
+    };
+    let mut films = Vec::new();
+    for name in &names {
+        let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
+        let engine = (engines::FAST.name, engines::FAST.make);
+        let method = |options| -> Box<dyn Method + '_> {
+            Box::new(VoxelMethod::new(&subject.graph, engine, options, plan.look))
+        };
+        let mut methods: Vec<_> = options().into_iter().map(method).collect();
+        // The first frame is the same for all motions.
+        let mut references = References::default();
+        for motion in args.motions() {
+            films.push(experiment::film(
+                &subject,
+                motion,
+                &mut methods,
+                &plan,
+                &mut references,
+                console.progress(),
+            )?);
+        }
+    }
+    write(args, &films, console)
+}
+
+fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), CliError> {
+    let by_scene: Vec<&[Films]> = films.chunk_by(|a, b| a.scene == b.scene).collect();
+    let panels: Vec<_> = by_scene
+        .iter()
+        .map(|films| {
+            let panels = films.iter().flat_map(experiment::panels).collect();
+            (films[0].scene.clone(), panels)
+        })
+        .collect();
+    pictures::write_plots(&args.export, &panels, console)?;
+    let page = || {
+        let mut page = Page::new("Flicker and pop");
+        page.text(
+            "Flicker: root of the mean square, over pixels, channels and frames, of what changes from frame to \
+             frame other than in the reference. Pop: the same camera, drawn with what level of detail takes \
+             for solids now and a frame ago. Both in linear light, thousandths of white.",
+        );
+        for (films, (scene, panels)) in by_scene.iter().zip(&panels) {
+            page.chapter(scene);
+            pictures::plots(&mut page, panels, "")?;
+            page.table(&experiment::table(films).without(&["scene"]));
+        }
+        Ok(page)
+    };
+    pictures::write_page(&args.page, &args.export, page, console)?;
+    let rows = experiment::table(films);
+    let tables = by_scene.iter().map(|films| experiment::table(films));
+    let results = Results {
+        document: report::document("bench flicker", json!({ "films": films })),
+        tables: tables.collect(),
+        rows,
+        preface: "The same in every run.\n".to_owned(),
+        panels: Vec::new(),
+    };
+    // Plots are written by now, scene by scene.
+    let export = ExportArgs {
+        export_svg: None,
+        ..args.export.clone()
+    };
+    export::write(&results, &export, console)
+}
