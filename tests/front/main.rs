@@ -5,4 +5,5 @@ mod bench;
 mod buffers;
 mod manners;
 mod model;
+mod pictures;
 mod resolve;

@@ -359,6 +359,7 @@ fn write(
     let page = || page(scenes, &preface);
     pictures::write_page(&args.page, &args.export, page, console)?;
     let results = Results {
+        more_tables: Vec::new(),
         document: report::document("bench error", fields),
         rows: experiment::rows(scenes),
         tables,

@@ -171,6 +171,7 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
     let rows = experiment::table(films);
     let tables = by_scene.iter().map(|films| experiment::table(films));
     let results = Results {
+        more_tables: Vec::new(),
         document: report::document("bench flicker", json!({ "films": films })),
         tables: tables.collect(),
         rows,

@@ -9,7 +9,8 @@ use super::vertices::vertex_levels;
 use crate::frame::{Colors, Frame, NO_NODE};
 use crate::graph::Graph;
 use crate::lab::bench::MakeEngine;
-use crate::machine::{Machine, record_bits, record_fields};
+use crate::lab::model::record::{record_bits, record_fields};
+use crate::machine::Machine;
 use crate::picture::{Background, Picture, Shading, resolve};
 use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 
