@@ -8,6 +8,7 @@ pub mod graph;
 pub mod lab;
 pub mod machine;
 pub mod measure;
+pub mod mesh;
 pub mod picture;
 pub mod project;
 pub mod rays;

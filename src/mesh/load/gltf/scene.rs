@@ -1,0 +1,241 @@
+//! From a glTF document's nodes to triangles in world coordinates.
+
+use glam::{DMat4, DQuat, DVec3};
+
+use super::accessor::Numbers;
+use super::document::{Document, Material as FileMaterial, Node, Primitive};
+use super::{BROKEN, LoadOptions, fault_of};
+use crate::mesh::error::{MeshError, MeshFault, Place};
+use crate::mesh::material::linear_to_srgb;
+use crate::mesh::{ColorSpace, Material, MeshBuilder};
+
+/// Triangles that a document may always have, besides those that its length justifies.
+const FREE_TRIANGLES: u64 = 100_000;
+/// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
+const TRIANGLES_A_BYTE: u64 = 16;
+
+/// Walks a document.
+pub(super) struct Reader<'d> {
+    document: &'d Document,
+    buffers: &'d [Vec<u8>],
+    /// Triangles that may still be added.
+    left: u64,
+    skipped_modes: u64,
+    morphed: u64,
+    skinned: u64,
+}
+
+impl<'d> Reader<'d> {
+    pub(super) fn new(document: &'d Document, buffers: &'d [Vec<u8>], json_bytes: usize) -> Self {
+        let bytes = json_bytes + buffers.iter().map(Vec::len).sum::<usize>();
+        Self {
+            document,
+            buffers,
+            left: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes as u64,
+            skipped_modes: 0,
+            morphed: 0,
+            skinned: 0,
+        }
+    }
+
+    /// Adds all triangles of the default scene, or of the first, or of all nodes.
+    pub(super) fn read(
+        mut self,
+        options: &LoadOptions,
+        builder: &mut MeshBuilder,
+    ) -> Result<(), MeshError> {
+        let document = self.document;
+        builder.material(Material::of_srgb("no material", options.default_color));
+        for material in &document.materials {
+            builder.material(understood(material));
+        }
+        let nodes = &document.nodes;
+        let mut open: Vec<(usize, DMat4)> = match document.scenes.get(document.scene.unwrap_or(0)) {
+            Some(scene) => scene.nodes.iter().map(|&n| (n, DMat4::IDENTITY)).collect(),
+            None => {
+                let mut is_child = vec![false; nodes.len()];
+                for &child in nodes.iter().flat_map(|node| &node.children) {
+                    if let Some(entry) = is_child.get_mut(child) {
+                        *entry = true;
+                    }
+                }
+                let roots = (0..nodes.len()).filter(|&n| !is_child[n]);
+                roots.map(|n| (n, DMat4::IDENTITY)).collect()
+            }
+        };
+        open.reverse();
+        let mut seen = vec![false; nodes.len()];
+        while let Some((number, parent)) = open.pop() {
+            let Some(node) = nodes.get(number) else {
+                return Err(fault_of("node", number, "a node of this number", "none", BROKEN));
+            };
+            if std::mem::replace(&mut seen[number], true) {
+                let found = "a second way to it";
+                return Err(fault_of("node", number, "one parent, in a tree", found, BROKEN));
+            }
+            let placed = parent * transform(node);
+            if let Some(mesh) = node.mesh {
+                self.skinned += u64::from(node.skin.is_some());
+                self.mesh(mesh, placed, builder)?;
+            }
+            open.extend(node.children.iter().rev().map(|&child| (child, placed)));
+        }
+        self.tell(builder);
+        Ok(())
+    }
+
+    fn tell(&self, builder: &mut MeshBuilder) {
+        let textured = self.document.materials.iter();
+        let textured = textured.filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some());
+        for (count, what) in [
+            (
+                textured.count() as u64,
+                "materials have textures, which are not read; their plain colours are used",
+            ),
+            (self.skipped_modes, "primitives of points or lines were passed over"),
+            (self.morphed, "primitives have morph targets, which are not applied"),
+            (self.skinned, "meshes have skins, which are not applied"),
+        ] {
+            if count > 0 {
+                builder.warn(format!("{count} {what}"));
+            }
+        }
+    }
+
+    fn mesh(&mut self, number: usize, placed: DMat4, builder: &mut MeshBuilder) -> Result<(), MeshError> {
+        let Some(mesh) = self.document.meshes.get(number) else {
+            return Err(fault_of("mesh", number, "a mesh of this number", "none", BROKEN));
+        };
+        for primitive in &mesh.primitives {
+            self.primitive(number, primitive, placed, builder)?;
+        }
+        Ok(())
+    }
+
+    fn numbers(&self, accessor: usize) -> Result<Numbers<'d>, MeshError> {
+        Numbers::find(self.document, self.buffers, accessor)
+    }
+
+    fn primitive(
+        &mut self,
+        mesh: usize,
+        primitive: &Primitive,
+        placed: DMat4,
+        builder: &mut MeshBuilder,
+    ) -> Result<(), MeshError> {
+        let mode = primitive.mode.unwrap_or(4);
+        let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {
+            self.skipped_modes += 1;
+            return Ok(());
+        };
+        self.morphed += u64::from(!primitive.targets.is_empty());
+        let positions = self.numbers(position)?;
+        let optional = |accessor: Option<usize>| accessor.map(|a| self.numbers(a)).transpose();
+        let normals = optional(primitive.attributes.normal)?;
+        let colors = optional(primitive.attributes.color)?;
+        let indices = optional(primitive.indices)?;
+        let corners = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        let triangles = match mode {
+            4 => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        // Positions count as triangles: they take memory too.
+        let cost = (triangles + positions.count) as u64;
+        self.left = self.left.checked_sub(cost).ok_or_else(|| {
+            MeshError::Limit(MeshFault::new(
+                format!("mesh {mesh}"),
+                Place::Whole,
+                format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
+                "more: its nodes show meshes very often",
+                "export a part of the scene",
+            ))
+        })?;
+        let base = builder.positions() as u32;
+        for at in 0..positions.count {
+            let point = DVec3::from_array(positions.triple(at).map(f64::from));
+            let world = placed.transform_point3(point).as_vec3().to_array();
+            match &colors {
+                Some(colors) => {
+                    let light = colors.triple(at);
+                    let color = light.map(|light| linear_to_srgb(f64::from(light)));
+                    builder.colored_position(world, color)
+                }
+                None => builder.position(world),
+            };
+        }
+        let turn = placed.inverse().transpose();
+        let mirrored = placed.determinant() < 0.0;
+        let normal_of = |at: u32| {
+            normals.as_ref().map(|normals| {
+                let normal = DVec3::from_array(normals.triple(at as usize).map(f64::from));
+                turn.transform_vector3(normal).normalize_or_zero().as_vec3().to_array()
+            })
+        };
+        // The first material is the one of triangles without.
+        let material = primitive.material.map_or(0, |m| (m as u32).saturating_add(1));
+        for number in 0..triangles {
+            let mut at = match mode {
+                4 => [3 * number, 3 * number + 1, 3 * number + 2],
+                5 if number % 2 == 1 => [number + 1, number, number + 2],
+                5 => [number, number + 1, number + 2],
+                _ => [0, number + 1, number + 2],
+            };
+            if mirrored {
+                at.swap(1, 2);
+            }
+            let mut triangle = [0u32; 3];
+            for (corner, &at) in triangle.iter_mut().zip(&at) {
+                let index = match &indices {
+                    None => Some(at as u32),
+                    Some(indices) => indices.index(at),
+                };
+                let sound = index.filter(|&index| (index as usize) < positions.count);
+                *corner = sound.ok_or_else(|| {
+                    fault_of(
+                        "mesh",
+                        mesh,
+                        &format!("indices from 0 to {}", positions.count as i64 - 1),
+                        &index.map_or("a number of another kind".into(), |i| i.to_string()),
+                        BROKEN,
+                    )
+                })?;
+            }
+            let given = triangle.map(normal_of);
+            let given = match given {
+                [Some(a), Some(b), Some(c)] => Some([a, b, c]),
+                _ => None,
+            };
+            // In range: checked just now.
+            let _ = builder.triangle(triangle.map(|i| base + i), given, material);
+        }
+        Ok(())
+    }
+}
+
+/// A node's place in its parent.
+fn transform(node: &Node) -> DMat4 {
+    if let Some(matrix) = node.matrix {
+        return DMat4::from_cols_array(&matrix);
+    }
+    let rotation = node.rotation.map(DQuat::from_array);
+    let rotation = rotation.filter(|q| q.length_squared() > 0.0 && q.is_finite());
+    DMat4::from_scale_rotation_translation(
+        DVec3::from_array(node.scale.unwrap_or([1.0; 3])),
+        rotation.map_or(DQuat::IDENTITY, DQuat::normalize),
+        DVec3::from_array(node.translation.unwrap_or_default()),
+    )
+}
+
+fn understood(material: &FileMaterial) -> Material {
+    let [r, g, b, a] = material
+        .pbr_metallic_roughness
+        .base_color_factor
+        .unwrap_or([1.0; 4]);
+    let alpha = match material.alpha_mode.as_deref() {
+        Some("BLEND") => a,
+        // Written so that an alpha that is no number is opaque.
+        Some("MASK") if a < material.alpha_cutoff.unwrap_or(0.5) => 0.0,
+        _ => 1.0,
+    };
+    Material::of_numbers(material.name.clone(), [r, g, b], ColorSpace::Linear, alpha)
+}

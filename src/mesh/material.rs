@@ -1,0 +1,116 @@
+//! Materials, and colours in linear light.
+
+use std::sync::LazyLock;
+
+/// How the numbers of a colour in a file are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum ColorSpace {
+    /// As shown on a screen.
+    #[default]
+    Srgb,
+    /// In proportion to light.
+    Linear,
+}
+
+/// What a triangle looks like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name in the file.
+    pub name: String,
+    /// Diffuse colour, linear light, 0 to 1.
+    pub diffuse: [f32; 3],
+    /// Opacity, 0 to 1. Triangles of opacity 0 are not there; all others are
+    /// drawn opaque, and count by their opacity where colours are averaged.
+    pub alpha: f32,
+}
+
+impl Material {
+    /// An opaque material of an sRGB colour.
+    #[must_use]
+    pub fn of_srgb(name: impl Into<String>, color: [u8; 3]) -> Self {
+        Self {
+            name: name.into(),
+            diffuse: color.map(srgb_to_linear),
+            alpha: 1.0,
+        }
+    }
+
+    /// A material from three numbers of a file; what is not a number from 0 to 1 is made one.
+    #[must_use]
+    pub fn of_numbers(
+        name: impl Into<String>,
+        color: [f32; 3],
+        space: ColorSpace,
+        alpha: f32,
+    ) -> Self {
+        let unit = |value: f32| if value >= 0.0 { value.min(1.0) } else { 0.0 };
+        Self {
+            name: name.into(),
+            diffuse: color.map(|value| match space {
+                ColorSpace::Linear => unit(value),
+                ColorSpace::Srgb => decode(f64::from(unit(value))) as f32,
+            }),
+            alpha: if alpha.is_nan() { 1.0 } else { unit(alpha) },
+        }
+    }
+}
+
+/// Linear light, 0 to 1, of an sRGB value, 0 to 1 (IEC 61966-2-1).
+fn decode(value: f64) -> f64 {
+    if value <= 0.040_45 {
+        value / 12.92
+    } else {
+        libm::pow((value + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// Linear light of each sRGB byte.
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0) as f32));
+
+/// Linear light of an sRGB byte.
+pub(super) fn srgb_to_linear(byte: u8) -> f32 {
+    LINEAR[usize::from(byte)]
+}
+
+/// The sRGB byte whose linear light is nearest; of two the brighter.
+pub(super) fn linear_to_srgb(light: f64) -> u8 {
+    let table: &[f32; 256] = &LINEAR;
+    let above = table.partition_point(|&entry| f64::from(entry) < light);
+    match above {
+        0 => 0,
+        256 => 255,
+        _ => {
+            let to_above = f64::from(table[above]) - light;
+            let to_below = light - f64::from(table[above - 1]);
+            // `above` is 1 to 255 here.
+            (if to_above <= to_below { above } else { above - 1 }) as u8
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_byte_survives_linear_light() {
+        for byte in 0..=255 {
+            assert_eq!(linear_to_srgb(f64::from(srgb_to_linear(byte))), byte);
+        }
+        assert_eq!(linear_to_srgb(-1.0), 0);
+        assert_eq!(linear_to_srgb(2.0), 255);
+        assert_eq!(linear_to_srgb(0.5), 188);
+    }
+
+    #[test]
+    fn numbers_of_files_are_made_colours() {
+        let srgb = Material::of_numbers("a", [0.5, -1.0, f32::NAN], ColorSpace::Srgb, 2.0);
+        assert!((srgb.diffuse[0] - 0.2140).abs() < 1e-4);
+        assert_eq!(srgb.diffuse[1..], [0.0, 0.0]);
+        assert_eq!(srgb.alpha, 1.0);
+        let linear = Material::of_numbers("b", [0.5, 7.0, 0.0], ColorSpace::Linear, -0.5);
+        assert_eq!(linear.diffuse, [0.5, 1.0, 0.0]);
+        assert_eq!(linear.alpha, 0.0);
+    }
+}
