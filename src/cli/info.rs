@@ -124,6 +124,17 @@ fn describe(scene: &Scene) -> Value {
         "palette_entries": scene.palette,
         "colors": facts.colors,
         "camera": facts.camera_line,
+        "mesh": scene.mesh.as_ref().map(|mesh| json!({
+            "triangles": mesh.triangles,
+            "positions": mesh.positions,
+            "materials": mesh.materials,
+            "low": mesh.bounds.0.to_array(),
+            "high": mesh.bounds.1.to_array(),
+            "bytes": mesh.bytes,
+            "touches": mesh.touches,
+            "load_ms": mesh.load_ms,
+            "voxelize_ms": mesh.voxelize_ms,
+        })),
         "warnings": scene.warnings,
         "load_ms": scene.load_ms,
     })
@@ -169,6 +180,19 @@ fn tell(scene: &Scene, several: bool) -> String {
         ),
         ("camera", facts.camera_line.clone()),
     ];
+    let mesh = scene.mesh.as_ref().map(|mesh| {
+        let (low, high) = mesh.bounds;
+        format!(
+            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, voxelised in {:.1} ms",
+            grouped(mesh.triangles),
+            grouped(mesh.positions),
+            grouped(mesh.materials),
+            "",
+            mesh.load_ms,
+            mesh.voxelize_ms
+        )
+    });
+    let lines = lines.into_iter().chain(mesh.map(|mesh| ("mesh", mesh)));
     let rows = facts.levels.iter().enumerate();
     let rows = rows
         .map(|(level, &(nodes, tree))| vec![level.to_string(), grouped(nodes), grouped(tree)])
@@ -176,7 +200,6 @@ fn tell(scene: &Scene, several: bool) -> String {
     let head = ["level", "nodes", "in a tree"].map(String::from).into();
     let levels = report::table(head, rows);
     let text: Vec<String> = lines
-        .iter()
         .map(|(name, value)| format!("{name:<9} {value}"))
         .collect();
     let gap = if several { "\n" } else { "" };

@@ -238,6 +238,20 @@ pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Sc
     for warning in &scene.warnings {
         console.note(format!("{name}: {warning}"));
     }
+    if let Some(mesh) = &scene.mesh {
+        let said = if args.depth.is_some() {
+            ""
+        } else {
+            ", the default; --depth says another"
+        };
+        console.note(format!(
+            "{name}: {} triangles voxelised with {} levels{said}: {} voxels in {:.1} ms",
+            report::grouped(mesh.triangles),
+            mesh.depth,
+            report::grouped(scene.graph.voxels),
+            mesh.voxelize_ms
+        ));
+    }
     console.detail(format!(
         "{name}: {} voxels, {} nodes, {} levels, read and built in {:.1} ms",
         report::grouped(scene.graph.voxels),

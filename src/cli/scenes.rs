@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::{OutOfBoundsName, SceneArgs};
+use super::args::{ColorName, OutOfBoundsName, SceneArgs, UpName};
 use super::error::{CliError, Kind};
 use super::fit::Up;
 use crate::graph::{
@@ -11,7 +11,11 @@ use crate::graph::{
     vxg,
 };
 use crate::picture::store;
-use crate::scene::{self, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions, SceneError};
+use crate::mesh::{ColorSpace, LoadOptions, MeshError};
+use crate::scene::{
+    self, MeshOptions, MeshSummary, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions,
+    SceneError,
+};
 
 /// The scene that the demo draws: a tree, see `assets/ATTRIBUTION.md`.
 const DEMO: &[u8] = include_bytes!("../../assets/tree.vox");
@@ -31,6 +35,8 @@ pub(super) struct Scene {
     pub(super) format: String,
     /// Which axis is up.
     pub(super) up: Up,
+    /// What the mesh was, where it was one.
+    pub(super) mesh: Option<MeshSummary>,
     /// Entries of the file's palette, if it has one.
     pub(super) palette: Option<usize>,
     /// What the user should know although the scene could be read.
@@ -67,7 +73,13 @@ pub(super) fn open(
 ) -> Result<Scene, CliError> {
     let started = Instant::now();
     let opened = scene::open(source, &options(args), progress)?;
-    Ok(ready(opened, source, stem(source), started))
+    Ok(ready(
+        opened,
+        source,
+        stem(source),
+        args.mesh_up,
+        started,
+    ))
 }
 
 /// The bundled scene of the demo.
@@ -78,7 +90,7 @@ pub(super) fn demo(progress: &dyn Progress) -> Result<Scene, CliError> {
     let started = Instant::now();
     let name = "the bundled scene";
     let opened = scene::open_bytes(DEMO, name, &OpenOptions::default(), progress)?;
-    Ok(ready(opened, name, "demo".to_owned(), started))
+    Ok(ready(opened, name, "demo".to_owned(), None, started))
 }
 
 fn options(args: &SceneArgs) -> OpenOptions {
@@ -93,16 +105,41 @@ fn options(args: &SceneArgs) -> OpenOptions {
             oob,
             ..ReadOptions::default()
         },
+        mesh: MeshOptions {
+            depth: args.mesh_depth(),
+            load: load_options(args),
+        },
     }
 }
 
-fn ready(opened: Opened, source: &str, stem: String, started: Instant) -> Scene {
+fn load_options(args: &SceneArgs) -> LoadOptions {
+    LoadOptions {
+        mtl_colors: match args.mesh_colors {
+            ColorName::Srgb => ColorSpace::Srgb,
+            ColorName::Linear => ColorSpace::Linear,
+        },
+        ..LoadOptions::default()
+    }
+}
+
+fn ready(
+    opened: Opened,
+    source: &str,
+    stem: String,
+    mesh_up: Option<UpName>,
+    started: Instant,
+) -> Scene {
     let info = opened.info.as_ref();
+    let y_up = match mesh_up {
+        Some(up) => up == UpName::Y,
+        None => opened.mesh.as_ref().is_some_and(|mesh| mesh.y_up),
+    };
     Scene {
         source: source.to_owned(),
         stem,
         format: opened.format,
-        up: Up::Z,
+        up: if y_up { Up::Y } else { Up::Z },
+        mesh: opened.mesh,
         palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
         warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),
         graph: opened.graph,
@@ -128,7 +165,7 @@ impl From<OpenError> for CliError {
         };
         let failure = Self::new(kind, &error);
         match error {
-            OpenError::Scene(SceneError::Io { .. }) => {
+            OpenError::Mesh(MeshError::Io { .. }) | OpenError::Scene(SceneError::Io { .. }) => {
                 failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
             }
             OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {

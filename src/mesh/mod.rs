@@ -18,7 +18,7 @@ use glam::DVec3;
 
 pub use builder::{BadIndex, MeshBuilder};
 pub use error::{MeshError, MeshFault, Place};
-pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, ply_has_faces, read};
+pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, is_binary_stl, read};
 pub use material::{ColorSpace, Material};
 pub use surface::{Instances, Surface, Triangle};
 

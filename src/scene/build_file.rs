@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::generate::{self, Spec};
+use super::mesh::{From as MeshFrom, MeshSummary, Ready};
 use super::open::{OpenError, OpenOptions};
 use super::{SceneInfo, read_voxels};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
@@ -16,6 +17,8 @@ pub struct BuiltFile {
     pub bytes: u64,
     /// What a voxel file held beside its voxels.
     pub info: Option<SceneInfo>,
+    /// What the mesh was, where it was one.
+    pub mesh: Option<MeshSummary>,
     /// What building took; none for a cyclic scene, which is a few nodes.
     pub report: Option<ExternalReport>,
 }
@@ -24,7 +27,8 @@ pub struct BuiltFile {
 /// builds a `.vxg` file of it within a limit of memory. The file is the one
 /// that [`open`](super::open()) and [`vxg::write`] give.
 ///
-/// A `.vox` file is held whole besides: its own length, within 4 GB.
+/// A `.vox` file is held whole besides: its own length, within 4 GB. So is a
+/// mesh, whose triangles are taken off the limit.
 ///
 /// # Errors
 /// See [`OpenError`]; a `.vxg` file is refused as input.
@@ -40,8 +44,10 @@ pub fn build_file(
         source_name: source.to_owned(),
         error,
     };
-    let mut builder = ExternalBuilder::new(external);
+    let mut builder = ExternalBuilder::new(external.clone());
     let mut info = None;
+    let mut mesh = None;
+    let mut placement = ([0.0; 3], 1.0);
     if source.starts_with(generate::PREFIX) {
         let spec = Spec::parse(source)?;
         if let Some(graph) = spec.linked() {
@@ -50,6 +56,7 @@ pub fn build_file(
                 voxels: graph.voxels,
                 bytes: std::fs::metadata(output).map_or(0, |file| file.len()),
                 info,
+                mesh: None,
                 report: None,
             });
         }
@@ -59,15 +66,23 @@ pub fn build_file(
         }
         spec.voxels(&mut |voxel| builder.push(voxel), progress);
     } else {
+        let path = Path::new(source);
         let sink = &mut |voxel| builder.push(voxel);
-        info = Some(read_voxels(
-            Path::new(source),
-            &options.read,
-            sink,
-            progress,
-        )?);
+        match read_voxels(path, &options.read, sink, progress) {
+            Ok(found) => info = Some(found),
+            Err(error) => {
+                let file = MeshFrom::File(path);
+                let ready = Ready::after(error, &file, source, &options.mesh, progress)?;
+                // The mesh's share; nothing was pushed yet.
+                let mut external = external;
+                external.memory = external.memory.saturating_sub(ready.bytes());
+                builder = ExternalBuilder::new(external);
+                placement = ready.placement();
+                let (found, summary) = ready.voxels(&mut |v| builder.push(v), progress);
+                (info, mesh) = (Some(found), Some(summary));
+            }
+        }
     }
-    let placement = ([0.0; 3], 1.0);
     let report = builder
         .finish(placement, output, overwrite, progress)
         .map_err(failed)?;
@@ -75,6 +90,7 @@ pub fn build_file(
         voxels: report.voxels,
         bytes: report.bytes,
         info,
+        mesh,
         report: Some(report),
     })
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::graph::vxg;
+use crate::mesh::is_binary_stl;
 
 /// How many bytes of a file [`detect`] should be given, where there are so many.
 pub const DETECT_BYTES: usize = 4096;
@@ -25,7 +26,7 @@ pub enum FileKind {
     Gltf,
     /// glTF mesh (binary).
     Glb,
-    /// Stereolithography mesh (text; the binary form has no mark to know it by).
+    /// Stereolithography mesh (the binary form is known by its length).
     Stl,
 }
 
@@ -36,7 +37,7 @@ impl FileKind {
         matches!(self, Self::Vox | Self::Ply | Self::Npy)
     }
 
-    /// Whether files of this kind hold meshes.
+    /// Whether files of this kind hold meshes. A `.ply` does if it has faces.
     #[must_use]
     pub fn is_mesh(self) -> bool {
         matches!(self, Self::Obj | Self::Gltf | Self::Glb | Self::Stl)
@@ -61,7 +62,7 @@ impl fmt::Display for FileKind {
 /// Tells a file's format from its first bytes ([`DETECT_BYTES`] of them, or the whole of a shorter file).
 ///
 /// `None` where they begin like no format that is known here. A binary STL is
-/// not recognised: its first 80 bytes are free.
+/// not recognised, since its first 80 bytes are free: see [`detect_with_length`].
 #[must_use]
 pub fn detect(prefix: &[u8]) -> Option<FileKind> {
     let marks: [(&[u8], FileKind); 6] = [
@@ -70,7 +71,7 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
         (b"glTF", FileKind::Glb),
         (b"ply\n", FileKind::Ply),
         (b"ply\r", FileKind::Ply),
-        (b"solid ", FileKind::Stl),
+        (b"solid", FileKind::Stl),
     ];
     if let Some((_, kind)) = marks.iter().find(|(mark, _)| prefix.starts_with(mark)) {
         return Some(*kind);
@@ -83,6 +84,16 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
         return Some(FileKind::Gltf);
     }
     looks_like_obj(text).then_some(FileKind::Obj)
+}
+
+/// As [`detect`], with the length of the file: that is how a binary STL is known.
+#[must_use]
+pub fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind> {
+    match detect(prefix) {
+        // A binary one may begin with the word of a text.
+        None | Some(FileKind::Stl) if is_binary_stl(prefix, length) => Some(FileKind::Stl),
+        kind => kind,
+    }
 }
 
 /// Whether the first line that is neither blank nor a comment begins with a Wavefront keyword.
@@ -135,5 +146,14 @@ mod tests {
         ] {
             assert_eq!(detect(begins), kind, "{}", begins.escape_ascii());
         }
+    }
+
+    #[test]
+    fn binary_stl_is_told_by_its_length() {
+        let mut bytes = vec![b' '; 84 + 50];
+        bytes[80..84].copy_from_slice(&1u32.to_le_bytes());
+        assert_eq!(detect(&bytes), None);
+        assert_eq!(detect_with_length(&bytes, 134), Some(FileKind::Stl));
+        assert_eq!(detect_with_length(&bytes, 135), None);
     }
 }

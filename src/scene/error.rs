@@ -25,7 +25,7 @@ pub enum SceneError {
     Limit(Box<Fault>),
     /// The file is a mesh.
     #[error(
-        "{file}: this is a {kind} mesh, and meshes are not supported yet; voxelise it first, for example to .vox or to a .ply of voxel indices"
+        "{file}: this is a {kind} mesh, which has triangles and no voxels; open it as a scene to have it voxelised"
     )]
     Mesh {
         /// The file, as the user named it.
@@ -41,7 +41,7 @@ pub enum SceneError {
     },
     /// The content begins like none of the known formats.
     #[error(
-        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") or .vxg (\"\\x89VXG\"); formats are told by content, so renaming the file does not help"
+        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") .vxg (\"\\x89VXG\"), or a mesh (.obj, .ply, .stl, .gltf, .glb); formats are told by content, so renaming the file does not help"
     )]
     Unknown {
         /// The file, as the user named it.

@@ -17,6 +17,7 @@ mod emit;
 mod error;
 pub mod generate;
 mod memory;
+mod mesh;
 mod npy;
 mod open;
 mod options;
@@ -25,9 +26,10 @@ mod ply_write;
 mod vox;
 
 pub use build_file::{BuiltFile, build_file};
-pub use detect::{DETECT_BYTES, FileKind, detect};
+pub use detect::{DETECT_BYTES, FileKind, detect, detect_with_length};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
+pub use mesh::{MeshOptions, MeshSummary, read_mesh};
 pub use open::{OpenError, OpenOptions, Opened, open, open_bytes};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 pub use ply_write::write_ply;
@@ -70,7 +72,7 @@ pub fn read_voxels(
         .map_err(open("read the file"))?;
     file.seek(SeekFrom::Start(0))
         .map_err(open("seek in the file"))?;
-    let kind = supported(&prefix, &name)?;
+    let kind = supported(&prefix, length, &name)?;
     if kind == FileKind::Vox {
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes)
@@ -99,13 +101,13 @@ pub fn read_voxels_from(
     sink: &mut dyn FnMut(Voxel),
     progress: &dyn Progress,
 ) -> Result<SceneInfo, SceneError> {
-    let kind = supported(&bytes[..bytes.len().min(DETECT_BYTES)], name)?;
+    let length = bytes.len() as u64;
+    let kind = supported(&bytes[..bytes.len().min(DETECT_BYTES)], length, name)?;
     if kind == FileKind::Vox {
         return tell(name, sink, progress, |emitter| {
             vox::read(bytes, options, emitter)
         });
     }
-    let length = bytes.len() as u64;
     read_stream(
         kind,
         &mut Cursor::new(bytes),
@@ -151,9 +153,9 @@ fn tell(
 }
 
 /// The format, where it is one that holds voxels.
-fn supported(prefix: &[u8], name: &str) -> Result<FileKind, SceneError> {
+fn supported(prefix: &[u8], length: u64, name: &str) -> Result<FileKind, SceneError> {
     let file = name.to_owned();
-    match detect(prefix) {
+    match detect_with_length(prefix, length) {
         Some(kind) if kind.is_voxels() => Ok(kind),
         Some(FileKind::Vxg) => Err(SceneError::IsGraph { file }),
         Some(kind) => Err(SceneError::Mesh { file, kind }),

@@ -7,8 +7,11 @@ use std::path::Path;
 
 use super::generate::{self, Spec, SpecError};
 use super::memory;
+use super::mesh::{From as MeshFrom, MeshOptions, MeshSummary, Ready};
 use super::{DETECT_BYTES, FileKind, ReadOptions, SceneError, SceneInfo, detect, read_voxels};
 use crate::graph::{BuildError, BuildOptions, Builder, ExternalError, Graph, Progress, vxg};
+use crate::mesh::voxelize::GridError;
+use crate::mesh::{MeshError, Nothing};
 
 /// Graph files up to this size are checked in full when they are opened;
 /// larger ones are mapped, and only the pages that a picture needs are read.
@@ -19,6 +22,8 @@ const VERIFY_BYTES: u64 = 256 << 20;
 pub struct OpenOptions {
     /// How voxel files are read.
     pub read: ReadOptions,
+    /// How meshes are read and voxelised.
+    pub mesh: MeshOptions,
 }
 
 /// An open scene.
@@ -30,6 +35,8 @@ pub struct Opened {
     pub format: String,
     /// What a voxel file held beside its voxels.
     pub info: Option<SceneInfo>,
+    /// What the mesh was, where it was one.
+    pub mesh: Option<MeshSummary>,
 }
 
 /// Why a scene could not be opened.
@@ -44,6 +51,17 @@ pub enum OpenError {
     /// The file is a damaged graph.
     #[error(transparent)]
     Graph(#[from] vxg::VxgError),
+    /// The file is a mesh that cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh cannot be voxelised.
+    #[error("{source_name}: {error}")]
+    Grid {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with it, or with the number of levels.
+        error: GridError,
+    },
     /// The voxels make no graph.
     #[error("{source_name}: {error}")]
     Build {
@@ -89,6 +107,8 @@ impl OpenError {
                 ..
             } => !matches!(error, BuildError::Empty),
             Self::Scene(error) => error.is_limit(),
+            Self::Mesh(error) => error.is_limit(),
+            Self::Grid { error, .. } => matches!(error, GridError::TooMany(_)),
             Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
         }
     }
@@ -137,18 +157,42 @@ pub fn open(
             graph,
             format: FileKind::Vxg.to_string(),
             info: None,
+            mesh: None,
         });
     }
     let mut gathered = Gathered::default();
-    let info = read_voxels(path, &options.read, &mut |v| gathered.push(v), progress)?;
+    match read_voxels(path, &options.read, &mut |v| gathered.push(v), progress) {
+        Ok(info) => Ok(Opened {
+            graph: gathered.finish(source, UNIT, progress)?,
+            format: info.kind.to_string(),
+            info: Some(info),
+            mesh: None,
+        }),
+        Err(error) => {
+            let file = MeshFrom::File(path);
+            let ready = Ready::after(error, &file, source, &options.mesh, progress)?;
+            open_mesh(ready, source, progress)
+        }
+    }
+}
+
+/// Voxels of side 1 from the origin: file indices are world coordinates.
+const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
+
+/// Voxelises a mesh that was read.
+fn open_mesh(ready: Ready, source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {
+    let mut gathered = Gathered::default();
+    let placement = ready.placement();
+    let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
     Ok(Opened {
-        graph: gathered.finish(source, progress)?,
-        format: info.kind.to_string(),
+        graph: gathered.finish(source, placement, progress)?,
+        format: format!("{} mesh", info.kind),
         info: Some(info),
+        mesh: Some(summary),
     })
 }
 
-/// Opens a voxel file that is held in memory.
+/// Opens a file that is held in memory. A mesh finds no other files there.
 ///
 /// # Errors
 /// See [`OpenError`].
@@ -159,18 +203,26 @@ pub fn open_bytes(
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
-    let info = super::read_voxels_from(
+    let read = super::read_voxels_from(
         bytes,
         name,
         &options.read,
         &mut |v| gathered.push(v),
         progress,
-    )?;
-    Ok(Opened {
-        graph: gathered.finish(name, progress)?,
-        format: info.kind.to_string(),
-        info: Some(info),
-    })
+    );
+    match read {
+        Ok(info) => Ok(Opened {
+            graph: gathered.finish(name, UNIT, progress)?,
+            format: info.kind.to_string(),
+            info: Some(info),
+            mesh: None,
+        }),
+        Err(error) => {
+            let memory = MeshFrom::Memory(bytes, &Nothing);
+            let ready = Ready::after(error, &memory, name, &options.mesh, progress)?;
+            open_mesh(ready, name, progress)
+        }
+    }
 }
 
 fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {
@@ -181,13 +233,14 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
             let mut gathered = Gathered::default();
             gathered.expect(spec.least_voxels(), source)?;
             spec.voxels(&mut |v| gathered.push(v), progress);
-            gathered.finish(source, progress)?
+            gathered.finish(source, UNIT, progress)?
         }
     };
     Ok(Opened {
         graph,
         format: "generated".to_owned(),
         info: None,
+        mesh: None,
     })
 }
 
@@ -238,11 +291,16 @@ impl Gathered {
         }
     }
 
-    fn finish(self, source: &str, progress: &dyn Progress) -> Result<Graph, OpenError> {
+    fn finish(
+        self,
+        source: &str,
+        placement: ([f64; 3], f64),
+        progress: &dyn Progress,
+    ) -> Result<Graph, OpenError> {
         self.expect(self.seen, source)?;
         let source_name = source.to_owned();
         self.builder
-            .finish(([0.0; 3], 1.0), progress)
+            .finish(placement, progress)
             .map_err(|error| OpenError::Build { source_name, error })
     }
 }
@@ -266,7 +324,7 @@ mod tests {
             });
         }
         assert!(gathered.builder.is_empty());
-        let error = gathered.finish("a.ply", &Silent).expect_err("too many");
+        let error = gathered.finish("a.ply", UNIT, &Silent).expect_err("too many");
         assert!(error.is_limit());
         assert_eq!(
             error.to_string(),

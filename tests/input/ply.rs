@@ -183,7 +183,7 @@ fn meshes_are_told_from_clouds() {
         b"{\"asset\":{}}",
     ] {
         assert!(
-            message(mesh).contains("meshes are not supported yet"),
+            message(mesh).contains("has triangles and no voxels"),
             "{}",
             message(mesh)
         );

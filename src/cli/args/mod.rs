@@ -11,7 +11,7 @@ pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
 pub use engine::{CageName, CoverageName, EngineArgs, EngineName, Isa, OverflowName};
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};
-pub use scene::{OutOfBoundsName, SceneArgs};
+pub use scene::{ColorName, OutOfBoundsName, SceneArgs, UpName};
 pub use values::{Memory, Point, Size, ThreadCounts, Tolerance};
 
 /// A setting as a configuration file has it: the flag's long name and its value.

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::{Setting, word};
+use crate::mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
 
 /// What to do with voxels outside a model's SIZE.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -18,6 +19,25 @@ pub enum OutOfBoundsName {
     Error,
 }
 
+/// Which axis of a mesh is up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum UpName {
+    /// +Y.
+    Y,
+    /// +Z.
+    Z,
+}
+
+/// How the colours of an MTL are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum ColorName {
+    /// As shown on a screen.
+    #[default]
+    Srgb,
+    /// In proportion to light, as Blender writes them.
+    Linear,
+}
+
 /// How scenes are read.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Scene")]
@@ -25,12 +45,34 @@ pub struct SceneArgs {
     /// Voxels outside a .vox model's SIZE (VoxelShop writes them, modulo 256)
     #[arg(long, value_enum, default_value_t)]
     pub oob: OutOfBoundsName,
+    /// Levels that a mesh is voxelised at: at most 2^N voxels a side [default: 9]
+    #[arg(long, value_name = "N",
+          value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
+    pub depth: Option<u32>,
+    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else z]
+    #[arg(long, value_enum)]
+    pub mesh_up: Option<UpName>,
+    /// How the colours of an .obj mesh's .mtl are meant; the format does not say
+    #[arg(long, value_enum, default_value_t)]
+    pub mesh_colors: ColorName,
 }
 
 impl SceneArgs {
+    /// Levels that a mesh is voxelised at.
+    #[must_use]
+    pub fn mesh_depth(&self) -> u32 {
+        self.depth.unwrap_or(DEFAULT_DEPTH)
+    }
+
     /// Every setting, for a configuration file.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
-        vec![("oob", word(&self.oob))]
+        let mut settings = vec![
+            ("oob", word(&self.oob)),
+            ("mesh-colors", word(&self.mesh_colors)),
+        ];
+        settings.extend(self.depth.map(|depth| ("depth", i64::from(depth).into())));
+        settings.extend(self.mesh_up.map(|up| ("mesh-up", word(&up))));
+        settings
     }
 }

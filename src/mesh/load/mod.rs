@@ -13,7 +13,7 @@ use std::path::{Component, Path, PathBuf};
 use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
 use crate::graph::Progress;
 
-pub use ply::has_faces as ply_has_faces;
+pub use stl::is_binary as is_binary_stl;
 
 /// The formats that meshes are read from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -14,23 +14,6 @@ use super::LoadOptions;
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::{Material, MeshBuilder};
 
-/// Whether a PLY file that begins so has faces, as far as its header goes.
-#[must_use]
-pub fn has_faces(prefix: &[u8]) -> bool {
-    for line in prefix.split(|byte| *byte == b'\n' || *byte == b'\r') {
-        let words: Vec<&[u8]> = line
-            .split(u8::is_ascii_whitespace)
-            .filter(|word| !word.is_empty())
-            .collect();
-        match words[..] {
-            [b"end_header"] => return false,
-            [b"element", b"face", count] => return count != b"0",
-            _ => {}
-        }
-    }
-    false
-}
-
 /// One vertex or face, with what matters of it.
 #[derive(Debug, Default)]
 struct Element {

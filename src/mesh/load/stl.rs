@@ -16,10 +16,14 @@ const HEADER: u64 = 84;
 /// Bytes of a triangle of a binary file.
 const TRIANGLE: u64 = 50;
 
-/// How many triangles a binary file has, if the length fits.
-pub(super) fn binary_triangles(header: &[u8], length: u64) -> Option<u32> {
-    let count = u32::from_le_bytes(header.get(80..84)?.try_into().ok()?);
-    (length == HEADER + TRIANGLE * u64::from(count)).then_some(count)
+/// Whether a file that begins so and is so long is a binary STL mesh: the
+/// header counts the triangles that the length has room for.
+#[must_use]
+pub fn is_binary(beginning: &[u8], length: u64) -> bool {
+    let count = beginning.get(80..84).and_then(|count| count.try_into().ok());
+    count.is_some_and(|count| {
+        length == HEADER + TRIANGLE * u64::from(u32::from_le_bytes(count))
+    })
 }
 
 /// Reads a file that is in memory.
@@ -29,7 +33,7 @@ pub(super) fn read(
     builder: &mut MeshBuilder,
 ) -> Result<(), MeshError> {
     builder.material(Material::of_srgb("no material", options.default_color));
-    let is_binary = binary_triangles(bytes, bytes.len() as u64).is_some();
+    let is_binary = is_binary(bytes, bytes.len() as u64);
     if !is_binary && !bytes.starts_with(b"solid") {
         return Err(cut_binary(bytes).into());
     }

@@ -1,1 +1,143 @@
-//! x
+//! Triangles to voxels: every voxel whose closed cube a triangle touches.
+//!
+//! Corners are rounded to a lattice of 2^30 points a side, the same for all
+//! triangles, so that neighbours stay joined. On the lattice a triangle and a
+//! cube are told apart exactly, in integers: there is no tolerance, a thin
+//! triangle loses no voxel and a closed mesh has no hole. The cubes of the
+//! octree are descended with the triangles that touch them. Work is cut into
+//! subtrees of 32 voxels a side, some at a time; memory grows with the
+//! triangles and not with the voxels. Rules: `spec/mesh.md`.
+
+mod block;
+mod grid;
+mod mix;
+mod touch;
+
+use rayon::prelude::*;
+
+pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH};
+
+use super::Surface;
+use crate::graph::{Progress, Voxel};
+use block::Block;
+use touch::Prepared;
+
+/// Levels of a subtree that one thread does at a time.
+const BLOCK_LEVELS: u32 = 5;
+/// Subtrees that are done between two calls of the sink, at the most.
+const BATCH_BLOCKS: usize = 512;
+/// Triangles of those subtrees together, after which no more are added.
+const BATCH_TRIANGLES: usize = 1 << 18;
+/// Level whose nodes the progress counts.
+const PROGRESS_LEVEL: u32 = 4;
+
+/// What voxelising took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct VoxelizeReport {
+    /// Voxels handed on, each once.
+    pub voxels: u64,
+    /// Pairs of a voxel and a triangle that touches it.
+    pub touches: u64,
+}
+
+/// Hands every voxel that a triangle touches to `sink`, once, in Morton order.
+///
+/// The same voxels in the same order on any number of threads. Indices run
+/// from 0 to `2^depth - 1`.
+pub fn voxelize<S: Surface + ?Sized>(
+    surface: &S,
+    grid: &Grid,
+    sink: &mut dyn FnMut(Voxel),
+    progress: &dyn Progress,
+) -> VoxelizeReport {
+    let mut walk = Walk {
+        surface,
+        grid,
+        sink,
+        progress,
+        batch: Vec::new(),
+        batch_triangles: 0,
+        report: VoxelizeReport::default(),
+    };
+    progress.begin("voxelise", 1 << (3 * PROGRESS_LEVEL));
+    // Fewer than 2^32: the grid made sure.
+    let all: Vec<u32> = (0..surface.len() as u32).collect();
+    walk.node(all, [0; 3], 0);
+    walk.flush();
+    progress.end();
+    walk.report
+}
+
+/// The walk from the root down to the subtrees.
+struct Walk<'w, S: ?Sized> {
+    surface: &'w S,
+    grid: &'w Grid,
+    sink: &'w mut dyn FnMut(Voxel),
+    progress: &'w dyn Progress,
+    batch: Vec<Block>,
+    batch_triangles: usize,
+    report: VoxelizeReport,
+}
+
+impl<S: Surface + ?Sized> Walk<'_, S> {
+    /// A node with the triangles that touch it; its corner on the lattice.
+    fn node(&mut self, triangles: Vec<u32>, corner: [i64; 3], level: u32) {
+        let is_leaf = self.grid.depth() - level <= BLOCK_LEVELS || triangles.is_empty();
+        if is_leaf && !triangles.is_empty() {
+            self.batch_triangles += triangles.len();
+            self.batch.push(Block {
+                triangles,
+                corner,
+                level,
+            });
+            if self.batch.len() >= BATCH_BLOCKS || self.batch_triangles >= BATCH_TRIANGLES {
+                self.flush();
+            }
+        } else if !is_leaf {
+            self.children(&triangles, corner, level);
+        }
+        // Each node of the level is counted once, those below it not at all.
+        if level == PROGRESS_LEVEL || is_leaf && level < PROGRESS_LEVEL {
+            self.progress.advance(1 << (3 * (PROGRESS_LEVEL - level)));
+        }
+    }
+
+    fn children(&mut self, triangles: &[u32], corner: [i64; 3], level: u32) {
+        let half = self.grid.side(level + 1);
+        let masks: Vec<u8> = triangles
+            .par_iter()
+            .map(|&number| {
+                let prepared = Prepared::new(self.grid.corners(self.surface, number));
+                prepared.children(corner, half)
+            })
+            .collect();
+        for octant in 0..8u8 {
+            let touching = triangles
+                .iter()
+                .zip(&masks)
+                .filter(|(_, mask)| **mask >> octant & 1 == 1)
+                .map(|(number, _)| *number)
+                .collect();
+            self.node(touching, touch::child(corner, half, octant), level + 1);
+        }
+    }
+
+    /// Does the subtrees that were gathered and hands on their voxels.
+    fn flush(&mut self) {
+        let (surface, grid) = (self.surface, self.grid);
+        let done: Vec<(Vec<Voxel>, u64)> = self
+            .batch
+            .par_iter()
+            .map(|block| block.voxels(surface, grid))
+            .collect();
+        self.batch.clear();
+        self.batch_triangles = 0;
+        for (voxels, touches) in done {
+            self.report.voxels += voxels.len() as u64;
+            self.report.touches += touches;
+            for voxel in voxels {
+                (self.sink)(voxel);
+            }
+        }
+    }
+}

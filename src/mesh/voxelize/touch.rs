@@ -1,0 +1,174 @@
+//! Does a triangle touch a cube? Exactly, in integers.
+//!
+//! Two convex bodies are apart if and only if one of finitely many directions
+//! separates them: for a triangle and a cube the cube's three axes, the
+//! triangle's normal, and the nine products of an edge and an axis. Bodies
+//! that meet in a point touch. Where all corners lie on a line or in a point
+//! the normal is zero and separates nothing; the other directions are then
+//! those of a segment, or of a point, and still decide exactly.
+//!
+//! Bits: coordinates are below 2^30, edges below 2^30 in size, so a product of
+//! an edge and an axis dotted with a corner stays below 2^61. The normal is
+//! below 2^61, and dotted with a corner below 2^93: that one is `i128`.
+
+/// A direction that lies in the plane of two axes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Flat {
+    /// Parts along the two axes.
+    parts: [i64; 2],
+    /// Least and greatest value over the triangle.
+    low: i64,
+    high: i64,
+}
+
+impl Flat {
+    fn new(parts: [i64; 2], points: [[i64; 2]; 3]) -> Self {
+        let values = points.map(|p| parts[0] * p[0] + parts[1] * p[1]);
+        Self {
+            parts,
+            low: values[0].min(values[1]).min(values[2]),
+            high: values[0].max(values[1]).max(values[2]),
+        }
+    }
+
+    /// Whether the direction separates the triangle from a square.
+    #[inline]
+    fn separates(&self, corner: [i64; 2], side: i64) -> bool {
+        let [a, b] = self.parts;
+        let at = a * corner[0] + b * corner[1];
+        let low = at + (a.min(0) + b.min(0)) * side;
+        let high = at + (a.max(0) + b.max(0)) * side;
+        low > self.high || high < self.low
+    }
+}
+
+/// A triangle with its directions.
+#[derive(Debug, Clone)]
+pub(super) struct Prepared {
+    /// Corners on the lattice.
+    pub(super) corners: [[i64; 3]; 3],
+    low: [i64; 3],
+    high: [i64; 3],
+    normal: [i64; 3],
+    /// The normal dotted with any corner.
+    offset: i128,
+    /// For each axis the directions of the three edges in the plane of the others.
+    flats: [[Flat; 3]; 3],
+}
+
+/// The other two axes.
+const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
+impl Prepared {
+    pub(super) fn new(corners: [[i64; 3]; 3]) -> Self {
+        let [a, b, c] = corners;
+        let edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
+        let normal = cross(edges[0], edges[1]);
+        let fold = |pick: fn(i64, i64) -> i64| {
+            std::array::from_fn(|k| pick(pick(a[k], b[k]), c[k]))
+        };
+        let flats = OTHERS.map(|[u, v]| {
+            let points = corners.map(|p| [p[u], p[v]]);
+            edges.map(|edge| Flat::new([-edge[v], edge[u]], points))
+        });
+        Self {
+            corners,
+            low: fold(i64::min),
+            high: fold(i64::max),
+            normal,
+            offset: (0..3)
+                .map(|k| i128::from(normal[k]) * i128::from(a[k]))
+                .sum(),
+            flats,
+        }
+    }
+
+    /// Whether the triangle touches the closed cube.
+    #[inline]
+    pub(super) fn touches(&self, corner: [i64; 3], side: i64) -> bool {
+        for k in 0..3 {
+            if corner[k] > self.high[k] || corner[k] + side < self.low[k] {
+                return false;
+            }
+        }
+        for (flats, [u, v]) in self.flats.iter().zip(OTHERS) {
+            let square = [corner[u], corner[v]];
+            if flats.iter().any(|flat| flat.separates(square, side)) {
+                return false;
+            }
+        }
+        // The cube's least and greatest value along the normal.
+        let (mut low, mut high) = (0i128, 0i128);
+        for k in 0..3 {
+            let n = i128::from(self.normal[k]);
+            let at = n * i128::from(corner[k]);
+            let far = at + n * i128::from(side);
+            low += at.min(far);
+            high += at.max(far);
+        }
+        low <= self.offset && self.offset <= high
+    }
+
+    /// Which of a cube's eight children the triangle touches, bit `x << 2 | y << 1 | z`.
+    pub(super) fn children(&self, corner: [i64; 3], half: i64) -> u8 {
+        (0..8u8)
+            .filter(|&octant| self.touches(child(corner, half, octant), half))
+            .fold(0, |mask, octant| mask | 1 << octant)
+    }
+
+    /// Whether the triangle lies within the closed cube.
+    pub(super) fn is_inside(&self, corner: [i64; 3], side: i64) -> bool {
+        (0..3).all(|k| corner[k] <= self.low[k] && self.high[k] <= corner[k] + side)
+    }
+}
+
+/// The corner of a child, given its side.
+#[inline]
+pub(super) fn child(corner: [i64; 3], half: i64, octant: u8) -> [i64; 3] {
+    std::array::from_fn(|k| corner[k] + half * i64::from(octant >> (2 - k) & 1))
+}
+
+fn subtract(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    std::array::from_fn(|k| a[k] - b[k])
+}
+
+fn cross(a: [i64; 3], b: [i64; 3]) -> [i64; 3] {
+    OTHERS.map(|[u, v]| a[u] * b[v] - a[v] * b[u])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_meets_in_a_point_touches() {
+        let triangle = Prepared::new([[4, 4, 4], [8, 4, 4], [4, 8, 4]]);
+        assert!(triangle.touches([0, 0, 0], 4));
+        assert!(triangle.touches([0, 0, 4], 4));
+        assert!(!triangle.touches([0, 0, 5], 4));
+        assert!(!triangle.touches([0, 0, 0], 3));
+        // The slanted edge passes through (6, 6).
+        assert!(triangle.touches([6, 6, 4], 2));
+        assert!(!triangle.touches([7, 6, 4], 2));
+        assert!(triangle.touches([6, 6, 2], 2));
+    }
+
+    #[test]
+    fn segments_and_points_touch_what_they_meet() {
+        let segment = Prepared::new([[0, 0, 0], [8, 8, 0], [4, 4, 0]]);
+        assert!(segment.touches([5, 5, 0], 1));
+        assert!(!segment.touches([5, 3, 0], 1));
+        assert!(segment.touches([5, 4, 0], 1));
+        let point = Prepared::new([[3, 3, 3]; 3]);
+        assert!(point.touches([3, 3, 3], 1) && point.touches([2, 2, 2], 1));
+        assert!(!point.touches([4, 3, 3], 1));
+    }
+
+    #[test]
+    fn the_largest_numbers_fit() {
+        let most = (1i64 << 30) - 1;
+        let triangle = Prepared::new([[0, most, 0], [most, 0, most], [most, most, 0]]);
+        assert!(triangle.touches([0, most - 1, 0], 1));
+        assert_eq!(triangle.children([0; 3], 1 << 29).count_ones(), 5);
+    }
+}

@@ -1,0 +1,196 @@
+//! Meshes as scenes: read, voxelised, placed where the file has them.
+
+use std::path::Path;
+use std::time::Instant;
+
+use glam::DVec3;
+
+use super::open::OpenError;
+use super::{FileKind, SceneError, SceneInfo};
+use crate::graph::{Progress, Voxel};
+use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
+use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshError, MeshFormat, SameFolder};
+
+/// How a mesh becomes a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeshOptions {
+    /// Levels below the root: at most `2^depth` voxels a side.
+    pub depth: u32,
+    /// How the file is read.
+    pub load: LoadOptions,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self {
+            depth: DEFAULT_DEPTH,
+            load: LoadOptions::default(),
+        }
+    }
+}
+
+/// What a mesh was, and what voxelising it took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshSummary {
+    /// Triangles that can be drawn.
+    pub triangles: u64,
+    /// Vertex positions.
+    pub positions: u64,
+    /// Materials.
+    pub materials: u64,
+    /// Lowest and highest corner of the box around it.
+    pub bounds: (DVec3, DVec3),
+    /// Bytes that the mesh takes in memory.
+    pub bytes: u64,
+    /// Levels that it was voxelised at.
+    pub depth: u32,
+    /// Pairs of a voxel and a triangle that touches it.
+    pub touches: u64,
+    /// Time to read the file, milliseconds.
+    pub load_ms: f64,
+    /// Time to find the voxels, without building the graph, milliseconds.
+    pub voxelize_ms: f64,
+    /// Whether +Y is up, by the custom of the format: for all but STL.
+    pub y_up: bool,
+}
+
+/// Reads a mesh file whose format is known.
+///
+/// # Errors
+/// [`MeshError`] where it cannot be read, breaks its format's rules or holds nothing to draw.
+pub fn read_mesh(
+    path: &Path,
+    kind: FileKind,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh, MeshError> {
+    let name = path.display().to_string();
+    let bytes = std::fs::read(path).map_err(|source| MeshError::Io {
+        file: name.clone(),
+        action: "read the file",
+        source,
+    })?;
+    read_bytes(&bytes, kind, &name, &SameFolder::of(path), options, progress)
+}
+
+/// Reads a mesh that is in memory.
+fn read_bytes(
+    bytes: &[u8],
+    kind: FileKind,
+    name: &str,
+    beside: &dyn Beside,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh, MeshError> {
+    let format = match kind {
+        FileKind::Ply => MeshFormat::Ply,
+        FileKind::Stl => MeshFormat::Stl,
+        FileKind::Gltf => MeshFormat::Gltf,
+        FileKind::Glb => MeshFormat::Glb,
+        _ => MeshFormat::Obj,
+    };
+    mesh::read(bytes, format, name, beside, options, progress)
+}
+
+/// A mesh that is ready to be voxelised.
+pub(super) struct Ready {
+    kind: FileKind,
+    mesh: Mesh,
+    grid: Grid,
+    load_ms: f64,
+}
+
+/// Where a mesh's bytes come from.
+pub(super) enum From<'a> {
+    File(&'a Path),
+    Memory(&'a [u8], &'a dyn Beside),
+}
+
+impl Ready {
+    /// Reads a mesh and lays the grid around it. That the file is a mesh is
+    /// known from the error of reading it as voxels; any other error stays.
+    pub(super) fn after(
+        error: SceneError,
+        source: &From<'_>,
+        name: &str,
+        options: &MeshOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, OpenError> {
+        let SceneError::Mesh { kind, .. } = error else {
+            return Err(error.into());
+        };
+        let started = Instant::now();
+        let mesh = match source {
+            From::File(path) => read_mesh(path, kind, &options.load, progress)?,
+            From::Memory(bytes, beside) => {
+                read_bytes(bytes, kind, name, *beside, &options.load, progress)?
+            }
+        };
+        let load_ms = started.elapsed().as_secs_f64() * 1e3;
+        let grid = Grid::around(&mesh, options.depth).map_err(|error| OpenError::Grid {
+            source_name: name.to_owned(),
+            error,
+        })?;
+        Ok(Self {
+            kind,
+            mesh,
+            grid,
+            load_ms,
+        })
+    }
+
+    /// Bytes that the mesh takes while it is voxelised.
+    pub(super) fn bytes(&self) -> u64 {
+        self.mesh.bytes()
+    }
+
+    /// World position and size of voxels, as the builders want them.
+    pub(super) fn placement(&self) -> ([f64; 3], f64) {
+        self.grid.placement()
+    }
+
+    /// Hands on the voxels and says what there was.
+    pub(super) fn voxels(
+        self,
+        sink: &mut dyn FnMut(Voxel),
+        progress: &dyn Progress,
+    ) -> (SceneInfo, MeshSummary) {
+        let started = Instant::now();
+        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+        let report = voxelize::voxelize(
+            &self.mesh,
+            &self.grid,
+            &mut |voxel| {
+                for k in 0..3 {
+                    low[k] = low[k].min(voxel.index[k]);
+                    high[k] = high[k].max(voxel.index[k]);
+                }
+                sink(voxel);
+            },
+            progress,
+        );
+        let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
+        let mut info = SceneInfo::new(self.kind);
+        info.voxels = report.voxels;
+        info.stored_voxels = 0;
+        info.bounds = (report.voxels > 0).then_some((low, high));
+        info.models = 1;
+        info.instances = 1;
+        info.has_colors = true;
+        info.has_normals = true;
+        info.warnings = self.mesh.warnings().to_vec();
+        let summary = MeshSummary {
+            triangles: self.mesh.triangles().len() as u64,
+            positions: self.mesh.positions().len() as u64,
+            materials: self.mesh.materials().len() as u64,
+            bounds: self.mesh.bounds(),
+            bytes: self.mesh.bytes(),
+            depth: self.grid.depth(),
+            touches: report.touches,
+            load_ms: self.load_ms,
+            voxelize_ms,
+            y_up: self.kind != FileKind::Stl,
+        };
+        (info, summary)
+    }
+}
