@@ -21,6 +21,7 @@ mod outputs;
 pub mod render;
 mod report;
 mod scenes;
+pub mod triangles;
 pub mod turntable;
 
 use std::ffi::OsString;
@@ -31,11 +32,12 @@ use clap::{ArgAction, Parser, Subcommand};
 use console::Console;
 use error::{CliError, Kind};
 
-/// Draws voxel files with nothing but adders and shifts.
+/// Draws voxel files and meshes with nothing but adders and shifts.
 ///
 /// With no verb it draws the bundled scene, writes it to out/demo.png (replacing an older one) and says
 /// what that took. Scenes are .vox, .ply, .npy and .vxg files, told by their
-/// content, or generators such as gen:terrain,depth=10,seed=1.
+/// content, or generators such as gen:terrain,depth=10,seed=1, or meshes (.obj,
+/// .ply with faces, .stl, .gltf, .glb), which are voxelised at --depth.
 ///
 /// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
 /// comparison or an expectation failed, 4 bad input, 5 a limit is exceeded.
@@ -76,6 +78,8 @@ enum Verb {
     Render(Box<render::RenderArgs>),
     /// Draw many frames around a scene
     Turntable(Box<turntable::TurntableArgs>),
+    /// Draw a mesh as triangles: the reference picture of a mesh
+    Triangles(Box<triangles::TrianglesArgs>),
     /// Say what is in a scene
     Info(info::InfoArgs),
     /// Convert a scene to another format
@@ -148,6 +152,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         None => demo::run(&console),
         Some(Verb::Render(args)) => render::run(&args, scenes, &console),
         Some(Verb::Turntable(args)) => turntable::run(&args, scenes, &console),
+        Some(Verb::Triangles(args)) => triangles::run(&args, &console),
         Some(Verb::Info(args)) => info::run(&args, scenes, &console),
         Some(Verb::Convert(args)) => convert::run(&args, &console),
         Some(Verb::Generate(args)) => generate::run(&args, &console),

@@ -11,7 +11,7 @@ use crate::graph::{
     vxg,
 };
 use crate::picture::store;
-use crate::mesh::{ColorSpace, LoadOptions, MeshError};
+use crate::mesh::{ColorSpace, LoadOptions, Mesh, MeshError};
 use crate::scene::{
     self, MeshOptions, MeshSummary, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions,
     SceneError,
@@ -80,6 +80,20 @@ pub(super) fn open(
         args.mesh_up,
         started,
     ))
+}
+
+/// Reads a mesh for its triangles, and says which axis is up.
+///
+/// # Errors
+/// A bad input with file, place, what was expected and what to do.
+pub(super) fn open_mesh(
+    source: &str,
+    args: &SceneArgs,
+    progress: &dyn Progress,
+) -> Result<(Mesh, Up), CliError> {
+    let (mesh, y_up) = scene::read_mesh(Path::new(source), &load_options(args), progress)?;
+    let y_up = args.mesh_up.map_or(y_up, |up| up == UpName::Y);
+    Ok((mesh, if y_up { Up::Y } else { Up::Z }))
 }
 
 /// The bundled scene of the demo.

@@ -166,3 +166,35 @@ impl Surface for Instances {
 pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or(DVec3::Z)
 }
+
+/// The shares of the corners in a point of the triangle, each 0 to 1; thirds where it has no area.
+pub(super) fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (*b - *a).cross(*c - *a);
+    let square = normal.length_squared();
+    if square == 0.0 {
+        return [1.0 / 3.0; 3];
+    }
+    let of_b = (point - *a).cross(*c - *a).dot(normal) / square;
+    let of_c = (*b - *a).cross(point - *a).dot(normal) / square;
+    let (of_b, of_c) = (of_b.clamp(0.0, 1.0), of_c.clamp(0.0, 1.0));
+    let excess = (of_b + of_c).max(1.0);
+    let (of_b, of_c) = (of_b / excess, of_c / excess);
+    [1.0 - of_b - of_c, of_b, of_c]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_of_corners() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert_eq!(barycentric(&triangle, DVec3::X), [0.0, 1.0, 0.0]);
+        assert_eq!(
+            barycentric(&triangle, DVec3::new(0.25, 0.25, 5.0)),
+            [0.5, 0.25, 0.25]
+        );
+        assert_eq!(barycentric(&triangle, DVec3::splat(9.0))[0], 0.0);
+        assert_eq!(barycentric(&[DVec3::ZERO; 3], DVec3::X), [1.0 / 3.0; 3]);
+    }
+}

@@ -60,9 +60,9 @@ impl fmt::Display for Background {
 
 /// The key light in the camera's right, up and back: over the left shoulder,
 /// so that the three faces of a box seen from a corner differ in brightness.
-const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
+pub const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
 /// Light that comes from everywhere, of 256.
-const AMBIENT: u32 = 64;
+pub const AMBIENT: u32 = 64;
 
 /// Light of a direction: a share of 256.
 pub(super) struct Light {

@@ -15,7 +15,7 @@ mod sight;
 pub mod store;
 
 pub(crate) use color::Linear;
-pub use color::{Background, Shading};
+pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
 pub use hash::hash;
 pub use resolve::{ResolveError, resolve};
 pub use shade::Shader;

@@ -33,6 +33,14 @@ pub enum SceneError {
         /// Which mesh format it is.
         kind: FileKind,
     },
+    /// The file is no mesh.
+    #[error("{file}: this is a {kind} file, which has no triangles; triangles are in .obj, .ply, .stl, .gltf and .glb files")]
+    NotMesh {
+        /// The file, as the user named it.
+        file: String,
+        /// Which format it is.
+        kind: FileKind,
+    },
     /// The file holds a finished voxel graph, not voxels to build one from.
     #[error("{file}: this is a .vxg graph, which is opened as a graph and not read as voxels")]
     IsGraph {

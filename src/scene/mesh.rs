@@ -6,7 +6,8 @@ use std::time::Instant;
 use glam::DVec3;
 
 use super::open::OpenError;
-use super::{FileKind, SceneError, SceneInfo};
+use super::error::printable;
+use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_with_length};
 use crate::graph::{Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
 use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshError, MeshFormat, SameFolder};
@@ -54,23 +55,43 @@ pub struct MeshSummary {
     pub y_up: bool,
 }
 
-/// Reads a mesh file whose format is known.
+/// Reads a mesh file, for its triangles; says too whether +Y is up in it.
 ///
 /// # Errors
-/// [`MeshError`] where it cannot be read, breaks its format's rules or holds nothing to draw.
+/// Where it cannot be read, is no mesh, breaks its format's rules or holds
+/// nothing to draw.
 pub fn read_mesh(
     path: &Path,
-    kind: FileKind,
     options: &LoadOptions,
     progress: &dyn Progress,
-) -> Result<Mesh, MeshError> {
+) -> Result<(Mesh, bool), OpenError> {
     let name = path.display().to_string();
-    let bytes = std::fs::read(path).map_err(|source| MeshError::Io {
-        file: name.clone(),
+    let bytes = file_bytes(path)?;
+    let beginning = &bytes[..bytes.len().min(DETECT_BYTES)];
+    let kind = match detect_with_length(beginning, bytes.len() as u64) {
+        Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
+        Some(kind) => return Err(SceneError::NotMesh { file: name, kind }.into()),
+        None => {
+            let begins = printable(beginning);
+            return Err(SceneError::Unknown { file: name, begins }.into());
+        }
+    };
+    let beside = SameFolder::of(path);
+    let mesh = read_bytes(&bytes, kind, &name, &beside, options, progress)?;
+    Ok((mesh, is_y_up(kind)))
+}
+
+fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
+    std::fs::read(path).map_err(|source| MeshError::Io {
+        file: path.display().to_string(),
         action: "read the file",
         source,
-    })?;
-    read_bytes(&bytes, kind, &name, &SameFolder::of(path), options, progress)
+    })
+}
+
+/// Whether +Y is up, by the custom of the format.
+fn is_y_up(kind: FileKind) -> bool {
+    kind != FileKind::Stl
 }
 
 /// Reads a mesh that is in memory.
@@ -121,7 +142,11 @@ impl Ready {
         };
         let started = Instant::now();
         let mesh = match source {
-            From::File(path) => read_mesh(path, kind, &options.load, progress)?,
+            From::File(path) => {
+                let bytes = file_bytes(path)?;
+                let beside = SameFolder::of(path);
+                read_bytes(&bytes, kind, name, &beside, &options.load, progress)?
+            }
             From::Memory(bytes, beside) => {
                 read_bytes(bytes, kind, name, *beside, &options.load, progress)?
             }
@@ -189,7 +214,7 @@ impl Ready {
             touches: report.touches,
             load_ms: self.load_ms,
             voxelize_ms,
-            y_up: self.kind != FileKind::Stl,
+            y_up: is_y_up(self.kind),
         };
         (info, summary)
     }

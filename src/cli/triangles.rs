@@ -1,0 +1,204 @@
+//! `triangles`: a mesh drawn as triangles, with a depth buffer.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use serde_json::json;
+
+use super::args::{CameraArgs, SceneArgs, Size, camera_line};
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::fit::Bounds;
+use super::{outputs, report, scenes};
+use crate::mesh::Mesh;
+use crate::mesh::raster::{self, Light, Pattern, RasterOptions, Samples, View};
+use crate::picture::npy::{self, Array, Values};
+use crate::picture::{AMBIENT, Background, KEY_LIGHT, png, store};
+use crate::project::Camera;
+
+/// Share of the distance to the farthest corner below which nothing is drawn.
+const NEAR: f64 = 1e-6;
+
+/// How samples are spread in a pixel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum PatternName {
+    /// In the middles of equal squares.
+    #[default]
+    Regular,
+    /// At random within equal squares.
+    Stratified,
+}
+
+/// Buffers that are written beside the picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BufferName {
+    /// View-axis depth, world units; inf where nothing is seen.
+    Depth,
+    /// Share of the pixel's samples that see a triangle.
+    Coverage,
+}
+
+/// Arguments of `triangles`.
+#[derive(Debug, Args)]
+pub struct TrianglesArgs {
+    /// Mesh: .obj, .ply, .stl, .gltf or .glb, told by its content
+    #[arg(value_name = "MESH")]
+    mesh: String,
+    /// Picture to write, .png
+    #[arg(short, long, value_name = "FILE")]
+    output: PathBuf,
+    /// Samples of a pixel: 1, 4, 16 or 256
+    #[arg(long, value_name = "N", default_value = "16",
+          value_parser = PossibleValuesParser::new(["1", "4", "16", "256"]))]
+    samples: String,
+    /// Where in a pixel they lie
+    #[arg(long, value_enum, default_value_t)]
+    pattern: PatternName,
+    /// What --pattern stratified depends on
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Pixels: 512 for a square, or 640x360 [default: 512]
+    #[arg(long, value_name = "N|WxH")]
+    size: Option<Size>,
+    /// Colours as the file has them, without light
+    #[arg(long)]
+    flat: bool,
+    /// What is behind: sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
+    #[arg(long, value_name = "R,G,B|none")]
+    background: Option<Background>,
+    /// Buffers to write beside the picture, as {out stem}.{aov}.npy
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    aov: Vec<BufferName>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+}
+
+pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliError> {
+    outputs::check_picture_name(&args.output)?;
+    args.camera.check().map_err(CliError::usage)?;
+    for path in args.paths() {
+        store::check_free(&path, args.force)?;
+    }
+    let started = Instant::now();
+    let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console.progress())?;
+    let load_ms = started.elapsed().as_secs_f64() * 1e3;
+    for warning in mesh.warnings() {
+        console.note(format!("{}: {warning}", args.mesh));
+    }
+    let size = args.size.map_or((512, 512), |s| (s.width, s.height));
+    let camera = args.camera.camera(&bounds(&mesh), up, size, 0.0);
+    let run_error = |e: &dyn std::fmt::Display| {
+        CliError::new(Kind::Run, format!("{}: {e}", args.output.display()))
+    };
+    let view = view(&camera, &mesh).map_err(CliError::usage)?;
+    let options = args.options(&view).map_err(|e| run_error(&e))?;
+    let started = Instant::now();
+    let picture =
+        raster::draw(&mesh, &view, &options, console.progress()).map_err(|e| run_error(&e))?;
+    let draw_ms = started.elapsed().as_secs_f64() * 1e3;
+    let bytes = png::encode(picture.width, picture.height, &picture.rgba);
+    store::write(&args.output, &bytes.map_err(|e| run_error(&e))?, args.force)?;
+    for (path, values) in args.paths().into_iter().skip(1).zip(&args.aov) {
+        let values = match values {
+            BufferName::Depth => picture.depth.clone(),
+            BufferName::Coverage => picture.coverage.clone(),
+        };
+        let array = Array {
+            shape: vec![picture.height as usize, picture.width as usize],
+            values: Values::F32(values),
+        };
+        store::write(&path, &npy::encode(&array), args.force)?;
+    }
+    console.note(format!(
+        "{}: {} triangles, {} samples a pixel, read in {load_ms:.1} ms, drawn in {draw_ms:.1} ms",
+        args.output.display(),
+        report::grouped(mesh.triangles().len() as u64),
+        args.samples
+    ));
+    if console.json {
+        let fields = json!({
+            "mesh": args.mesh,
+            "output": args.output,
+            "triangles": mesh.triangles().len(),
+            "samples": options.samples.per_pixel(),
+            "camera": camera_line(&camera),
+            "load_ms": load_ms,
+            "draw_ms": draw_ms,
+            "warnings": mesh.warnings(),
+        });
+        console.document(&report::document("triangles", fields))?;
+    }
+    Ok(())
+}
+
+impl TrianglesArgs {
+    /// The picture, then the buffers in the order in which they were asked for.
+    fn paths(&self) -> Vec<PathBuf> {
+        let name = |buffer: &BufferName| match buffer {
+            BufferName::Depth => "depth.npy",
+            BufferName::Coverage => "coverage.npy",
+        };
+        let beside = self.aov.iter().map(|b| self.output.with_extension(name(b)));
+        std::iter::once(self.output.clone()).chain(beside).collect()
+    }
+
+    fn options(&self, view: &View) -> Result<RasterOptions, raster::SamplesError> {
+        let pattern = match self.pattern {
+            PatternName::Regular => Pattern::Regular,
+            PatternName::Stratified => Pattern::Stratified { seed: self.seed },
+        };
+        let key = KEY_LIGHT.normalize();
+        let light = Light {
+            towards: view.right * key.x + view.up * key.y - view.forward * key.z,
+            ambient: AMBIENT,
+        };
+        Ok(RasterOptions {
+            // The flag takes these numbers only.
+            samples: Samples::new(self.samples.parse().unwrap_or(16), pattern)?,
+            light: (!self.flat).then_some(light),
+            background: match self.background.unwrap_or_default() {
+                Background::None => None,
+                Background::Color(color) => Some(color),
+            },
+        })
+    }
+}
+
+/// The mesh's box and its vertices, for a fitted camera.
+fn bounds(mesh: &Mesh) -> Bounds {
+    let (low, high) = mesh.bounds();
+    let points = mesh.triangles().iter().flatten();
+    let hull = points.map(|&i| {
+        DVec3::from_array(mesh.positions()[i as usize].map(f64::from))
+    });
+    Bounds {
+        low,
+        high,
+        hull: hull.collect(),
+    }
+}
+
+/// The camera as the rasteriser wants it.
+fn view(camera: &Camera, mesh: &Mesh) -> Result<View, String> {
+    let axes = camera.axes().map_err(|e| e.to_string())?;
+    let (low, high) = mesh.bounds();
+    let farthest = (camera.eye - low).abs().max((high - camera.eye).abs()).length();
+    Ok(View {
+        eye: camera.eye,
+        right: axes.right,
+        up: axes.up,
+        forward: axes.forward,
+        focal_px: axes.focal_px,
+        width: camera.width,
+        height: camera.height,
+        near: farthest * NEAR,
+    })
+}

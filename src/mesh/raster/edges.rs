@@ -1,0 +1,132 @@
+//! Edge functions: which samples a triangle covers, exactly.
+//!
+//! For an edge from `a` to `b` and a sample `p`, all in 1/4096 pixel,
+//! `(b - a) x (p - a)` is positive on the inner side. Coordinates are within
+//! 2^29 steps, so products are below 2^60 and their difference below 2^61.
+//! A sample on an edge counts for a top or a left edge only.
+
+use super::samples::{SUBPIXEL_BITS, SUBPIXELS};
+
+/// One edge: its function is `at + right * x + down * y` in steps from a pixel's corner.
+#[derive(Debug, Clone, Copy)]
+struct Edge {
+    /// At step (0, 0), less 1 for an edge that excludes its own points.
+    at: i64,
+    right: i64,
+    down: i64,
+}
+
+/// A triangle of the picture's plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Edges([Edge; 3]);
+
+/// How much of a pixel a triangle covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cover {
+    Nothing,
+    Part,
+    All,
+}
+
+impl Edges {
+    /// Two edges and the line between their ends; `None` without area.
+    pub(super) fn new(points: [[i64; 2]; 3]) -> Option<Self> {
+        let [a, b, c] = points;
+        let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        let turned = match area {
+            0 => return None,
+            1.. => [a, b, c],
+            _ => [a, c, b],
+        };
+        Some(Self([0, 1, 2].map(|i| {
+            let (from, to) = (turned[i], turned[(i + 1) % 3]);
+            let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
+            // y grows downwards: the inner side of an upward edge is to its right.
+            let is_top_left = dy < 0 || dy == 0 && dx > 0;
+            Edge {
+                at: dy * from[0] - dx * from[1] - i64::from(!is_top_left),
+                right: -dy,
+                down: dx,
+            }
+        })))
+    }
+
+    /// The edges as seen from a pixel's corner.
+    #[inline]
+    pub(super) fn from_pixel(&self, pixel: [i64; 2]) -> Self {
+        Self(self.0.map(|edge| Edge {
+            at: edge.at + ((edge.right * pixel[0] + edge.down * pixel[1]) << SUBPIXEL_BITS),
+            ..edge
+        }))
+    }
+
+    /// How much of the pixel at step (0, 0) is covered, as far as its corners tell.
+    #[inline]
+    pub(super) fn cover(&self) -> Cover {
+        let mut all = true;
+        for edge in &self.0 {
+            let (right, down) = (edge.right * SUBPIXELS, edge.down * SUBPIXELS);
+            if edge.at + right.max(0) + down.max(0) < 0 {
+                return Cover::Nothing;
+            }
+            all &= edge.at + right.min(0) + down.min(0) >= 0;
+        }
+        if all { Cover::All } else { Cover::Part }
+    }
+
+    /// Whether a sample so many steps from the corner is covered.
+    #[inline]
+    pub(super) fn covers(&self, [x, y]: [i64; 2]) -> bool {
+        self.0
+            .iter()
+            .all(|edge| edge.at + edge.right * x + edge.down * y >= 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_on_shared_edges_count_once() {
+        // A square of four triangles around a sample, and samples on every edge.
+        let corners = [[0, 0], [8, 0], [8, 8], [0, 8]];
+        let middle = [4, 4];
+        let mut covered = [[0; 10]; 10];
+        for i in 0..4 {
+            let edges = Edges::new([corners[i], corners[(i + 1) % 4], middle]).unwrap();
+            let other_way = Edges::new([middle, corners[(i + 1) % 4], corners[i]]).unwrap();
+            for (y, row) in covered.iter_mut().enumerate() {
+                for (x, count) in row.iter_mut().enumerate() {
+                    let sample = [x as i64, y as i64];
+                    *count += u32::from(edges.covers(sample));
+                    assert_eq!(edges.covers(sample), other_way.covers(sample));
+                }
+            }
+        }
+        for (y, row) in covered.iter().enumerate() {
+            for (x, &count) in row.iter().enumerate() {
+                // The left and top sides belong to the square, the others do not.
+                assert_eq!(count, u32::from(x < 8 && y < 8), "{x} {y}");
+            }
+        }
+    }
+
+    #[test]
+    fn pixels_are_told_from_their_corners() {
+        let far = SUBPIXELS * 10;
+        let edges = Edges::new([[0, 0], [far, 0], [0, far]]).unwrap();
+        assert_eq!(edges.from_pixel([1, 1]).cover(), Cover::All);
+        assert_eq!(edges.from_pixel([5, 4]).cover(), Cover::Part);
+        assert_eq!(edges.from_pixel([20, 4]).cover(), Cover::Nothing);
+        assert!(Edges::new([[0, 0], [3, 3], [5, 5]]).is_none());
+    }
+
+    #[test]
+    fn the_largest_triangles_fit() {
+        let most = 80_000 * SUBPIXELS;
+        let edges = Edges::new([[-most, -most], [most, -most], [most, most]]).unwrap();
+        assert!(edges.from_pixel([32767, 0]).covers([0, 0]));
+        assert!(!edges.from_pixel([0, 32767]).covers([0, 0]));
+    }
+}
