@@ -86,6 +86,43 @@ impl Samples {
     }
 }
 
+/// Where the samples of a rectangle of pixels lie.
+pub(super) struct Places {
+    per_pixel: usize,
+    /// Of each pixel, or once where all pixels have the same.
+    table: Vec<[i32; 2]>,
+}
+
+impl Places {
+    /// Of `columns` by `rows` pixels from a corner, row by row.
+    pub(super) fn new(samples: &Samples, corner: [u32; 2], columns: u32, rows: u32) -> Self {
+        let pixels = match samples.pattern {
+            Pattern::Regular => 1,
+            Pattern::Stratified { .. } => columns * rows,
+        };
+        let per_pixel = samples.per_pixel();
+        let table = (0..pixels)
+            .flat_map(|i| {
+                let pixel = [corner[0] + i % columns, corner[1] + i / columns];
+                // Below 4096.
+                (0..per_pixel).map(move |number| samples.place(pixel, number).map(|c| c as i32))
+            })
+            .collect();
+        Self { per_pixel, table }
+    }
+
+    /// Those of a pixel.
+    #[inline]
+    pub(super) fn of(&self, pixel: usize) -> &[[i32; 2]] {
+        let at = if self.table.len() == self.per_pixel {
+            0
+        } else {
+            pixel * self.per_pixel
+        };
+        &self.table[at..at + self.per_pixel]
+    }
+}
+
 /// A step of SplitMix64.
 fn scrambled(value: u64) -> u64 {
     let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::bins::{Bins, TILE};
 use super::clip::Outline;
 use super::edges::{Cover, Edges};
-use super::samples::SUBPIXELS;
+use super::samples::{Places, SUBPIXELS};
 use super::shade::{Nearness, Paint};
 use super::{NO_TRIANGLE, RasterOptions, RasterPicture, View};
 use crate::mesh::Surface;
@@ -34,6 +34,7 @@ struct Buffer<'b> {
     corner: [u32; 2],
     columns: u32,
     rows: u32,
+    places: Places,
     /// One over the depth of the nearest triangle so far; 0 where there is none.
     nearness: Vec<f64>,
     triangle: Vec<u32>,
@@ -57,6 +58,7 @@ impl Tile {
             corner,
             columns,
             rows,
+            places: Places::new(&options.samples, corner, columns, rows),
             nearness: vec![0.0; samples],
             triangle: vec![NO_TRIANGLE; samples],
         };
@@ -115,11 +117,11 @@ impl Buffer<'_> {
                 if cover == Cover::Nothing {
                     continue;
                 }
-                let at = ((y - corner[1]) * size[0] + (x - corner[0])) as usize * per_pixel;
-                // Within the picture: not negative.
-                let pixel = [x as u32, y as u32];
-                for sample in 0..per_pixel {
-                    let place = self.options.samples.place(pixel, sample);
+                // Within the tile: not negative.
+                let pixel = ((y - corner[1]) * size[0] + (x - corner[0])) as usize;
+                let at = pixel * per_pixel;
+                for (sample, place) in self.places.of(pixel).iter().enumerate() {
+                    let place = place.map(i64::from);
                     if cover == Cover::Part && !here.covers(place) {
                         continue;
                     }
@@ -145,6 +147,8 @@ impl Buffer<'_> {
             .background
             .map(|color| DVec3::from_array(color.map(|c| f64::from(srgb_to_linear(c)))));
         let per_pixel = self.options.samples.per_pixel();
+        // Neighbouring samples mostly see the same triangle.
+        let mut last: Option<(u32, Paint)> = None;
         let middle = self.options.samples.middle();
         (0..(self.columns * self.rows) as usize)
             .map(|i| {
@@ -159,12 +163,16 @@ impl Buffer<'_> {
                         continue;
                     }
                     seen += 1;
-                    let paint = paints.entry(number).or_insert_with(|| {
-                        Paint::of(self.view, surface.triangle(number as usize), light)
-                    });
-                    let place = self.options.samples.place(pixel, sample);
+                    if last.as_ref().is_none_or(|(of, _)| *of != number) {
+                        let paint = paints.entry(number).or_insert_with(|| {
+                            Paint::of(self.view, surface.triangle(number as usize), light)
+                        });
+                        last = Some((number, *paint));
+                    }
+                    let Some((_, paint)) = &last else { continue };
+                    let place = self.places.of(i)[sample];
                     let [x, y] = [0, 1].map(|k| {
-                        f64::from(pixel[k]) * SUBPIXELS as f64 + place[k] as f64
+                        f64::from(pixel[k]) * SUBPIXELS as f64 + f64::from(place[k])
                     });
                     sum += paint.light(self.view, light, x, y, 1.0 / self.nearness[at]);
                 }
