@@ -10,8 +10,8 @@ use crate::graph::{
     ExternalError, ExternalOptions, ExternalReport, Graph, MergeBy, Progress, Silent, Voxel, merge,
     vxg,
 };
-use crate::picture::store;
 use crate::mesh::{ColorSpace, LoadOptions, Mesh, MeshError};
+use crate::picture::store;
 use crate::scene::{
     self, MeshOptions, MeshSummary, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions,
     SceneError,
@@ -73,13 +73,7 @@ pub(super) fn open(
 ) -> Result<Scene, CliError> {
     let started = Instant::now();
     let opened = scene::open(source, &options(args), progress)?;
-    Ok(ready(
-        opened,
-        source,
-        stem(source),
-        args.mesh_up,
-        started,
-    ))
+    Ok(ready(opened, source, stem(source), args.mesh_up, started))
 }
 
 /// Reads a mesh for its triangles, and says which axis is up.

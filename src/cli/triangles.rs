@@ -176,9 +176,7 @@ impl TrianglesArgs {
 fn bounds(mesh: &Mesh) -> Bounds {
     let (low, high) = mesh.bounds();
     let points = mesh.triangles().iter().flatten();
-    let hull = points.map(|&i| {
-        DVec3::from_array(mesh.positions()[i as usize].map(f64::from))
-    });
+    let hull = points.map(|&i| DVec3::from_array(mesh.positions()[i as usize].map(f64::from)));
     Bounds {
         low,
         high,
@@ -190,7 +188,10 @@ fn bounds(mesh: &Mesh) -> Bounds {
 fn view(camera: &Camera, mesh: &Mesh) -> Result<View, String> {
     let axes = camera.axes().map_err(|e| e.to_string())?;
     let (low, high) = mesh.bounds();
-    let farthest = (camera.eye - low).abs().max((high - camera.eye).abs()).length();
+    let farthest = (camera.eye - low)
+        .abs()
+        .max((high - camera.eye).abs())
+        .length();
     Ok(View {
         eye: camera.eye,
         right: axes.right,

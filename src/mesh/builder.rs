@@ -229,9 +229,10 @@ impl MeshBuilder {
             }
         }
         (mesh.low, mesh.high) = (low, high);
-        for list in [&mut mesh.positions] {
-            list.shrink_to_fit();
-        }
+        mesh.positions.shrink_to_fit();
+        mesh.triangles.shrink_to_fit();
+        mesh.material_of.shrink_to_fit();
+        mesh.corner_normals.shrink_to_fit();
         Ok(mesh)
     }
 }

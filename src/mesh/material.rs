@@ -84,7 +84,11 @@ pub(super) fn linear_to_srgb(light: f64) -> u8 {
             let to_above = f64::from(table[above]) - light;
             let to_below = light - f64::from(table[above - 1]);
             // `above` is 1 to 255 here.
-            (if to_above <= to_below { above } else { above - 1 }) as u8
+            (if to_above <= to_below {
+                above
+            } else {
+                above - 1
+            }) as u8
         }
     }
 }

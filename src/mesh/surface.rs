@@ -44,8 +44,7 @@ impl Surface for Mesh {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        self.triangles[number]
-            .map(|i| DVec3::from_array(self.positions[i as usize].map(f64::from)))
+        self.triangles[number].map(|i| DVec3::from_array(self.positions[i as usize].map(f64::from)))
     }
 
     fn triangle(&self, number: usize) -> Triangle {
@@ -100,7 +99,11 @@ impl Instances {
         for &corner in mesh.triangles.iter().flatten() {
             is_used[corner as usize] = true;
         }
-        let used = mesh.positions.iter().zip(&is_used).filter(|(_, used)| **used);
+        let used = mesh
+            .positions
+            .iter()
+            .zip(&is_used)
+            .filter(|(_, used)| **used);
         let used: Vec<DVec3> = used
             .map(|(position, _)| DVec3::from_array(position.map(f64::from)))
             .collect();

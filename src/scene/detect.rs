@@ -80,7 +80,9 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
         return Some(FileKind::Vxg);
     }
     let text = prefix.strip_prefix(b"\xef\xbb\xbf").unwrap_or(prefix);
-    if text.trim_ascii_start().starts_with(b"{") && contains(text, b"\"asset\"") {
+    // Some exporters begin with one of the longer lists.
+    let is_gltf = [&b"\"asset\""[..], b"\"accessors\"", b"\"bufferViews\""];
+    if text.trim_ascii_start().starts_with(b"{") && is_gltf.iter().any(|key| contains(text, key)) {
         return Some(FileKind::Gltf);
     }
     looks_like_obj(text).then_some(FileKind::Obj)
@@ -132,6 +134,7 @@ mod tests {
                 b"  {\n \"asset\": {\"version\": \"2.0\"}}",
                 Some(FileKind::Gltf),
             ),
+            (b"{\"accessors\": [", Some(FileKind::Gltf)),
             (
                 b"# made by hand\n\nmtllib a.mtl\nv 0 0 0\n",
                 Some(FileKind::Obj),

@@ -34,7 +34,9 @@ pub enum SceneError {
         kind: FileKind,
     },
     /// The file is no mesh.
-    #[error("{file}: this is a {kind} file, which has no triangles; triangles are in .obj, .ply, .stl, .gltf and .glb files")]
+    #[error(
+        "{file}: this is a {kind} file, which has no triangles; triangles are in .obj, .ply, .stl, .gltf and .glb files"
+    )]
     NotMesh {
         /// The file, as the user named it.
         file: String,

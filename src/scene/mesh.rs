@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::open::OpenError;
 use super::error::printable;
+use super::open::OpenError;
 use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_with_length};
 use crate::graph::{Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};

@@ -324,7 +324,9 @@ mod tests {
             });
         }
         assert!(gathered.builder.is_empty());
-        let error = gathered.finish("a.ply", UNIT, &Silent).expect_err("too many");
+        let error = gathered
+            .finish("a.ply", UNIT, &Silent)
+            .expect_err("too many");
         assert!(error.is_limit());
         assert_eq!(
             error.to_string(),

@@ -7,7 +7,11 @@ use super::shapes::{data_uri, glb, gltf_json, load, square_buffer, squares};
 
 fn message(bytes: &[u8], format: MeshFormat) -> String {
     match load(bytes, format) {
-        Ok(mesh) => panic!("{} triangles of {}", mesh.triangles().len(), bytes.escape_ascii()),
+        Ok(mesh) => panic!(
+            "{} triangles of {}",
+            mesh.triangles().len(),
+            bytes.escape_ascii()
+        ),
         Err(error) => error.to_string(),
     }
 }
@@ -67,7 +71,11 @@ fn each_fault_is_told_with_its_place() {
     ];
     for (format, bytes, expected) in cases {
         let found = message(&bytes, format);
-        assert!(found.contains(expected), "{}\n  expected: {expected}\n  found:    {found}", bytes.escape_ascii());
+        assert!(
+            found.contains(expected),
+            "{}\n  expected: {expected}\n  found:    {found}",
+            bytes.escape_ascii()
+        );
     }
 }
 
@@ -77,7 +85,9 @@ fn a_small_gltf_does_not_become_large() {
     let triangles = 10_000;
     let nodes: Vec<String> = (0..1000).map(|_| "{\"mesh\": 0}".to_owned()).collect();
     let list: Vec<String> = (0..1000).map(|i| i.to_string()).collect();
-    let buffer: Vec<u8> = (0..9 * triangles).flat_map(|i: u32| (i as f32).sqrt().to_le_bytes()).collect();
+    let buffer: Vec<u8> = (0..9 * triangles)
+        .flat_map(|i: u32| (i as f32).sqrt().to_le_bytes())
+        .collect();
     let json = format!(
         "{{\"asset\": {{\"version\": \"2.0\"}}, \"scenes\": [{{\"nodes\": [{}]}}], \"nodes\": [{}],
         \"meshes\": [{{\"primitives\": [{{\"attributes\": {{\"POSITION\": 0}}}}]}}],

@@ -36,7 +36,13 @@ fn every_format_is_told_by_content_and_drawn() {
         // STL is customarily Z-up, all others Y-up.
         let camera = scene["camera"].as_str().unwrap();
         let up = camera.split("--up ").nth(1).unwrap();
-        let up: Vec<f64> = up.split(' ').next().unwrap().split(',').map(|n| n.parse().unwrap()).collect();
+        let up: Vec<f64> = up
+            .split(' ')
+            .next()
+            .unwrap()
+            .split(',')
+            .map(|n| n.parse().unwrap())
+            .collect();
         assert_eq!(up[2] > up[1], name.starts_with("stl"), "{name}: {camera}");
     }
 }
@@ -45,7 +51,11 @@ fn every_format_is_told_by_content_and_drawn() {
 fn conversions_keep_the_place_and_do_not_depend_on_memory() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
-    for (output, more) in [("a.vxg", &[][..]), ("b.vxg", &["--memory", "64M"][..]), ("c.vxg", &["--threads", "2"][..])] {
+    for (output, more) in [
+        ("a.vxg", &[][..]),
+        ("b.vxg", &["--memory", "64M"][..]),
+        ("c.vxg", &["--threads", "2"][..]),
+    ] {
         shiftvox(folder.path())
             .args(["convert", "cube.obj", output, "--depth", "6", "-q"])
             .args(more)
@@ -65,39 +75,102 @@ fn conversions_keep_the_place_and_do_not_depend_on_memory() {
 fn triangles_and_voxels_of_a_cube_are_nearly_one_picture() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
-    let camera = ["--eye", "5,4,6", "--target", "1,1,1", "--up", "0,1,0", "--size", "128"];
-    shiftvox(folder.path()).args(["render", "cube.obj", "-o", "a.png", "--depth", "9", "--aa", "4", "-q"]).args(camera).assert().success();
-    shiftvox(folder.path()).args(["triangles", "cube.obj", "-o", "b.png", "--samples", "16", "--aov", "depth,coverage", "-q"]).args(camera).assert().success();
-    let ok = shiftvox(folder.path()).args(["compare", "a.png", "b.png", "--threshold", "psnr_srgb=35"]).assert();
+    let camera = [
+        "--eye", "5,4,6", "--target", "1,1,1", "--up", "0,1,0", "--size", "128",
+    ];
+    shiftvox(folder.path())
+        .args([
+            "render", "cube.obj", "-o", "a.png", "--depth", "9", "--aa", "4", "-q",
+        ])
+        .args(camera)
+        .assert()
+        .success();
+    shiftvox(folder.path())
+        .args([
+            "triangles",
+            "cube.obj",
+            "-o",
+            "b.png",
+            "--samples",
+            "16",
+            "--aov",
+            "depth,coverage",
+            "-q",
+        ])
+        .args(camera)
+        .assert()
+        .success();
+    let ok = shiftvox(folder.path())
+        .args(["compare", "a.png", "b.png", "--threshold", "psnr_srgb=35"])
+        .assert();
     ok.success();
-    assert!(folder.path().join("b.depth.npy").exists() && folder.path().join("b.coverage.npy").exists());
+    assert!(
+        folder.path().join("b.depth.npy").exists() && folder.path().join("b.coverage.npy").exists()
+    );
     // No overwriting, no other format.
-    shiftvox(folder.path()).args(["triangles", "cube.obj", "-o", "b.png"]).assert().failure();
-    shiftvox(folder.path()).args(["triangles", "cube.obj", "-o", "b.jpg"]).assert().code(2);
+    shiftvox(folder.path())
+        .args(["triangles", "cube.obj", "-o", "b.png"])
+        .assert()
+        .failure();
+    shiftvox(folder.path())
+        .args(["triangles", "cube.obj", "-o", "b.jpg"])
+        .assert()
+        .code(2);
 }
 
 #[test]
 fn bad_meshes_exit_with_4_and_leave_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let cases = [
-        ("range.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n", "range.obj: face at line 4: expected a corner from 1 to 3"),
-        ("empty.obj", "v 0 0 0\n", "empty.obj: mesh: expected at least one triangle"),
-        ("far.obj", "v 3e38 0 0\nv 3e38 1e-30 0\nv 3e38 0 1e-30\nf 1 2 3\n", "far.obj: the mesh spans"),
-        ("cut.stl", "solid a\nfacet normal 0 0 1\n", "cut.stl: triangle 1"),
+        (
+            "range.obj",
+            "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n",
+            "range.obj: face at line 4: expected a corner from 1 to 3",
+        ),
+        (
+            "empty.obj",
+            "v 0 0 0\n",
+            "empty.obj: mesh: expected at least one triangle",
+        ),
+        (
+            "far.obj",
+            "v 3e38 0 0\nv 3e38 1e-30 0\nv 3e38 0 1e-30\nf 1 2 3\n",
+            "far.obj: the mesh spans",
+        ),
+        (
+            "cut.stl",
+            "solid a\nfacet normal 0 0 1\n",
+            "cut.stl: triangle 1",
+        ),
     ];
     for (file, text, expected) in cases {
         fs::write(folder.path().join(file), text).unwrap();
-        for verb in [&["convert", file, "out.vxg"][..], &["render", file, "-o", "out.png"], &["convert", file, "out.vxg", "--memory", "64M"]] {
+        for verb in [
+            &["convert", file, "out.vxg"][..],
+            &["render", file, "-o", "out.png"],
+            &["convert", file, "out.vxg", "--memory", "64M"],
+        ] {
             let assert = shiftvox(folder.path()).args(verb).assert().code(4);
             let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
             assert!(told.contains(expected), "{told}");
-            assert!(!folder.path().join("out.vxg").exists() && !folder.path().join("out.png").exists());
+            assert!(
+                !folder.path().join("out.vxg").exists() && !folder.path().join("out.png").exists()
+            );
         }
     }
     fs::write(folder.path().join("a.obj"), CUBE).unwrap();
-    shiftvox(folder.path()).args(["info", "a.obj", "--depth", "21"]).assert().code(2);
+    shiftvox(folder.path())
+        .args(["info", "a.obj", "--depth", "21"])
+        .assert()
+        .code(2);
     fs::copy("tests/data/axes.vox", folder.path().join("axes.vox")).unwrap();
-    let assert = shiftvox(folder.path()).args(["triangles", "axes.vox", "-o", "x.png"]).assert().code(4);
+    let assert = shiftvox(folder.path())
+        .args(["triangles", "axes.vox", "-o", "x.png"])
+        .assert()
+        .code(4);
     let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
-    assert!(told.contains("axes.vox: this is a .vox file, which has no triangles"), "{told}");
+    assert!(
+        told.contains("axes.vox: this is a .vox file, which has no triangles"),
+        "{told}"
+    );
 }

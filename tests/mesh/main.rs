@@ -1,4 +1,5 @@
 //! Meshes: files to triangles, triangles to pixels, triangles to voxels.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bad_files;
 mod command;

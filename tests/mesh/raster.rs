@@ -53,7 +53,12 @@ fn coverage_of_halves_and_quarters() {
     // The left half of pixel (32, 31), and its lower half beyond that.
     let px = 1.0 / 64.0;
     let half = mesh_of(
-        &[[-1.0, -1.0, 0.0], [0.5 * px, -1.0, 0.0], [0.5 * px, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        &[
+            [-1.0, -1.0, 0.0],
+            [0.5 * px, -1.0, 0.0],
+            [0.5 * px, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
         &[[0, 1, 2], [0, 2, 3]],
     );
     for (per_pixel, expected) in [(1, 0.0), (4, 0.5), (16, 0.5), (256, 0.5)] {
@@ -72,18 +77,29 @@ fn coverage_of_halves_and_quarters() {
 #[test]
 fn light_is_that_of_voxels() {
     let square = mesh_of(
-        &[[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        &[
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
         &[[0, 1, 2], [0, 2, 3]],
     );
     let mut options = plain(1);
     // From the front in full; from behind, the other side is seen: full too.
     for eye in [DVec3::Z, DVec3::NEG_Z] {
-        options.light = Some(Light { towards: eye, ambient: 64 });
+        options.light = Some(Light {
+            towards: eye,
+            ambient: 64,
+        });
         let picture = draw(&square, &view(eye, DVec3::ZERO, [8, 8]), &options);
         assert_eq!(picture.rgba[0], [90, 120, 150, 255]);
     }
     // At a right angle only the ambient quarter is left: 150 is 0.305 of the light.
-    options.light = Some(Light { towards: DVec3::X, ambient: 64 });
+    options.light = Some(Light {
+        towards: DVec3::X,
+        ambient: 64,
+    });
     let picture = draw(&square, &view(DVec3::Z, DVec3::ZERO, [8, 8]), &options);
     assert_eq!(picture.rgba[0][2], 78);
 }
@@ -99,7 +115,10 @@ fn inside_a_room_there_is_no_gap() {
     ] {
         for per_pixel in [1, 16] {
             // The wall is half a thousandth away.
-            let view = View { near: 1e-5, ..view(eye, target, [90, 70]) };
+            let view = View {
+                near: 1e-5,
+                ..view(eye, target, [90, 70])
+            };
             let picture = draw(&room, &view, &plain(per_pixel));
             assert!(picture.coverage.iter().all(|&c| c == 1.0), "{eye}");
             // Each pixel's depth is the room's wall along its ray.
@@ -109,7 +128,10 @@ fn inside_a_room_there_is_no_gap() {
                 let exit = (0..3)
                     .map(|k| ((if ray[k] > 0.0 { high[k] } else { low[k] }) - eye[k]) / ray[k])
                     .fold(f64::INFINITY, f64::min);
-                assert!((f64::from(depth) - exit).abs() < 1e-5 * exit + 1e-7, "{i}: {depth} {exit}");
+                assert!(
+                    (f64::from(depth) - exit).abs() < 1e-5 * exit + 1e-7,
+                    "{i}: {depth} {exit}"
+                );
             }
         }
     }
@@ -204,13 +226,22 @@ fn against_rays(mesh: &Mesh, view: &View, near_px: f64) -> (usize, usize) {
             obvhs::triangle::Triangle { v0, v1, v2 }
         })
         .collect();
-    let bvh = build_bvh2_from_tris(&triangles, BvhBuildParams::medium_build(), &mut Duration::default());
+    let bvh = build_bvh2_from_tris(
+        &triangles,
+        BvhBuildParams::medium_build(),
+        &mut Duration::default(),
+    );
     let (mut unexplained, mut differing) = (0, 0);
     for y in 0..view.height {
         for x in 0..view.width {
             let sample = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
             let direction = ray_of(view, sample.x, sample.y);
-            let ray = Ray::new(Vec3A::ZERO, direction.as_vec3a(), view.near as f32, f32::INFINITY);
+            let ray = Ray::new(
+                Vec3A::ZERO,
+                direction.as_vec3a(),
+                view.near as f32,
+                f32::INFINITY,
+            );
             let mut hit = RayHit::none();
             bvh.ray_traverse(ray, &mut hit, |ray, id| {
                 triangles[bvh.primitive_indices[id] as usize].intersect(ray)
@@ -279,32 +310,53 @@ fn the_picture_is_that_of_ray_casting() {
     // Random triangles through each other.
     let mut state = 3u64;
     let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
     };
     let mut builder = MeshBuilder::new();
     for _ in 0..400 {
         let at = [random(), random(), random()];
-        let corners = [0, 1, 2].map(|_| builder.position([0, 1, 2].map(|k| at[k] + 0.3 * random())));
+        let corners =
+            [0, 1, 2].map(|_| builder.position([0, 1, 2].map(|k| at[k] + 0.3 * random())));
         builder.triangle(corners, None, 0).unwrap();
     }
     let mesh = builder.finish("random").unwrap();
-    let found = against_rays(&mesh, &view(DVec3::new(0.5, 1.0, 4.0), DVec3::ZERO, [200, 200]), NEAR_PX);
+    let found = against_rays(
+        &mesh,
+        &view(DVec3::new(0.5, 1.0, 4.0), DVec3::ZERO, [200, 200]),
+        NEAR_PX,
+    );
     assert_eq!(found.0, 0);
-    eprintln!("{} samples on edges or at equal depth differ, none elsewhere", differing + found.1);
+    eprintln!(
+        "{} samples on edges or at equal depth differ, none elsewhere",
+        differing + found.1
+    );
 }
 
 #[test]
 fn pictures_of_models_are_those_of_ray_casting() {
-    for name in ["platform.obj", "tree_Oak_Large.obj", "kitchen.obj", "CG-57.obj"] {
+    for name in [
+        "platform.obj",
+        "tree_Oak_Large.obj",
+        "kitchen.obj",
+        "CG-57.obj",
+    ] {
         let Some(path) = model(name) else { continue };
         let (mesh, _) = scene::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let (low, high) = mesh.bounds();
         let centre = (low + high) / 2.0;
         let away = (high - low).length();
-        let view = view(centre + DVec3::new(0.5, 0.4, 0.8) * away, centre, [240, 240]);
+        let view = view(
+            centre + DVec3::new(0.5, 0.4, 0.8) * away,
+            centre,
+            [240, 240],
+        );
         let (unexplained, differing) = against_rays(&mesh, &view, NEAR_PX);
-        eprintln!("{name}: {differing} of 57600 samples differ, {unexplained} of them away from edges");
+        eprintln!(
+            "{name}: {differing} of 57600 samples differ, {unexplained} of them away from edges"
+        );
         assert_eq!(unexplained, 0, "{name}");
     }
 }
@@ -314,14 +366,18 @@ fn more_samples_agree_with_each_other() {
     let mesh = ball(20);
     let view = view(DVec3::new(1.0, 0.7, 3.0), DVec3::ZERO, [120, 120]);
     let finest = draw(&mesh, &view, &plain(256));
-    let area = |picture: &RasterPicture| picture.coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
+    let area =
+        |picture: &RasterPicture| picture.coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
     let mut last = f64::INFINITY;
     for per_pixel in [1, 4, 16] {
         let picture = draw(&mesh, &view, &plain(per_pixel));
         let pairs = picture.coverage.iter().zip(&finest.coverage);
         let error = pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / area(&finest);
         assert!(error < last / 2.0, "{per_pixel}: {error} after {last}");
-        assert!((area(&picture) / area(&finest) - 1.0).abs() < 0.002, "{per_pixel}");
+        assert!(
+            (area(&picture) / area(&finest) - 1.0).abs() < 0.002,
+            "{per_pixel}"
+        );
         last = error;
     }
     assert!(last < 0.002, "{last}");
@@ -345,15 +401,29 @@ fn more_samples_agree_with_each_other() {
 fn threads_change_nothing_and_wrong_views_are_refused() {
     let mesh = ball(16);
     let view = view(DVec3::new(1.0, 0.7, 2.0), DVec3::ZERO, [100, 75]);
-    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
     let one = pool(1).install(|| draw(&mesh, &view, &plain(4)));
     assert_eq!(one, pool(3).install(|| draw(&mesh, &view, &plain(4))));
     for wrong in [
         View { width: 0, ..view },
-        View { height: 32769, ..view },
+        View {
+            height: 32769,
+            ..view
+        },
         View { near: 0.0, ..view },
-        View { focal_px: f64::NAN, ..view },
-        View { eye: DVec3::NAN, ..view },
+        View {
+            focal_px: f64::NAN,
+            ..view
+        },
+        View {
+            eye: DVec3::NAN,
+            ..view
+        },
     ] {
         assert!(raster::draw(&mesh, &wrong, &plain(1), &Silent).is_err());
     }

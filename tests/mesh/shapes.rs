@@ -1,4 +1,5 @@
 //! Meshes with known answers, and files written by hand.
+#![expect(unreachable_pub, reason = "a module of a test crate")]
 
 use std::path::PathBuf;
 
@@ -24,7 +25,15 @@ pub fn mesh_of(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
 /// A box, its faces two triangles each, outside counter-clockwise.
 pub fn cuboid(low: [f32; 3], high: [f32; 3]) -> Mesh {
     let positions: Vec<[f32; 3]> = (0..8u32)
-        .map(|i| std::array::from_fn(|k| if i >> (2 - k) & 1 == 1 { high[k] } else { low[k] }))
+        .map(|i| {
+            std::array::from_fn(|k| {
+                if i >> (2 - k) & 1 == 1 {
+                    high[k]
+                } else {
+                    low[k]
+                }
+            })
+        })
         .collect();
     let faces = [
         [0, 1, 3, 2],
@@ -49,7 +58,11 @@ pub fn turned(profile: &[(f64, f64)], around: u32) -> Mesh {
     for &(z, radius) in rings {
         for i in 0..around {
             let angle = std::f64::consts::TAU * f64::from(i) / f64::from(around);
-            positions.push([(radius * angle.cos()) as f32, (radius * angle.sin()) as f32, z as f32]);
+            positions.push([
+                (radius * angle.cos()) as f32,
+                (radius * angle.sin()) as f32,
+                z as f32,
+            ]);
         }
     }
     positions.push([0.0, 0.0, last.0 as f32]);
@@ -82,7 +95,14 @@ pub fn ball(steps: u32) -> Mesh {
 
 /// Reads a mesh without other files.
 pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
-    mesh::read(bytes, format, "a file", &Nothing, &LoadOptions::default(), &Silent)
+    mesh::read(
+        bytes,
+        format,
+        "a file",
+        &Nothing,
+        &LoadOptions::default(),
+        &Silent,
+    )
 }
 
 /// The corners of all triangles.
@@ -120,20 +140,33 @@ pub fn squares() -> Vec<(&'static str, MeshFormat, Vec<u8>)> {
     ]
 }
 
-const CORNERS: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+const CORNERS: [[f32; 3]; 4] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 0.0],
+];
 
 fn binary_ply(big: bool) -> Vec<u8> {
     let name = if big { "big" } else { "little" };
     let mut bytes = format!("ply\nformat binary_{name}_endian 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\nproperty list uchar uint vertex_index\nend_header\n").into_bytes();
     for corner in CORNERS {
         for c in corner {
-            bytes.extend(if big { c.to_be_bytes() } else { c.to_le_bytes() });
+            bytes.extend(if big {
+                c.to_be_bytes()
+            } else {
+                c.to_le_bytes()
+            });
         }
         bytes.extend([255, 0, 10]);
     }
     bytes.push(4);
     for i in 0..4u32 {
-        bytes.extend(if big { i.to_be_bytes() } else { i.to_le_bytes() });
+        bytes.extend(if big {
+            i.to_be_bytes()
+        } else {
+            i.to_le_bytes()
+        });
     }
     bytes
 }
@@ -146,7 +179,11 @@ fn binary_stl() -> Vec<u8> {
     for triangle in [[0, 1, 2], [0, 2, 3]] {
         bytes.extend([0u8; 12]);
         for i in triangle {
-            bytes.extend(CORNERS[i as usize].iter().flat_map(|c: &f32| c.to_le_bytes()));
+            bytes.extend(
+                CORNERS[i as usize]
+                    .iter()
+                    .flat_map(|c: &f32| c.to_le_bytes()),
+            );
         }
         bytes.extend([0u8; 2]);
     }
@@ -157,7 +194,9 @@ fn binary_stl() -> Vec<u8> {
 pub fn square_buffer() -> Vec<u8> {
     let positions = CORNERS.iter().flatten().flat_map(|c: &f32| c.to_le_bytes());
     let indices = [0u16, 1, 2, 0, 2, 3];
-    positions.chain(indices.iter().flat_map(|i| i.to_le_bytes())).collect()
+    positions
+        .chain(indices.iter().flat_map(|i| i.to_le_bytes()))
+        .collect()
 }
 
 /// Bytes as an address.
@@ -165,7 +204,10 @@ pub fn data_uri(bytes: &[u8]) -> String {
     const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::from("data:application/octet-stream;base64,");
     for chunk in bytes.chunks(3) {
-        let word = chunk.iter().enumerate().fold(0u32, |w, (i, b)| w | u32::from(*b) << (16 - 8 * i));
+        let word = chunk
+            .iter()
+            .enumerate()
+            .fold(0u32, |w, (i, b)| w | u32::from(*b) << (16 - 8 * i));
         for i in 0..4 {
             text.push(if i <= chunk.len() {
                 char::from(DIGITS[(word >> (18 - 6 * i) & 63) as usize])
@@ -180,7 +222,11 @@ pub fn data_uri(bytes: &[u8]) -> String {
 /// A document of the square; its buffer at an address, or in the file where
 /// that is empty; `node` is put into its node.
 pub fn gltf_json(uri: &str, node: &str) -> String {
-    let uri = if uri.is_empty() { String::new() } else { format!("\"uri\": \"{uri}\", ") };
+    let uri = if uri.is_empty() {
+        String::new()
+    } else {
+        format!("\"uri\": \"{uri}\", ")
+    };
     format!(
         "{{\"asset\": {{\"version\": \"2.0\"}}, \"scene\": 0, \"scenes\": [{{\"nodes\": [0]}}],
         \"nodes\": [{{{node}\"mesh\": 0}}],

@@ -29,7 +29,12 @@ fn cells(voxels: &[Voxel]) -> HashSet<[i32; 3]> {
 #[test]
 fn a_square_is_one_layer() {
     let square = mesh_of(
-        &[[0.0, 0.0, 5.0], [1.0, 0.0, 5.0], [1.0, 1.0, 5.0], [0.0, 1.0, 5.0]],
+        &[
+            [0.0, 0.0, 5.0],
+            [1.0, 0.0, 5.0],
+            [1.0, 1.0, 5.0],
+            [0.0, 1.0, 5.0],
+        ],
         &[[0, 1, 2], [0, 2, 3]],
     );
     for depth in 1..=7 {
@@ -58,7 +63,11 @@ fn a_cube_is_a_shell_with_its_normals() {
             31 => 1.0,
             _ => 0.0,
         }));
-        assert!(normal.dot(expected.normalize()) > 0.999, "{:?} {normal}", voxel.index);
+        assert!(
+            normal.dot(expected.normalize()) > 0.999,
+            "{:?} {normal}",
+            voxel.index
+        );
     }
 }
 
@@ -71,10 +80,15 @@ fn a_ball_is_near_its_radius_all_over() {
     // Half a diagonal, and the mesh's own distance from the ball.
     let slack = grid.voxel_size() * 0.87 + 0.01;
     for voxel in &found {
-        let centre = grid.origin() + (DVec3::from_array(voxel.index.map(f64::from)) + 0.5) * grid.voxel_size();
+        let centre = grid.origin()
+            + (DVec3::from_array(voxel.index.map(f64::from)) + 0.5) * grid.voxel_size();
         assert!((centre.length() - 1.0).abs() < slack, "{:?}", voxel.index);
         let normal = voxel.normal.unwrap().decode().unwrap();
-        assert!(normal.dot(centre.normalize()) > 0.97, "{:?}: {normal}", voxel.index);
+        assert!(
+            normal.dot(centre.normalize()) > 0.97,
+            "{:?}: {normal}",
+            voxel.index
+        );
     }
     // Area over the face of a voxel, times the mean of |x| + |y| + |z| over
     // directions, 3/2, is what a thin surface crosses; edges touched add to it.
@@ -103,7 +117,8 @@ fn is_closed_shell(full: &HashSet<[i32; 3]>, side: i32, within: [i32; 3]) {
         while let Some(at) = queue.pop_front() {
             for step in &steps {
                 let next = [0, 1, 2].map(|k| at[k] + step[k]);
-                if next.iter().all(|c| (-1..=side).contains(c)) && open(&next) && seen.insert(next) {
+                if next.iter().all(|c| (-1..=side).contains(c)) && open(&next) && seen.insert(next)
+                {
                     queue.push_back(next);
                 }
             }
@@ -123,10 +138,23 @@ fn closed_meshes_are_closed_shells() {
         let side = 1 << depth;
         let middle = [side / 2; 3];
         is_closed_shell(&cells(&voxels(&ball(9), depth)), side, middle);
-        is_closed_shell(&cells(&voxels(&cuboid([0.0; 3], [1.0; 3]), depth)), side, middle);
+        is_closed_shell(
+            &cells(&voxels(&cuboid([0.0; 3], [1.0; 3]), depth)),
+            side,
+            middle,
+        );
     }
     // A turned body with a waist, in a skew place.
-    let vase = turned(&[(-2.0, 0.0), (-1.5, 1.0), (0.0, 0.45), (1.0, 1.3), (1.3, 0.0)], 7);
+    let vase = turned(
+        &[
+            (-2.0, 0.0),
+            (-1.5, 1.0),
+            (0.0, 0.45),
+            (1.0, 1.3),
+            (1.3, 0.0),
+        ],
+        7,
+    );
     let skew = DAffine3::from_mat3(glam::DMat3::from_euler(glam::EulerRot::XYZ, 0.3, 1.1, -0.7));
     let vase = Instances::new(vase, vec![skew]);
     let grid = Grid::around(&vase, 6).unwrap();
@@ -140,14 +168,27 @@ fn slivers_and_needles_never_vanish() {
     // Two far corners hold the box; needles of no width to speak of are within.
     let mut state = 7u64;
     let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as f32 / (1u64 << 24) as f32
     };
     for _ in 0..40 {
-        let (a, b) = ([random(), random(), random()], [random(), random(), random()]);
+        let (a, b) = (
+            [random(), random(), random()],
+            [random(), random(), random()],
+        );
         let c = [0, 1, 2].map(|k| (a[k] + b[k]) / 2.0 + 1e-6 * random());
         let mesh = mesh_of(
-            &[[0.0; 3], [0.0, 1e-4, 0.0], [1.0; 3], [1.0, 1.0, 0.999], a, b, c],
+            &[
+                [0.0; 3],
+                [0.0, 1e-4, 0.0],
+                [1.0; 3],
+                [1.0, 1.0, 0.999],
+                a,
+                b,
+                c,
+            ],
             &[[0, 1, 4], [2, 3, 4], [4, 5, 6]],
         );
         for depth in [3, 6, 9] {
@@ -173,14 +214,29 @@ fn colours_are_weighted_by_area_in_linear_light() {
     let white = builder.material(Material::of_srgb("white", [255; 3]));
     let black = builder.material(Material::of_srgb("black", [0; 3]));
     // At depth 1 a voxel is one unit and the grid begins half a unit lower.
-    for corner in [[0.0, 0.0], [0.75, 0.0], [1.0, 0.0], [0.0, 1.0], [0.75, 1.0], [1.0, 1.0]] {
+    for corner in [
+        [0.0, 0.0],
+        [0.75, 0.0],
+        [1.0, 0.0],
+        [0.0, 1.0],
+        [0.75, 1.0],
+        [1.0, 1.0],
+    ] {
         builder.position([corner[0], corner[1], 0.0]);
     }
-    for (triangle, material) in [([0, 1, 4], white), ([0, 4, 3], white), ([1, 2, 5], black), ([1, 5, 4], black)] {
+    for (triangle, material) in [
+        ([0, 1, 4], white),
+        ([0, 4, 3], white),
+        ([1, 2, 5], black),
+        ([1, 5, 4], black),
+    ] {
         builder.triangle(triangle, None, material).unwrap();
     }
     let mesh = builder.finish("a").unwrap();
-    let found: HashMap<[i32; 3], [u8; 3]> = voxels(&mesh, 1).iter().map(|v| (v.index, v.color)).collect();
+    let found: HashMap<[i32; 3], [u8; 3]> = voxels(&mesh, 1)
+        .iter()
+        .map(|v| (v.index, v.color))
+        .collect();
     // Voxel 0 holds x from 0 to 0.5: white; voxel 1 from 0.5 to 1: half of each.
     assert_eq!(found[&[0, 0, 0]], [255; 3]);
     assert_eq!(found[&[1, 1, 0]], [188; 3]);
@@ -188,7 +244,12 @@ fn colours_are_weighted_by_area_in_linear_light() {
 
 #[test]
 fn a_wall_with_two_sides_keeps_one_normal() {
-    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [1.0, 1.0, 0.0],
+        [0.0, 1.0, 0.0],
+    ];
     let wall = mesh_of(&corners, &[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]]);
     for voxel in voxels(&wall, 3) {
         assert_eq!(voxel.normal.unwrap().decode(), Some(DVec3::Z));
@@ -198,17 +259,28 @@ fn a_wall_with_two_sides_keeps_one_normal() {
 #[test]
 fn threads_and_instances_change_nothing() {
     let mesh = ball(12);
-    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let pool = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
     let one = pool(1).install(|| voxels(&mesh, 7));
     assert_eq!(one, pool(2).install(|| voxels(&mesh, 7)));
     assert_eq!(one, pool(3).install(|| voxels(&mesh, 7)));
     // The same places as one mesh.
-    let places: Vec<DAffine3> = (0..5).map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i))).collect();
+    let places: Vec<DAffine3> = (0..5)
+        .map(|i| DAffine3::from_translation(DVec3::X * f64::from(3 * i)))
+        .collect();
     let mut positions = Vec::new();
     let mut triangles = Vec::new();
     for i in 0..5u8 {
         let base = positions.len() as u32;
-        positions.extend(mesh.positions().iter().map(|p| [p[0] + 3.0 * f32::from(i), p[1], p[2]]));
+        positions.extend(
+            mesh.positions()
+                .iter()
+                .map(|p| [p[0] + 3.0 * f32::from(i), p[1], p[2]]),
+        );
         triangles.extend(mesh.triangles().iter().map(|t| t.map(|c| c + base)));
     }
     let flat = mesh_of(&positions, &triangles);
@@ -228,8 +300,14 @@ fn what_cannot_be_voxelised_is_refused() {
     }
     let nowhere = Instances::new(mesh, Vec::new());
     assert_eq!(Grid::around(&nowhere, 4), Err(GridError::Empty));
-    let far = mesh_of(&[[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]], &[[0, 1, 2]]);
-    assert!(matches!(Grid::around(&far, 4), Err(GridError::Coordinates { .. })));
+    let far = mesh_of(
+        &[[3e38, 0.0, 0.0], [3e38, 1e-30, 0.0], [3e38, 0.0, 1e-30]],
+        &[[0, 1, 2]],
+    );
+    assert!(matches!(
+        Grid::around(&far, 4),
+        Err(GridError::Coordinates { .. })
+    ));
 }
 
 type Exact = [BigRational; 3];
@@ -252,7 +330,9 @@ fn meets(triangle: [[i64; 3]; 3], corner: [i64; 3], side: i64) -> bool {
                 }
                 if (a >= zero) != (b >= zero) {
                     let t = a.clone() / (a - b);
-                    kept.push(std::array::from_fn(|k| here[k].clone() + (next[k].clone() - here[k].clone()) * t.clone()));
+                    kept.push(std::array::from_fn(|k| {
+                        here[k].clone() + (next[k].clone() - here[k].clone()) * t.clone()
+                    }));
                 }
             }
             polygon = kept;
@@ -273,7 +353,9 @@ fn by_force(mesh: &Mesh, depth: u32) -> HashSet<[i32; 3]> {
             for y in 0..count {
                 for z in 0..count {
                     let index = [x, y, z];
-                    if !found.contains(&index) && meets(corners, index.map(|c| i64::from(c) * side), side) {
+                    if !found.contains(&index)
+                        && meets(corners, index.map(|c| i64::from(c) * side), side)
+                    {
                         found.insert(index);
                     }
                 }

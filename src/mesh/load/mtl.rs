@@ -58,9 +58,7 @@ impl Library {
     fn close(&mut self, open: Open, options: &LoadOptions) {
         self.textured += usize::from(open.textured);
         let material = match open.color {
-            Some(color) => {
-                Material::of_numbers(open.name, color, options.mtl_colors, open.alpha)
-            }
+            Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
             None => Material {
                 alpha: open.alpha.clamp(0.0, 1.0),
                 ..Material::of_srgb(open.name, options.default_color)
@@ -121,7 +119,8 @@ mod tests {
 
     #[test]
     fn materials_with_what_is_odd_about_them() {
-        let text = b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
+        let text =
+            b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
             map_Kd wood.png\nnewmtl d\nKd spectral x.rfl\nnewmtl \xfc\n";
         let library = read(text, &LoadOptions::default());
         let names: Vec<&str> = library.materials.iter().map(|m| m.name.as_str()).collect();

@@ -99,7 +99,12 @@ struct Libraries {
 
 impl Libraries {
     /// Loads one for `tobj`, which needs the numbers of names.
-    fn load(&mut self, path: &Path, beside: &dyn Beside, options: &LoadOptions) -> tobj::MTLLoadResult {
+    fn load(
+        &mut self,
+        path: &Path,
+        beside: &dyn Beside,
+        options: &LoadOptions,
+    ) -> tobj::MTLLoadResult {
         self.named += 1;
         let name = path.to_string_lossy();
         let library = match beside.read(&name) {
@@ -128,7 +133,9 @@ impl Libraries {
         };
         let for_tobj = library.materials.iter().map(named).collect();
         let numbers = library.materials.iter().enumerate();
-        let numbers = numbers.map(|(number, m)| (m.name.clone(), number)).collect();
+        let numbers = numbers
+            .map(|(number, m)| (m.name.clone(), number))
+            .collect();
         self.materials.extend(library.materials);
         Ok((for_tobj, numbers))
     }
@@ -137,7 +144,10 @@ impl Libraries {
 /// What `tobj` says, with the place and what to do.
 fn understand(error: LoadError, line: u64, text: &str) -> MeshError {
     let (part, expected) = match error {
-        LoadError::PositionParseError => ("vertex", "\"v x y z\", with or without a weight or a colour"),
+        LoadError::PositionParseError => (
+            "vertex",
+            "\"v x y z\", with or without a weight or a colour",
+        ),
         LoadError::ColorParseError => ("vertex", "three numbers, or four, or six"),
         LoadError::ScalingByZeroError => ("vertex", "a weight that is not 0"),
         LoadError::NormalParseError => ("normal", "\"vn x y z\""),
@@ -230,7 +240,11 @@ fn out_of_range(index: i64, positions: usize, line: u64) -> MeshError {
 /// At most 40 characters of a line, quoted.
 fn shown(line: &str) -> String {
     let begin: String = line.chars().take(40).collect();
-    let more = if line.chars().nth(40).is_some() { "..." } else { "" };
+    let more = if line.chars().nth(40).is_some() {
+        "..."
+    } else {
+        ""
+    };
     format!("{:?}", format!("{begin}{more}"))
 }
 

@@ -101,7 +101,9 @@ pub(super) fn read(
     let header = parser.read_header(&mut reader).map_err(|error| {
         MeshFault::new(
             "header",
-            error.line().map_or(Place::Whole, |line| Place::Line(line as u64)),
+            error
+                .line()
+                .map_or(Place::Whole, |line| Place::Line(line as u64)),
             "a PLY 1.0 header",
             error.to_string(),
             "the header is damaged; export the mesh again",
@@ -227,7 +229,12 @@ impl Body<'_> {
     }
 
     /// Reads the next element.
-    fn element(&mut self, name: &str, def: &ElementDef, number: usize) -> Result<Element, MeshError> {
+    fn element(
+        &mut self,
+        name: &str,
+        def: &ElementDef,
+        number: usize,
+    ) -> Result<Element, MeshError> {
         let begin = self.offset();
         let read = match self.encoding {
             Encoding::Ascii => {

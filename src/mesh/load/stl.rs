@@ -20,10 +20,10 @@ const TRIANGLE: u64 = 50;
 /// header counts the triangles that the length has room for.
 #[must_use]
 pub fn is_binary(beginning: &[u8], length: u64) -> bool {
-    let count = beginning.get(80..84).and_then(|count| count.try_into().ok());
-    count.is_some_and(|count| {
-        length == HEADER + TRIANGLE * u64::from(u32::from_le_bytes(count))
-    })
+    let count = beginning
+        .get(80..84)
+        .and_then(|count| count.try_into().ok());
+    count.is_some_and(|count| length == HEADER + TRIANGLE * u64::from(u32::from_le_bytes(count)))
 }
 
 /// Reads a file that is in memory.
@@ -43,11 +43,17 @@ pub(super) fn read(
         let mut body = bytes.to_vec();
         body[..80].fill(0);
         let mut cursor = Cursor::new(body);
-        take(stl_io::create_stl_reader(&mut cursor).map_err(refused)?, builder)
+        take(
+            stl_io::create_stl_reader(&mut cursor).map_err(refused)?,
+            builder,
+        )
     } else {
         let text = normalized(bytes);
         let mut cursor = Cursor::new(text.as_bytes());
-        take(stl_io::create_stl_reader(&mut cursor).map_err(refused)?, builder)
+        take(
+            stl_io::create_stl_reader(&mut cursor).map_err(refused)?,
+            builder,
+        )
     }
 }
 

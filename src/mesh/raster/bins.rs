@@ -33,7 +33,9 @@ impl Bins {
                     let Some(outline) = Outline::of(view, &surface.corners(number)) else {
                         continue;
                     };
-                    let tiles = outline.pixels().map(|p| p.map(|c| c.div_euclid(i64::from(TILE))));
+                    let tiles = outline
+                        .pixels()
+                        .map(|p| p.map(|c| c.div_euclid(i64::from(TILE))));
                     let [low, high] = tiles;
                     let clamp = |c: i64, most: u32| c.clamp(0, i64::from(most) - 1) as u32;
                     let misses = high[0] < 0
@@ -72,6 +74,8 @@ impl Bins {
 
     /// The triangles of a tile, in their order.
     pub(super) fn triangles(&self, tile: usize) -> impl Iterator<Item = u32> + '_ {
-        self.chunks.iter().flat_map(move |lists| lists[tile].iter().copied())
+        self.chunks
+            .iter()
+            .flat_map(move |lists| lists[tile].iter().copied())
     }
 }

@@ -53,7 +53,7 @@ impl Edges {
 
     /// The edges as seen from a pixel's corner.
     #[inline]
-    pub(super) fn from_pixel(&self, pixel: [i64; 2]) -> Self {
+    pub(super) fn seen_from(&self, pixel: [i64; 2]) -> Self {
         Self(self.0.map(|edge| Edge {
             at: edge.at + ((edge.right * pixel[0] + edge.down * pixel[1]) << SUBPIXEL_BITS),
             ..edge
@@ -116,9 +116,9 @@ mod tests {
     fn pixels_are_told_from_their_corners() {
         let far = SUBPIXELS * 10;
         let edges = Edges::new([[0, 0], [far, 0], [0, far]]).unwrap();
-        assert_eq!(edges.from_pixel([1, 1]).cover(), Cover::All);
-        assert_eq!(edges.from_pixel([5, 4]).cover(), Cover::Part);
-        assert_eq!(edges.from_pixel([20, 4]).cover(), Cover::Nothing);
+        assert_eq!(edges.seen_from([1, 1]).cover(), Cover::All);
+        assert_eq!(edges.seen_from([5, 4]).cover(), Cover::Part);
+        assert_eq!(edges.seen_from([20, 4]).cover(), Cover::Nothing);
         assert!(Edges::new([[0, 0], [3, 3], [5, 5]]).is_none());
     }
 
@@ -126,7 +126,7 @@ mod tests {
     fn the_largest_triangles_fit() {
         let most = 80_000 * SUBPIXELS;
         let edges = Edges::new([[-most, -most], [most, -most], [most, most]]).unwrap();
-        assert!(edges.from_pixel([32767, 0]).covers([0, 0]));
-        assert!(!edges.from_pixel([0, 32767]).covers([0, 0]));
+        assert!(edges.seen_from([32767, 0]).covers([0, 0]));
+        assert!(!edges.seen_from([0, 32767]).covers([0, 0]));
     }
 }

@@ -43,8 +43,14 @@ impl Nearness {
         let [a, b, c] = corners.map(|corner| in_view(view, corner));
         let depths = [a.z, b.z, c.z];
         // What lies nearer was cut off.
-        let nearest = depths.iter().fold(f64::INFINITY, |m, &z| m.min(z)).max(view.near);
-        let farthest = depths.iter().fold(0.0, |m: f64, &z| m.max(z)).max(view.near);
+        let nearest = depths
+            .iter()
+            .fold(f64::INFINITY, |m, &z| m.min(z))
+            .max(view.near);
+        let farthest = depths
+            .iter()
+            .fold(0.0, |m: f64, &z| m.max(z))
+            .max(view.near);
         let normal = (b - a).cross(c - a);
         // Points p with normal . p = offset; a sample's ray is (x, y, 1) times its depth.
         let offset = normal.dot(a);
@@ -97,7 +103,14 @@ impl Paint {
     }
 
     /// Linear light at a place of the picture, where the depth is known.
-    pub(super) fn light(&self, view: &View, light: Option<&Light>, x: f64, y: f64, depth: f64) -> DVec3 {
+    pub(super) fn light(
+        &self,
+        view: &View,
+        light: Option<&Light>,
+        x: f64,
+        y: f64,
+        depth: f64,
+    ) -> DVec3 {
         if let Some(flat) = self.flat {
             return flat;
         }
@@ -116,7 +129,11 @@ impl Paint {
         let color = blend(&self.triangle.colors);
         let Some(light) = light else { return color };
         let normal = blend(&self.triangle.normals).normalize_or(self.face);
-        let seen = if normal.dot(self.face) < 0.0 { -normal } else { normal };
+        let seen = if normal.dot(self.face) < 0.0 {
+            -normal
+        } else {
+            normal
+        };
         color * light.on(seen)
     }
 }

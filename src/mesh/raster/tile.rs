@@ -104,7 +104,14 @@ impl Buffer<'_> {
         }
     }
 
-    fn part(&mut self, number: u32, edges: &Edges, nearness: &Nearness, low: [i64; 2], high: [i64; 2]) {
+    fn part(
+        &mut self,
+        number: u32,
+        edges: &Edges,
+        nearness: &Nearness,
+        low: [i64; 2],
+        high: [i64; 2],
+    ) {
         let corner = self.corner.map(i64::from);
         let size = [self.columns, self.rows].map(i64::from);
         let begin = [0, 1].map(|k| low[k].max(corner[k]));
@@ -112,7 +119,7 @@ impl Buffer<'_> {
         let per_pixel = self.options.samples.per_pixel();
         for y in begin[1]..=end[1] {
             for x in begin[0]..=end[0] {
-                let here = edges.from_pixel([x, y]);
+                let here = edges.seen_from([x, y]);
                 let cover = here.cover();
                 if cover == Cover::Nothing {
                     continue;
@@ -171,9 +178,8 @@ impl Buffer<'_> {
                     }
                     let Some((_, paint)) = &last else { continue };
                     let place = self.places.of(i)[sample];
-                    let [x, y] = [0, 1].map(|k| {
-                        f64::from(pixel[k]) * SUBPIXELS as f64 + f64::from(place[k])
-                    });
+                    let [x, y] = [0, 1]
+                        .map(|k| f64::from(pixel[k]) * SUBPIXELS as f64 + f64::from(place[k]));
                     sum += paint.light(self.view, light, x, y, 1.0 / self.nearness[at]);
                 }
                 let at = i * per_pixel + middle;

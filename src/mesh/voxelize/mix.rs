@@ -56,9 +56,10 @@ impl Mix {
     pub(super) fn add(&mut self, painted: &Painted, corner: [i64; 3], side: i64) {
         // Exact: differences on the lattice are below 2^31, the side a power of two.
         let scale = 1.0 / side as f64;
-        let points = painted.prepared.corners.map(|p| {
-            DVec3::from_array(std::array::from_fn(|k| (p[k] - corner[k]) as f64 * scale))
-        });
+        let points = painted
+            .prepared
+            .corners
+            .map(|p| DVec3::from_array(std::array::from_fn(|k| (p[k] - corner[k]) as f64 * scale)));
         let (area, centre) = if painted.prepared.is_inside(corner, side) {
             (area_of(&points), (points[0] + points[1] + points[2]) / 3.0)
         } else {

@@ -64,9 +64,8 @@ impl Prepared {
         let [a, b, c] = corners;
         let edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
         let normal = cross(edges[0], edges[1]);
-        let fold = |pick: fn(i64, i64) -> i64| {
-            std::array::from_fn(|k| pick(pick(a[k], b[k]), c[k]))
-        };
+        let fold =
+            |pick: fn(i64, i64) -> i64| std::array::from_fn(|k| pick(pick(a[k], b[k]), c[k]));
         let flats = OTHERS.map(|[u, v]| {
             let points = corners.map(|p| [p[u], p[v]]);
             edges.map(|edge| Flat::new([-edge[v], edge[u]], points))

@@ -51,27 +51,43 @@ impl<'b> Numbers<'b> {
             5120 | 5121 => 1,
             5122 | 5123 => 2,
             5125 | 5126 => 4,
-            other => return Err(wrong("a component type from 5120 to 5126", &other.to_string())),
+            other => {
+                return Err(wrong(
+                    "a component type from 5120 to 5126",
+                    &other.to_string(),
+                ));
+            }
         };
-        let view = accessor.buffer_view.and_then(|view| document.buffer_views.get(view));
+        let view = accessor
+            .buffer_view
+            .and_then(|view| document.buffer_views.get(view));
         let view = view.ok_or_else(|| wrong("a buffer view", "none"))?;
         let buffer = buffers.get(view.buffer);
         let buffer = buffer.ok_or_else(|| wrong("a buffer", "none"))?;
         let slice = slice(buffer, view.byte_offset, view.byte_length);
-        let slice = slice.ok_or_else(|| wrong("a buffer view within its buffer", "one beyond it"))?;
+        let slice =
+            slice.ok_or_else(|| wrong("a buffer view within its buffer", "one beyond it"))?;
         let element = (width * size) as u64;
         let stride = view.byte_stride.unwrap_or(element);
         if stride < element {
-            return Err(wrong("a stride of at least an element", &stride.to_string()));
+            return Err(wrong(
+                "a stride of at least an element",
+                &stride.to_string(),
+            ));
         }
         let needed = match accessor.count {
             0 => Some(0),
-            count => (count - 1).checked_mul(stride).and_then(|n| n.checked_add(element)),
+            count => (count - 1)
+                .checked_mul(stride)
+                .and_then(|n| n.checked_add(element)),
         };
         let bytes = needed.and_then(|needed| self::slice(slice, accessor.byte_offset, needed));
         let bytes = bytes.ok_or_else(|| {
             wrong(
-                &format!("{} elements of {element} bytes within the buffer view", accessor.count),
+                &format!(
+                    "{} elements of {element} bytes within the buffer view",
+                    accessor.count
+                ),
                 &format!("{} bytes", slice.len()),
             )
         })?;

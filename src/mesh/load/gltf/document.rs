@@ -145,9 +145,10 @@ impl Document {
             let found = self.asset.version.clone();
             return Err(wrong("asset", "version 2", found, "export as glTF 2.0"));
         }
-        let unknown = self.extensions_required.iter().find(|name| {
-            !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_")
-        });
+        let unknown = self
+            .extensions_required
+            .iter()
+            .find(|name| !HARMLESS.contains(&name.as_str()) && !name.starts_with("KHR_materials_"));
         match unknown {
             None => Ok(()),
             Some(name) => Err(wrong(

@@ -52,7 +52,12 @@ pub(super) fn read_binary(
         Some(u32::from_le_bytes(word.try_into().ok()?))
     };
     let (Some(version), Some(length)) = (word(4), word(8)) else {
-        return Err(wrong("header", 0, "12 bytes".into(), format!("{}", bytes.len())));
+        return Err(wrong(
+            "header",
+            0,
+            "12 bytes".into(),
+            format!("{}", bytes.len()),
+        ));
     };
     if version != 2 {
         return Err(wrong("header", 4, "version 2".into(), version.to_string()));

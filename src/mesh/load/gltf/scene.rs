@@ -67,11 +67,23 @@ impl<'d> Reader<'d> {
         let mut seen = vec![false; nodes.len()];
         while let Some((number, parent)) = open.pop() {
             let Some(node) = nodes.get(number) else {
-                return Err(fault_of("node", number, "a node of this number", "none", BROKEN));
+                return Err(fault_of(
+                    "node",
+                    number,
+                    "a node of this number",
+                    "none",
+                    BROKEN,
+                ));
             };
             if std::mem::replace(&mut seen[number], true) {
                 let found = "a second way to it";
-                return Err(fault_of("node", number, "one parent, in a tree", found, BROKEN));
+                return Err(fault_of(
+                    "node",
+                    number,
+                    "one parent, in a tree",
+                    found,
+                    BROKEN,
+                ));
             }
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
@@ -92,8 +104,14 @@ impl<'d> Reader<'d> {
                 textured.count() as u64,
                 "materials have textures, which are not read; their plain colours are used",
             ),
-            (self.skipped_modes, "primitives of points or lines were passed over"),
-            (self.morphed, "primitives have morph targets, which are not applied"),
+            (
+                self.skipped_modes,
+                "primitives of points or lines were passed over",
+            ),
+            (
+                self.morphed,
+                "primitives have morph targets, which are not applied",
+            ),
             (self.skinned, "meshes have skins, which are not applied"),
         ] {
             if count > 0 {
@@ -102,9 +120,20 @@ impl<'d> Reader<'d> {
         }
     }
 
-    fn mesh(&mut self, number: usize, placed: DMat4, builder: &mut MeshBuilder) -> Result<(), MeshError> {
+    fn mesh(
+        &mut self,
+        number: usize,
+        placed: DMat4,
+        builder: &mut MeshBuilder,
+    ) -> Result<(), MeshError> {
         let Some(mesh) = self.document.meshes.get(number) else {
-            return Err(fault_of("mesh", number, "a mesh of this number", "none", BROKEN));
+            return Err(fault_of(
+                "mesh",
+                number,
+                "a mesh of this number",
+                "none",
+                BROKEN,
+            ));
         };
         for primitive in &mesh.primitives {
             self.primitive(number, primitive, placed, builder)?;
@@ -134,7 +163,9 @@ impl<'d> Reader<'d> {
         let normals = optional(primitive.attributes.normal)?;
         let colors = optional(primitive.attributes.color)?;
         let indices = optional(primitive.indices)?;
-        let corners = indices.as_ref().map_or(positions.count, |indices| indices.count);
+        let corners = indices
+            .as_ref()
+            .map_or(positions.count, |indices| indices.count);
         let triangles = match mode {
             4 => corners / 3,
             _ => corners.saturating_sub(2),
@@ -168,11 +199,16 @@ impl<'d> Reader<'d> {
         let normal_of = |at: u32| {
             normals.as_ref().map(|normals| {
                 let normal = DVec3::from_array(normals.triple(at as usize).map(f64::from));
-                turn.transform_vector3(normal).normalize_or_zero().as_vec3().to_array()
+                turn.transform_vector3(normal)
+                    .normalize_or_zero()
+                    .as_vec3()
+                    .to_array()
             })
         };
         // The first material is the one of triangles without.
-        let material = primitive.material.map_or(0, |m| (m as u32).saturating_add(1));
+        let material = primitive
+            .material
+            .map_or(0, |m| (m as u32).saturating_add(1));
         for number in 0..triangles {
             let mut at = match mode {
                 4 => [3 * number, 3 * number + 1, 3 * number + 2],
