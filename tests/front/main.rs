@@ -7,3 +7,4 @@ mod manners;
 mod model;
 mod pictures;
 mod resolve;
+mod vectors;

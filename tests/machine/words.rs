@@ -1,10 +1,12 @@
 //! The machine computes with words alone.
 //!
-//! A `Word` has no operators and no way to a number but `to_host()`, so an
-//! operation that no probe sees has to call that first, or work on something
-//! that never was a word. Both are looked for in the machine's sources:
-//! every line with `to_host()`, and every line that multiplies or divides,
-//! has to be on a list here that says why it may.
+//! A `Word` has no operators and no way to a number but `to_host()` and, for
+//! the eyes of a probe, `Wires::show()`, so an operation that no probe sees has
+//! to call one of these first, or work on something that never was a word. All
+//! are looked for in the machine's sources: every line with `to_host()`, every
+//! line that names what `show()` fills, and every line that multiplies or
+//! divides has to be on a list here that says why it may. `Datapath::tap` takes
+//! words and gives nothing back.
 //!
 //! What this test can not see: comparing two words with `<` or `==`, or
 //! adding and shifting plain numbers. Those are for reviews.
@@ -45,6 +47,25 @@ const TO_HOST: [Allowed; 4] = [
         "the voxel's number in the picture: what is shown, not what is computed with",
     ),
 ];
+
+/// Lines that show words to a probe, or could take numbers from what is shown.
+const SHOWN: [Allowed; 5] = [
+    allowed(
+        "lattice.rs",
+        "use hwmodel::{Datapath, Probe, Signal, Wires, Word};",
+        "for the lines below",
+    ),
+    allowed("lattice.rs", SHOW, "a cage is its words, in order"),
+    allowed("lattice.rs", "self.0.show(to);", "its eight corners"),
+    allowed("lattice.rs", SHOW, "a cage is its words, in order"),
+    allowed(
+        "lattice.rs",
+        "(self.corner, self.edges).show(to);",
+        "its corner and its edges",
+    ),
+];
+
+const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
 const PRODUCTS: [Allowed; 16] = [
     allowed(
@@ -203,6 +224,12 @@ fn words_are_read_by_the_host_alone() {
         &lines(&sources(), |line| line.contains("to_host")),
         &TO_HOST,
     );
+}
+
+#[test]
+fn words_are_shown_and_not_taken_back() {
+    let is_shown = |line: &str| line.contains("Signal") || line.contains("show(");
+    check(&lines(&sources(), is_shown), &SHOWN);
 }
 
 #[test]

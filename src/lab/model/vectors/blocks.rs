@@ -140,7 +140,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
     let border = || {
         ports()
             .one("outside", BIT, OUTSIDE)
-            .one("within", BIT, WITHIN)
+            .one("enclosed", BIT, WITHIN)
     };
     let halves = |ports: Ports| {
         ports
@@ -194,9 +194,9 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "change_guard",
             &[Stage::ToScreen],
             "5",
-            "within = at all vertices x + (w >> places) >= 0 and (w - x) + (w >> places) >= 0, nothing rounded; places < 0: w shifted left",
+            "enclosed = at all vertices x + (w >> places) >= 0 and (w - x) + (w >> places) >= 0, nothing rounded; places < 0: w shifted left",
             clip(ports()).one("places", PLACES, "part of the width by which the box may leave the node, as a shift"),
-            bit("within", "the box leaves the picture by little enough, along this axis"),
+            bit("enclosed", "the box leaves the picture by little enough, along this axis"),
         ),
         Block::ToScreenDivide => made(
             "to_screen_divide",
@@ -368,7 +368,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "border_clip",
             &[Stage::QuadtreeFit],
             "6",
-            "outside = x + margin < 0 at all vertices or x - w - margin > 0 at all; within = not outside, x - margin >= 0 and x - w + margin <= 0 at all (wider: > 0 and < 0)",
+            "outside = x + margin < 0 at all vertices or x - w - margin > 0 at all; enclosed = not outside, x - margin >= 0 and x - w + margin <= 0 at all (wider: > 0 and < 0)",
             clip(ports())
                 .cage("margin", "what the box is widened by")
                 .one("wider", BIT, "the box is widened: it must lie strictly within"),
@@ -416,7 +416,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "border_screen",
             &[Stage::QuadtreeFit],
             "6",
-            "with left = node << (below + F), right = (node + 1) << (below + F): outside = high < left or low > right; within = not outside, low >= left and high <= right",
+            "with left = node << (below + F), right = (node + 1) << (below + F): outside = high < left or low > right; enclosed = not outside, low >= left and high <= right",
             screen_box(),
             border(),
         ),
@@ -432,7 +432,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "border_strips",
             &[Stage::QuadtreeFit],
             "9",
-            "with last = value + (step << below) - step: outside = last < -half_width or value > half_width; within = not outside, value - step < -half_width and last + step > half_width",
+            "with last = value + (step << below) - step: outside = last < -half_width or value > half_width; enclosed = not outside, value - step < -half_width and last + step > half_width",
             strip_box(),
             border(),
         ),
@@ -559,7 +559,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
                 .one("front", BIT, "the cube has a front plane")
                 .one("front_side", TWO, SIDE)
                 .one("wanted", TWO, "the side on which rays reach the cube"),
-            ports().one("cover", TWO, COVER),
+            ports().one("cover_code", TWO, COVER),
         ),
         Block::StripCover => made(
             "strip_cover",
@@ -571,7 +571,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
                 .one("half_width", WIDE, HALF_WIDTH)
                 .each("step", &["x", "y"], WIDE, "what one sample adds")
                 .one("below", LEVEL, BELOW),
-            ports().one("cover", TWO, COVER),
+            ports().one("cover_code", TWO, COVER),
         ),
         Block::FillUpdate => made(
             "fill_update",

@@ -27,8 +27,9 @@ pub(super) fn text(format: Format, recordings: &[Recording]) -> String {
         .filter(with_rows)
         .or_else(|| recordings.iter().find(with_rows));
     if let Some(recording) = chosen {
-        text += "\nA testbench. Save it as tb.v here, add your block, and run\n\
-                 `iverilog -g2005 -o tb tb.v && vvp tb` in this folder.\n\n";
+        text += "\nA testbench. Save it as ../tb.v (--force replaces no folder that holds other\n\
+                 files), add your block, and run in this folder\n\
+                 `iverilog -g2005 -o ../tb ../tb.v && vvp ../tb`.\n\n";
         text += &testbench(format, recording);
         if recording.description.name == "centre" {
             text += "\n// A block that passes, as an example:\n";
