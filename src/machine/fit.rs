@@ -136,6 +136,9 @@ pub(super) fn clip<P: Probe, L: Lattice>(
             break;
         };
         let to = clip_in_quadrant(dp, pose, quadrant, far);
+        let (right, lower) = (quadrant & 1 != 0, quadrant & 2 != 0);
+        dp.tap(Block::HalfClip, &(&pose.x, &far[0], right), &to.x);
+        dp.tap(Block::HalfClip, &(&pose.y, &far[1], lower), &to.y);
         let leaves_little = inside || near_node(dp, &to.x, &to.w) && near_node(dp, &to.y, &to.w);
         if !leaves_little {
             // Too far outside: coordinates would grow beyond the word.
@@ -267,13 +270,11 @@ fn closed_plain<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L) -> Hal
 
 /// The coordinates in the left half (doubled) or in the right half (as tested).
 fn rebase<P: Probe, L: Lattice>(dp: &mut Datapath<P>, right: bool, x: &L, tested: L) -> L {
-    let inner = if right {
+    if right {
         tested
     } else {
         x.map(|x| dp.shl(x, 1))
-    };
-    dp.tap(Block::HalfClip, &(x, tested, right), &inner);
-    inner
+    }
 }
 
 /// Whether a box leaves a node by at most the node's width.
