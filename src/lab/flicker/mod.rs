@@ -259,7 +259,7 @@ pub fn table(films: &[Films]) -> Table {
     table
 }
 
-/// Flicker and pop over time, a plot each.
+/// Flicker over time; and pop, if there is any.
 #[cfg(feature = "cli")]
 #[must_use]
 pub fn panels(films: &Films) -> Vec<Panel> {
@@ -291,8 +291,14 @@ pub fn panels(films: &Films) -> Vec<Panel> {
         Panel::Chart(chart)
     };
     let floor = (1e3 * films.noise_floor, "noise floor".to_owned());
-    vec![
-        of("flicker", |seen| &seen.flicker_by_step, Some(floor)),
-        of("pop", |seen| &seen.pop_by_step, None),
-    ]
+    let mut panels = vec![of("flicker", |seen| &seen.flicker_by_step, Some(floor))];
+    let pops = |film: &Film| {
+        film.seen
+            .as_ref()
+            .is_ok_and(|seen| most(&seen.pop_by_step) > 0.0)
+    };
+    if films.films.iter().any(pops) {
+        panels.push(of("pop", |seen| &seen.pop_by_step, None));
+    }
+    panels
 }
