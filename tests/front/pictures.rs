@@ -209,7 +209,7 @@ fn films_are_restless_and_more_samples_calm_them() {
         assert!(one["pop"].as_f64().unwrap() >= 0.0);
     }
     let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    assert_eq!(file("f.csv").lines().count(), 1 + 2 * 12);
+    assert_eq!(file("f.csv").lines().count(), 1 + 2 * 10);
     assert!(file("f.svg").contains("turntable") && file("f.html").contains("pop"));
 }
 
