@@ -68,7 +68,7 @@ fn models_have_their_triangles_and_voxels() {
 
 /// A fleet of 165 ships, 29.7 million triangles: `-- --ignored fleet --nocapture`.
 #[test]
-#[ignore = "takes half a minute and a gigabyte"]
+#[ignore = "long: thirty million triangles, three depths"]
 fn a_fleet_is_voxelised_in_bounded_memory() {
     let Some(path) = model("CG-57.obj") else {
         return;
