@@ -6,13 +6,13 @@
 
 use std::rc::Rc;
 
-use hwmodel::{Datapath, NoProbe, Overflow, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, WideWord, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
 use super::lattice::{Corners, Frame, Lattice};
 use super::record::{Clip, Screen};
-use super::strips::{Strips, Subtree};
+use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use super::to_screen;
 use crate::frame::QuadNode;
 use crate::project::{CageKind, Coverage, FrameSetup};
@@ -224,9 +224,32 @@ impl<'v, L: Lattice> Descent<'v, L> {
                 let (x, y) = (screen.x.vertices(dp), screen.y.vertices(dp));
                 std::array::from_fn(|i| Some([x[i], y[i]].map(|c| number(c) * unit)))
             }
-            Held::Strips(subtree, strips) => subtree.vertices(level, strips).map(Some),
+            Held::Strips(subtree, strips) => box_vertices(subtree, level, strips).map(Some),
         }
     }
+}
+
+/// The eight vertices, in Morton order, of a voxel of octree level `level`,
+/// as the box of its strips has them: samples from the picture's corner.
+fn box_vertices(subtree: &Subtree, level: u32, place: &Strips) -> [[f64; 2]; 8] {
+    let mut vertices = [[0.0; 2]; 8];
+    for (axis, function) in [ACROSS, DOWN].into_iter().enumerate() {
+        let (step, half_edge) = subtree.box_constants(function);
+        let sample = step.to_host() as f64;
+        let in_samples = |value: WideWord| value.to_host() as f64 / sample;
+        // The value is the first sample's place, half a sample from the corner, less the centre's.
+        let centre = 0.5 - in_samples(place.value[function]);
+        let scale = libm::ldexp(1.0, subtree.finest().saturating_sub(level) as i32);
+        let half = half_edge.map(|edge| in_samples(edge) * scale);
+        for (corner, vertex) in vertices.iter_mut().enumerate() {
+            let side = |k: usize| match corner >> (2 - k) & 1 {
+                0 => -half[k],
+                _ => half[k],
+            };
+            vertex[axis] = centre + side(0) + side(1) + side(2);
+        }
+    }
+    vertices
 }
 
 #[cfg(test)]

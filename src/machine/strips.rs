@@ -175,30 +175,13 @@ impl Subtree {
         dp.shl(self.half_width[function], self.finest - level)
     }
 
-    /// Positions of the eight vertices, in Morton order, of a voxel of octree
-    /// level `level`, as the box has them: samples from the corner of the
-    /// voxel's quadtree node. Host arithmetic, for measurements.
-    pub(super) fn vertices(&self, level: u32, place: &Strips) -> [[f64; 2]; 8] {
-        let mut vertices = [[0.0; 2]; 8];
-        for (axis, function) in [ACROSS, DOWN].into_iter().enumerate() {
-            let sample = self.step[function][axis].to_host() as f64;
-            let in_samples = |value: WideWord| value.to_host() as f64 / sample;
-            // The first sample's place, less the centre's.
-            let centre = 0.5 - in_samples(place.value[function]);
-            let scale = (1u64 << (self.finest.saturating_sub(level))) as f64;
-            let half = self.half_edge[function].map(|edge| in_samples(edge) * scale);
-            for (corner, vertex) in vertices.iter_mut().enumerate() {
-                let side = |k: usize| {
-                    if corner >> (2 - k) & 1 != 0 {
-                        half[k]
-                    } else {
-                        -half[k]
-                    }
-                };
-                vertex[axis] = centre + side(0) + side(1) + side(2);
-            }
-        }
-        vertices
+    /// What a sample and what half edges at the finest level add to a function
+    /// of the box: for who looks on.
+    pub(super) fn box_constants(&self, function: usize) -> (WideWord, [WideWord; 3]) {
+        (
+            self.step[function][function - ACROSS],
+            self.half_edge[function],
+        )
     }
 
     /// Whether a voxel of octree level `level` is no larger than a sample.

@@ -139,7 +139,18 @@ const HEAT: &str = "the heat map: measured by the host after the last record";
 const HALF_SAMPLES: &str = "a node's number with a one after it: wires";
 
 /// The machine's sources: file name and text, tests left out.
+/// A window on the machine for experiments, in real numbers. The machine must
+/// not look back through it: see `nobody_computes_with_what_the_window_shows`.
+const WINDOW: &str = "positions.rs";
+
+/// The machine's sources but the window.
 fn sources() -> Vec<(String, String)> {
+    let mut sources = all_sources();
+    sources.retain(|(file, _)| file != WINDOW);
+    sources
+}
+
+fn all_sources() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/machine");
     let mut sources: Vec<_> = fs::read_dir(&folder)
         .expect("the machine's folder")
@@ -230,6 +241,22 @@ fn words_are_read_by_the_host_alone() {
 fn words_are_shown_and_not_taken_back() {
     let is_shown = |line: &str| line.contains("Signal") || line.contains("show(");
     check(&lines(&sources(), is_shown), &SHOWN);
+}
+
+#[test]
+fn nobody_computes_with_what_the_window_shows() {
+    assert!(all_sources().iter().any(|(file, _)| file == WINDOW));
+    let mentions = lines(&sources(), |line| {
+        line.contains("positions::")
+            || line.contains("mod positions")
+            || line.contains("visit_positions")
+    });
+    let expected = [
+        "mod positions;",
+        "pub use positions::{Positions, Space, visit_positions};",
+    ];
+    let expected = expected.map(|line| ("mod.rs".to_owned(), line.to_owned()));
+    assert_eq!(mentions, expected);
 }
 
 #[test]
