@@ -21,6 +21,7 @@ mod outputs;
 pub mod render;
 mod report;
 mod scenes;
+mod stress;
 pub mod triangles;
 pub mod turntable;
 
@@ -95,6 +96,11 @@ enum Verb {
     Model(Box<model::ModelArgs>),
     /// Run an experiment
     Bench(bench::BenchArgs),
+    /// Sweep word formats, cameras, scenes and rules for what must never happen
+    ///
+    /// Every frame is held against the exact ray caster, the specification and bounds on its vertices' error.
+    /// What fails is shrunk to one command line; exit code 3.
+    Stress(stress::StressArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
     /// Print the manual page
@@ -159,6 +165,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Compare(args)) => compare::run(&args, &console),
         Some(Verb::Model(args)) => model::run(&args, scenes, &console),
         Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
+        Some(Verb::Stress(args)) => stress::run(&args, scenes, &console),
         Some(Verb::Completions(args)) => manual::completions(&args),
         Some(Verb::Man(args)) => manual::man(&args),
     }

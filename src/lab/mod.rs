@@ -2,8 +2,10 @@
 //! Each gives plain data and a table. What was found: `spec/lab.md`.
 
 pub mod bench;
+pub mod bounds;
 pub mod error;
 pub mod flicker;
 pub mod float_rays;
 pub mod model;
+pub mod stress;
 pub mod vertex_error;

@@ -29,7 +29,6 @@ mod strips;
 mod taps;
 mod to_screen;
 mod verdict;
-#[cfg(test)]
 pub(crate) mod vertices;
 mod walk;
 
@@ -97,16 +96,59 @@ impl Machine {
         frame: &mut Frame,
         probe: P,
     ) -> Result<(Stats, P), EngineError> {
-        frame.clear();
-        let fill = Self::emptied(&mut self.fill, setup);
         match setup.options.cage {
             CageKind::Corners => {
-                walk::run::<P, lattice::Corners>(&self.options, graph, setup, fill, frame, probe)
+                self.run::<P, lattice::Corners>(graph, setup, frame, probe, u64::MAX)
+            }
+            CageKind::Frame => self.run::<P, lattice::Frame>(graph, setup, frame, probe, u64::MAX),
+        }
+        // Nobody waits for so many records.
+        .map(|drawn| drawn.unwrap_or_else(|| unreachable!("more than 2^64 records")))
+    }
+
+    /// Draws a frame with at most so many records: `None`, and a frame of no
+    /// use, where that is not enough. Every frame ends (`SPEC.md`,
+    /// "Termination"); this is for who checks that.
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub fn render_within(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        most_records: u64,
+    ) -> Result<Option<Stats>, EngineError> {
+        let drawn = match setup.options.cage {
+            CageKind::Corners => {
+                self.run::<_, lattice::Corners>(graph, setup, frame, NoProbe, most_records)
             }
             CageKind::Frame => {
-                walk::run::<P, lattice::Frame>(&self.options, graph, setup, fill, frame, probe)
+                self.run::<_, lattice::Frame>(graph, setup, frame, NoProbe, most_records)
             }
-        }
+        };
+        drawn.map(|drawn| drawn.map(|(stats, _)| stats))
+    }
+
+    fn run<P: Probe, L: lattice::Lattice>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        probe: P,
+        most_records: u64,
+    ) -> Result<Option<(Stats, P)>, EngineError> {
+        frame.clear();
+        let fill = Self::emptied(&mut self.fill, setup);
+        walk::run::<P, L>(
+            &self.options,
+            graph,
+            setup,
+            fill,
+            frame,
+            probe,
+            most_records,
+        )
     }
 
     /// Draws a frame on a simulated hardware: each record has its turn in the

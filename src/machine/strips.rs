@@ -16,6 +16,7 @@ use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 use super::constants::Constants;
 use super::silhouette::{Cover, Silhouette};
 use super::taps::{Block, LEVEL_BITS};
+use super::vertices::Held;
 use crate::project::STRIP_NORMAL_BITS;
 
 /// Linear functions of an outline: three strips, the box across, the box down.
@@ -153,6 +154,25 @@ impl Subtree {
     /// What one sample adds to a function of the box, as [`Self::box_step`] shifts it.
     pub(super) fn sample_step(&self, function: usize) -> WideWord {
         self.step[function][function - ACROSS]
+    }
+
+    /// The vertices of a voxel of octree level `level`, for who checks them.
+    pub(super) fn held(&self, level: u32, place: &Strips) -> Held {
+        let vertex = |function: usize, vertex: usize| {
+            // The place is the first sample's, relative to the centre.
+            let centre = -place.value[function].to_host();
+            let halves =
+                self.half_edge[function].map(|half| half.to_host() << (self.finest - level));
+            (0..3).fold(centre, |sum, k| {
+                let is_high = vertex >> (2 - k) & 1 != 0;
+                sum + if is_high { halves[k] } else { -halves[k] }
+            })
+        };
+        Held::Strips {
+            value: std::array::from_fn(|f| std::array::from_fn(|v| vertex(f, v))),
+            step: self.step.map(|step| step.map(WideWord::to_host)),
+            finest: self.finest,
+        }
     }
 
     /// What a step of `2^places` samples adds to a function of the box.

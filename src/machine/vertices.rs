@@ -1,19 +1,117 @@
-//! A window on the machine's vertices, for tests of what is said about them.
+//! A window on the machine's vertices, for who checks what is said about them.
 
-use hwmodel::{Datapath, NoProbe, Overflow, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
-use super::lattice::{Corners, Lattice};
+#[cfg(test)]
+use super::lattice::Corners;
+use super::lattice::Lattice;
 use super::record::Clip;
+use super::strips::{FUNCTIONS, Subtree};
 use super::to_screen;
 use crate::frame::QuadNode;
-use crate::project::FrameSetup;
+use crate::project::{CageKind, Coverage, FrameSetup};
+
+/// The eight vertices of a voxel, in Morton order, as the machine has them
+/// relative to the whole picture.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Held {
+    /// X, Y, W.
+    Clip([[i64; 8]; 3]),
+    /// x and y, in screen units.
+    Screen([[i64; 8]; 2]),
+    /// Values of the lattice's five functions.
+    Strips {
+        /// By function, relative to the picture's first sample.
+        value: [[i64; 8]; FUNCTIONS],
+        /// By function, what a step of a sample along x and y adds.
+        step: [[i64; 2]; FUNCTIONS],
+        /// The lattice's finest level: what is there, or on the way to it, is held.
+        finest: u32,
+    },
+}
+
+/// The voxels on the way that `path` leads from the root, octant by octant,
+/// the root first, in the cage of the set-up. Each changes to screen space
+/// where the machine would let it. The way ends early at a lattice's finest level.
+///
+/// # Errors
+/// Where a word overflows. The machine has these vertices relative to a node
+/// of the quadtree, which are never larger.
+pub(crate) fn follow(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Held>, Trap> {
+    match setup.options.cage {
+        CageKind::Corners => follow_as::<super::lattice::Corners>(setup, path),
+        CageKind::Frame => follow_as::<super::lattice::Frame>(setup, path),
+    }
+}
+
+/// As [`follow`], in any lattice.
+///
+/// # Errors
+/// Where a word overflows.
+pub(super) fn follow_as<L: Lattice>(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Held>, Trap> {
+    let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
+    let constants = Constants::load(&mut dp, setup);
+    let mut way = Vec::new();
+    let [x, y, w] =
+        [0, 1, 2].map(|c| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]));
+    let place = Place {
+        quad: QuadNode::ROOT,
+        inside: false,
+    };
+    let (mut clip, mut screen, mut strips) = ([x, y, w], None::<[L; 2]>, None);
+    for level in 0..=path.len() as u32 {
+        if let Some(octant) = level
+            .checked_sub(1)
+            .map(|at| usize::from(path[at as usize]))
+        {
+            if let Some((subtree, at)) = &mut strips {
+                let subtree: &Subtree = subtree;
+                if level > subtree.finest() {
+                    break;
+                }
+                *at = subtree.children(&mut dp, level, at)[octant];
+            } else if let Some(lattices) = &mut screen {
+                *lattices = lattices.map(|lattice| lattice.children(&mut dp)[octant]);
+            } else {
+                clip = clip.map(|lattice| lattice.children(&mut dp)[octant]);
+            }
+        }
+        if strips.is_none() && screen.is_none() {
+            let [x, y, w] = clip;
+            let (w_min, _) = w.span(&mut dp);
+            let pose = Clip { x, y, w, w_min };
+            if to_screen::may_change(&mut dp, &constants, level, &place, &pose) {
+                if constants.coverage == Coverage::Exact {
+                    let mean = to_screen::mean(&mut dp, &constants, &place, &pose);
+                    strips = Some(Subtree::new(&mut dp, &constants, level, &mean));
+                } else {
+                    let changed = to_screen::change(&mut dp, &constants, &place, &pose);
+                    screen = Some([changed.x, changed.y]);
+                }
+            }
+        }
+        let host = |vertices: [Word; 8]| vertices.map(Word::to_host);
+        way.push(if let Some((subtree, at)) = &strips {
+            subtree.held(level, at)
+        } else if let Some(lattices) = screen {
+            Held::Screen(lattices.map(|lattice| host(lattice.vertices(&mut dp))))
+        } else {
+            Held::Clip(clip.map(|lattice| host(lattice.vertices(&mut dp))))
+        });
+        if let Some(trap) = dp.trap() {
+            return Err(trap);
+        }
+    }
+    Ok(way)
+}
 
 /// The eight corners (Morton order), x and y in screen units, of the voxel
 /// that `path` leads to from the root, octant by octant; the first
 /// `exact_levels` steps are made in clip space, the others in screen space.
 /// `None` where the set-up does not let the record change to screen space.
+#[cfg(test)]
 pub(crate) fn screen_corners(
     setup: &FrameSetup,
     exact_levels: u32,

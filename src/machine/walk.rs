@@ -19,7 +19,8 @@ use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::project::{Coverage, EngineError, FrameSetup, Stats};
 
-/// Draws a frame with cages of lattice `L`.
+/// Draws a frame with cages of lattice `L`; `None` where records are left
+/// after the turns of `most_records`.
 pub(super) fn run<P: Probe, L: Lattice>(
     options: &MachineOptions,
     graph: &GraphView<'_>,
@@ -27,10 +28,14 @@ pub(super) fn run<P: Probe, L: Lattice>(
     fill: &mut FillVectors,
     frame: &mut Frame,
     probe: P,
-) -> Result<(Stats, P), EngineError> {
+    most_records: u64,
+) -> Result<Option<(Stats, P)>, EngineError> {
     let mut walk = Walk::<P, L>::new(options, graph, setup, fill, frame, probe);
     walk.push_object();
     while let Some(record) = walk.stack.pop() {
+        if walk.counts.records >= most_records {
+            return Ok(None);
+        }
         walk.turn(record);
         if let Some(trap) = walk.dp.trap() {
             return Err(trap.into());
@@ -39,7 +44,7 @@ pub(super) fn run<P: Probe, L: Lattice>(
     if let Some(trap) = walk.dp.trap() {
         return Err(trap.into());
     }
-    Ok(walk.finish())
+    Ok(Some(walk.finish()))
 }
 
 /// What a frame came to.

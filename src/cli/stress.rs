@@ -1,0 +1,301 @@
+//! `stress`: the numerical stability sweep.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::bench::args::ExportArgs;
+use super::bench::context::Context;
+use super::bench::export::{self, Results};
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::report;
+use crate::lab::stress::{
+    self, Case, End, Findings, Hold, Outcome, Plan, Scene, panels, rows, summary, tables,
+};
+use crate::picture::store;
+use crate::report::html::Page;
+use crate::report::plot;
+
+/// Arguments of `stress`.
+#[derive(Debug, Args)]
+pub(super) struct StressArgs {
+    /// Scenes: generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
+    /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
+    #[arg(value_name = "SCENE", value_parser = scene)]
+    scenes: Vec<Scene>,
+    /// Chooses viewpoints and rules; the same seed gives the same sweep
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// All widths from 16 to 64 bits, more scenes, larger pictures, most rules: hours
+    #[arg(long)]
+    thorough: bool,
+    /// Word widths in bits
+    #[arg(long, value_name = "LIST", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(16..=64))]
+    bits: Vec<u32>,
+    /// Pictures' sides, pixels
+    #[arg(long, value_name = "LIST", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(1..=2048))]
+    size: Vec<u32>,
+    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of 72
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    rules: Option<u32>,
+    /// Viewpoints that the seed chooses, beside the thirteen standard ones
+    #[arg(long, value_name = "N")]
+    viewpoints: Option<u32>,
+    /// Draw one case alone: a line that a failing sweep prints
+    #[arg(long, value_name = "CASE", conflicts_with_all = ["scenes", "thorough", "bits", "size", "rules", "viewpoints"])]
+    case: Option<Case>,
+    /// One page with tables and plots
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+    #[command(flatten)]
+    export: ExportArgs,
+}
+
+fn scene(text: &str) -> Result<Scene, String> {
+    text.parse()
+}
+
+/// Failing cases that are printed.
+const PRINTED: usize = 10;
+
+pub(super) fn run(
+    args: &StressArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    if let Some(case) = &args.case {
+        return run_case(case, console);
+    }
+    export::check(&args.export)?;
+    if let Some(path) = &args.html {
+        store::check_free(path, args.export.force)?;
+    }
+    let plan = plan(args, &from_config)?;
+    let context = Context::now();
+    let started = std::time::Instant::now();
+    let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let tables = tables(&plan, &findings);
+    let panels = panels(&plan, &findings);
+    if let Some(path) = &args.html {
+        let page = page(&plan, &findings, &context, &tables, &panels)?;
+        store::write(path, page.as_bytes(), args.export.force)?;
+        console.note(format!("{}: written", path.display()));
+    }
+    let results = Results {
+        document: document(&plan, &findings, &context),
+        rows: rows(&plan, &findings),
+        more_tables: Vec::new(),
+        preface: format!("`{}`\n", context.command_line()),
+        tables,
+        panels,
+    };
+    export::write(&results, &args.export, console)?;
+    let total = findings.total();
+    console.note(format!(
+        "{} frames in {seconds:.0} s",
+        report::grouped(total.cases)
+    ));
+    if total.failed == 0 {
+        return Ok(());
+    }
+    for failed in findings
+        .failed
+        .iter()
+        .filter(|f| f.minimal.is_some())
+        .take(PRINTED)
+    {
+        let minimal = failed.minimal.as_deref().unwrap_or(&failed.case);
+        let detail = failed.minimal_detail.as_deref().unwrap_or(&failed.detail);
+        console.note(format!(
+            "{}: {detail}\n  shiftvox stress --case '{minimal}'",
+            failed.check.name()
+        ));
+        if let Some(render) = &failed.render {
+            console.note(format!("  {render}"));
+        }
+    }
+    Err(CliError::new(
+        Kind::Failed,
+        format!(
+            "{} of {} frames did not keep what they must",
+            report::grouped(total.failed),
+            report::grouped(total.cases)
+        ),
+    ))
+}
+
+fn plan(args: &StressArgs, from_config: &[String]) -> Result<Plan, CliError> {
+    let mut plan = Plan::new(args.seed, args.thorough);
+    if !args.scenes.is_empty() {
+        plan.scenes.clone_from(&args.scenes);
+    } else if !from_config.is_empty() {
+        let scenes = from_config.iter().map(|text| text.parse());
+        plan.scenes = scenes
+            .collect::<Result<_, String>>()
+            .map_err(CliError::input)?;
+    }
+    if !args.bits.is_empty() {
+        plan.bits.clone_from(&args.bits);
+        plan.bits.sort_unstable();
+        plan.bits.dedup();
+    }
+    if !args.size.is_empty() {
+        plan.pixels.clone_from(&args.size);
+    }
+    if let Some(rules) = args.rules {
+        plan.rules = rules as usize;
+    }
+    if let Some(viewpoints) = args.viewpoints {
+        plan.random_viewpoints = viewpoints;
+    }
+    Ok(plan)
+}
+
+fn document(plan: &Plan, findings: &Findings, context: &Context) -> serde_json::Value {
+    let table = rows(plan, findings);
+    let rows: Vec<serde_json::Value> = table
+        .rows
+        .iter()
+        .map(|row| {
+            let fields = table.columns.iter().zip(row);
+            fields
+                .map(|(name, cell)| ((*name).to_owned(), json!(cell)))
+                .collect()
+        })
+        .collect();
+    let worst: Vec<serde_json::Value> = findings
+        .worst
+        .iter()
+        .map(|((hold, bits), worst)| {
+            json!({ "held_in": Hold::ALL[*hold], "bits": bits, "worst": worst })
+        })
+        .collect();
+    let viewpoints: serde_json::Map<String, serde_json::Value> = findings
+        .viewpoints
+        .iter()
+        .map(|(name, tally)| ((*name).to_owned(), json!(tally)))
+        .collect();
+    let failures: serde_json::Map<String, serde_json::Value> = findings
+        .failures
+        .iter()
+        .map(|(check, count)| (check.name().to_owned(), json!(count)))
+        .collect();
+    report::document(
+        "stress",
+        json!({
+            "command": context.command_line(),
+            "seed": plan.seed,
+            "total": findings.total(),
+            "failures": failures,
+            "failed": findings.failed,
+            "traps": findings.traps,
+            "refusals": findings.refusals,
+            "viewpoints": viewpoints,
+            "vertices": worst,
+            "results": rows,
+        }),
+    )
+}
+
+fn page(
+    plan: &Plan,
+    findings: &Findings,
+    context: &Context,
+    tables: &[crate::report::Table],
+    panels: &[plot::Panel],
+) -> Result<String, CliError> {
+    let mut page = Page::new("Numerical stability");
+    page.lines(&context.command_line());
+    page.text(&format!(
+        "{} scenes, words of {} widths from 16 to 64 bits with three fractions each, pictures of {:?} pixels a side, seed {}. \
+         Every frame is drawn by the machine and held against the exact ray caster, the specification and the bounds on its vertices' error.",
+        plan.scenes.len(),
+        plan.bits.len(),
+        plan.pixels,
+        plan.seed
+    ));
+    page.key_figures(&summary(findings));
+    if !findings.failed.is_empty() {
+        page.chapter("What failed");
+        for failed in &findings.failed {
+            let case = failed.minimal.as_ref().unwrap_or(&failed.case);
+            page.section(failed.check.name());
+            page.text(failed.minimal_detail.as_ref().unwrap_or(&failed.detail));
+            page.lines(&format!("shiftvox stress --case '{case}'"));
+        }
+    }
+    page.chapter("Plots");
+    for panel in panels {
+        page.plot(&plot::svg(std::slice::from_ref(panel))?, "");
+    }
+    for table in tables {
+        page.chapter(table.title.split(':').next().unwrap_or(&table.title));
+        page.table(table);
+    }
+    Ok(page.finish())
+}
+
+/// Draws one case and tells all about it.
+fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
+    let outcome =
+        stress::run_case(case, Plan::new(0, false).most_records).map_err(CliError::input)?;
+    if console.json {
+        let fields = json!({ "case": case.to_string(), "outcome": outcome });
+        console.document(&report::document("stress case", fields))?;
+    } else {
+        console.data(told(case, &outcome))?;
+    }
+    match outcome.failures.first() {
+        None => Ok(()),
+        Some(first) => Err(CliError::new(
+            Kind::Failed,
+            format!("{}: {}", first.check.name(), first.detail),
+        )),
+    }
+}
+
+fn told(case: &Case, outcome: &Outcome) -> String {
+    let mut lines = vec![case.to_string()];
+    lines.push(match &outcome.end {
+        End::Drawn => format!(
+            "drawn with {} records; {} samples covered by the oracle, {} extra, {} missing, {} of another voxel",
+            report::grouped(outcome.records),
+            outcome.coverage.covered,
+            outcome.coverage.extra,
+            outcome.coverage.missing,
+            outcome.coverage.wrong_voxel
+        ),
+        End::Trapped(trap) => format!("trapped: {trap}"),
+        End::Refused(reason) => format!("refused: {reason}"),
+    });
+    if outcome.inside > 0 {
+        lines.push(format!(
+            "{} holes in {} samples inside a closed surface",
+            outcome.holes, outcome.inside
+        ));
+    }
+    for (hold, worst) in Hold::ALL.iter().zip(&outcome.worst) {
+        if worst.vertices > 0 {
+            lines.push(format!(
+                "{}: {} coordinates of vertices, worst {:.3e} px of at most {:.3e}",
+                hold.name(),
+                worst.vertices,
+                worst.error_px,
+                worst.bound_px
+            ));
+        }
+    }
+    for failure in &outcome.failures {
+        lines.push(format!(
+            "NOT KEPT, {}: {}",
+            failure.check.name(),
+            failure.detail
+        ));
+    }
+    lines.join("\n")
+}

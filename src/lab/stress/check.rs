@@ -1,0 +1,565 @@
+//! One case: drawn, and held against the oracle, the book and the bounds.
+
+use serde::Serialize;
+
+use super::case::Case;
+use super::subject::Subject;
+use super::vertex::{self, Vertices, Worst};
+use crate::fast::{Fast, FastOptions};
+use crate::frame::Frame;
+use crate::graph::Graph;
+use crate::machine::Machine;
+use crate::measure::CoverageError;
+use crate::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
+use crate::rays::Rays;
+
+/// What every frame must keep.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Check {
+    /// A frame ends within a bound on records.
+    Ends,
+    /// A frame whose set-up says that it cannot overflow does not.
+    Headroom,
+    /// Under `exact` without tolerance or level of detail the picture is the oracle's.
+    Exact,
+    /// Under `exact` without tolerance no sample that the oracle covers is missing.
+    Missing,
+    /// A closed surface has no holes (tolerance 0 to 1/64).
+    Holes,
+    /// Nothing is seen that lies behind what the oracle sees.
+    Order,
+    /// What is seen is before the eye and at its sample.
+    Place,
+    /// Vertices are the specification's, bit for bit.
+    Book,
+    /// Vertices are within the bounds on their error.
+    Bound,
+    /// The fast engine draws the same bits.
+    Engines,
+}
+
+impl Check {
+    /// All, in order.
+    pub const ALL: [Self; 10] = [
+        Self::Ends,
+        Self::Headroom,
+        Self::Exact,
+        Self::Missing,
+        Self::Holes,
+        Self::Order,
+        Self::Place,
+        Self::Book,
+        Self::Bound,
+        Self::Engines,
+    ];
+
+    /// Its name.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ends => "ends",
+            Self::Headroom => "headroom",
+            Self::Exact => "exact",
+            Self::Missing => "missing",
+            Self::Holes => "holes",
+            Self::Order => "order",
+            Self::Place => "place",
+            Self::Book => "book",
+            Self::Bound => "bound",
+            Self::Engines => "engines",
+        }
+    }
+
+    /// What it says.
+    #[must_use]
+    pub fn about(self) -> &'static str {
+        match self {
+            Self::Ends => "a frame ends within a bound on records",
+            Self::Headroom => "a frame whose set-up promises that no word overflows does not trap",
+            Self::Exact => {
+                "exact, tolerance 0, level of detail 0: the oracle's picture, sample by sample"
+            }
+            Self::Missing => "exact, tolerance 0: no sample that the oracle covers is missing",
+            Self::Holes => "a closed surface has no holes, at tolerance 0 to 1/64",
+            Self::Order => "nothing is seen that the oracle's voxel hides",
+            Self::Place => {
+                "what is seen is before the eye and no more than the rule allows from its sample"
+            }
+            Self::Book => "vertices are the specification's, bit for bit",
+            Self::Bound => "vertices are within the bounds on their error",
+            Self::Engines => "the fast engine draws the machine's bits",
+        }
+    }
+}
+
+/// Something that must not be.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Failure {
+    /// What was not kept.
+    pub check: Check,
+    /// Where and how.
+    pub detail: String,
+}
+
+/// How a frame ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// With a picture.
+    Drawn,
+    /// With an overflow: operation, stage, level and record.
+    Trapped(String),
+    /// Before it began: the format does not hold the view.
+    Refused(String),
+}
+
+/// What a case came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// How it ended.
+    pub end: End,
+    /// What must not be.
+    pub failures: Vec<Failure>,
+    /// Records that had their turn.
+    pub records: u64,
+    /// Samples inside a closed surface, as the oracle sees it.
+    pub inside: u64,
+    /// Those of them that show nothing, or something behind the surface.
+    pub holes: u64,
+    /// Samples that show what the oracle's voxel hides.
+    pub order: u64,
+    /// The picture against the oracle's.
+    pub coverage: CoverageError,
+    /// Vertices, by [`super::Hold`].
+    pub worst: [Worst; 4],
+}
+
+impl Outcome {
+    fn new(end: End) -> Self {
+        Self {
+            end,
+            failures: Vec::new(),
+            records: 0,
+            inside: 0,
+            holes: 0,
+            order: 0,
+            coverage: CoverageError::default(),
+            worst: Default::default(),
+        }
+    }
+
+    fn fail(&mut self, check: Check, detail: impl Into<String>) {
+        self.failures.push(Failure {
+            check,
+            detail: detail.into(),
+        });
+    }
+
+    /// Whether this was not kept.
+    #[must_use]
+    pub fn fails(&self, check: Check) -> bool {
+        self.failures.iter().any(|failure| failure.check == check)
+    }
+}
+
+/// Largest tolerance, samples, at which a hole is a failure.
+pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
+/// Voxels whose vertices are looked at in a frame.
+const VOXELS_LOOKED_AT: usize = 6;
+/// Levels below finest voxels to which vertices are followed.
+const LEVELS_BELOW: u32 = 3;
+
+/// The last oracle's picture, for cases with the same integers.
+#[derive(Debug, Default)]
+pub(crate) struct Oracle {
+    last: Option<(FrameSetup, Frame)>,
+}
+
+impl Oracle {
+    fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        let same = |last: &FrameSetup| {
+            // What the oracle looks at.
+            last.origin_clip == setup.origin_clip
+                && last.edge_clip == setup.edge_clip
+                && last.sub_levels == setup.sub_levels
+                && (last.width, last.height, last.levels)
+                    == (setup.width, setup.height, setup.levels)
+        };
+        if let Some((last, frame)) = &self.last
+            && same(last)
+        {
+            return frame.clone();
+        }
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        // The oracle has no error to give.
+        let _ = Rays.render(&graph.view(), setup, &mut frame);
+        self.last = Some((setup.clone(), frame.clone()));
+        frame
+    }
+
+    /// Forgets it: another graph comes.
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+}
+
+/// Draws a case and checks it.
+pub(crate) fn check(
+    subject: &dyn Subject,
+    case: &Case,
+    graph: &Graph,
+    most_records: u64,
+    oracle: &mut Oracle,
+) -> Outcome {
+    let setup = match case.setup(graph) {
+        Ok(setup) => setup,
+        Err(error) => {
+            let kind = match error {
+                SetupError::Collapsed { .. } => "the view collapses",
+                SetupError::OutOfRange => "out of 64-bit range",
+                SetupError::Depth(_) => "too deep",
+                _ => "not a view",
+            };
+            return Outcome::new(End::Refused(kind.to_owned()));
+        }
+    };
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn = subject.draw(&graph.view(), &setup, &mut frame, most_records);
+    let stats = match drawn {
+        Ok(Some(stats)) => stats,
+        Ok(None) => {
+            let mut outcome = Outcome::new(End::Drawn);
+            outcome.records = most_records;
+            outcome.fail(
+                Check::Ends,
+                format!("records are left after {most_records}"),
+            );
+            return outcome;
+        }
+        Err(EngineError::Trap(trap)) => {
+            let mut outcome = Outcome::new(End::Trapped(trap.to_string()));
+            if setup.has_headroom {
+                outcome.fail(Check::Headroom, trap.to_string());
+            }
+            return outcome;
+        }
+    };
+    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
+    let mut outcome = Outcome::new(End::Drawn);
+    outcome.records = stat("records");
+    let right = oracle.picture(graph, &setup);
+    outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
+    let seen = Seen {
+        setup: &setup,
+        frame: &frame,
+        right: &right,
+        is_at_bound: stat("at_level_bound") > 0,
+    };
+    seen.check_exact(&mut outcome);
+    seen.check_place(&mut outcome);
+    seen.check_order(&mut outcome);
+    if case.scene.is_closed() {
+        seen.check_holes(&mut outcome);
+    }
+    check_vertices(subject, case, graph, &seen, &mut outcome);
+    check_engines(graph, &seen, &mut outcome);
+    outcome
+}
+
+/// A frame beside the right one.
+struct Seen<'s> {
+    setup: &'s FrameSetup,
+    frame: &'s Frame,
+    right: &'s Frame,
+    /// Whether records met the level bound: words too narrow for the view.
+    is_at_bound: bool,
+}
+
+type Voxel = [i32; 4];
+
+impl Seen<'_> {
+    fn is_exact(&self) -> bool {
+        self.setup.options.coverage == Coverage::Exact
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.setup.options.tolerance_px
+    }
+
+    fn at(&self, sample: usize) -> (usize, usize) {
+        let width = self.frame.width as usize;
+        (sample % width, sample / width)
+    }
+
+    /// The oracle's voxels at a sample and the eight about it, if all are covered.
+    fn around(&self, sample: usize) -> Option<[Voxel; 9]> {
+        let (width, height) = (self.frame.width as usize, self.frame.height as usize);
+        let (x, y) = self.at(sample);
+        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+            return None;
+        }
+        let all: [Voxel; 9] =
+            std::array::from_fn(|i| self.right.voxel[(y + i / 3 - 1) * width + x + i % 3 - 1]);
+        let near = |v: &Voxel| {
+            // Only `exact` draws what is nearer than the near plane.
+            self.is_exact() || self.depths(v).0 >= i128::from(self.setup.near)
+        };
+        all.iter().all(|v| v[3] >= 0 && near(v)).then_some(all)
+    }
+
+    /// A voxel's corners: lowest and highest, finest voxels.
+    fn corners(&self, voxel: &Voxel) -> ([i64; 3], [i64; 3]) {
+        let side = 1i64 << (self.setup.depth - (voxel[3] as u32).min(self.setup.depth));
+        let low = [0, 1, 2].map(|k| i64::from(voxel[k]));
+        (low, low.map(|c| c + side))
+    }
+
+    /// X, Y, W of a voxel's eight vertices.
+    fn vertices(&self, voxel: &Voxel) -> [[i128; 3]; 8] {
+        let (low, high) = self.corners(voxel);
+        std::array::from_fn(|v| {
+            std::array::from_fn(|c| {
+                (0..3).fold(i128::from(self.setup.origin_clip[c]), |sum, k| {
+                    let u = if v >> (2 - k) & 1 != 0 {
+                        high[k]
+                    } else {
+                        low[k]
+                    };
+                    sum + i128::from(u) * i128::from(self.setup.edge_clip[k][c])
+                })
+            })
+        })
+    }
+
+    /// Least and greatest depth.
+    fn depths(&self, voxel: &Voxel) -> (i128, i128) {
+        let w = self.vertices(voxel).map(|p| p[2]);
+        let least = w.iter().copied().min().unwrap_or(0);
+        (least, w.iter().copied().max().unwrap_or(0))
+    }
+
+    /// Whether every line of sight that meets both meets `front` first: of
+    /// all planes between the two, the eye is on the side of `front`.
+    fn hides(&self, front: &Voxel, behind: &Voxel) -> bool {
+        let (low_a, high_a) = self.corners(front);
+        let (low_b, high_b) = self.corners(behind);
+        let sub = self.setup.sub_levels;
+        let mut parted = false;
+        for k in 0..3 {
+            // The eye between rounded down and up: it must be clearly on a side.
+            let (floor, ceil) = (self.setup.eye_floor[k], self.setup.eye_ceil[k]);
+            if high_a[k] <= low_b[k] {
+                if ceil > low_b[k] << sub {
+                    return false;
+                }
+                parted = true;
+            } else if high_b[k] <= low_a[k] {
+                if floor < high_b[k] << sub {
+                    return false;
+                }
+                parted = true;
+            }
+        }
+        parted
+    }
+
+    fn check_exact(&self, outcome: &mut Outcome) {
+        if !self.is_exact() || self.tolerance() != 0.0 {
+            return;
+        }
+        let differs = |sample: &usize| self.frame.voxel[*sample] != self.right.voxel[*sample];
+        let all = 0..self.frame.voxel.len();
+        if self.setup.options.lod_px == 0.0
+            && let Some(sample) = all.clone().find(differs)
+        {
+            outcome.fail(
+                Check::Exact,
+                format!(
+                    "{} samples differ, the first at {:?}: {:?}, should be {:?}",
+                    outcome.coverage.differing(),
+                    self.at(sample),
+                    self.frame.voxel[sample],
+                    self.right.voxel[sample]
+                ),
+            );
+        }
+        let missing =
+            |sample: &usize| self.right.voxel[*sample][3] >= 0 && self.frame.voxel[*sample][3] < 0;
+        if let Some(sample) = all.clone().find(missing) {
+            outcome.fail(
+                Check::Missing,
+                format!(
+                    "{} samples missing, the first at {:?}",
+                    outcome.coverage.missing,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+
+    /// A voxel that is seen lies before the eye, and not wholly to one side
+    /// of its sample by more than a sample and the tolerance.
+    fn check_place(&self, outcome: &mut Outcome) {
+        let tolerance = self.tolerance();
+        if !tolerance.is_finite() {
+            return;
+        }
+        let margin = 1 + libm::ceil(tolerance) as i128;
+        let near = if self.is_exact() {
+            1
+        } else {
+            i128::from(self.setup.near)
+        };
+        for (sample, voxel) in self.frame.voxel.iter().enumerate() {
+            if voxel[3] < 0 {
+                continue;
+            }
+            let (x, y) = self.at(sample);
+            let vertices = self.vertices(voxel);
+            let before = vertices.iter().any(|p| p[2] >= near);
+            let beside = [x, y].into_iter().enumerate().any(|(c, at)| {
+                let (low, high) = (at as i128 - margin, at as i128 + 1 + margin);
+                let left = |p: &[i128; 3]| (p[c] << self.setup.levels) < low * p[2];
+                let right = |p: &[i128; 3]| (p[c] << self.setup.levels) > high * p[2];
+                vertices.iter().all(left) || vertices.iter().all(right)
+            });
+            if !before || beside {
+                let what = if before {
+                    "beside it"
+                } else {
+                    "behind the eye"
+                };
+                outcome.fail(
+                    Check::Place,
+                    format!("sample ({x}, {y}) shows {voxel:?}, which is {what}"),
+                );
+                return;
+            }
+        }
+    }
+
+    /// A sample whose voxel hides what is shown: without tolerance under
+    /// `exact` any, else in the middle of a voxel, where no seam is.
+    fn check_order(&self, outcome: &mut Outcome) {
+        if !self.tolerance().is_finite() {
+            return;
+        }
+        let strict = self.is_exact() && self.tolerance() == 0.0;
+        let mut first = None;
+        for sample in 0..self.frame.voxel.len() {
+            let (shown, right) = (&self.frame.voxel[sample], &self.right.voxel[sample]);
+            if shown[3] < 0 || right[3] < 0 || shown == right || !self.hides(right, shown) {
+                continue;
+            }
+            let middle = || {
+                self.around(sample)
+                    .is_some_and(|all| all.iter().all(|v| v == right))
+            };
+            if strict || (!self.is_at_bound && middle()) {
+                outcome.order += 1;
+                first.get_or_insert((sample, *shown, *right));
+            }
+        }
+        if let Some((sample, shown, right)) = first {
+            outcome.fail(
+                Check::Order,
+                format!(
+                    "{} samples, the first at {:?}: {shown:?} is seen, {right:?} hides it",
+                    outcome.order,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+
+    fn check_holes(&self, outcome: &mut Outcome) {
+        let mut first = None;
+        for sample in 0..self.frame.voxel.len() {
+            let Some(around) = self.around(sample) else {
+                continue;
+            };
+            outcome.inside += 1;
+            let shown = &self.frame.voxel[sample];
+            let through = || around.iter().all(|front| self.hides(front, shown));
+            if shown[3] < 0 || through() {
+                outcome.holes += 1;
+                first.get_or_insert(sample);
+            }
+        }
+        // Where words are too narrow to part a voxel, `center` draws it at one
+        // sample however large it is; `any` and an infinite tolerance are the paper's.
+        let is_promised = match self.setup.options.coverage {
+            Coverage::Exact | Coverage::Any => self.tolerance() <= STRICT_TOLERANCE,
+            Coverage::Center => self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound,
+        };
+        if let Some(sample) = first.filter(|_| is_promised) {
+            outcome.fail(
+                Check::Holes,
+                format!(
+                    "{} of {} samples inside a closed surface, the first at {:?}",
+                    outcome.holes,
+                    outcome.inside,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+}
+
+/// The way from the root to a voxel, and a few levels into it.
+fn path(setup: &FrameSetup, voxel: &Voxel, salt: usize) -> Vec<u8> {
+    let octant = |bit: u32| (0..3).fold(0u8, |octant, k| octant << 1 | (voxel[k] >> bit & 1) as u8);
+    let mut path: Vec<u8> = (0..setup.depth).rev().map(octant).collect();
+    let below = setup.sub_levels.min(LEVELS_BELOW) as usize;
+    path.extend((0..below).map(|at| (salt * 5 + at * 3 + 1) as u8 & 7));
+    path
+}
+
+fn check_vertices(
+    subject: &dyn Subject,
+    case: &Case,
+    graph: &Graph,
+    seen: &Seen<'_>,
+    outcome: &mut Outcome,
+) {
+    let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
+    else {
+        return;
+    };
+    let shown: Vec<&Voxel> = seen.right.voxel.iter().filter(|v| v[3] >= 0).collect();
+    let step = (shown.len() / VOXELS_LOOKED_AT).max(1);
+    let mut found = Vertices::default();
+    for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
+        let way = path(seen.setup, voxel, salt);
+        vertex::look(subject, seen.setup, &bounds, &way, &mut found);
+    }
+    outcome.worst = found.worst;
+    if let Some(detail) = found.not_by_the_book {
+        outcome.fail(Check::Book, detail);
+    }
+    if let Some(detail) = found.beyond {
+        outcome.fail(Check::Bound, detail);
+    }
+}
+
+fn check_engines(graph: &Graph, seen: &Seen<'_>, outcome: &mut Outcome) {
+    // What the fast engine does not draw it hands to the machine.
+    if !seen.is_exact() || !seen.tolerance().is_finite() || !seen.setup.has_headroom {
+        return;
+    }
+    let options = FastOptions {
+        threads: 1,
+        ..FastOptions::default()
+    };
+    let mut fast = Fast::new(options, Box::new(Machine::default()));
+    let mut frame = Frame::new(seen.setup.width, seen.setup.height, false);
+    match fast.render(&graph.view(), seen.setup, &mut frame) {
+        Ok(_) if frame == *seen.frame => {}
+        Ok(_) => {
+            let differing = crate::measure::count_differing(&frame.voxel, &seen.frame.voxel);
+            outcome.fail(Check::Engines, format!("{differing} samples differ"));
+        }
+        Err(error) => outcome.fail(Check::Engines, error.to_string()),
+    }
+}

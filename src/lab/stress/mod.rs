@@ -1,0 +1,25 @@
+//! Numerical stability: word formats x cameras x scenes x rules, each frame
+//! held against the oracle, the specification and the bounds on its error.
+//!
+//! [`sweep`] runs a [`Plan`]; what fails is shrunk to a small [`Case`], a line
+//! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
+
+mod book;
+pub mod case;
+mod check;
+pub mod scene;
+mod shrink;
+pub(crate) mod subject;
+pub(crate) mod sweep;
+#[cfg(feature = "cli")]
+mod tables;
+mod vertex;
+pub mod viewpoint;
+
+pub use case::Case;
+pub use check::{Check, End, Failure, Outcome, STRICT_TOLERANCE};
+pub use scene::Scene;
+pub use sweep::{COVERAGES, Failed, Findings, Key, Plan, TOLERANCES, Tally, run_case, sweep};
+#[cfg(feature = "cli")]
+pub use tables::{panels, rows, summary, tables};
+pub use vertex::{Hold, Worst};

@@ -1,0 +1,361 @@
+//! What a sweep found, as tables and heat maps.
+
+use super::case::coverage_name;
+use super::check::{Check, STRICT_TOLERANCE};
+use super::sweep::{COVERAGES, Findings, Key, Plan, TOLERANCES, Tally};
+use super::vertex::{Hold, Worst};
+use crate::report::plot::{HeatMap, Panel, Tile};
+use crate::report::{Cell, Table};
+
+/// A tolerance in short.
+fn tolerance_name(tolerance: f64) -> String {
+    if tolerance == 0.0 || tolerance.is_infinite() {
+        return format!("{tolerance}");
+    }
+    format!("1/{}", libm::round(1.0 / tolerance) as u32)
+}
+
+fn added<'f>(findings: &'f Findings, wanted: impl Fn(&Key) -> bool + 'f) -> Tally {
+    let mut sum = Tally::default();
+    for (key, tally) in &findings.tallies {
+        if wanted(key) {
+            sum.merge(tally);
+        }
+    }
+    sum
+}
+
+/// A row for each scene, width and rule.
+#[must_use]
+pub fn rows(plan: &Plan, findings: &Findings) -> Table {
+    let columns = [
+        "scene",
+        "bits",
+        "coverage",
+        "tolerance_px",
+        "cases",
+        "drawn",
+        "trapped",
+        "refused",
+        "failed",
+        "most_records",
+        "inside",
+        "holes",
+        "order",
+        "covered",
+        "extra",
+        "missing",
+    ];
+    let mut table = Table::new("Outcomes", &columns);
+    for (key, tally) in &findings.tallies {
+        let mut row: Vec<Cell> = vec![
+            Cell::Text(plan.scenes[key.scene].to_string()),
+            u64::from(key.bits).into(),
+            coverage_name(COVERAGES[key.coverage]).into(),
+            Cell::Text(TOLERANCES[key.tolerance].to_string()),
+        ];
+        row.extend(counts(tally).map(Cell::from));
+        table.rows.push(row);
+    }
+    table
+}
+
+fn counts(tally: &Tally) -> [u64; 12] {
+    [
+        tally.cases,
+        tally.drawn,
+        tally.trapped,
+        tally.refused,
+        tally.failed,
+        tally.most_records,
+        tally.inside,
+        tally.holes,
+        tally.order,
+        tally.covered,
+        tally.extra,
+        tally.missing,
+    ]
+}
+
+/// What people read first.
+#[must_use]
+pub fn summary(findings: &Findings) -> Vec<(String, String)> {
+    let total = findings.total();
+    let strict = added(findings, |key| {
+        TOLERANCES[key.tolerance] <= STRICT_TOLERANCE
+    });
+    let figure = |value: u64, what: &str| (Cell::from(value).for_people(), what.to_owned());
+    vec![
+        figure(total.cases, "frames"),
+        figure(total.failed, "failed"),
+        figure(total.trapped, "trapped, place told"),
+        figure(total.refused, "refused by the set-up"),
+        figure(
+            strict.holes,
+            "holes in closed surfaces, tolerance up to 1/64",
+        ),
+        figure(strict.order, "order violations, tolerance up to 1/64"),
+    ]
+}
+
+/// The tables for people.
+#[must_use]
+pub fn tables(plan: &Plan, findings: &Findings) -> Vec<Table> {
+    let mut tables = vec![
+        by_scene(plan, findings),
+        by_rule(findings),
+        vertices(findings),
+        by_viewpoint(findings),
+        checks(findings),
+    ];
+    let counted = [
+        ("Traps, by operation and stage", &findings.traps),
+        ("Views that the set-up refused", &findings.refusals),
+    ];
+    for (title, counts) in counted {
+        let mut table = Table::new(title, &["what", "frames"]);
+        for (what, count) in counts {
+            table
+                .rows
+                .push(vec![Cell::Text(what.clone()), (*count).into()]);
+        }
+        tables.push(table);
+    }
+    tables
+}
+
+fn by_scene(plan: &Plan, findings: &Findings) -> Table {
+    let columns = [
+        "scene",
+        "frames",
+        "drawn",
+        "trapped",
+        "refused",
+        "failed",
+        "most_records",
+    ];
+    let mut table = Table::new("By scene", &columns);
+    for (scene, name) in plan.scenes.iter().enumerate() {
+        let sum = added(findings, |key| key.scene == scene);
+        let mut row = vec![Cell::Text(name.to_string())];
+        row.extend(counts(&sum)[..6].iter().map(|&c| Cell::from(c)));
+        table.rows.push(row);
+    }
+    table
+}
+
+fn by_viewpoint(findings: &Findings) -> Table {
+    let columns = [
+        "viewpoint",
+        "frames",
+        "drawn",
+        "trapped",
+        "refused",
+        "failed",
+        "most_records",
+    ];
+    let mut table = Table::new("By viewpoint", &columns);
+    for (name, tally) in &findings.viewpoints {
+        let mut row = vec![Cell::from(*name)];
+        row.extend(counts(tally)[..6].iter().map(|&c| Cell::from(c)));
+        table.rows.push(row);
+    }
+    table
+}
+
+fn by_rule(findings: &Findings) -> Table {
+    let columns = [
+        "coverage",
+        "tolerance",
+        "frames_drawn",
+        "samples_inside_closed",
+        "holes",
+        "one_in",
+        "must_be_0",
+        "order",
+        "covered",
+        "extra",
+        "missing",
+        "failed",
+    ];
+    let mut table = Table::new(
+        "By rule: holes in closed surfaces, order, coverage against the oracle",
+        &columns,
+    );
+    for (coverage, rule) in COVERAGES.iter().enumerate() {
+        for (tolerance, px) in TOLERANCES.iter().enumerate() {
+            let sum = added(findings, |key| {
+                (key.coverage, key.tolerance) == (coverage, tolerance)
+            });
+            let one_in = (sum.holes > 0).then(|| sum.inside / sum.holes);
+            table.rows.push(vec![
+                coverage_name(*rule).into(),
+                Cell::Text(tolerance_name(*px)),
+                sum.drawn.into(),
+                sum.inside.into(),
+                sum.holes.into(),
+                one_in.into(),
+                if *px <= STRICT_TOLERANCE {
+                    "yes"
+                } else {
+                    "listed"
+                }
+                .into(),
+                sum.order.into(),
+                sum.covered.into(),
+                sum.extra.into(),
+                sum.missing.into(),
+                sum.failed.into(),
+            ]);
+        }
+    }
+    table
+}
+
+fn vertices(findings: &Findings) -> Table {
+    let columns = [
+        "held_in",
+        "bits",
+        "vertices",
+        "worst_seen_px",
+        "its_bound_px",
+        "seen_over_bound",
+        "nearest_to_a_bound",
+    ];
+    let mut table = Table::new(
+        "Vertex error: worst seen in the picture beside its bound; greatest quotient of error and bound anywhere",
+        &columns,
+    );
+    for (place, hold) in Hold::ALL.iter().enumerate() {
+        let of_hold = findings.worst.iter().filter(|((h, _), _)| *h == place);
+        let mut all = Worst::default();
+        let row = |bits: Cell, worst: &Worst| {
+            let quotient = (worst.bound_px > 0.0).then(|| worst.error_px / worst.bound_px);
+            vec![
+                hold.name().into(),
+                bits,
+                worst.vertices.into(),
+                Cell::Text(format!("{:.2e}", worst.error_px)),
+                Cell::Text(format!("{:.2e}", worst.bound_px)),
+                quotient.map_or(Cell::None, Cell::ratio),
+                Cell::ratio(worst.tightest),
+            ]
+        };
+        for ((_, bits), worst) in of_hold {
+            all.merge(worst);
+            table.rows.push(row(u64::from(*bits).into(), worst));
+        }
+        if all.vertices > 0 {
+            table.rows.push(row("all".into(), &all));
+        }
+    }
+    table
+}
+
+fn checks(findings: &Findings) -> Table {
+    let mut table = Table::new("Checks", &["check", "failures", "what_it_says"]);
+    for check in Check::ALL {
+        let count = findings.failures.get(&check).copied().unwrap_or(0);
+        table.rows.push(vec![
+            check.name().into(),
+            count.into(),
+            check.about().into(),
+        ]);
+    }
+    table
+}
+
+/// The heat maps.
+#[must_use]
+pub fn panels(plan: &Plan, findings: &Findings) -> Vec<Panel> {
+    let columns: Vec<String> = plan.bits.iter().map(|bits| format!("{bits}")).collect();
+    let scenes = plan.scenes.iter().enumerate();
+    let outcome = |tally: &Tally| {
+        if tally.cases == 0 {
+            return Tile::Empty;
+        }
+        if tally.failed > 0 {
+            return Tile::Bad(format!("{} failed", tally.failed));
+        }
+        let share = tally.drawn as f64 / tally.cases as f64;
+        Tile::Shade(share, format!("{:.0} %", share * 100.0))
+    };
+    let by_format = HeatMap {
+        title: "Frames drawn, by bits of a word and scene".to_owned(),
+        columns: columns.clone(),
+        rows: scenes
+            .map(|(scene, name)| {
+                let tile = |&bits: &u32| {
+                    outcome(&added(findings, |k| (k.scene, k.bits) == (scene, bits)))
+                };
+                (name.to_string(), plan.bits.iter().map(tile).collect())
+            })
+            .collect(),
+        legend: "share of frames with a picture; the others were refused or trapped with the place told; red: something that must be kept was not"
+            .to_owned(),
+    };
+    let closed = plan
+        .scenes
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.is_closed());
+    let holes = |tally: &Tally, tolerance: f64| {
+        if tally.inside == 0 {
+            return Tile::Empty;
+        }
+        let text = format!("{}", tally.holes);
+        if tally.holes > 0 && tolerance <= STRICT_TOLERANCE {
+            return Tile::Bad(text);
+        }
+        // One in ten million is white, one in a hundred dark.
+        let rate = tally.holes as f64 / tally.inside as f64;
+        let shade = if tally.holes == 0 {
+            0.0
+        } else {
+            ((libm::log10(rate) + 7.0) / 5.0).clamp(0.1, 1.0)
+        };
+        Tile::Shade(shade, text)
+    };
+    let by_tolerance = HeatMap {
+        title: "Holes in closed surfaces under exact, by tolerance (pixels)".to_owned(),
+        columns: TOLERANCES.map(tolerance_name).to_vec(),
+        rows: closed
+            .map(|(scene, name)| {
+                let tiles = TOLERANCES.iter().enumerate().map(|(place, &px)| {
+                    let sum = added(findings, |k| {
+                        (k.scene, k.coverage, k.tolerance) == (scene, 0, place)
+                    });
+                    holes(&sum, px)
+                });
+                (name.to_string(), tiles.collect())
+            })
+            .collect(),
+        legend: "samples; must be 0 up to 1/64, where any is red; from 1/16 on seams are known"
+            .to_owned(),
+    };
+    let tightness = HeatMap {
+        title: "Vertex error over its bound, by bits of a word".to_owned(),
+        columns,
+        rows: Hold::ALL
+            .iter()
+            .enumerate()
+            .map(|(place, hold)| {
+                let tile = |&bits: &u32| match findings.worst.get(&(place, bits)) {
+                    None => Tile::Empty,
+                    Some(worst) if worst.tightest > 1.0 => {
+                        Tile::Bad(format!("{:.2}", worst.tightest))
+                    }
+                    Some(worst) => Tile::Shade(worst.tightest, format!("{:.2}", worst.tightest)),
+                };
+                (hold.name().to_owned(), plan.bits.iter().map(tile).collect())
+            })
+            .collect(),
+        legend: "greatest quotient of an error and its bound; 1 would be a bound that is reached"
+            .to_owned(),
+    };
+    vec![
+        Panel::Heat(by_format),
+        Panel::Heat(by_tolerance),
+        Panel::Heat(tightness),
+    ]
+}

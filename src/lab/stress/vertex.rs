@@ -1,0 +1,227 @@
+//! A frame's vertices under test: what the machine holds against the book,
+//! bit for bit, and against the true projection, within the bounds.
+
+use glam::DVec3;
+
+use super::book::Book;
+use super::subject::Subject;
+use crate::lab::bounds::{Bounds, Cube, Space, Widths};
+use crate::machine::vertices::Held;
+use crate::project::{CageKind, FrameSetup};
+
+/// How vertices are held, for tables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hold {
+    /// Clip space, either cage.
+    Clip,
+    /// Screen space, eight corners.
+    Corners,
+    /// Screen space, a corner and three edges.
+    Frame,
+    /// Screen space, the lattice of the exact rule.
+    Lattice,
+}
+
+impl Hold {
+    /// All, in order.
+    pub const ALL: [Self; 4] = [Self::Clip, Self::Corners, Self::Frame, Self::Lattice];
+
+    /// Its name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Clip => "clip space, both cages",
+            Self::Corners => "screen space, corners",
+            Self::Frame => "screen space, frame",
+            Self::Lattice => "screen space, exact rule's lattice",
+        }
+    }
+}
+
+/// The worst vertices that were seen of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
+pub struct Worst {
+    /// Vertices looked at.
+    pub vertices: u64,
+    /// Largest error, samples, of those within the picture.
+    pub error_px: f64,
+    /// The bound at that vertex.
+    pub bound_px: f64,
+    /// Largest quotient of error and bound, over all vertices before the eye.
+    pub tightest: f64,
+}
+
+impl Worst {
+    /// Both together.
+    pub fn merge(&mut self, other: &Self) {
+        self.vertices += other.vertices;
+        self.tightest = self.tightest.max(other.tightest);
+        if other.error_px > self.error_px {
+            (self.error_px, self.bound_px) = (other.error_px, other.bound_px);
+        }
+    }
+
+    fn note(&mut self, error_px: f64, bound_px: f64, is_in_picture: bool) {
+        self.vertices += 1;
+        if bound_px.is_finite() {
+            self.tightest = self.tightest.max(error_px / bound_px);
+            if is_in_picture && error_px > self.error_px {
+                (self.error_px, self.bound_px) = (error_px, bound_px);
+            }
+        }
+    }
+}
+
+/// What is known of a frame's vertices.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Vertices {
+    /// By [`Hold`].
+    pub(super) worst: [Worst; 4],
+    /// A voxel that is not held by the book.
+    pub(super) not_by_the_book: Option<String>,
+    /// A vertex beyond its bound.
+    pub(super) beyond: Option<String>,
+}
+
+/// Error of the check's own arithmetic, samples a sample of the root's side.
+const CHECK_ERROR: f64 = 1e-14;
+
+/// Looks at the voxels on the way down `path`.
+pub(super) fn look(
+    subject: &dyn Subject,
+    setup: &FrameSetup,
+    bounds: &Bounds,
+    path: &[u8],
+    found: &mut Vertices,
+) {
+    // A trap here is a trap of the frame too, or of a root that leaves the
+    // picture by far: of no use.
+    let Ok(way) = subject.follow(setup, path) else {
+        return;
+    };
+    let book = Book::new(setup);
+    let mut changed: Option<usize> = None;
+    for (level, held) in way.iter().enumerate() {
+        if changed.is_none() && !matches!(held, Held::Clip(_)) {
+            changed = Some(level);
+        }
+        let here = &path[..level];
+        let by_the_book = book.held(here, changed);
+        if by_the_book.as_ref() != Some(held) && found.not_by_the_book.is_none() {
+            found.not_by_the_book = Some(format!(
+                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the book {by_the_book:?}"
+            ));
+        }
+        measure(setup, bounds, &book, here, changed, held, found);
+    }
+}
+
+fn cube(book: &Book<'_>, setup: &FrameSetup, path: &[u8]) -> Cube {
+    let (corner, side) = book.cube(path);
+    let unit = libm::ldexp(1.0, -(setup.sub_levels as i32));
+    Cube {
+        corner: DVec3::from_array(corner.map(|c| c as f64 * unit)),
+        side: side as f64 * unit,
+    }
+}
+
+fn measure(
+    setup: &FrameSetup,
+    bounds: &Bounds,
+    book: &Book<'_>,
+    path: &[u8],
+    changed: Option<usize>,
+    held: &Held,
+    found: &mut Vertices,
+) {
+    let voxel = cube(book, setup, path);
+    let levels = (path.len() - changed.unwrap_or(path.len())) as u32;
+    let top = cube(book, setup, &path[..changed.unwrap_or(path.len())]);
+    let root = libm::ldexp(1.0, setup.levels as i32);
+    let (hold, space) = match (held, setup.options.cage) {
+        (Held::Clip(_), _) => (Hold::Clip, Space::Clip),
+        (Held::Strips { .. }, _) => (Hold::Lattice, Space::Lattice(top)),
+        (Held::Screen(_), CageKind::Corners) => (Hold::Corners, Space::Corners(top)),
+        (Held::Screen(_), CageKind::Frame) => (Hold::Frame, Space::Frame(top)),
+    };
+    let size = [setup.width, setup.height].map(f64::from);
+    for vertex in 0..8usize {
+        let bit = |k: usize| (vertex >> (2 - k) & 1) as f64;
+        let u = voxel.corner + DVec3::new(bit(0), bit(1), bit(2)) * voxel.side;
+        let near = libm::ldexp(setup.near as f64, -(setup.clip_frac as i32));
+        if bounds.depth(u) < near {
+            continue;
+        }
+        let Some(truth) = bounds.project(u) else {
+            continue;
+        };
+        let parts = bounds.vertex(space, levels, u);
+        let bound = parts.both();
+        let mut note = |off: f64, bound: f64| {
+            let bound = bound + CHECK_ERROR * root;
+            let inside = (0..2).all(|c| (0.0..=size[c]).contains(&truth[c]));
+            found.worst[hold as usize].note(off, bound, inside);
+            if off > bound && found.beyond.is_none() {
+                found.beyond = Some(format!(
+                    "{}: vertex {vertex} of path {path:?}, changed at {changed:?}, is off by {off:.3e} samples, \
+                     more than {bound:.3e} ({parts:?})",
+                    hold.name()
+                ));
+            }
+        };
+        match held {
+            Held::Clip([x, y, w]) => {
+                for (c, x) in [x, y].into_iter().enumerate() {
+                    let is = x[vertex] as f64 / w[vertex] as f64 * root;
+                    // Behind the eye once it is rounded: the bound is then infinite.
+                    if w[vertex] > 0 {
+                        note((is - truth[c]).abs(), bound[c]);
+                    }
+                }
+            }
+            Held::Screen(positions) => {
+                for (c, x) in positions.iter().enumerate() {
+                    let is = libm::ldexp(x[vertex] as f64, -(setup.format.frac() as i32));
+                    note((is - truth[c]).abs(), bound[c]);
+                }
+            }
+            Held::Strips { value, step, .. } => {
+                for (function, value) in value.iter().enumerate() {
+                    let [a, b] = step[function].map(|s| s as f64);
+                    let length = libm::hypot(a, b);
+                    if length == 0.0 {
+                        continue;
+                    }
+                    let should = a * (truth[0] - 0.5) + b * (truth[1] - 0.5);
+                    let off = (value[vertex] as f64 - should).abs() / length;
+                    let along = [a.abs() / length, b.abs() / length];
+                    let mixed = (0..2)
+                        .map(|c| along[c] * (parts.host[c] + parts.deviation[c]))
+                        .sum::<f64>();
+                    let quotients =
+                        1.25 * libm::ldexp(along[0] + along[1], -(setup.format.frac() as i32));
+                    note(
+                        off,
+                        mixed + quotients + bounds.strip_rounding(function >= 3),
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The bounds of a frame.
+pub(super) fn bounds_of(
+    camera: &crate::project::Camera,
+    placement: &crate::graph::Placement,
+    setup: &FrameSetup,
+) -> Option<Bounds> {
+    let widths = Widths {
+        clip_frac: setup.clip_frac,
+        screen_frac: setup.format.frac(),
+        strip_guard: setup.strip_guard,
+        aa_log2: setup.options.aa_log2,
+    };
+    Bounds::new(camera, placement, widths).ok()
+}
