@@ -133,6 +133,14 @@ pub(super) const FAMILIES: &[Family] = &[
     },
 ];
 
+/// The machine, and what can be switched off in it.
+pub(super) fn machine_family() -> Family {
+    Family {
+        whole: MACHINE,
+        variants: MACHINE_VARIANTS,
+    }
+}
+
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",

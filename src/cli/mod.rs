@@ -20,6 +20,7 @@ mod model;
 mod outputs;
 pub mod render;
 mod report;
+mod reproduce;
 mod scenes;
 mod stress;
 pub mod triangles;
@@ -101,6 +102,11 @@ enum Verb {
     /// Every frame is held against the exact ray caster, the specification and bounds on its vertices' error.
     /// What fails is shrunk to one command line; exit code 3.
     Stress(stress::StressArgs),
+    /// The paper's Table I, claims and figures, beside its numbers
+    ///
+    /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is drawn again
+    /// and compared: exit code 3 if a picture's hash or a count differs.
+    Reproduce(reproduce::ReproduceArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
     /// Print the manual page
@@ -166,6 +172,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Model(args)) => model::run(&args, scenes, &console),
         Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
         Some(Verb::Stress(args)) => stress::run(&args, scenes, &console),
+        Some(Verb::Reproduce(args)) => reproduce::run(&args, &console),
         Some(Verb::Completions(args)) => manual::completions(&args),
         Some(Verb::Man(args)) => manual::man(&args),
     }

@@ -272,6 +272,7 @@ fn told(case: &Case, outcome: &Outcome) -> String {
         ),
         End::Trapped(trap) => format!("trapped: {trap}"),
         End::Refused(reason) => format!("refused: {reason}"),
+        End::CutOff => format!("given up after {} records", report::grouped(outcome.records)),
     });
     if outcome.inside > 0 {
         lines.push(format!(

@@ -7,5 +7,6 @@ pub mod error;
 pub mod flicker;
 pub mod float_rays;
 pub mod model;
+pub mod reproduce;
 pub mod stress;
 pub mod vertex_error;

@@ -93,7 +93,7 @@ impl Plan {
             random_viewpoints: if thorough { 16 } else { 2 },
             rules: if thorough { 40 } else { 3 },
             seed,
-            most_records: if thorough { 200_000_000 } else { 20_000_000 },
+            most_records: if thorough { 200_000_000 } else { 1_000_000 },
             shrink_budget: if thorough { 20_000 } else { 1500 },
         }
     }
@@ -152,6 +152,8 @@ pub struct Tally {
     pub trapped: u64,
     /// Those that the set-up refused.
     pub refused: u64,
+    /// Those given up after the most records: [`End::CutOff`].
+    pub cut_off: u64,
     /// Those that did not keep what they must.
     pub failed: u64,
     /// Most records of a frame.
@@ -177,6 +179,7 @@ impl Tally {
             End::Drawn => self.drawn += 1,
             End::Trapped(_) => self.trapped += 1,
             End::Refused(_) => self.refused += 1,
+            End::CutOff => self.cut_off += 1,
         }
         self.failed += u64::from(!outcome.failures.is_empty());
         self.most_records = self.most_records.max(outcome.records);
@@ -194,6 +197,7 @@ impl Tally {
         self.drawn += other.drawn;
         self.trapped += other.trapped;
         self.refused += other.refused;
+        self.cut_off += other.cut_off;
         self.failed += other.failed;
         self.most_records = self.most_records.max(other.most_records);
         self.inside += other.inside;
@@ -264,7 +268,7 @@ impl Findings {
         self.tallies.entry(key).or_default().note(outcome);
         self.viewpoints.entry(viewpoint).or_default().note(outcome);
         match &outcome.end {
-            End::Drawn => {}
+            End::Drawn | End::CutOff => {}
             End::Trapped(trap) => {
                 // Without the record, which is another in every case.
                 let place = trap.split(", record").next().unwrap_or(trap);

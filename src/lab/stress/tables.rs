@@ -37,6 +37,7 @@ pub fn rows(plan: &Plan, findings: &Findings) -> Table {
         "drawn",
         "trapped",
         "refused",
+        "cut_off",
         "failed",
         "most_records",
         "inside",
@@ -60,12 +61,13 @@ pub fn rows(plan: &Plan, findings: &Findings) -> Table {
     table
 }
 
-fn counts(tally: &Tally) -> [u64; 12] {
+fn counts(tally: &Tally) -> [u64; 13] {
     [
         tally.cases,
         tally.drawn,
         tally.trapped,
         tally.refused,
+        tally.cut_off,
         tally.failed,
         tally.most_records,
         tally.inside,
@@ -131,6 +133,7 @@ fn by_scene(plan: &Plan, findings: &Findings) -> Table {
         "drawn",
         "trapped",
         "refused",
+        "cut_off",
         "failed",
         "most_records",
     ];
@@ -138,7 +141,7 @@ fn by_scene(plan: &Plan, findings: &Findings) -> Table {
     for (scene, name) in plan.scenes.iter().enumerate() {
         let sum = added(findings, |key| key.scene == scene);
         let mut row = vec![Cell::Text(name.to_string())];
-        row.extend(counts(&sum)[..6].iter().map(|&c| Cell::from(c)));
+        row.extend(counts(&sum)[..7].iter().map(|&c| Cell::from(c)));
         table.rows.push(row);
     }
     table
@@ -151,13 +154,14 @@ fn by_viewpoint(findings: &Findings) -> Table {
         "drawn",
         "trapped",
         "refused",
+        "cut_off",
         "failed",
         "most_records",
     ];
     let mut table = Table::new("By viewpoint", &columns);
     for (name, tally) in &findings.viewpoints {
         let mut row = vec![Cell::from(*name)];
-        row.extend(counts(tally)[..6].iter().map(|&c| Cell::from(c)));
+        row.extend(counts(tally)[..7].iter().map(|&c| Cell::from(c)));
         table.rows.push(row);
     }
     table
