@@ -19,6 +19,8 @@ mod constants;
 mod draw;
 mod fit;
 mod lattice;
+#[cfg(test)]
+mod mutants;
 mod planes;
 mod positions;
 mod record;

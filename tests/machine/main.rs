@@ -1,6 +1,7 @@
 //! The machine and the oracle: order, exactness, rules, counts, golden pictures.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+mod bounds;
 mod common;
 mod counts;
 mod cycles;
@@ -13,6 +14,7 @@ mod order;
 mod rules;
 mod scenes;
 mod seams;
+mod stress;
 mod vectors;
 mod vertex_error;
 mod viewer;
