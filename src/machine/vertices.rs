@@ -4,9 +4,7 @@ use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
-#[cfg(test)]
-use super::lattice::Corners;
-use super::lattice::Lattice;
+use super::lattice::{Corners, Frame, Lattice};
 use super::record::Clip;
 use super::strips::{FUNCTIONS, Subtree};
 use super::to_screen;
@@ -41,8 +39,8 @@ pub(crate) enum Held {
 /// of the quadtree, which are never larger.
 pub(crate) fn follow(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Held>, Trap> {
     match setup.options.cage {
-        CageKind::Corners => follow_as::<super::lattice::Corners>(setup, path),
-        CageKind::Frame => follow_as::<super::lattice::Frame>(setup, path),
+        CageKind::Corners => follow_as::<Corners>(setup, path),
+        CageKind::Frame => follow_as::<Frame>(setup, path),
     }
 }
 

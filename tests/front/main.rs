@@ -7,4 +7,5 @@ mod manners;
 mod model;
 mod pictures;
 mod resolve;
+mod stress;
 mod vectors;

@@ -1,0 +1,153 @@
+//! `stress` and `reproduce` as a script meets them.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use serde_json::Value;
+
+fn shiftvox(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
+    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    command.current_dir(folder).args(line);
+    command.assert()
+}
+
+fn stdout_of(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
+}
+
+fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
+}
+
+#[test]
+fn a_sweep_is_told_in_every_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = [
+        "stress",
+        "gen:shell,depth=3",
+        "cyclic:4,1",
+        "--bits",
+        "16,32",
+        "--size",
+        "16",
+        "--rules",
+        "1",
+        "--viewpoints",
+        "0",
+        "--json",
+        "--export-json",
+        "s.json",
+        "--export-csv",
+        "s.csv",
+        "--export-markdown",
+        "s.md",
+        "--export-svg",
+        "s.svg",
+        "--html",
+        "s.html",
+    ];
+    let told = shiftvox(folder.path(), &line).success();
+    let document: Value = serde_json::from_str(&stdout_of(&told)).unwrap();
+    assert_eq!(document["schema"], "shiftvox.stress");
+    // Two scenes, thirteen viewpoints, two widths with three fractions each.
+    assert_eq!(document["total"]["cases"], 2 * 13 * 2 * 3);
+    assert_eq!(document["total"]["failed"], 0);
+    assert!(document["vertices"].as_array().unwrap().len() > 1);
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    assert_eq!(
+        serde_json::from_str::<Value>(&read("s.json")).unwrap(),
+        document
+    );
+    assert!(read("s.csv").starts_with("scene,bits,coverage,tolerance_px,cases"));
+    assert!(read("s.svg").contains("by bits of a word and scene"));
+    let html = read("s.html");
+    assert!(html.contains("By rule") && html.contains("cyclic:4,1") && html.contains("<svg"));
+    // Nothing is replaced unasked.
+    let again = shiftvox(folder.path(), &line).code(1);
+    assert!(stderr_of(&again).contains("--force"));
+}
+
+#[test]
+fn one_case_is_told_and_a_wrong_one_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = "scene=gen:shell,depth=3;eye=20,-9,7;target=4,4,4;bits=32;tolerance=0";
+    let told = shiftvox(folder.path(), &["stress", "--case", case]).success();
+    let text = stdout_of(&told);
+    assert!(
+        text.contains("drawn with") && text.contains("0 extra, 0 missing"),
+        "{text}"
+    );
+    assert!(text.contains("clip space, both cages"), "{text}");
+    let wrong = shiftvox(folder.path(), &["stress", "--case", "scene=ball"]).code(2);
+    assert!(
+        stderr_of(&wrong).contains("is no scene"),
+        "{}",
+        stderr_of(&wrong)
+    );
+    shiftvox(folder.path(), &["stress", "--case", case, "--thorough"]).code(2);
+    shiftvox(folder.path(), &["stress", "--bits", "65"]).code(2);
+}
+
+#[test]
+fn a_recorded_run_is_drawn_again_and_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = [
+        "reproduce",
+        "--outdir",
+        "run",
+        "--sides",
+        "16,32",
+        "--object-side",
+        "32",
+        "--runs",
+        "1",
+        "--growing",
+        "gen:terrain,depth=5;gen:terrain,depth=6",
+    ];
+    let told = shiftvox(folder.path(), &record).success();
+    assert!(stdout_of(&told).contains("Table I"));
+    let run = folder.path().join("run");
+    for name in [
+        "report.html",
+        "config.toml",
+        "results.json",
+        "figure-2.svg",
+        "figure-5.svg",
+    ] {
+        assert!(run.join(name).exists(), "{name}");
+    }
+    let pictures = fs::read_dir(&run).unwrap();
+    let pictures = pictures.filter(|f| {
+        f.as_ref()
+            .unwrap()
+            .path()
+            .extension()
+            .is_some_and(|e| e == "png")
+    });
+    assert_eq!(pictures.count(), 5 * 3);
+    let page = fs::read_to_string(run.join("report.html")).unwrap();
+    for part in ["1772", "Occlusion order", "data:image/png;base64", "119 ms"] {
+        assert!(page.contains(part), "{part}");
+    }
+
+    shiftvox(folder.path(), &record).code(1);
+    let again = shiftvox(folder.path(), &["reproduce", "run"]).success();
+    assert!(stdout_of(&again).contains("all hashes and counts as recorded"));
+
+    let results = run.join("results.json");
+    let text = fs::read_to_string(&results).unwrap();
+    let mut document: Value = serde_json::from_str(&text).unwrap();
+    document["evidence"][0]["hash"] = "0".repeat(32).into();
+    fs::write(&results, document.to_string()).unwrap();
+    let differs = shiftvox(folder.path(), &["reproduce", "run"]).code(3);
+    let error = stderr_of(&differs);
+    assert!(
+        error.contains("the picture's hash is") && error.contains("gen:sphere"),
+        "{error}"
+    );
+
+    fs::write(run.join("config.toml"), "version = 1\nsides = 3\n").unwrap();
+    shiftvox(folder.path(), &["reproduce", "run"]).code(4);
+    shiftvox(folder.path(), &["reproduce", "nowhere"]).code(4);
+}
