@@ -101,7 +101,7 @@ enum Verb {
     ///
     /// Every frame is held against the exact ray caster, the specification and bounds on its vertices' error.
     /// What fails is shrunk to one command line; exit code 3.
-    Stress(stress::StressArgs),
+    Stress(Box<stress::StressArgs>),
     /// The paper's Table I, claims and figures, beside its numbers
     ///
     /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is drawn again

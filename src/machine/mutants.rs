@@ -1,7 +1,7 @@
 //! Machines with one injury each, for tests of the checks that must find
 //! them. The loop is generic over its lattice, so the product knows nothing of this.
 
-use hwmodel::{Datapath, NoProbe, Probe, Trap, Word};
+use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 
 use super::lattice::{Corners, Frame as FrameLattice, Lattice};
 use super::vertices::{self, Held};
@@ -41,6 +41,12 @@ const QUOTIENTS_UP: u8 = 3;
 /// A lattice with an injury.
 #[derive(Debug, Clone, Copy)]
 struct Hurt<L, const INJURY: u8>(L);
+
+impl<L: Wires, const INJURY: u8> Wires for Hurt<L, INJURY> {
+    fn show(&self, to: &mut Vec<Signal>) {
+        self.0.show(to);
+    }
+}
 
 impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {

@@ -14,6 +14,10 @@ use crate::project::{CageKind, Coverage, FrameSetup};
 /// The eight vertices of a voxel, in Morton order, as the machine has them
 /// relative to the whole picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there are a few of them at a time, one for each level"
+)]
 pub(crate) enum Held {
     /// X, Y, W.
     Clip([[i64; 8]; 3]),

@@ -243,8 +243,11 @@ impl Scene {
     }
 }
 
+/// Takes voxels' indices.
+type Taker<'t> = dyn FnMut([i32; 3]) + 't;
+
 /// A graph of the voxels that `give` hands on.
-fn built(give: &mut dyn FnMut(&mut dyn FnMut([i32; 3]))) -> Result<Graph, String> {
+fn built(give: &mut dyn FnMut(&mut Taker<'_>)) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,
     });
