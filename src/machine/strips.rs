@@ -16,7 +16,6 @@ use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 use super::constants::Constants;
 use super::silhouette::{Cover, Silhouette};
 use super::taps::{Block, LEVEL_BITS};
-use super::vertices::Held;
 use crate::project::STRIP_NORMAL_BITS;
 
 /// Linear functions of an outline: three strips, the box across, the box down.
@@ -156,23 +155,36 @@ impl Subtree {
         self.step[function][function - ACROSS]
     }
 
-    /// The vertices of a voxel of octree level `level`, for who checks them.
-    pub(super) fn held(&self, level: u32, place: &Strips) -> Held {
-        let vertex = |function: usize, vertex: usize| {
+    /// By function, the values of a voxel's eight vertices relative to the
+    /// first sample, in Morton order: for who checks them.
+    pub(super) fn vertices<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        level: u32,
+        place: &Strips,
+    ) -> [[WideWord; 8]; FUNCTIONS] {
+        std::array::from_fn(|function| {
+            let halves = self.half_edge[function].map(|half| dp.shl(half, self.finest - level));
             // The place is the first sample's, relative to the centre.
-            let centre = -place.value[function].to_host();
-            let halves =
-                self.half_edge[function].map(|half| half.to_host() << (self.finest - level));
-            (0..3).fold(centre, |sum, k| {
-                let is_high = vertex >> (2 - k) & 1 != 0;
-                sum + if is_high { halves[k] } else { -halves[k] }
+            let centre = dp.neg(place.value[function]);
+            std::array::from_fn(|vertex| {
+                let mut value = centre;
+                for (k, &half) in halves.iter().enumerate() {
+                    let is_high = vertex >> (2 - k) & 1 != 0;
+                    value = if is_high {
+                        dp.add(value, half)
+                    } else {
+                        dp.sub(value, half)
+                    };
+                }
+                value
             })
-        };
-        Held::Strips {
-            value: std::array::from_fn(|f| std::array::from_fn(|v| vertex(f, v))),
-            step: self.step.map(|step| step.map(WideWord::to_host)),
-            finest: self.finest,
-        }
+        })
+    }
+
+    /// By function, what a step of a sample along x and y adds.
+    pub(super) fn steps(&self) -> [[WideWord; 2]; FUNCTIONS] {
+        self.step
     }
 
     /// What a step of `2^places` samples adds to a function of the box.

@@ -1,6 +1,6 @@
 //! A window on the machine's vertices, for who checks what is said about them.
 
-use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Trap, WideWord, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
@@ -96,7 +96,12 @@ pub(super) fn follow_as<L: Lattice>(setup: &FrameSetup, path: &[u8]) -> Result<V
         }
         let host = |vertices: [Word; 8]| vertices.map(Word::to_host);
         way.push(if let Some((subtree, at)) = &strips {
-            subtree.held(level, at)
+            let vertices = subtree.vertices(&mut dp, level, at);
+            Held::Strips {
+                value: vertices.map(|function| function.map(WideWord::to_host)),
+                step: subtree.steps().map(|step| step.map(WideWord::to_host)),
+                finest: subtree.finest(),
+            }
         } else if let Some(lattices) = screen {
             Held::Screen(lattices.map(|lattice| host(lattice.vertices(&mut dp))))
         } else {

@@ -91,9 +91,9 @@ impl Plan {
             },
             pixels: if thorough { vec![48, 160] } else { vec![40] },
             random_viewpoints: if thorough { 16 } else { 2 },
-            rules: if thorough { 40 } else { 3 },
+            rules: if thorough { 40 } else { 2 },
             seed,
-            most_records: if thorough { 200_000_000 } else { 1_000_000 },
+            most_records: if thorough { 200_000_000 } else { 500_000 },
             shrink_budget: if thorough { 20_000 } else { 1500 },
         }
     }
