@@ -39,22 +39,22 @@ const TO_HOST: [Allowed; 7] = [
     allowed(
         "vertices.rs",
         "let host = |vertices: [Word; 8]| vertices.map(Word::to_host);",
-        SHOWN,
+        FOR_CHECKS,
     ),
     allowed(
         "vertices.rs",
         "value: vertices.map(|function| function.map(WideWord::to_host)),",
-        SHOWN,
+        FOR_CHECKS,
     ),
     allowed(
         "vertices.rs",
         "step: subtree.steps().map(|step| step.map(WideWord::to_host)),",
-        SHOWN,
+        FOR_CHECKS,
     ),
     allowed(
         "vertices.rs",
         "Some(vertices.map(|lattice| lattice.corners().map(Word::to_host)))",
-        SHOWN,
+        FOR_CHECKS,
     ),
     allowed(
         "walk.rs",
@@ -149,12 +149,11 @@ const PRODUCTS: [Allowed; 16] = [
     ),
 ];
 
-const SHOWN: &str = "vertices shown to an experiment; nothing of it goes back";
+const FOR_CHECKS: &str = "vertices shown to an experiment; nothing of it goes back";
 const INDEX: &str = "which wire, known when the machine is built";
 const HEAT: &str = "the heat map: measured by the host after the last record";
 const HALF_SAMPLES: &str = "a node's number with a one after it: wires";
 
-/// The machine's sources: file name and text, tests left out.
 /// A window on the machine for experiments, in real numbers. The machine must
 /// not look back through it: see `nobody_computes_with_what_the_window_shows`.
 const WINDOW: &str = "positions.rs";
