@@ -85,6 +85,11 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         ),
         ("misses = 1 ", "misses = 0 ", "node_cache.misses is 0"),
         (
+            "entry_bytes = 8",
+            "entry_bytes = 16777216",
+            "node_cache.entry_bytes is 16777216; it must be 1 to 4096",
+        ),
+        (
             "buffer = 4 ",
             "buffer = 70000 ",
             "pixels.buffer is 70000; it must be 1 to 65536",

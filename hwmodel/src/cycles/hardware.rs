@@ -17,6 +17,8 @@ pub const MAX_CONTEXTS: u32 = 64;
 const MAX_NUMBER: u32 = 1 << 24;
 /// Largest number of things that the simulation keeps one by one.
 const MAX_KEPT: u32 = 1 << 16;
+/// Largest entry of a cache, bytes: each access looks at all lines it spans.
+const MAX_ENTRY: u32 = 4096;
 /// Shortest line of a cache, bytes.
 const MIN_LINE: u32 = 8;
 
@@ -310,13 +312,13 @@ impl Cache {
             ("bytes", self.bytes, 1),
             ("ways", self.ways, 1),
             ("line_bytes", self.line_bytes, MIN_LINE),
-            ("entry_bytes", self.entry_bytes, 1),
             ("ports", self.ports, 1),
             ("hit_latency", self.hit_latency, 0),
             ("miss_latency", self.miss_latency, 0),
         ] {
             within(&format!("{at}.{field}"), value, least, MAX_NUMBER)?;
         }
+        within(&format!("{at}.entry_bytes"), self.entry_bytes, 1, MAX_ENTRY)?;
         within(&format!("{at}.misses"), self.misses, 1, MAX_KEPT)?;
         let set = u64::from(self.ways) * u64::from(self.line_bytes);
         if !u64::from(self.bytes).is_multiple_of(set) {
