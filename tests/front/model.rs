@@ -41,6 +41,15 @@ fn the_document_adds_up() {
         found.unwrap_or_else(|| panic!("{name}"))["value"].clone()
     };
     assert_eq!(stat("machine.ops.total"), sum);
+    // Readers of stats.txt keep one value a name.
+    let list = found["statistics"]["statistics"].as_array();
+    let names: Vec<&str> = list
+        .expect("a list")
+        .iter()
+        .filter_map(|s| s["name"].as_str())
+        .collect();
+    let distinct: std::collections::BTreeSet<&str> = names.iter().copied().collect();
+    assert_eq!(distinct.len(), names.len());
     assert_eq!(stat("machine.ops.multiply"), 0);
     let cycles = &found["simulated"]["cycles"];
     let number = |value: &Value| value.as_u64().expect("a number");
