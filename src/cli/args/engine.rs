@@ -87,7 +87,7 @@ pub struct EngineArgs {
     /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]
     #[arg(long, value_name = "PX")]
     pub lod: Option<f64>,
-    /// Width of a machine word in bits, 16 to 64 [default: 64]
+    /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
     #[arg(long, value_name = "BITS")]
     pub bits: Option<u32>,
     /// Fraction bits of a word [default: as many as the frame leaves room for]

@@ -15,7 +15,7 @@ use crate::lab::model::cost::Prices;
 /// Arguments of `model`.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ModelArgs {
-    /// Scenes: files, generators, or `bundled` [default: bundled]
+    /// Scene: a file, a generator, or `bundled` [default: bundled]
     #[arg(value_name = "SCENE")]
     pub(super) scenes: Vec<String>,
     /// Pixels: 512 for a square, or 640x360

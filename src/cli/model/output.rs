@@ -195,9 +195,10 @@ pub(super) fn summary(found: &Findings) -> Table {
     row(
         "stack",
         format!(
-            "{bits} bits a record, {} deep at most: {} bits; {} entries a lane are {} kbit",
+            "{bits} bits a record, {} deep at most on a lane here: {} bits ({} in the serial machine); {} entries a lane are {} kbit",
+            cycles.stack.deepest,
+            grouped(u64::from(bits) * cycles.stack.deepest),
             found.counted.memory.deepest_stack(),
-            grouped(u64::from(bits) * found.counted.memory.deepest_stack()),
             found.hardware.stack.entries,
             grouped(cost::stack_bits(&found.hardware, bits) / 1024)
         ),

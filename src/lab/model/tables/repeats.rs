@@ -45,7 +45,7 @@ fn tolerance(px: f64) -> Cell {
 #[must_use]
 pub fn rules(rows: &[RuleRow]) -> Table {
     let mut table = Table::new(
-        "Cages, drawing rules and tolerances side by side",
+        "Cages, drawing rules and tolerances side by side: operations without shifts, deepest stack of the serial machine",
         &[
             "cage",
             "coverage",
