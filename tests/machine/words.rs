@@ -158,13 +158,10 @@ const HALF_SAMPLES: &str = "a node's number with a one after it: wires";
 /// not look back through it: see `nobody_computes_with_what_the_window_shows`.
 const WINDOW: &str = "positions.rs";
 
-/// How many bits a record has: sizes for the host, which holds no word.
-const SIZES: &str = "record_bits.rs";
-
-/// The machine's sources but the window and the sizes.
+/// The machine's sources but the window.
 fn sources() -> Vec<(String, String)> {
     let mut sources = all_sources();
-    sources.retain(|(file, _)| file != WINDOW && file != SIZES);
+    sources.retain(|(file, _)| file != WINDOW);
     sources
 }
 
@@ -264,9 +261,6 @@ fn words_are_shown_and_not_taken_back() {
 #[test]
 fn nobody_computes_with_what_the_window_shows() {
     assert!(all_sources().iter().any(|(file, _)| file == WINDOW));
-    let sizes = all_sources();
-    let sizes = sizes.iter().find(|(file, _)| file == SIZES);
-    assert!(sizes.is_some_and(|(_, text)| !text.contains("Word")));
     let mentions = lines(&sources(), |line| {
         line.contains("positions::")
             || line.contains("mod positions")

@@ -13,6 +13,7 @@ use hwmodel::memory::Widths;
 
 pub(super) use args::ModelArgs;
 
+use super::args::EngineName;
 use super::bench::subjects;
 use super::console::Console;
 use super::error::{CliError, Kind};
@@ -62,6 +63,11 @@ pub(super) fn run(
     }
     output::check(args)?;
     vectors::check(args)?;
+    if args.engine.engine == EngineName::Rays {
+        return Err(CliError::usage(
+            "model draws with the machine, not with rays",
+        ));
+    }
     let hardware = args.hardware.hardware()?;
     let prices = args.hardware.prices()?;
     let mut names = args.scenes.clone();
@@ -97,6 +103,11 @@ fn find(
     let graph = &subject.graph;
     let progress = console.progress();
 
+    let camera = crate::project::Camera {
+        width: size.0,
+        height: size.1,
+        ..subject.camera
+    };
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
@@ -107,7 +118,8 @@ fn find(
     let same_picture = hardware_frame.voxel == counted.frame.voxel;
 
     progress.begin("the exact picture and the ray caster", 0);
-    let exact = frame::reference(&graph.view(), &setup)?;
+    let true_setup = rules::true_setup(graph, &camera, &options)?;
+    let exact = frame::reference(&graph.view(), &true_setup)?;
     let rival = rival::measure(graph, &setup, &hardware, prices, &exact)?;
     let wrong = frame::error(&counted.frame, &exact);
     progress.end();
@@ -124,11 +136,6 @@ fn find(
     .map_err(ModelError::from)?;
     let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
     let tables = &args.tables;
-    let camera = crate::project::Camera {
-        width: size.0,
-        height: size.1,
-        ..subject.camera
-    };
     let rules = if tables.rules || tables.all {
         rules::table(graph, &camera, &options, &hardware, prices, progress)?
     } else {

@@ -26,6 +26,18 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
         .flatten()
     {
         store::check_free(path, args.export.force)?;
+        let others = [&files.html, &files.stats, &files.heat, &files.trace];
+        if others
+            .iter()
+            .filter(|other| other.as_ref() == Some(path))
+            .count()
+            > 1
+        {
+            return Err(CliError::usage(format!(
+                "{}: two outputs to one file",
+                path.display()
+            )));
+        }
     }
     if let Some(trace) = &files.trace {
         trace_kind(trace)?;
@@ -171,10 +183,11 @@ pub(super) fn summary(found: &Findings) -> Table {
     row(
         "parallelism",
         format!(
-            "work {} over span {}: {:.1} contexts could be kept busy; here {} lanes of {}",
+            "work {} over span {}: {:.1} contexts could be kept busy; here there are {} (lanes {}, contexts {})",
             grouped(cycles.work),
             grouped(cycles.span),
             cycles.parallelism,
+            cycles.lanes * cycles.contexts,
             cycles.lanes,
             cycles.contexts
         ),
@@ -217,7 +230,7 @@ pub(super) fn summary(found: &Findings) -> Table {
     row(
         "area of the units",
         format!(
-            "{:.0} NAND2 equivalents (memories, pipeline registers and control are not in it)",
+            "{:.0} NAND2 equivalents, of those that this frame uses (memories, pipeline registers and control are not in it)",
             found.area.total
         ),
     );

@@ -180,7 +180,10 @@ pub fn table(
 }
 
 /// The view that errors are measured against: 64 bits, the exact rule.
-pub(super) fn true_setup(
+///
+/// # Errors
+/// When the camera sees nothing.
+pub fn true_setup(
     graph: &Graph,
     camera: &Camera,
     base: &SetupOptions,

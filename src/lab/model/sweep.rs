@@ -87,14 +87,17 @@ pub fn table(
     Ok(rows)
 }
 
-/// A hardware whose units for words have room for words of `bits` bits and
-/// the carry of a midpoint.
+/// Words for which the shipped hardware is built.
+const BUILT_FOR_BITS: u32 = 32;
+
+/// A hardware whose units for words are as much wider or narrower as words of
+/// `bits` bits are than those that it is built for.
 fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
     let mut hardware = hardware.clone();
     let stages = hardware.stages.values_mut();
     for units in stages.chain([&mut hardware.units]) {
         for unit in units.values_mut().filter(|unit| unit.width > 8) {
-            unit.width = bits + 1;
+            unit.width = (unit.width + bits).saturating_sub(BUILT_FOR_BITS).max(1);
         }
     }
     hardware
