@@ -133,11 +133,12 @@ pub(super) const FAMILIES: &[Family] = &[
     },
 ];
 
-/// The machine, and what can be switched off in it.
-pub(super) fn machine_family() -> Family {
+/// The machine without occlusion order, and without the rejection that it
+/// allows: so many of these two.
+pub(super) fn order_family(variants: usize) -> Family {
     Family {
         whole: MACHINE,
-        variants: MACHINE_VARIANTS,
+        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
     }
 }
 
