@@ -242,8 +242,7 @@ fn page(
 
 /// Draws one case and tells all about it.
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
-    let outcome =
-        stress::run_case(case, Plan::new(0, false).most_records).map_err(CliError::input)?;
+    let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
     if console.json {
         let fields = json!({ "case": case.to_string(), "outcome": outcome });
         console.document(&report::document("stress case", fields))?;

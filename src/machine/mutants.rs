@@ -29,7 +29,7 @@ pub(crate) enum Injury {
     OrderSwapped,
     /// The order array backwards: farthest first.
     OrderReversed,
-    /// No record is too near.
+    /// No record is too near to be drawn, or to change to screen space at once.
     NearSkipped,
 }
 
@@ -128,6 +128,23 @@ impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
 pub(crate) struct Mutant(pub(crate) Injury);
 
 impl Mutant {
+    /// The frame as the injured machine takes it.
+    fn setup(&self, setup: &FrameSetup) -> FrameSetup {
+        let mut setup = setup.clone();
+        if self.0 == Injury::NearSkipped {
+            // Nothing of the object lies so far behind the eye.
+            let reach = setup.position_reach().unwrap_or(i128::MAX);
+            let behind_all = i64::try_from(-reach).unwrap_or(i64::MIN);
+            for depth in &mut setup.screen_depth {
+                if *depth == setup.near {
+                    *depth = behind_all;
+                }
+            }
+            setup.near = behind_all;
+        }
+        setup
+    }
+
     fn draw_as<L: Lattice>(
         &self,
         graph: &GraphView<'_>,
@@ -141,12 +158,7 @@ impl Mutant {
             Injury::OrderReversed => options.order.reverse(),
             _ => {}
         }
-        let mut setup = setup.clone();
-        if self.0 == Injury::NearSkipped {
-            // Nothing of the object lies so far behind the eye.
-            let reach = setup.position_reach().unwrap_or(i128::MAX);
-            setup.near = i64::try_from(-reach).unwrap_or(i64::MIN);
-        }
+        let setup = self.setup(setup);
         frame.clear();
         let mut fill = None;
         let fill = Machine::emptied(&mut fill, &setup);
@@ -201,7 +213,7 @@ impl Subject for Mutant {
             (Injury::QuotientsUp, CageKind::Frame) => {
                 vertices::follow_as::<Hurt<FrameLattice, QUOTIENTS_UP>>(setup, path)
             }
-            _ => vertices::follow(setup, path),
+            _ => vertices::follow(&self.setup(setup), path),
         }
     }
 }
@@ -251,7 +263,7 @@ mod tests {
             (Injury::QuotientsUp, Check::Book),
             (Injury::OrderSwapped, Check::Order),
             (Injury::OrderReversed, Check::Order),
-            (Injury::NearSkipped, Check::Place),
+            (Injury::NearSkipped, Check::Book),
         ] {
             let found = sweep(&Mutant(injury));
             println!("{injury:?}: {:?}", found.failures);

@@ -31,6 +31,9 @@ const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
 /// Bits of a word beyond a screen position's fraction and the levels of the
 /// image: sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
+/// The same for an infinite tolerance under `exact`: positions may be twelve
+/// pictures away, and eight of them are added.
+const FAR_SCREEN_HEADROOM_BITS: u32 = 8;
 /// Records whose box leaves the picture by more than this part of it do not
 /// change to screen space (as a shift: 2^-3).
 pub const SCREEN_GUARD_SHIFT: u32 = 3;
@@ -224,7 +227,7 @@ impl FrameSetup {
         let finite = options.tolerance_px.is_finite();
         let has_headroom = reach.fits(format, sub_levels)
             && (!finite || options.tolerance_px <= MOST_TOLERANCE_WITH_HEADROOM)
-            && levels + format.frac() + SCREEN_HEADROOM_BITS <= options.bits;
+            && levels + format.frac() + screen_headroom_bits(options) <= options.bits;
 
         let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)
             .ok_or(SetupError::OutOfRange)?
@@ -332,6 +335,15 @@ fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
 #[must_use]
 pub fn root_log2(width: u32, height: u32) -> u32 {
     width.max(height).next_power_of_two().trailing_zeros()
+}
+
+/// Bits of a word beyond a screen position's, with which no sum of positions overflows.
+fn screen_headroom_bits(options: &SetupOptions) -> u32 {
+    if options.tolerance_px.is_infinite() && options.coverage == Coverage::Exact {
+        FAR_SCREEN_HEADROOM_BITS
+    } else {
+        SCREEN_HEADROOM_BITS
+    }
 }
 
 fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {

@@ -50,6 +50,15 @@ impl<'s> Book<'s> {
         })
     }
 
+    /// The least depth of a path's voxel, and the least at which it may
+    /// change to screen space.
+    pub(super) fn change_depths(&self, path: &[u8]) -> (Wide, Wide) {
+        let w = self.clip(path)[2];
+        let least = self.setup.screen_depth.get(path.len());
+        let least = least.map_or(Wide::MAX, |&w| Wide::from(w) << self.setup.sub_levels);
+        (w.into_iter().min().unwrap_or(0), least)
+    }
+
     /// Screen positions of eight vertices, each rounded down.
     fn projected(&self, path: &[u8]) -> [[Wide; 8]; 2] {
         let clip = self.clip(path);

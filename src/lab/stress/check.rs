@@ -112,8 +112,8 @@ pub enum End {
     Trapped(String),
     /// Before it began: the format does not hold the view.
     Refused(String),
-    /// Given up: `any` and `center` take a solid across the near plane apart
-    /// to a thousandth of a voxel, which ends, but not soon.
+    /// Given up: `any` and `center` take solids apart, down to the level bound
+    /// or a thousandth of a voxel across the near plane, which ends, but not soon.
     CutOff,
 }
 
@@ -168,6 +168,8 @@ impl Outcome {
 
 /// Largest tolerance, samples, at which a hole is a failure.
 pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
+/// From so many records on no frame is merely long: any rule is then expected to have ended.
+pub const PATIENCE: u64 = 200_000_000;
 /// Voxels whose vertices are looked at in a frame.
 const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
@@ -232,20 +234,9 @@ pub(crate) fn check(
     let stats = match drawn {
         Ok(Some(stats)) => stats,
         Ok(None) => {
-            let right = oracle.picture(graph, &setup);
-            let seen = Seen {
-                setup: &setup,
-                frame: &frame,
-                right: &right,
-                is_at_bound: false,
-            };
-            let is_near = || {
-                let mut shown = right.voxel.iter().filter(|v| v[3] >= 0);
-                shown.any(|v| seen.depths(v).0 < i128::from(setup.near))
-            };
             let mut outcome = Outcome::new(End::CutOff);
             outcome.records = most_records;
-            if seen.is_exact() || !is_near() {
+            if case.options.coverage == Coverage::Exact || most_records >= PATIENCE {
                 let left = format!("records are left after {most_records}");
                 outcome.fail(Check::Ends, left);
             }
@@ -434,8 +425,10 @@ impl Seen<'_> {
             let before = vertices.iter().any(|p| p[2] >= near);
             let beside = [x, y].into_iter().enumerate().any(|(c, at)| {
                 let (low, high) = (at as i128 - margin, at as i128 + 1 + margin);
-                let left = |p: &[i128; 3]| (p[c] << self.setup.levels) < low * p[2];
-                let right = |p: &[i128; 3]| (p[c] << self.setup.levels) > high * p[2];
+                // Margins are made of whole units, at most one too wide.
+                let position = |p: &[i128; 3], units: i128| (p[c] + units) << self.setup.levels;
+                let left = |p: &[i128; 3]| position(p, 1) < low * p[2];
+                let right = |p: &[i128; 3]| position(p, -1) > high * p[2];
                 vertices.iter().all(left) || vertices.iter().all(right)
             });
             if !before || beside {

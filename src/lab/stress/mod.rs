@@ -17,7 +17,7 @@ mod vertex;
 pub mod viewpoint;
 
 pub use case::Case;
-pub use check::{Check, End, Failure, Outcome, STRICT_TOLERANCE};
+pub use check::{Check, End, Failure, Outcome, PATIENCE, STRICT_TOLERANCE};
 pub use scene::Scene;
 pub use sweep::{COVERAGES, Failed, Findings, Key, Plan, TOLERANCES, Tally, run_case, sweep};
 #[cfg(feature = "cli")]

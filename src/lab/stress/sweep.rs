@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::case::Case;
-use super::check::{Check, End, Oracle, Outcome, check};
+use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
 use super::scene::{Numbers, Scene};
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
@@ -93,7 +93,7 @@ impl Plan {
             random_viewpoints: if thorough { 16 } else { 2 },
             rules: if thorough { 40 } else { 2 },
             seed,
-            most_records: if thorough { 200_000_000 } else { 500_000 },
+            most_records: if thorough { PATIENCE } else { 500_000 },
             shrink_budget: if thorough { 20_000 } else { 1500 },
         }
     }

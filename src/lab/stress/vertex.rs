@@ -105,6 +105,13 @@ pub(super) fn look(
     for (level, held) in way.iter().enumerate() {
         if changed.is_none() && !matches!(held, Held::Clip(_)) {
             changed = Some(level);
+            let (is, least) = book.change_depths(&path[..level]);
+            if is < least && found.not_by_the_book.is_none() {
+                found.not_by_the_book = Some(format!(
+                    "the voxel at path {:?} changed to screen space at depth {is}, nearer than {least}",
+                    &path[..level]
+                ));
+            }
         }
         let here = &path[..level];
         let by_the_book = book.held(here, changed);
