@@ -127,7 +127,12 @@ fn a_recorded_run_is_drawn_again_and_compared() {
     });
     assert_eq!(pictures.count(), 5 * 3);
     let page = fs::read_to_string(run.join("report.html")).unwrap();
-    for part in ["1772", "Occlusion order", "data:image/png;base64", "119 ms"] {
+    for part in [
+        "Table I",
+        "Occlusion order",
+        "data:image/png;base64",
+        "119 ms",
+    ] {
         assert!(page.contains(part), "{part}");
     }
 
