@@ -64,7 +64,7 @@ const TO_HOST: [Allowed; 7] = [
 ];
 
 /// Lines that show words to a probe, or could take numbers from what is shown.
-const SHOWN: [Allowed; 5] = [
+const SHOWN: [Allowed; 8] = [
     allowed(
         "lattice.rs",
         "use hwmodel::{Datapath, Probe, Signal, Wires, Word};",
@@ -78,6 +78,13 @@ const SHOWN: [Allowed; 5] = [
         "(self.corner, self.edges).show(to);",
         "its corner and its edges",
     ),
+    allowed(
+        "mutants.rs",
+        "use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};",
+        "for the lines below",
+    ),
+    allowed("mutants.rs", SHOW, "an injured lattice is its words too"),
+    allowed("mutants.rs", "self.0.show(to);", "those of the lattice"),
 ];
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
