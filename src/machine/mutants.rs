@@ -254,6 +254,7 @@ mod tests {
     /// Every injury is found by the check that is meant for it, and what
     /// fails is shrunk to a case that fails still.
     #[test]
+    #[ignore = "takes minutes: cargo test --release --lib every_injury -- --ignored"]
     fn every_injury_is_found_by_name() {
         for (injury, expected) in [
             (Injury::UlpInFrames, Check::Book),
