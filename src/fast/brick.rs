@@ -30,27 +30,37 @@ pub(super) fn draw<I: Isa>(
     if !walk.switches.bricks {
         return false;
     }
+    let Some((octant, parts)) = prepare(walk, subtree, record) else {
+        return false;
+    };
+    walk.isa.brick(walk, subtree, record, octant, &parts);
+    true
+}
+
+/// The octant in whose order the parts of a node lie, and the parts, with the
+/// tables for them made; `None` if they are uneven.
+#[inline(always)]
+pub(super) fn prepare<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    subtree: &Subtree,
+    record: &ScreenRecord,
+) -> Option<(u8, Parts)> {
     let side = subtree.finest_side << record.left;
     let octant = match subtree.octant {
         Some(octant) => octant,
-        None => match walk
+        None => walk
             .view
-            .common_octant(record.min, side, subtree.finest_side)
-        {
-            Some(octant) => octant,
-            None => return false,
-        },
+            .common_octant(record.min, side, subtree.finest_side)?,
     };
     let parts = Parts::of(walk.isa, walk.graph, record.node, record.left, octant);
     if parts.is_uneven {
-        return false;
+        return None;
     }
     if walk.tables.made_for != Some((record.left, octant)) {
         let isa = walk.isa;
         isa.tables(&mut walk.tables, subtree, record.left, octant);
     }
-    walk.isa.brick(walk, subtree, record, octant, &parts);
-    true
+    Some((octant, parts))
 }
 
 /// Draws a node with even parts by samples.

@@ -55,6 +55,14 @@ impl Windows {
             bottom: self.bottom[octant],
         }
     }
+
+    /// The samples of one of them that is not empty, in a square that holds it
+    /// and begins at `corner`, eight bits a row.
+    #[inline(always)]
+    pub(super) fn in_square(&self, octant: usize, corner: [i32; 2]) -> u64 {
+        let (x, y) = (self.left[octant] - corner[0], self.top[octant] - corner[1]);
+        SQUARES[self.shape[octant] as usize & 63] << (8 * (y & 7) + (x & 7))
+    }
 }
 
 /// How large a window is.
@@ -315,13 +323,12 @@ impl<'p> Fill<'p> {
         y: u32,
         shape: u32,
     ) -> u64 {
-        let wanted = SQUARES[shape as usize & 63];
         // What lies in the four tiles that the window may reach. Those that it
         // does not reach are shifted out or masked.
         let across = self.grid.tiles_across;
         let [left, right] = isa.square_of(self.part.tiles, at, across, x, y);
         let own = COLUMNS[8 - x as usize];
-        ((left ^ right) & own ^ right) & wanted
+        ((left ^ right) & own ^ right) & SQUARES[shape as usize & 63]
     }
 
     /// Marks samples of a tile as drawn, which are open.

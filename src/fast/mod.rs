@@ -3,7 +3,8 @@
 //! What the machine does for records this engine does for samples. Both go
 //! down the graph nearest first and leave what cannot be seen; but the last
 //! two levels are one step here (`brick.rs`): 64 parts, one lane each, and
-//! for every open sample the first lane whose outline holds it. That gives
+//! for every open sample the first lane whose outline holds it; where voxels
+//! are so small that three levels fit a tile, those are one step (`tall.rs`). That gives
 //! the machine's picture because the picture does not depend on when occluded
 //! records are rejected (`SPEC.md`, section 5), and because all that decides it
 //! (when a record changes to screen space, its lattice there, level of
@@ -14,8 +15,9 @@
 //!     clip space (clip):     leave what is behind the eye, beside the picture, or hidden;
 //!                            change to screen space where the deviation allows
 //!     screen space (screen): the same with integer boxes; two levels above the finest: a brick
-//!     brick (brick):         columns, rows and strips of 64 parts against each open sample
-//!     solids (planes):       by exact planes in clip space, by strips in screen space
+//!     brick (brick, tall):   columns, rows and strips of 64 parts against each open sample
+//!     solids (planes):       by exact planes in clip space; by strips in screen space,
+//!                            the children of a node together where it fits a tile
 //! ```
 //!
 //! Frames with settings that this engine has no exact numbers for (rules other
@@ -33,6 +35,7 @@ mod screen;
 mod subtree;
 mod switches;
 mod tables;
+mod tall;
 mod view;
 mod walk;
 

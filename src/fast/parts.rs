@@ -67,7 +67,8 @@ static BYTES: [u64; 256] = {
 };
 
 impl Parts {
-    /// The parts of a node one or two levels above them.
+    /// The parts of a node `levels` levels above the finest: of one level, its
+    /// children; of more, theirs.
     #[inline(always)]
     pub(super) fn of<I: Isa>(
         isa: I,

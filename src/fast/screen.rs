@@ -4,8 +4,9 @@ use super::brick;
 use super::canvas::{Extent, TILE_LOG2, Window, Windows, tiles_of};
 use super::clip::ClipRecord;
 use super::lanes::Isa;
-use super::parts;
+use super::parts::{self, Parts, corner as corner_of};
 use super::subtree::{LANES, STRIPS, Subtree};
+use super::tall;
 use super::walk::{Walk, voxel_at};
 use crate::project::OCCLUSION_ORDER;
 
@@ -107,6 +108,13 @@ fn step<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &ScreenRecord
     if record.left <= 2 && !subtree.is_coarse && brick::draw(walk, subtree, record) {
         return;
     }
+    if record.left == 3
+        && record.open != 0
+        && !subtree.is_coarse
+        && tall::draw(walk, subtree, record)
+    {
+        return;
+    }
     if !walk.switches.absent_children {
         walk.isa.absent(walk, subtree, record);
     }
@@ -150,8 +158,13 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         wanted &= windows.held;
         walk.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
     }
-    let parent = isa.load(&record.place);
     let mut order = parts::in_order(octant, wanted);
+    if left == 0 && record.open != 0 && has_square(walk, subtree) {
+        order &= parts::in_order(octant, windows.held);
+        draw_family(walk, subtree, record, &windows, (octant, order));
+        return;
+    }
+    let parent = isa.load(&record.place);
     while order != 0 {
         let child = octant ^ OCCLUSION_ORDER[order.trailing_zeros() as usize & 7];
         order &= order - 1;
@@ -177,6 +190,69 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &S
         };
         step(walk, subtree, &record);
     }
+}
+
+/// Whether solids of the finest level can be drawn with sixteen bits a
+/// sample. Makes the table for that, unless it is made.
+#[inline(always)]
+fn has_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree) -> bool {
+    if walk.view.search.is_some() {
+        return false;
+    }
+    walk.tables.make_square(walk.isa, subtree);
+    walk.tables.fits_square
+}
+
+/// Draws a record's children of the finest level, nearest first, in their
+/// parent's window, which is no larger than a tile: its open samples are
+/// looked up and marked once for all of them. `order`: the octant of the
+/// nearest child, and the children in occlusion order.
+#[inline(always)]
+fn draw_family<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    subtree: &Subtree,
+    record: &ScreenRecord,
+    windows: &Windows,
+    (octant, mut order): (u8, u8),
+) {
+    let isa = walk.isa;
+    let parts = Parts::of(isa, walk.graph, record.node, 1, octant);
+    let corner = [record.window.left, record.window.top];
+    let first = isa.sub(isa.load(&subtree.half_width), isa.load(&record.place));
+    let first = isa.plus_times(
+        first,
+        isa.load(&subtree.step[0]),
+        corner[0] - subtree.origin[0],
+    );
+    let first = isa.plus_times(
+        first,
+        isa.load(&subtree.step[1]),
+        corner[1] - subtree.origin[1],
+    );
+    let mut open = record.open;
+    while order != 0 {
+        let lane = order.trailing_zeros();
+        let child = usize::from((octant ^ OCCLUSION_ORDER[lane as usize & 7]) & 7);
+        order &= order - 1;
+        let inside = open & windows.in_square(child, corner);
+        if inside == 0 && walk.switches.hidden {
+            walk.counters.skipped_hidden += 1;
+            continue;
+        }
+        walk.counters.solids += 1;
+        let start = isa.sub(first, isa.load(&subtree.child[child]));
+        let samples = inside & isa.square_within(&walk.tables.square, start, &subtree.half_width);
+        if samples != 0 {
+            open ^= samples;
+            let node = parts.node(walk.graph, 1, octant, lane);
+            let min = corner_of(record.min, 1, subtree.finest_side, octant, lane);
+            let voxel = voxel_at(min, subtree.finest);
+            walk.pixels.show(isa, corner, samples, node, voxel);
+        }
+    }
+    let drawn = open ^ record.open;
+    walk.counters.samples_drawn += u64::from(drawn.count_ones());
+    walk.fill.mark_square(&record.window, drawn);
 }
 
 /// Does for a record's children that do not exist what is done for others

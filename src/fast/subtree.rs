@@ -131,9 +131,9 @@ impl Subtree {
         }
     }
 
-    /// What a function's values in a brick, at samples of its window, relative
-    /// to the lower bound of any of its parts, stay below; and above the
-    /// negative of.
+    /// What a function's values in a brick of two levels, at samples of its window,
+    /// relative to the lower bound of any of its parts, stay below; and above
+    /// the negative of.
     #[inline(always)]
     pub(super) fn brick_range(&self, f: usize) -> i32 {
         // From the centre to the ends of the window, in units of the box functions.

@@ -23,33 +23,36 @@ impl Coarse {
         shift: [0; 4],
     };
 
-    /// Cuts the strips of 64 parts to bytes (8, if `few`): of the children of
-    /// a node's children, or of its children.
+    /// Cuts the strips of 64 parts to bytes (8 for a node one level above the
+    /// finest): of the children of a node's children, or of its children.
+    /// `left`: levels from the node to the finest.
     ///
     /// Sums of cut numbers are at most one below the cut sum, differences at
     /// most one above the cut difference: so a value that is within its width
     /// is, in bytes, at most two above it.
     #[inline(always)]
-    fn make<I: Isa>(&mut self, isa: I, subtree: &Subtree, octant: u8, few: bool) {
+    fn make<I: Isa>(&mut self, isa: I, subtree: &Subtree, octant: u8, left: u32) {
+        // Parts of a node three levels above are twice as large.
+        let twice = u32::from(left == 3);
         for f in 0..STRIPS {
             // Values differ by less than this; a little more for what cutting adds.
-            let range = subtree.brick_range(f) as u32;
+            let range = (subtree.brick_range(f) as u32 + 1) << twice;
             let bits = 32 - (range + range / 32).leading_zeros();
             let shift = bits.saturating_sub(8);
             self.shift[f] = shift as i32;
-            let half = subtree.half_width[f] + subtree.reach[f];
+            let half = (subtree.half_width[f] + subtree.reach[f]) << twice;
             self.width[f] = [((2 * half) >> shift) as u8 + 2; 32];
             // The exclusive or with the octant turns axes around.
             let mut children = [0i32; 8];
             let [x, y, z] = [
-                turned(subtree.half_edge[0][f], octant >> 2),
-                turned(subtree.half_edge[1][f], octant >> 1),
-                turned(subtree.half_edge[2][f], octant),
+                turned(subtree.half_edge[0][f] << twice, octant >> 2),
+                turned(subtree.half_edge[1][f] << twice, octant >> 1),
+                turned(subtree.half_edge[2][f] << twice, octant),
             ];
             for i in 0..8 {
                 children[i] = NEAREST[0][i] * x + NEAREST[1][i] * y + NEAREST[2][i] * z;
             }
-            isa.byte_table(&mut self.parts[f], &children, shift, few);
+            isa.byte_table(&mut self.parts[f], &children, shift, left == 1);
         }
     }
 }
@@ -78,7 +81,9 @@ pub(super) struct Tables {
     pub(super) parts: Coarse,
     /// By levels above the finest, less one, in occlusion order: the centre of
     /// a child relative to its parent's.
-    children: [[[i32; LANES]; 8]; 2],
+    children: [[[i32; LANES]; 8]; 3],
+    /// The first of `children` by function: strips, box across, box down.
+    pub(super) by_function: [[i32; 8]; STRIPS + 2],
     /// What so many columns, and so many rows, add.
     steps: [[[i32; LANES]; 8]; 2],
     /// Half the width of a finest voxel.
@@ -108,7 +113,8 @@ impl Default for Tables {
         Self {
             made_for: None,
             parts: Coarse::EMPTY,
-            children: [[[0; LANES]; 8]; 2],
+            children: [[[0; LANES]; 8]; 3],
+            by_function: [[0; 8]; STRIPS + 2],
             steps: [[[0; LANES]; 8]; 2],
             half: [0; LANES],
             width: [0; LANES],
@@ -188,9 +194,17 @@ impl Tables {
         for (i, nearest) in OCCLUSION_ORDER.into_iter().enumerate() {
             let child = isa.load(&subtree.child[usize::from(octant ^ nearest) & 7]);
             self.children[0][i] = isa.store(child);
-            self.children[1][i] = isa.store(isa.add(child, child));
+            let twice = isa.add(child, child);
+            self.children[1][i] = isa.store(twice);
+            if left == 3 {
+                self.children[2][i] = isa.store(isa.add(twice, twice));
+                for (f, by_child) in self.by_function.iter_mut().enumerate() {
+                    // Behind the strips a lane is left out.
+                    by_child[i] = self.children[0][i][f + usize::from(f >= STRIPS)];
+                }
+            }
         }
-        self.parts.make(isa, subtree, octant, left == 1);
+        self.parts.make(isa, subtree, octant, left);
     }
 
     /// The functions at a sample of a square, from those at its first.
@@ -210,11 +224,21 @@ impl Tables {
         levels: u32,
         lane: u32,
     ) -> I::Eight {
-        let [inner, outer] = &self.children;
+        let [inner, outer, _] = &self.children;
         let value = isa.sub(value, isa.load(&inner[lane as usize & 7]));
         if levels == 1 {
             return value;
         }
+        isa.sub(value, isa.load(&outer[lane as usize >> 3 & 7]))
+    }
+
+    /// A value relative to the centre of a lane's part, of which `lane` counts
+    /// those one level above the finest, from one relative to the centre of a
+    /// node three levels above.
+    #[inline(always)]
+    pub(super) fn in_large_part<I: Isa>(&self, isa: I, value: I::Eight, lane: u32) -> I::Eight {
+        let [_, inner, outer] = &self.children;
+        let value = isa.sub(value, isa.load(&inner[lane as usize & 7]));
         isa.sub(value, isa.load(&outer[lane as usize >> 3 & 7]))
     }
 }

@@ -58,6 +58,16 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
         parts: &Parts,
     );
 
+    /// Draws a node three levels above the finest by samples: `tall::draw_node` compiled for this set.
+    fn tall(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    );
+
     /// Makes the tables of a subtree's parts: [`Tables::make_parts`] compiled for this set.
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8);
 
@@ -146,6 +156,16 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
         half_width: &[i32; LANES],
     ) -> u64;
 
+    /// The children `i` with `value - table[i] <= width`, modulo 2^32, without
+    /// sign, for all of the tables' functions: the three strips, which are the
+    /// first lanes of `value` and `width`, and the box, the fifth and sixth.
+    fn children_within(
+        self,
+        tables: &[[i32; 8]; STRIPS + 2],
+        value: Self::Eight,
+        width: &[i32; LANES],
+    ) -> u8;
+
     /// The lanes `i` with `byte - table[i] <= width`, modulo 2^8, without sign,
     /// for all three strips; `byte` is a strip's value after its shift. `few`:
     /// only the first 8 lanes are of interest.
@@ -188,6 +208,17 @@ mod tests {
             isa.strips_within(&coarse, isa.load(&start), few) & relevant,
             Scalar.strips_within(&coarse, start, few) & relevant
         );
+        for width in [
+            eight(8).map(|w| w & i32::MAX),
+            [-1; LANES],
+            [i32::MAX; LANES],
+        ] {
+            let tables = std::array::from_fn(|f| std::array::from_fn(|i| words[8 * f + i + 1]));
+            assert_eq!(
+                isa.children_within(&tables, isa.load(&start), &width),
+                Scalar.children_within(&tables, start, &width)
+            );
+        }
         for shift in [0, 3, 17] {
             let (mut mine, mut twin) = ([0; 64], [0; 64]);
             let children: [i32; 8] = std::array::from_fn(|i| words[80 + i] >> 2);

@@ -10,6 +10,7 @@ use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
 use crate::fast::subtree::{LANES, STRIPS, Subtree};
 use crate::fast::tables::{self, Coarse, Tables};
+use crate::fast::tall;
 use crate::fast::walk::{Bounds, Walk};
 
 /// No instructions but those that every processor of the target has.
@@ -38,6 +39,17 @@ impl Isa for Scalar {
         parts: &Parts,
     ) {
         brick::draw_node(walk, subtree, record, octant, parts);
+    }
+
+    fn tall(
+        self,
+        walk: &mut Walk<'_, Self>,
+        subtree: &Subtree,
+        record: &ScreenRecord,
+        octant: u8,
+        parts: &Parts,
+    ) {
+        tall::draw_node(walk, subtree, record, octant, parts);
     }
 
     fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
@@ -258,6 +270,24 @@ impl Isa for Scalar {
         let left = column(tile(at), tile(below));
         let right = column(tile(at.wrapping_add(1)), tile(below.wrapping_add(1)));
         [left >> (x & 7), right << (8 - (x & 7))]
+    }
+
+    #[inline(always)]
+    fn children_within(
+        self,
+        tables: &[[i32; 8]; STRIPS + 2],
+        value: [i32; LANES],
+        width: &[i32; LANES],
+    ) -> u8 {
+        let mut inside = u8::MAX;
+        for (f, by_child) in tables.iter().enumerate() {
+            let lane = f + usize::from(f >= STRIPS);
+            for (i, child) in by_child.iter().enumerate() {
+                let is_beyond = value[lane].wrapping_sub(*child) as u32 > width[lane] as u32;
+                inside &= !(u8::from(is_beyond) << i);
+            }
+        }
+        inside
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ use crate::fast::planes::Exact;
 use crate::fast::screen::{self, ScreenRecord};
 use crate::fast::subtree::{LANES, STRIPS, Subtree};
 use crate::fast::tables::{Coarse, Tables};
+use crate::fast::tall;
 use crate::fast::walk::{Bounds, Walk};
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
@@ -100,6 +101,18 @@ macro_rules! compiled {
 
             #[inline(never)]
             #[target_feature(enable = $features)]
+            pub(super) fn tall(
+                walk: &mut Walk<'_, Set>,
+                subtree: &Subtree,
+                record: &ScreenRecord,
+                octant: u8,
+                parts: &Parts,
+            ) {
+                tall::draw_node(walk, subtree, record, octant, parts);
+            }
+
+            #[inline(never)]
+            #[target_feature(enable = $features)]
             pub(super) fn tables(
                 isa: Set,
                 tables: &mut Tables,
@@ -158,6 +171,18 @@ macro_rules! compiled {
         ) {
             // SAFETY: `self` is only made where these features were found.
             unsafe { $name::brick(walk, subtree, record, octant, parts) }
+        }
+
+        fn tall(
+            self,
+            walk: &mut Walk<'_, Self>,
+            subtree: &Subtree,
+            record: &ScreenRecord,
+            octant: u8,
+            parts: &Parts,
+        ) {
+            // SAFETY: `self` is only made where these features were found.
+            unsafe { $name::tall(walk, subtree, record, octant, parts) }
         }
 
         fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
@@ -308,6 +333,28 @@ impl Isa for Avx2 {
     }
 
     #[inline(always)]
+    fn children_within(
+        self,
+        tables: &[[i32; 8]; STRIPS + 2],
+        value: __m256i,
+        width: &[i32; LANES],
+    ) -> u8 {
+        // SAFETY: as in `within_wide`.
+        unsafe {
+            let mut inside = _mm256_set1_epi32(-1);
+            for (f, by_child) in tables.iter().enumerate() {
+                let lane = f + usize::from(f >= STRIPS);
+                let value = _mm256_permutevar8x32_epi32(value, _mm256_set1_epi32(lane as i32));
+                let by_child = _mm256_loadu_si256(by_child.as_ptr().cast());
+                let value = _mm256_sub_epi32(value, by_child);
+                let least = _mm256_min_epu32(value, _mm256_set1_epi32(width[lane]));
+                inside = _mm256_and_si256(inside, _mm256_cmpeq_epi32(least, value));
+            }
+            _mm256_movemask_ps(_mm256_castsi256_ps(inside)) as u8
+        }
+    }
+
+    #[inline(always)]
     fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
         let mut lanes = 0u64;
         for part in 0..8 {
@@ -434,6 +481,28 @@ impl Isa for Avx512 {
                 lanes = _mm512_mask_cmple_epu8_mask(lanes, value, width);
             }
             lanes
+        }
+    }
+
+    #[inline(always)]
+    fn children_within(
+        self,
+        tables: &[[i32; 8]; STRIPS + 2],
+        value: __m256i,
+        width: &[i32; LANES],
+    ) -> u8 {
+        // SAFETY: `self` is only made where these features were found.
+        unsafe {
+            let mut inside = u8::MAX;
+            for (f, by_child) in tables.iter().enumerate() {
+                let lane = f + usize::from(f >= STRIPS);
+                let value = _mm256_permutevar8x32_epi32(value, _mm256_set1_epi32(lane as i32));
+                let by_child = _mm256_loadu_si256(by_child.as_ptr().cast());
+                let value = _mm256_sub_epi32(value, by_child);
+                let width = _mm256_set1_epi32(width[lane]);
+                inside = _mm256_mask_cmple_epu32_mask(inside, value, width);
+            }
+            inside
         }
     }
 
