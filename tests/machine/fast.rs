@@ -204,6 +204,20 @@ proptest! {
         agree(&graph, &camera, &settings, options)?;
     }
 
+    // Voxels of about a sample and less, so that three levels fit a tile.
+    #[test]
+    fn equal_on_small_mixed_voxels(
+        graph in any_mixed_octree(5),
+        camera in any_camera(32.0, 10..50),
+        settings in any_settings(),
+        lod_px in prop_oneof![Just(0.0), Just(0.2)],
+        options in any_options(),
+    ) {
+        prop_assume!(settings.coverage == Coverage::Exact);
+        let settings = SetupOptions { lod_px, aa_log2: 0, ..settings };
+        agree(&graph, &camera, &settings, options)?;
+    }
+
     #[test]
     fn equal_on_sparse_octrees(
         graph in any_octree(4, 0.02),

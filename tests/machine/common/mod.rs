@@ -127,6 +127,35 @@ pub fn any_octree(depth: u32, density: f64) -> impl Strategy<Value = Graph> {
     )
 }
 
+/// Random octrees with leaves of two and four finest voxels among the finest.
+pub fn any_mixed_octree(depth: u32) -> impl Strategy<Value = Graph> {
+    /// Adds a node whose children are that of numbers which `next` throws.
+    fn node(nodes: &mut Vec<[Option<u32>; 8]>, side: u32, next: &mut dyn FnMut() -> u64) -> u32 {
+        let me = nodes.len();
+        nodes.push([None; 8]);
+        let is_leaf = side == 1 || side <= 4 && next().is_multiple_of(4);
+        let most = if is_leaf { 0 } else { 8 };
+        for octant in 0..most {
+            // One of them at least, or it would be a leaf.
+            if next() % 5 < 2 || octant == 7 {
+                let child = node(nodes, side / 2, next);
+                nodes[me][octant] = Some(child);
+            }
+        }
+        me as u32
+    }
+    any::<u64>().prop_map(move |seed| {
+        let mut state = seed | 1;
+        let mut next = || {
+            state = state.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            state >> 40
+        };
+        let mut nodes = Vec::new();
+        node(&mut nodes, 1 << depth, &mut next);
+        linked(depth, &nodes)
+    })
+}
+
 /// Cameras about a cube of side `side`: outside, on faces and lattice points,
 /// inside; many aligned with an axis, so that ties abound.
 pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value = Camera> {
