@@ -218,7 +218,7 @@ fn draw_family<I: Isa>(
     let isa = walk.isa;
     let parts = Parts::of(isa, walk.graph, record.node, 1, octant);
     let corner = [record.window.left, record.window.top];
-    let first = isa.sub(isa.load(&subtree.half_width), isa.load(&record.place));
+    let first = isa.sub(isa.load(&subtree.bound), isa.load(&record.place));
     let first = isa.plus_times(
         first,
         isa.load(&subtree.step[0]),
@@ -241,7 +241,7 @@ fn draw_family<I: Isa>(
         }
         walk.counters.solids += 1;
         let start = isa.sub(first, isa.load(&subtree.child[child]));
-        let samples = inside & isa.square_within(&walk.tables.square, start, &subtree.half_width);
+        let samples = inside & isa.square_within(&walk.tables.square, start, &subtree.bound);
         if samples != 0 {
             open ^= samples;
             let node = parts.node(walk.graph, 1, octant, lane);
@@ -311,7 +311,7 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
     walk.counters.solids += 1;
     let isa = walk.isa;
     let window = &record.window;
-    let start = isa.sub(isa.load(&subtree.half_width), isa.load(&record.place));
+    let start = isa.sub(isa.load(&subtree.bound), isa.load(&record.place));
     let start = isa.plus_times(
         start,
         isa.load(&subtree.step[0]),
@@ -322,7 +322,7 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
         isa.load(&subtree.step[1]),
         window.top - subtree.origin[1],
     );
-    let samples = record.open & isa.square_within(&walk.tables.square, start, &subtree.half_width);
+    let samples = record.open & isa.square_within(&walk.tables.square, start, &subtree.bound);
     if samples != 0 {
         let voxel = voxel_at(record.min, subtree.finest);
         walk.counters.samples_drawn += u64::from(samples.count_ones());
@@ -350,7 +350,7 @@ pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, reco
             }
             let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
             for f in 0..STRIPS {
-                let half = subtree.half_width[f] << record.left;
+                let half = (subtree.half_width[f] << record.left) + subtree.reach[f];
                 let first = subtree.step[0][f] * (left - subtree.origin[0])
                     + subtree.step[1][f] * (top - subtree.origin[1])
                     - record.place[f];

@@ -37,12 +37,14 @@ pub(super) struct Subtree {
     pub(super) box_bits: u32,
     /// Half the width of a voxel of the finest level.
     pub(super) half_width: [i32; LANES],
-    /// By how much a lattice may be wrong: what is within half width plus
-    /// this may be covered, what is within half width less
-    /// [`Subtree::doubt`] is. Zero where the lattice defines the picture.
+    /// What is within half width plus this may be covered. Where the lattice
+    /// defines the picture it is, and this is the slack; elsewhere it is by
+    /// how much a lattice may be wrong.
     pub(super) reach: [i32; LANES],
-    /// See `reach`.
+    /// Where a lattice may be wrong, what is within half width less this is covered.
     pub(super) doubt: [i32; LANES],
+    /// Half width plus reach: the bounds of a voxel of the finest level.
+    pub(super) bound: [i32; LANES],
     /// By axis, what half an edge of a voxel of the finest level adds.
     pub(super) half_edge: [[i32; LANES]; 3],
     /// By octant, the centre of a child of the finest level relative to its parent's.
@@ -117,6 +119,7 @@ impl Subtree {
             half_width,
             reach,
             doubt,
+            bound: isa.store(isa.add(lattice.half_width, lattice.reach)),
             half_edge,
             child_box: [
                 isa.store(by_octant(isa, &half_edge, ACROSS)),
@@ -137,8 +140,8 @@ impl Subtree {
     #[inline(always)]
     pub(super) fn brick_range(&self, f: usize) -> i32 {
         // From the centre to the ends of the window, in units of the box functions.
-        let x = 4 * i64::from(self.half_width[ACROSS] + self.reach[ACROSS]);
-        let y = 4 * i64::from(self.half_width[ACROSS + 1] + self.reach[ACROSS + 1]);
+        let x = 4 * i64::from(self.bound[ACROSS]);
+        let y = 4 * i64::from(self.bound[ACROSS + 1]);
         let along_x = i64::from(self.step[0][f].abs()) * x;
         let along_y = i64::from(self.step[1][f].abs()) * y;
         let from_centre = ((along_x + along_y) >> self.box_bits) as i32;
@@ -149,9 +152,10 @@ impl Subtree {
     /// relative to its lower bound, stay below; and above the negative of.
     #[inline(always)]
     pub(super) fn voxel_range(&self, f: usize) -> i32 {
-        let along_x = i64::from(self.step[0][f].abs()) * i64::from(self.half_width[ACROSS]);
-        let along_y = i64::from(self.step[1][f].abs()) * i64::from(self.half_width[ACROSS + 1]);
-        ((along_x + along_y) >> self.box_bits) as i32 + self.half_width[f] + 2
+        let bound = |f: usize| i64::from(self.bound[f]);
+        let along_x = i64::from(self.step[0][f].abs()) * bound(ACROSS);
+        let along_y = i64::from(self.step[1][f].abs()) * bound(ACROSS + 1);
+        ((along_x + along_y) >> self.box_bits) as i32 + bound(f) as i32 + 2
     }
 
     /// What is added to a record's box functions, `left` levels above the
@@ -260,6 +264,9 @@ impl<I: Isa> Lattice<I> {
             let slope = slope[0] + slope[1];
             let is_sloped = slope.is_at_least(isa.real(0.5));
             reach = ((slope * samples).floor() + isa.real(2.0)) * is_sloped;
+        } else if let Some(places) = view.strip_slack {
+            let slope = slope[0] + slope[1];
+            reach = (slope * isa.real(power_of_two(-(places as i32)))).floor();
         }
         let whole = isa.real(power_of_two(levels as i32));
         let most = (half + reach).fused(whole, place.abs());

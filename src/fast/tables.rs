@@ -40,7 +40,7 @@ impl Coarse {
             let bits = 32 - (range + range / 32).leading_zeros();
             let shift = bits.saturating_sub(8);
             self.shift[f] = shift as i32;
-            let half = (subtree.half_width[f] + subtree.reach[f]) << twice;
+            let half = (subtree.half_width[f] << twice) + subtree.reach[f];
             self.width[f] = [((2 * half) >> shift) as u8 + 2; 32];
             // The exclusive or with the octant turns axes around.
             let mut children = [0i32; 8];
@@ -86,9 +86,9 @@ pub(super) struct Tables {
     pub(super) by_function: [[i32; 8]; STRIPS + 2],
     /// What so many columns, and so many rows, add.
     steps: [[[i32; LANES]; 8]; 2],
-    /// Half the width of a finest voxel.
+    /// Half the width of a finest voxel, and what bounds it beyond that.
     pub(super) half: [i32; LANES],
-    /// The width of a finest voxel.
+    /// Twice as much.
     pub(super) width: [i32; LANES],
     /// In a frame without tolerance, what a value is less from the lower bound
     /// that is certain to be inside, and the width of what is.
@@ -176,8 +176,8 @@ impl Tables {
         let mut lower = [0; LANES];
         for lane in 0..LANES {
             let (half, reach) = (subtree.half_width[lane], subtree.reach[lane]);
-            lower[lane] = half + reach;
-            self.width[lane] = 2 * (half + reach);
+            lower[lane] = subtree.bound[lane];
+            self.width[lane] = 2 * subtree.bound[lane];
             self.sure[0][lane] = reach + subtree.doubt[lane];
             self.sure[1][lane] = 2 * (half - subtree.doubt[lane]);
         }

@@ -50,10 +50,10 @@ pub(super) fn draw_node<I: Isa>(
     walk.counters.brick_samples += u64::from(record.open.count_ones());
     let isa = walk.isa;
     let [left, top] = [record.window.left, record.window.top];
-    let half = isa.load(&walk.tables.half);
+    let half = isa.load(&subtree.half_width);
     // The functions at the square's first sample, relative to the lower bound
     // of a finest voxel in the node's centre; then to that of a part there.
-    let first = isa.sub(half, isa.load(&record.place));
+    let first = isa.sub(isa.load(&subtree.bound), isa.load(&record.place));
     let first = isa.plus_times(first, isa.load(&subtree.step[0]), left - subtree.origin[0]);
     let first = isa.plus_times(first, isa.load(&subtree.step[1]), top - subtree.origin[1]);
     let first_of_part = isa.add(first, half);
@@ -113,7 +113,7 @@ impl Hit {
 
 /// The first of the lanes' voxels that holds a sample. `value`: the functions
 /// there, relative to the lower bound of a finest voxel in the node's centre;
-/// `half`: half the width of such a voxel.
+/// `half`: half the width of such a voxel, without slack.
 #[inline(always)]
 fn first_hit<I: Isa>(
     walk: &Walk<'_, I>,
@@ -143,7 +143,8 @@ fn first_hit<I: Isa>(
         }
         if mask == 0 {
             let width = isa.load(&tables.width);
-            if isa.all_within(isa.add(in_part, half), isa.add(width, width)) {
+            let width = isa.add(width, isa.add(half, half));
+            if isa.all_within(isa.add(in_part, half), width) {
                 let child = WHOLE;
                 return Some(Hit { node, part, child });
             }

@@ -87,6 +87,8 @@ pub(super) struct View {
     pub(super) lod_limit: i64,
     /// Fraction bits of strips beyond those that their levels need.
     pub(super) strip_guard: u32,
+    /// See [`FrameSetup::strip_slack`].
+    pub(super) strip_slack: Option<u32>,
     /// The eye, finest voxels, rounded down.
     pub(super) eye_floor: [i64; 3],
     /// What windows of clip-space boxes are widened by, samples.
@@ -136,6 +138,7 @@ impl View {
             frac,
             lod_limit: (libm::floor(lod * unit) as i64).max(LEAST_SIZE),
             strip_guard: setup.strip_guard,
+            strip_slack: setup.strip_slack,
             eye_floor: setup.eye_floor.map(|c| c.clamp(-1, far + 1)),
             margin: tolerance + QUOTIENT_MARGIN,
             search,

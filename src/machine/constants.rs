@@ -60,6 +60,8 @@ pub(super) struct Constants {
     pub(super) lod_depth: Vec<Option<Word>>,
     /// Fraction bits of strips beyond those that their levels need.
     pub(super) strip_guard: u32,
+    /// See [`FrameSetup::strip_slack`].
+    pub(super) strip_slack: Option<u32>,
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     pub(super) positive: bool,
@@ -159,6 +161,7 @@ impl Constants {
             screen_depth: depths(&setup.screen_depth),
             lod_depth: depths(&setup.lod_depth),
             strip_guard: setup.strip_guard,
+            strip_slack: setup.strip_slack,
             eye_floor: eye(setup.eye_floor),
             eye_ceil: eye(setup.eye_ceil),
             positive: setup.positive,

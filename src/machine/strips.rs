@@ -71,6 +71,8 @@ pub(super) struct Subtree {
     half_edge: [[WideWord; 3]; FUNCTIONS],
     /// By function, half the width of a voxel of the finest level.
     half_width: [WideWord; FUNCTIONS],
+    /// By function, how much more than half its width bounds a voxel of any level.
+    slack: [WideWord; FUNCTIONS],
     /// Octree level of the finest voxels: solids, by nature or by level of detail.
     finest: u32,
 }
@@ -120,6 +122,14 @@ impl Subtree {
             let sum = dp.add(x, y);
             dp.add(sum, z)
         });
+        let slack = step.map(|[x, y]| match constants.strip_slack {
+            Some(places) => {
+                let (x, y) = (magnitude(dp, x), magnitude(dp, y));
+                let both = dp.add(x, y);
+                dp.shr(both, places)
+            }
+            None => WideWord::ZERO,
+        });
         dp.tap(
             Block::StripLattice,
             &(
@@ -132,7 +142,7 @@ impl Subtree {
                 Short::unsigned(levels, LEVEL_BITS),
                 step,
                 half_edge,
-                half_width,
+                [half_width, slack],
                 value,
             ),
         );
@@ -140,6 +150,7 @@ impl Subtree {
             step,
             half_edge,
             half_width,
+            slack,
             finest: level + levels,
         };
         (subtree, Strips { value })
@@ -197,14 +208,16 @@ impl Subtree {
         dp.shl(self.sample_step(function), places)
     }
 
-    /// Half the width of a voxel of octree level `level`.
+    /// What bounds the outline of a voxel of octree level `level` on either
+    /// side of its centre: half its width, and the slack.
     pub(super) fn half_width<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         function: usize,
         level: u32,
     ) -> WideWord {
-        dp.shl(self.half_width[function], self.finest - level)
+        let half = dp.shl(self.half_width[function], self.finest - level);
+        dp.add(half, self.slack[function])
     }
 
     /// What a sample and what half edges at the finest level add to a function

@@ -165,5 +165,20 @@ pub(super) fn strip_guard(tolerance_px: f64) -> u32 {
     (libm::ceil(libm::log2(ratio)).max(0.0) as u32).min(MAX_STRIP_GUARD)
 }
 
+/// By how much outlines in screen space are drawn wider, so that nothing
+/// falls between neighbours that changed apart: `2^-slack` of what a step of
+/// a sample along both axes adds, an eighth of the tolerance or more. `None`:
+/// not at all.
+pub(super) fn strip_slack(tolerance_px: f64) -> Option<u32> {
+    let is_approximate = tolerance_px > 0.0 && tolerance_px.is_finite();
+    is_approximate.then(|| {
+        let places = libm::floor(3.0 - libm::log2(tolerance_px));
+        (places.max(0.0) as u32).min(MAX_STRIP_SLACK)
+    })
+}
+
+/// Beyond this the tolerance is below what screen positions hold.
+const MAX_STRIP_SLACK: u32 = 32;
+
 /// Beyond this many, the tolerance is below what screen positions hold.
 const MAX_STRIP_GUARD: u32 = 16;

@@ -177,6 +177,10 @@ pub struct FrameSetup {
     pub lod_depth: Vec<i64>,
     /// Fraction bits of strips beyond those that their levels need.
     pub strip_guard: u32,
+    /// By how much strips and boxes of a lattice are wider than the voxels: as
+    /// a shift to the right of what a step of a sample along both axes adds;
+    /// `None`: nothing.
+    pub strip_slack: Option<u32>,
     /// Whether no word of a frame with these integers can overflow.
     pub has_headroom: bool,
     /// What a clip-space box is widened by when it is tested against the
@@ -244,6 +248,7 @@ impl FrameSetup {
             near,
         };
         let strip_guard = depths::strip_guard(options.tolerance_px);
+        let strip_slack = depths::strip_slack(options.tolerance_px);
         Ok(Self {
             options: *options,
             width: camera.width << options.aa_log2,
@@ -262,6 +267,7 @@ impl FrameSetup {
             screen_depth: view.screen_depths(&levels_of, options, format.frac(), strip_guard),
             lod_depth: view.lod_depths(&levels_of, options),
             strip_guard,
+            strip_slack,
             has_headroom,
             grow_shift: grow_shift(options),
             size_limit: size_limit(options, 1.0).unwrap_or_default(),
@@ -541,7 +547,15 @@ impl View {
             return vec![levels.near; levels.bound as usize + 1];
         }
         let rounding = depths::rounding(options.coverage, screen_frac, strip_guard);
-        let allowed = (options.tolerance_px - rounding) * (1.0 - 1e-6);
+        // The slack takes its part of the tolerance: all that is drawn lies
+        // within that of the voxels.
+        let slack = match depths::strip_slack(options.tolerance_px) {
+            Some(places) if options.coverage == Coverage::Exact => {
+                libm::ldexp(1.0, -(places as i32))
+            }
+            _ => 0.0,
+        };
+        let allowed = (options.tolerance_px - rounding - slack) * (1.0 - 1e-6);
         if options.tolerance_px == 0.0 || allowed <= 0.0 {
             return vec![i64::MAX; levels.bound as usize + 1];
         }

@@ -138,6 +138,7 @@ struct Constants {
     depth: i128,
     fraction: i128,
     guard: i128,
+    slack: Option<i128>,
     shifts: Vec<i128>,
 }
 
@@ -486,9 +487,12 @@ fn strip_lattice(row: &Row, constants: &Constants) -> Vec<i128> {
     gradients.extend([[1 << NORMAL_BITS, 0], [0, 1 << NORMAL_BITS]]);
 
     let half_sample = 1 << (constants.fraction + 2);
-    let (mut steps, mut halves, mut widths, mut values) = (vec![], vec![], vec![], vec![]);
+    let (mut steps, mut halves, mut widths) = (vec![], vec![], vec![]);
+    let (mut slacks, mut values) = (vec![], vec![]);
     for [gx, gy] in gradients {
         steps.extend([gx << fine, gy << fine]);
+        let steepness = (gx.abs() + gy.abs()) << fine;
+        slacks.push(constants.slack.map_or(0, |places| steepness >> places));
         let centre = gx * (sum[0] - half_sample) + gy * (sum[1] - half_sample);
         values.push(-scaled(centre, -places));
         let half = [0, 1, 2].map(|k| {
@@ -504,7 +508,7 @@ fn strip_lattice(row: &Row, constants: &Constants) -> Vec<i128> {
         widths.push(half.iter().map(|h| h.abs()).sum());
         halves.extend(half);
     }
-    [vec![levels], steps, halves, widths, values].concat()
+    [vec![levels], steps, halves, widths, slacks, values].concat()
 }
 
 /// A file's rows, as the manifest says that they are packed.
@@ -564,6 +568,9 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
         depth: number("depth"),
         fraction: number("screen_fraction_bits"),
         guard: number("strip_guard"),
+        slack: manifest["constants"]["strip_slack"]
+            .as_i64()
+            .map(i128::from),
         shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
     };
     let mut files = BTreeSet::from(["manifest.json".to_owned(), "README.txt".to_owned()]);

@@ -70,6 +70,12 @@ fn lattice(ports: Ports) -> Ports {
     let meaning = "half the strip's width, at the finest level";
     ports
         .each("half_width", &FUNCTIONS, WIDE, meaning)
+        .each(
+            "slack",
+            &FUNCTIONS,
+            WIDE,
+            "how much more bounds a voxel of any level on either side",
+        )
         .each("value", &FUNCTIONS, WIDE, VALUE)
 }
 
@@ -223,7 +229,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "strip_lattice",
             &[Stage::ToScreen],
             "9",
-            "the table of the section, for all five functions; constants depth, screen_fraction_bits and strip_guard stand in the manifest",
+            "the table of the section, for all five functions; constants depth, screen_fraction_bits, strip_guard and strip_slack (null: slack is 0) stand in the manifest",
             ports()
                 .each("sum", &["x", "y"], WORD, "S of the coordinate")
                 .axes("edge_x", WORD, "D_k of coordinate x")

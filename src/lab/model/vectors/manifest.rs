@@ -55,6 +55,7 @@ pub(super) fn document(
             "image_levels": setup.levels,
             "screen_fraction_bits": setup.format.frac(),
             "strip_guard": setup.strip_guard,
+            "strip_slack": setup.strip_slack,
             "size_shifts": setup.size_limit.shifts(),
         },
         "blocks": blocks,
