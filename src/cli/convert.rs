@@ -10,7 +10,7 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::render::open;
 use super::scenes::Written;
-use super::{report, scenes};
+use super::{far, report, scenes};
 use crate::graph::{BuildOptions, ExternalOptions};
 use crate::picture::store;
 
@@ -19,25 +19,51 @@ use crate::picture::store;
 pub struct ConvertArgs {
     /// Scene to read, told by its content
     #[arg(value_name = "IN")]
-    input: String,
-    /// File to write; its ending names the format: .vxg, .vox or .ply
+    pub(super) input: String,
+    /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh, .far
     #[arg(value_name = "OUT")]
-    output: PathBuf,
+    pub(super) output: PathBuf,
     /// Replace a file that exists
     #[arg(long)]
-    force: bool,
+    pub(super) force: bool,
     /// Build a .vxg outside memory, taking at most this much of it: 512M, 2G; 64M at the least
     #[arg(long, value_name = "SIZE")]
     memory: Option<Memory>,
     /// Folder of the temporary files of --memory, about 22 bytes a voxel; else beside OUT
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
+    /// Of .far: rays of all nodes together [default: 12 for each voxel that triangles touch]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) rays: Option<u64>,
+    /// Of .far: nodes with fewer triangles are leaves [default: 1000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
+    pub(super) leaf_triangles: Option<u32>,
+    /// Of .far: voxels along a node's longest side [default: 64]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=255))]
+    pub(super) grid: Option<u32>,
     #[command(flatten)]
-    scene: SceneArgs,
+    pub(super) scene: SceneArgs,
 }
 
 pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
     store::check_free(&args.output, args.force)?;
+    if args
+        .output
+        .extension()
+        .is_some_and(|ending| ending == "far")
+    {
+        if args.memory.is_some() {
+            return Err(CliError::usage(
+                "--memory is for .vxg files; a .far is built in memory",
+            ));
+        }
+        return far::convert(args, console);
+    }
+    if args.rays.is_some() || args.leaf_triangles.is_some() || args.grid.is_some() {
+        return Err(CliError::usage(
+            "--rays, --leaf-triangles and --grid are for .far files",
+        ));
+    }
     if let Some(memory) = args.memory {
         return build_outside_memory(args, memory, console);
     }

@@ -46,6 +46,10 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
         }
         EngineName::Machine => Ok(Box::new(machine(args))),
         EngineName::Rays => Ok(Box::new(Rays)),
+        EngineName::Far => Err(CliError::usage(
+            "--engine far draws a .far file, and only render does",
+        )
+        .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far --engine far")),
     }
 }
 

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::args::{CameraArgs, SceneArgs, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
+use super::far;
 use super::fit::Bounds;
 use super::render::{choose_scenes, open};
 use super::report::{self, grouped};
@@ -32,6 +33,19 @@ pub(super) fn run(
     let mut results = Vec::new();
     let mut first_failure = None;
     for name in &names {
+        if far::is_far_file(name) {
+            match far::info(name, console) {
+                Ok(Some(described)) => results.push(described),
+                Ok(None) => {}
+                Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
+                Err(error) => {
+                    console.error(&error);
+                    results.push(json!({ "scene": name, "error": error.message }));
+                    first_failure.get_or_insert(error.kind);
+                }
+            }
+            continue;
+        }
         match open(name, &args.scene, console) {
             Ok(scene) if console.json => results.push(describe(&scene)),
             Ok(scene) => console.data(tell(&scene, names.len() > 1))?,

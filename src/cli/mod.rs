@@ -12,6 +12,7 @@ mod demo;
 mod drawing;
 mod engines;
 pub mod error;
+mod far;
 pub mod fit;
 pub mod generate;
 pub mod info;

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{
-    CameraArgs, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting, camera_line,
+    CameraArgs, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting, camera_line,
     camera_settings,
 };
 use super::console::Console;
@@ -14,7 +14,7 @@ use super::drawing::{Drawn, draw, min_median_max};
 use super::error::{CliError, Kind};
 use super::fit::Bounds;
 use super::scenes::Scene;
-use super::{outputs, report, scenes};
+use super::{far, outputs, report, scenes};
 use crate::picture;
 use crate::project::Camera;
 
@@ -190,6 +190,10 @@ fn render_one(
     of: usize,
     console: &Console,
 ) -> Result<(Camera, Value), CliError> {
+    if args.engine.engine == EngineName::Far || far::is_far_file(name) {
+        let output = output_path(args, &scenes::stem(name));
+        return far::render_one(args, name, of, output.as_deref(), console);
+    }
     let scene = open(name, &args.scene, console)?;
     let output = output_path(args, &scene.stem);
     if let Some(path) = &output {

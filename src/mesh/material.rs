@@ -69,12 +69,14 @@ static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0) as f32));
 
 /// Linear light of an sRGB byte.
-pub(super) fn srgb_to_linear(byte: u8) -> f32 {
+#[must_use]
+pub fn srgb_to_linear(byte: u8) -> f32 {
     LINEAR[usize::from(byte)]
 }
 
 /// The sRGB byte whose linear light is nearest; of two the brighter.
-pub(super) fn linear_to_srgb(light: f64) -> u8 {
+#[must_use]
+pub fn linear_to_srgb(light: f64) -> u8 {
     let table: &[f32; 256] = &LINEAR;
     let above = table.partition_point(|&entry| f64::from(entry) < light);
     match above {

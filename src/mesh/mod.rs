@@ -19,8 +19,8 @@ use glam::DVec3;
 pub use builder::{BadIndex, MeshBuilder};
 pub use error::{MeshError, MeshFault, Place};
 pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, is_binary_stl, read};
-pub use material::{ColorSpace, Material};
-pub use surface::{Instances, Surface, Triangle};
+pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
+pub use surface::{Instances, Surface, Triangle, barycentric};
 
 /// Triangles with materials, in the file's own coordinates.
 ///

@@ -16,6 +16,8 @@ pub enum EngineName {
     Machine,
     /// The exact reference: what each sample's centre sees.
     Rays,
+    /// Far voxels, of a .far file; see `convert`.
+    Far,
 }
 
 /// How a record holds its projected vertices.
@@ -64,6 +66,18 @@ pub enum Isa {
     Avx512,
 }
 
+/// What the far voxel engine uses opacities for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum FarOpacityName {
+    /// Every voxel is opaque: without anti-aliasing.
+    None,
+    /// One number a voxel: the mean of its six.
+    Scalar,
+    /// A number for each main direction.
+    #[default]
+    Six,
+}
+
 /// The engine and what it computes with.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
@@ -84,7 +98,8 @@ pub struct EngineArgs {
     /// As the paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves. Of --engine far: the
+    /// largest voxel, above 0 [default: 1]
     #[arg(long, value_name = "PX")]
     pub lod: Option<f64>,
     /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
@@ -99,6 +114,9 @@ pub struct EngineArgs {
     /// Instructions of the fast engine; never changes a bit of output
     #[arg(long, value_enum, default_value_t)]
     pub isa: Isa,
+    /// What --engine far uses opacities for
+    #[arg(long, value_enum, default_value_t, value_name = "KIND")]
+    pub far_opacity: FarOpacityName,
 }
 
 impl EngineArgs {
@@ -169,6 +187,7 @@ impl EngineArgs {
             ("bits", i64::from(options.bits).into()),
             ("overflow", word(&self.overflow)),
             ("isa", word(&self.isa)),
+            ("far-opacity", word(&self.far_opacity)),
         ];
         settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
         settings

@@ -8,7 +8,9 @@ mod scene;
 mod values;
 
 pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
-pub use engine::{CageName, CoverageName, EngineArgs, EngineName, Isa, OverflowName};
+pub use engine::{
+    CageName, CoverageName, EngineArgs, EngineName, FarOpacityName, Isa, OverflowName,
+};
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};
 pub use scene::{ColorName, OutOfBoundsName, SceneArgs, UpName};

@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::{Setting, word};
+use crate::cli::fit::Up;
 use crate::mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
 
 /// What to do with voxels outside a model's SIZE.
@@ -62,6 +63,16 @@ impl SceneArgs {
     #[must_use]
     pub fn mesh_depth(&self) -> u32 {
         self.depth.unwrap_or(DEFAULT_DEPTH)
+    }
+
+    /// Which axis is up, where the file's own axis is `up`.
+    #[must_use]
+    pub fn up_or(&self, up: Up) -> Up {
+        match self.mesh_up {
+            None => up,
+            Some(UpName::Y) => Up::Y,
+            Some(UpName::Z) => Up::Z,
+        }
     }
 
     /// Every setting, for a configuration file.

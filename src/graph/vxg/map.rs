@@ -7,7 +7,7 @@ use std::sync::Arc;
 use memmap2::Mmap;
 
 /// Maps a whole file for reading.
-pub(super) fn map(file: &File) -> io::Result<Arc<Mmap>> {
+pub(crate) fn map(file: &File) -> io::Result<Arc<Mmap>> {
     // SAFETY: a map must not change while it is borrowed. The map is private
     // to this process and read-only, and files that this program writes are
     // never changed in place: a new file takes the name, and the map keeps the

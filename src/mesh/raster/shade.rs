@@ -20,7 +20,8 @@ pub struct Light {
 impl Light {
     /// The share of its colour that a surface shows, in steps of 1/256 as
     /// voxels are shaded too.
-    fn on(&self, normal: DVec3) -> f64 {
+    #[must_use]
+    pub fn on(&self, normal: DVec3) -> f64 {
         let cosine = normal.dot(self.towards).clamp(0.0, 1.0);
         let lit = f64::from(256 - self.ambient.min(256));
         let steps = self.ambient.min(256) + (cosine * lit + 0.5) as u32;

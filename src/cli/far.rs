@@ -1,0 +1,515 @@
+//! Far voxels on the command line: `convert`, `info` and `render` of `.far` files.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::args::{Aov, EngineName, FarOpacityName, camera_line};
+use super::console::Console;
+use super::convert::ConvertArgs;
+use super::drawing::{milliseconds_since, min_median_max};
+use super::error::{CliError, Kind};
+use super::fit::{Bounds, Up};
+use super::render::RenderArgs;
+use super::report::{self, grouped};
+use super::{outputs, scenes};
+use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
+use crate::far::store::{is_far, write_to};
+use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewError, ViewOptions};
+use crate::far::{BuildError, BuildOptions, FarError, FarFile, build};
+use crate::mesh::raster::{Light, View};
+use crate::picture::{self, AMBIENT, Background, KEY_LIGHT, Picture, Shading, store};
+use crate::project::Camera;
+
+/// Share of the distance to the farthest corner below which nothing is drawn.
+const NEAR: f64 = 1e-6;
+
+impl From<FarError> for CliError {
+    fn from(error: FarError) -> Self {
+        Self::new(Kind::Input, error)
+    }
+}
+
+impl From<BuildError> for CliError {
+    fn from(error: BuildError) -> Self {
+        let kind = match error {
+            BuildError::Empty | BuildError::Range => Kind::Input,
+            BuildError::TooMany(_) => Kind::Limit,
+            BuildError::Option(_) => Kind::Usage,
+        };
+        Self::new(kind, error)
+    }
+}
+
+impl From<ViewError> for CliError {
+    fn from(error: ViewError) -> Self {
+        match error {
+            ViewError::File(error) => error.into(),
+            ViewError::Raster(_) | ViewError::VoxelSize(_) => Self::usage(error),
+        }
+    }
+}
+
+/// Whether a scene's name is that of a `.far` file, told by its content.
+pub(super) fn is_far_file(name: &str) -> bool {
+    let mut beginning = [0; 8];
+    let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
+    read.is_ok() && is_far(&beginning)
+}
+
+/// Builds far voxels of a mesh and writes them.
+pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
+    let (mesh, up) = scenes::open_mesh(&args.input, &args.scene, console.progress())?;
+    for warning in mesh.warnings() {
+        console.note(format!("{}: {warning}", args.input));
+    }
+    let defaults = BuildOptions::default();
+    let options = BuildOptions {
+        rays: args.rays,
+        leaf_triangles: args.leaf_triangles.unwrap_or(defaults.leaf_triangles),
+        grid: args.grid.unwrap_or(defaults.grid),
+        ..defaults
+    };
+    let started = Instant::now();
+    let mut data = build(&mesh, &options, console.progress())
+        .map_err(|e| CliError::from(e).at(&args.input))?;
+    data.y_up = up == Up::Y;
+    let build_ms = milliseconds_since(started);
+    store::write_with(&args.output, args.force, |file| write_to(&data, file))?;
+    let file = FarFile::open(&args.output)?;
+    let facts = Facts::of(&file);
+    console.note(format!(
+        "{}: {} triangles, {} nodes, {} voxels, {} rays, {} bytes, built in {:.1} s",
+        args.output.display(),
+        grouped(mesh.triangles().len() as u64),
+        grouped(file.nodes().len() as u64),
+        grouped(facts.kept),
+        grouped(facts.rays),
+        grouped(file.len()),
+        build_ms / 1e3
+    ));
+    if console.json {
+        let mut fields = facts.describe(&file, &args.input);
+        fields["input"] = json!(args.input);
+        fields["output"] = json!(args.output);
+        fields["build_ms"] = json!(build_ms);
+        console.document(&report::document("convert", fields))?;
+    }
+    Ok(())
+}
+
+/// Tells what is in a file, all of which is checked; as JSON if that is asked for.
+pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliError> {
+    let file = FarFile::open(Path::new(name))?;
+    file.verify()?;
+    let facts = Facts::of(&file);
+    if console.json {
+        return Ok(Some(facts.describe(&file, name)));
+    }
+    console.data(facts.tell(&file, name))?;
+    Ok(None)
+}
+
+/// What is known of one level of a hierarchy.
+#[derive(Debug, Clone, Copy, Default)]
+struct LevelFacts {
+    nodes: u64,
+    leaves: u64,
+    voxels: u64,
+    greatest_voxel: f32,
+    square_error: f64,
+}
+
+/// What is said of a file, in numbers.
+struct Facts {
+    levels: Vec<LevelFacts>,
+    lists: [u64; 6],
+    touched: u64,
+    kept: u64,
+    rays: u64,
+    hits: u64,
+    crossings: u64,
+    voxel_bytes: u64,
+    opacity_bytes: u64,
+}
+
+impl Facts {
+    fn of(file: &FarFile) -> Self {
+        let mut facts = Self {
+            levels: Vec::new(),
+            lists: [0; 6],
+            touched: 0,
+            kept: 0,
+            rays: 0,
+            hits: 0,
+            crossings: 0,
+            voxel_bytes: 0,
+            opacity_bytes: 0,
+        };
+        for node in file.nodes() {
+            let level = node.level as usize;
+            if facts.levels.len() <= level {
+                // Levels of nodes grow by one from a parent to its children.
+                facts.levels.resize(level + 1, LevelFacts::default());
+            }
+            let at = &mut facts.levels[level];
+            at.nodes += 1;
+            at.leaves += u64::from(node.is_leaf());
+            at.voxels += node.voxels();
+            at.greatest_voxel = at.greatest_voxel.max(node.voxel);
+            at.square_error += f64::from(node.error).powi(2) * node.voxels() as f64;
+            for (list, &count) in node.counts.iter().enumerate() {
+                facts.lists[list] += u64::from(count);
+                facts.opacity_bytes += u64::from(count) * OPACITY_BYTES[list] as u64;
+            }
+            facts.touched += u64::from(node.touched);
+            facts.kept += node.voxels();
+            facts.rays += u64::from(node.rays);
+            facts.hits += u64::from(node.hits);
+            facts.crossings += u64::from(node.crossings);
+            facts.voxel_bytes += node.voxel_bytes();
+        }
+        facts
+    }
+
+    fn dropped_share(&self) -> f64 {
+        1.0 - (self.kept as f64 / self.touched.max(1) as f64).min(1.0)
+    }
+
+    fn rays_per_voxel(&self) -> f64 {
+        self.crossings as f64 / self.kept.max(1) as f64
+    }
+
+    /// Share of voxels whose list has a property.
+    fn share(&self, has: impl Fn(ShaderKind, OpacityKind) -> bool) -> f64 {
+        let lists = LISTS.iter().zip(self.lists);
+        let having = lists.filter(|((shader, opacity), _)| has(*shader, *opacity));
+        having.map(|(_, count)| count).sum::<u64>() as f64 / self.kept.max(1) as f64
+    }
+
+    fn describe(&self, file: &FarFile, name: &str) -> Value {
+        let levels: Vec<Value> = self
+            .levels
+            .iter()
+            .enumerate()
+            .map(|(number, level)| {
+                json!({
+                    "level": number,
+                    "nodes": level.nodes,
+                    "leaves": level.leaves,
+                    "voxels": level.voxels,
+                    "greatest_voxel_world": level.greatest_voxel,
+                    "fit_error": libm::sqrt(level.square_error / level.voxels.max(1) as f64),
+                })
+            })
+            .collect();
+        let (low, high) = file.bounds();
+        json!({
+            "scene": name,
+            "format": ".far",
+            "low": low.to_array(),
+            "high": high.to_array(),
+            "triangles": file.nodes()[0].triangles,
+            "nodes": file.nodes().len(),
+            "levels": levels,
+            "leaf_triangles": file.leaf_triangles(),
+            "grid": file.grid(),
+            "distance_voxels": file.distance_voxels(),
+            "voxels_touched": self.touched,
+            "voxels_kept": self.kept,
+            "voxels_dropped_share": self.dropped_share(),
+            "rays": self.rays,
+            "rays_hit": self.hits,
+            "rays_per_voxel": self.rays_per_voxel(),
+            "opaque_share": self.share(|_, o| o == OpacityKind::Opaque),
+            "scalar_share": self.share(|_, o| o == OpacityKind::Scalar),
+            "six_share": self.share(|_, o| o == OpacityKind::Six),
+            "complex_share": self.share(|s, _| s == ShaderKind::Complex),
+            "bytes": file.len(),
+            "voxel_bytes": self.voxel_bytes,
+            "opacity_bytes": self.opacity_bytes,
+        })
+    }
+
+    fn tell(&self, file: &FarFile, name: &str) -> String {
+        let (low, high) = file.bounds();
+        let percent = |share: f64| format!("{:.1} %", share * 100.0);
+        let lines = [
+            ("scene", name.to_owned()),
+            ("format", "far voxels (.far)".to_owned()),
+            ("box", format!("{low} to {high}")),
+            ("triangles", grouped(file.nodes()[0].triangles)),
+            (
+                "voxels",
+                format!(
+                    "{} kept of {} that triangles touch: {} dropped, no ray hit them",
+                    grouped(self.kept),
+                    grouped(self.touched),
+                    percent(self.dropped_share())
+                ),
+            ),
+            (
+                "rays",
+                format!(
+                    "{}, {} of them hits; {:.1} through a kept voxel",
+                    grouped(self.rays),
+                    grouped(self.hits),
+                    self.rays_per_voxel()
+                ),
+            ),
+            (
+                "opacity",
+                format!(
+                    "{} opaque, {} one number, {} six",
+                    percent(self.share(|_, o| o == OpacityKind::Opaque)),
+                    percent(self.share(|_, o| o == OpacityKind::Scalar)),
+                    percent(self.share(|_, o| o == OpacityKind::Six))
+                ),
+            ),
+            (
+                "shaders",
+                format!(
+                    "{} complex",
+                    percent(self.share(|s, _| s == ShaderKind::Complex))
+                ),
+            ),
+            (
+                "bytes",
+                format!(
+                    "{}: voxels {}, of which opacities {}; triangles {}",
+                    grouped(file.len()),
+                    grouped(self.voxel_bytes),
+                    grouped(self.opacity_bytes),
+                    grouped(u64::from(file.nodes()[0].triangles) * 52)
+                ),
+            ),
+        ];
+        let text: Vec<String> = lines
+            .iter()
+            .map(|(name, value)| format!("{name:<9} {value}"))
+            .collect();
+        let rows = self.levels.iter().enumerate().map(|(number, level)| {
+            let error = libm::sqrt(level.square_error / level.voxels.max(1) as f64);
+            vec![
+                number.to_string(),
+                grouped(level.nodes),
+                grouped(level.leaves),
+                grouped(level.voxels),
+                format!("{:.4}", level.greatest_voxel),
+                format!("{error:.4}"),
+            ]
+        });
+        let head = [
+            "level",
+            "nodes",
+            "leaves",
+            "voxels",
+            "voxel size",
+            "fit error",
+        ];
+        let head = head.map(String::from).into();
+        format!(
+            "{}\n\n{}",
+            text.join("\n"),
+            report::table(head, rows.collect())
+        )
+    }
+}
+
+/// Draws a picture of a `.far` file.
+pub(super) fn render_one(
+    args: &RenderArgs,
+    name: &str,
+    of: usize,
+    output: Option<&Path>,
+    console: &Console,
+) -> Result<(Camera, Value), CliError> {
+    check(args, name)?;
+    if let Some(path) = output {
+        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
+    }
+    let started = Instant::now();
+    let file = FarFile::open(Path::new(name))?;
+    let load_ms = milliseconds_since(started);
+    let (low, high) = file.bounds();
+    let up = if file.y_up() { Up::Y } else { Up::Z };
+    let up = args.scene.up_or(up);
+    let camera = args
+        .camera
+        .camera(&Bounds::of_box(low, high), up, args.picture.size(), 0.0);
+    if args.print_camera && !console.json {
+        console.data(camera_line(&camera))?;
+    }
+    let view = view(&camera, &file)?;
+    let options = options(args, &view);
+    let mut viewer = FarViewer::new(&file);
+    let mut times_ms = Vec::new();
+    let started = Instant::now();
+    let (mut drawn, mut counts) = viewer.draw(&view, &options)?;
+    times_ms.push(milliseconds_since(started));
+    for _ in 1..args.repeat {
+        let started = Instant::now();
+        (drawn, counts) = viewer.draw(&view, &options)?;
+        times_ms.push(milliseconds_since(started));
+    }
+    let picture = as_picture(drawn);
+    let hash = picture::hash(&picture);
+    if args.hash && !console.json {
+        console.data(if of > 1 {
+            format!("{hash}  {name}")
+        } else {
+            hash.clone()
+        })?;
+    }
+    if let Some(path) = output {
+        outputs::write(&picture, path, &args.picture.aov, args.out.force)?;
+    }
+    let (min, median, max) = min_median_max(&times_ms);
+    if args.repeat > 1 && !console.json {
+        let times = [("min ms", min), ("median ms", median), ("max ms", max)];
+        let times = times.map(|(name, ms)| vec![name.to_owned(), format!("{ms:.3}")]);
+        let counted = counters(&counts);
+        let counted = counted.map(|(name, count)| vec![name.to_owned(), grouped(count)]);
+        let rows = times.into_iter().chain(counted).collect();
+        let head = vec![name.to_owned(), "one frame".to_owned()];
+        console.data(report::table(head, rows))?;
+    }
+    if let Some(path) = output {
+        console.note(format!("{}: drawn in {median:.1} ms", path.display()));
+    }
+    for (name, count) in counters(&counts) {
+        console.detail(format!("  {name}: {}", grouped(count)));
+    }
+    if let Some(expected) = &args.expect_hash
+        && !expected.eq_ignore_ascii_case(&hash)
+    {
+        return Err(CliError::new(
+            Kind::Failed,
+            format!("{name}: the picture's hash is {hash}, expected {expected}"),
+        ));
+    }
+    let counted: serde_json::Map<String, Value> = counters(&counts)
+        .into_iter()
+        .map(|(name, count)| (name.to_owned(), count.into()))
+        .collect();
+    let result = json!({
+        "scene": name,
+        "engine": "far",
+        "width": picture.width,
+        "height": picture.height,
+        "pixels_drawn": picture.rgba.len() - picture.node.iter().filter(|&&n| n < 0).count(),
+        "camera": report::camera(&camera),
+        "load_ms": load_ms,
+        "render_ms": { "runs": times_ms.len(), "min": min, "median": median, "max": max },
+        "counters": counted,
+        "hash": hash,
+        "output": output,
+    });
+    Ok((camera, result))
+}
+
+/// Refuses what the engine does not do, and files that it does not draw.
+fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
+    if !is_far_file(name) {
+        // A file that is not there is told as such.
+        FarFile::open(Path::new(name)).map_err(|error| {
+            let advice = "--engine far draws .far files: shiftvox convert MESH OUT.far";
+            CliError::from(error).advise(advice)
+        })?;
+    }
+    if args.engine.engine != EngineName::Far {
+        return Err(CliError::usage(format!("{name}: this is a .far file"))
+            .advise("draw it with --engine far"));
+    }
+    if args.picture.aa_log2() > 0 {
+        return Err(CliError::usage(
+            "--engine far has no --aa above 1: its voxels have opacities",
+        ));
+    }
+    let unknown = |aov: &&Aov| !matches!(aov, Aov::Depth | Aov::Node | Aov::Color);
+    if let Some(aov) = args.picture.aov.iter().find(unknown) {
+        return Err(
+            CliError::usage(format!("--engine far has no --aov {}", aov.name()))
+                .advise("it has depth, node and color"),
+        );
+    }
+    Ok(())
+}
+
+fn options(args: &RenderArgs, view: &View) -> ViewOptions {
+    let key = KEY_LIGHT.normalize();
+    let light = Light {
+        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
+        ambient: AMBIENT,
+    };
+    ViewOptions {
+        voxel_px: args.engine.lod.unwrap_or(1.0),
+        opacity: match args.engine.far_opacity {
+            FarOpacityName::None => Opacity::None,
+            FarOpacityName::Scalar => Opacity::Scalar,
+            FarOpacityName::Six => Opacity::Six,
+        },
+        light: match args.picture.shading() {
+            Shading::Lambert => Some(light),
+            Shading::Flat => None,
+        },
+        background: match args.picture.background.unwrap_or_default() {
+            Background::None => None,
+            Background::Color(color) => Some(color),
+        },
+        ..ViewOptions::default()
+    }
+}
+
+/// The camera as the viewer wants it.
+fn view(camera: &Camera, file: &FarFile) -> Result<View, CliError> {
+    let axes = camera.axes().map_err(CliError::usage)?;
+    let (low, high) = file.bounds();
+    let farthest = (camera.eye - low)
+        .abs()
+        .max((high - camera.eye).abs())
+        .length();
+    Ok(View {
+        eye: camera.eye,
+        right: axes.right,
+        up: axes.up,
+        forward: axes.forward,
+        focal_px: axes.focal_px,
+        width: camera.width,
+        height: camera.height,
+        near: farthest * NEAR,
+    })
+}
+
+/// As other engines' pictures, without normals and voxels.
+fn as_picture(drawn: FarPicture) -> Picture {
+    let pixels = drawn.rgba.len();
+    Picture {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        depth: drawn.depth,
+        normal: vec![[0.0; 3]; pixels],
+        voxel: vec![[0, 0, 0, -1]; pixels],
+        node: drawn.node,
+        records: None,
+    }
+}
+
+fn counters(counts: &Counts) -> [(&'static str, u64); 10] {
+    [
+        ("nodes_visited", counts.visited),
+        ("nodes_outside", counts.outside),
+        ("voxel_nodes", counts.voxel_nodes),
+        ("leaves", counts.leaves),
+        ("nodes_hidden", counts.hidden),
+        ("queries", counts.queries),
+        ("opaque_voxels", counts.opaque_voxels),
+        ("transparent_voxels", counts.transparent_voxels),
+        ("triangles", counts.triangles),
+        ("drawn_twice", counts.drawn_twice),
+    ]
+}

@@ -1,0 +1,144 @@
+//! The six main directions, and how what is known of them is blended.
+//!
+//! A direction always points from the surface to the eye: `+x` is what an eye
+//! far out on the x axis sees. Main directions are numbered `+x -x +y -y +z -z`.
+
+use glam::DVec3;
+
+/// Number of main directions.
+pub const DIRECTIONS: usize = 6;
+
+/// How the three nearest main directions share a direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Blend {
+    /// By squared direction cosines, which sum to 1.
+    Squares,
+    /// By direction cosines over their sum. The share of a cube's outline that
+    /// an axis-aligned box in it fills is blended exactly by these.
+    Cosines,
+}
+
+impl Blend {
+    /// Numbers and shares of the main directions of a unit vector. The shares sum to 1.
+    #[must_use]
+    pub fn shares(self, towards_eye: DVec3) -> [(usize, f64); 3] {
+        let cosines = towards_eye.to_array();
+        let raw = cosines.map(|c| match self {
+            Self::Squares => c * c,
+            Self::Cosines => c.abs(),
+        });
+        let sum = raw[0] + raw[1] + raw[2];
+        [0, 1, 2].map(|axis| {
+            let number = 2 * axis + usize::from(cosines[axis] < 0.0);
+            let share = if sum > 0.0 {
+                raw[axis] / sum
+            } else {
+                1.0 / 3.0
+            };
+            (number, share)
+        })
+    }
+}
+
+/// Least squares for one to several values of the main directions.
+///
+/// Observations `v` of direction `d` are fitted by the blend of six unknowns;
+/// directions that nobody looked from take the value that they are drawn to.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fit<const N: usize> {
+    matrix: [[f32; DIRECTIONS]; DIRECTIONS],
+    right: [[f32; N]; DIRECTIONS],
+}
+
+/// Turns of the relaxation; the matrix has at most 3 of 6 entries in a row.
+const TURNS: usize = 30;
+
+impl<const N: usize> Fit<N> {
+    pub(super) fn new() -> Self {
+        Self {
+            matrix: [[0.0; DIRECTIONS]; DIRECTIONS],
+            right: [[0.0; N]; DIRECTIONS],
+        }
+    }
+
+    /// Adds an observation.
+    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], value: &[f64; N]) {
+        for &(i, share_i) in shares {
+            for &(j, share_j) in shares {
+                self.matrix[i][j] += (share_i * share_j) as f32;
+            }
+            for (sum, &v) in self.right[i].iter_mut().zip(value) {
+                *sum += (share_i * v) as f32;
+            }
+        }
+    }
+
+    /// The six values, each kept in `low..=high` and drawn to `prior` with the
+    /// weight of `pull` observations.
+    pub(super) fn solve(
+        &self,
+        prior: &[f64; N],
+        pull: f64,
+        (low, high): (f64, f64),
+    ) -> [[f64; N]; DIRECTIONS] {
+        let mut values = [*prior; DIRECTIONS];
+        for k in 0..N {
+            for _ in 0..TURNS {
+                for i in 0..DIRECTIONS {
+                    let mut rest = f64::from(self.right[i][k]) + pull * prior[k];
+                    for j in 0..DIRECTIONS {
+                        if j != i {
+                            rest -= f64::from(self.matrix[i][j]) * values[j][k];
+                        }
+                    }
+                    let weight = f64::from(self.matrix[i][i]) + pull;
+                    values[i][k] = (rest / weight).clamp(low, high);
+                }
+            }
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_sum_to_one_and_know_their_side() {
+        for blend in [Blend::Squares, Blend::Cosines] {
+            let shares = blend.shares(DVec3::new(0.6, -0.64, 0.48));
+            let sum: f64 = shares.iter().map(|s| s.1).sum();
+            assert!((sum - 1.0).abs() < 1e-12);
+            assert_eq!(shares.map(|s| s.0), [0, 3, 4]);
+            assert_eq!(blend.shares(DVec3::NEG_Z)[2], (5, 1.0));
+        }
+    }
+
+    #[test]
+    fn six_values_are_found_again() {
+        let truth = [0.1, 0.9, 0.3, 1.0, 0.0, 0.5];
+        for blend in [Blend::Squares, Blend::Cosines] {
+            let mut fit = Fit::<1>::new();
+            for i in 0..2000 {
+                let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 2000.0;
+                let around = f64::from(i) * 2.399_963_229_728_653;
+                let ring = libm::sqrt(1.0 - z * z);
+                let d = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
+                let shares = blend.shares(d);
+                let value = shares.iter().map(|&(k, share)| share * truth[k]).sum();
+                fit.add(&shares, &[value]);
+            }
+            let found = fit.solve(&[1.0], 1e-6, (0.0, 1.0));
+            for k in 0..DIRECTIONS {
+                assert!(
+                    (found[k][0] - truth[k]).abs() < 1e-3,
+                    "{blend:?} {k} {found:?}"
+                );
+            }
+        }
+        // Nobody looked: the value that it is drawn to.
+        let nothing = Fit::<1>::new().solve(&[0.75], 0.25, (0.0, 1.0));
+        assert!(nothing.iter().all(|v| (v[0] - 0.75).abs() < 1e-12));
+    }
+}

@@ -1,0 +1,179 @@
+//! From what rays saw of a voxel to its shader.
+
+use glam::DVec3;
+
+use super::sample::{Look, Seen, main_normal};
+use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use crate::far::record::{OpacityKind, Shader, Voxel};
+
+/// Weight of a normal's error beside a colour's: both are 0 to 1.
+const NORMAL_WEIGHT: f64 = 0.25;
+/// Below this mean square error a flat shader is good enough.
+const GOOD_ENOUGH: f64 = 5e-4;
+/// A complex shader, three times as large, must be better by this factor.
+const WORTH_IT: f64 = 0.7;
+/// Fewer looks do not determine a complex shader.
+const LEAST_LOOKS: usize = 6;
+/// From this opacity on a voxel is opaque.
+const OPAQUE: f64 = 0.95;
+/// Opacities within this are one number.
+const ALIKE: f64 = 0.08;
+
+/// A fitted voxel, and the sum over its looks of the square error.
+pub(super) struct Fitted {
+    pub(super) voxel: Voxel,
+    pub(super) square_error: f64,
+}
+
+/// Fits a voxel that was seen at least once.
+pub(super) fn fit(seen: &Seen, blend: Blend) -> Fitted {
+    let looks = &seen.looks;
+    let count = looks.len().max(1) as f64;
+    let flat = flat(looks);
+    let flat_error = error(&flat, looks, blend) / count;
+    let mut chosen = (flat, flat_error);
+    if flat_error > GOOD_ENOUGH && looks.len() >= LEAST_LOOKS {
+        let complex = complex(looks, blend);
+        let complex_error = error(&complex, looks, blend) / count;
+        if complex_error < WORTH_IT * flat_error {
+            chosen = (complex, complex_error);
+        }
+    }
+    let (opacity_kind, opacity) = classify(seen.opacity());
+    Fitted {
+        voxel: Voxel {
+            place: seen.place,
+            shader: chosen.0,
+            opacity,
+            opacity_kind,
+        },
+        square_error: chosen.1 * count,
+    }
+}
+
+fn classify(opacity: [f64; DIRECTIONS]) -> (OpacityKind, [f64; DIRECTIONS]) {
+    let least = opacity.iter().fold(1.0, |m: f64, &a| m.min(a));
+    let most = opacity.iter().fold(0.0, |m: f64, &a| m.max(a));
+    if least >= OPAQUE {
+        return (OpacityKind::Opaque, [1.0; DIRECTIONS]);
+    }
+    if most - least <= ALIKE {
+        let mean = opacity.iter().sum::<f64>() / DIRECTIONS as f64;
+        return (OpacityKind::Scalar, [mean; DIRECTIONS]);
+    }
+    (OpacityKind::Six, opacity)
+}
+
+fn flat(looks: &[Look]) -> Shader {
+    let normal = main_normal(looks);
+    let mut sums = [(DVec3::ZERO, 0.0); 2];
+    for look in looks {
+        let side = usize::from(look.towards_eye.dot(normal) < 0.0);
+        sums[side].0 += look.color;
+        sums[side].1 += 1.0;
+    }
+    // A side that nobody saw looks like the other.
+    let colors = [0, 1].map(|side| {
+        let (sum, count) = if sums[side].1 > 0.0 {
+            sums[side]
+        } else {
+            sums[1 - side]
+        };
+        sum / f64::max(count, 1.0)
+    });
+    Shader::Flat { normal, colors }
+}
+
+fn complex(looks: &[Look], blend: Blend) -> Shader {
+    let mut fit = Fit::<6>::new();
+    let mut mean = [0.0; 6];
+    for look in looks {
+        let (c, n) = (look.color, look.normal);
+        let value = [c.x, c.y, c.z, n.x, n.y, n.z];
+        fit.add(&blend.shares(look.towards_eye), &value);
+        for (mean, value) in mean.iter_mut().zip(value) {
+            *mean += value / looks.len() as f64;
+        }
+    }
+    let values = fit.solve(&mean, 0.5, (-1.0, 1.0));
+    Shader::Complex {
+        normals: std::array::from_fn(|k| {
+            let [.., x, y, z] = values[k];
+            DVec3::new(x, y, z).normalize_or(main_direction(k))
+        }),
+        colors: std::array::from_fn(|k| {
+            let [r, g, b, ..] = values[k];
+            DVec3::new(r, g, b).max(DVec3::ZERO)
+        }),
+    }
+}
+
+fn main_direction(number: usize) -> DVec3 {
+    let axis = [DVec3::X, DVec3::Y, DVec3::Z][number / 2];
+    if number % 2 == 0 { axis } else { -axis }
+}
+
+/// Sum of the square errors of what a shader shows of the looks.
+fn error(shader: &Shader, looks: &[Look], blend: Blend) -> f64 {
+    looks
+        .iter()
+        .map(|look| {
+            let (normal, color) = shader.seen_from(look.towards_eye, blend);
+            let of_color = (color - look.color).length_squared() / 3.0;
+            let of_normal = (1.0 - normal.dot(look.normal)) / 2.0;
+            of_color + NORMAL_WEIGHT * of_normal
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn looks(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<Look> {
+        (0..500)
+            .map(|i| {
+                let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 500.0;
+                let around = f64::from(i) * 2.399_963_229_728_653;
+                let ring = libm::sqrt(1.0 - z * z);
+                let towards_eye = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
+                let (normal, color) = of(towards_eye);
+                Look {
+                    towards_eye,
+                    normal,
+                    color,
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_wall_with_two_colours_is_flat() {
+        let up = DVec3::new(0.6, 0.0, 0.8);
+        let wall = looks(|eye| {
+            if eye.dot(up) > 0.0 {
+                (up, DVec3::X)
+            } else {
+                (-up, DVec3::Y)
+            }
+        });
+        let shader = flat(&wall);
+        assert!(error(&shader, &wall, Blend::Squares) < 1e-9);
+        let Shader::Flat { normal, colors } = shader else {
+            panic!("not flat");
+        };
+        assert!(normal.dot(up).abs() > 1.0 - 1e-9);
+        let front = usize::from(normal.dot(up) < 0.0);
+        assert!((colors[front] - DVec3::X).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_ball_is_better_complex() {
+        let ball = looks(|eye| (eye, DVec3::splat(0.5) + eye * 0.3));
+        let of_flat = error(&flat(&ball), &ball, Blend::Squares);
+        for blend in [Blend::Squares, Blend::Cosines] {
+            let of_complex = error(&complex(&ball, blend), &ball, blend);
+            assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
+        }
+    }
+}

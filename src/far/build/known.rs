@@ -1,0 +1,219 @@
+//! Known answers: voxels whose opacity one can say without shooting rays.
+
+use glam::DVec3;
+
+use super::grid::Grid;
+use super::rays::Occluders;
+use super::sample::{Sampled, Seen, Target};
+use super::{fit, look_at};
+use crate::far::blend::Blend;
+use crate::far::record::OpacityKind;
+use crate::mesh::{Mesh, MeshBuilder, Surface};
+
+/// A mesh of boxes.
+fn boxes(boxes: &[(DVec3, DVec3)]) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    for &(low, high) in boxes {
+        let corners: Vec<u32> = (0..8)
+            .map(|i| {
+                let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
+                builder.position([pick(0) as f32, pick(1) as f32, pick(2) as f32])
+            })
+            .collect();
+        let faces = [
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+        ];
+        for [a, b, c, d] in faces {
+            for triangle in [[a, b, c], [a, c, d]] {
+                let triangle = triangle.map(|i: usize| corners[i]);
+                builder.triangle(triangle, None, 0).unwrap();
+            }
+        }
+    }
+    builder.finish("boxes").unwrap()
+}
+
+/// Unit voxels from the origin.
+fn unit(cells: [u8; 3]) -> Grid {
+    Grid {
+        origin: DVec3::ZERO,
+        voxel: 1.0,
+        cells,
+    }
+}
+
+fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend) -> Sampled {
+    let corners = |i: usize| Surface::corners(mesh, i);
+    let occluders = Occluders::new((0..Surface::len(mesh)).map(corners));
+    let target = Target {
+        occluders: &occluders,
+        grid,
+        own: 0..own,
+        distance: 64.0,
+        opacity_blend,
+    };
+    let touched = target.touched(corners);
+    let plane = |i: usize| {
+        let [a, b, c] = corners(i);
+        (b - a).cross(c - a).normalize()
+    };
+    let look =
+        |i: usize, point: DVec3, eye: DVec3| look_at(&mesh.triangle(i), point, eye, plane(i));
+    target.sample(&touched, rays, 7, look, plane)
+}
+
+fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
+    sampled(mesh, Surface::len(mesh), grid, rays, Blend::Cosines)
+}
+
+fn at(sampled: &Sampled, place: [u8; 3]) -> &Seen {
+    sampled
+        .seen
+        .iter()
+        .find(|seen| seen.place == place)
+        .unwrap()
+}
+
+#[test]
+fn an_opaque_slab_is_opaque_from_six_directions() {
+    // Two layers thick, but for so little that its faces are within them.
+    let slab = boxes(&[(DVec3::new(0.3, 0.3, 2.001), DVec3::new(7.7, 7.7, 3.999))]);
+    let sampled = all(&slab, unit([8, 8, 6]), 100_000);
+    let (mut inner, mut opaque) = (0, 0);
+    for seen in &sampled.seen {
+        let [x, y, _] = seen.place;
+        // The rim's voxels are filled in part.
+        if (1..7).contains(&x) && (1..7).contains(&y) {
+            let fitted = fit::fit(seen, Blend::Squares);
+            inner += 1;
+            opaque += u32::from(fitted.voxel.opacity_kind == OpacityKind::Opaque);
+            let opacity = seen.opacity();
+            assert!(
+                opacity.iter().all(|&a| a > 0.98),
+                "{:?} {opacity:?}",
+                seen.place
+            );
+        }
+    }
+    assert_eq!(inner, 2 * 6 * 6);
+    assert_eq!(opaque, inner, "all are opaque from all six");
+}
+
+#[test]
+fn a_voxel_whose_lower_half_is_solid() {
+    let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
+    let sampled = all(&half, unit([1, 1, 1]), 60_000);
+    let opacity = at(&sampled, [0, 0, 0]).opacity();
+    for (k, expected) in [0.5, 0.5, 1.0, 1.0, 0.5, 0.5].into_iter().enumerate() {
+        assert!((opacity[k] - expected).abs() < 0.02, "{k}: {opacity:?}");
+    }
+}
+
+#[test]
+fn cosines_blend_a_box_exactly_and_their_squares_do_not() {
+    let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
+    let error = |blend: Blend| {
+        let opacity = at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3]).opacity();
+        let mut worst = 0.0f64;
+        for degrees in 0..=90 {
+            let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
+            let blended: f64 = blend
+                .shares(DVec3::new(cos, sin, 0.0))
+                .iter()
+                .map(|&(k, share)| opacity[k] * share)
+                .sum();
+            worst = worst.max((blended - (0.5 * cos + sin) / (cos + sin)).abs());
+        }
+        worst
+    };
+    let (cosines, squares) = (error(Blend::Cosines), error(Blend::Squares));
+    assert!(cosines < 0.02, "{cosines}");
+    assert!(squares > 2.0 * cosines, "{squares} {cosines}");
+}
+
+#[test]
+fn a_fan_of_wires_has_analytic_coverage() {
+    // Square wires along z, one in the middle of every other column, so that
+    // each is alone in its voxels seen along y.
+    let wires: Vec<(DVec3, DVec3)> = (0..5)
+        .map(|i| {
+            let width = 0.1 + 0.1 * f64::from(i);
+            let x = 2.0 * f64::from(i) + 0.5;
+            let low = DVec3::new(x - width / 2.0, 0.5 - width / 2.0, 0.0);
+            (low, DVec3::new(x + width / 2.0, 0.5 + width / 2.0, 8.0))
+        })
+        .collect();
+    let sampled = all(&boxes(&wires), unit([9, 1, 8]), 200_000);
+    for i in 0..5u8 {
+        let width = 0.1 + 0.1 * f64::from(i);
+        let rows: Vec<&Seen> = (2..6).map(|z| at(&sampled, [2 * i, 0, z])).collect();
+        for k in [2, 3] {
+            let mean = rows.iter().map(|seen| seen.opacity()[k]).sum::<f64>() / rows.len() as f64;
+            assert!(
+                (mean - width).abs() < 0.05,
+                "width {width}, direction {k}: {mean}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
+    let core = (DVec3::splat(3.2), DVec3::splat(4.8));
+    let shell = (DVec3::splat(0.5), DVec3::splat(7.5));
+    let open = sampled(&boxes(&[core]), 12, unit([8; 3]), 4000, Blend::Cosines);
+    assert_eq!(open.seen.len(), 8);
+    // The shell is environment: not of the node, but around it.
+    let hidden = sampled(
+        &boxes(&[core, shell]),
+        12,
+        unit([8; 3]),
+        4000,
+        Blend::Cosines,
+    );
+    assert_eq!((hidden.seen.len(), hidden.hits), (0, 0));
+    assert_eq!(hidden.rays, 2000, "the second half has nothing to aim at");
+    let both = all(&boxes(&[core, shell]), unit([8; 3]), 20_000);
+    assert!(
+        both.seen
+            .iter()
+            .all(|seen| seen.place.iter().any(|&c| c == 0 || c == 7))
+    );
+}
+
+#[test]
+fn a_thin_floor_has_no_holes() {
+    // Two triangles across the middle of voxels, and tilted.
+    let mut builder = MeshBuilder::new();
+    let corners = [
+        [0.5, 1.2, 0.5],
+        [7.5, 2.9, 0.5],
+        [7.5, 2.9, 7.5],
+        [0.5, 1.2, 7.5],
+    ];
+    let corners = corners.map(|p| builder.position(p));
+    for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+        builder
+            .triangle([corners[a], corners[b], corners[c]], None, 0)
+            .unwrap();
+    }
+    let floor = builder.finish("floor").unwrap();
+    let sampled = all(&floor, unit([8, 4, 8]), 100_000);
+    for seen in &sampled.seen {
+        let [x, _, z] = seen.place;
+        if (1..7).contains(&x) && (1..7).contains(&z) {
+            let opacity = seen.opacity();
+            // A corner of the floor in a voxel is told from a thin thing.
+            assert!(
+                opacity[2] > 0.9 && opacity[3] > 0.9,
+                "{:?} {opacity:?}",
+                seen.place
+            );
+        }
+    }
+}

@@ -1,0 +1,335 @@
+//! Triangles into far voxels: hierarchy, rays, fitting.
+//!
+//! The same triangles and options give the same bytes on any number of
+//! threads: a node's rays depend on its number and on nothing else.
+
+mod fit;
+mod grid;
+mod rays;
+mod sample;
+mod split;
+
+#[cfg(test)]
+mod known;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use xxhash_rust::xxh3::xxh3_64;
+
+pub use grid::Grid;
+
+use super::FarData;
+use super::blend::Blend;
+use super::record::{LeafTriangle, Node, triangle_bytes};
+use crate::graph::{PackedNormal, Progress};
+use crate::mesh::{Surface, barycentric, linear_to_srgb};
+use rays::Occluders;
+use sample::{Look, Target};
+use split::{Branch, split};
+
+/// How far voxels are built.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BuildOptions {
+    /// Rays of all nodes together; `None`: [`RAYS_PER_VOXEL`] for each voxel that triangles touch.
+    pub rays: Option<u64>,
+    /// Nodes with fewer triangles are leaves; 2 or more.
+    pub leaf_triangles: u32,
+    /// Voxels along the longest side of a node, 2 to 255.
+    pub grid: u32,
+    /// Least distance from which a node is used, in its voxels: where the eye
+    /// may be and what may hide the node follow from it.
+    pub distance_voxels: f64,
+    /// How opacities of main directions are blended.
+    pub opacity_blend: Blend,
+    /// How normals and materials of main directions are blended.
+    pub shader_blend: Blend,
+}
+
+/// Rays for each voxel that triangles touch, where no number of rays is given.
+pub const RAYS_PER_VOXEL: u64 = 12;
+/// Most rays of a node: what its memory is kept to.
+const MOST_RAYS: u64 = 1 << 22;
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            rays: None,
+            leaf_triangles: 1000,
+            grid: 64,
+            distance_voxels: 256.0,
+            opacity_blend: Blend::Cosines,
+            shader_blend: Blend::Squares,
+        }
+    }
+}
+
+/// Why nothing was built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// No triangles.
+    #[error("there are no triangles to build far voxels of")]
+    Empty,
+    /// More triangles or voxels than 32 bits number.
+    #[error("{0} are more than 32 bits can number")]
+    TooMany(String),
+    /// An option out of its range.
+    #[error("{0}")]
+    Option(&'static str),
+    /// Coordinates that single precision does not hold.
+    #[error("the mesh is too large or too small for numbers of single precision")]
+    Range,
+}
+
+/// Builds far voxels of a surface.
+///
+/// # Errors
+/// See [`BuildError`].
+pub fn build<S: Surface + ?Sized>(
+    surface: &S,
+    options: &BuildOptions,
+    progress: &dyn Progress,
+) -> Result<FarData, BuildError> {
+    check(surface, options)?;
+    let centre = centre(surface)?;
+    progress.begin("split triangles", 0);
+    let (branches, order) = split(surface, options.leaf_triangles as usize);
+    progress.end();
+    let corners = |place: usize| surface.corners(order[place] as usize).map(|p| p - centre);
+    progress.begin("prepare rays", 0);
+    let occluders = Occluders::new((0..order.len()).map(corners));
+    progress.end();
+    let target = |branch: &Branch| Target {
+        occluders: &occluders,
+        grid: Grid::around(branch.low - centre, branch.high - centre, options.grid),
+        own: branch.first..branch.first + branch.count,
+        distance: options.distance_voxels,
+        opacity_blend: options.opacity_blend,
+    };
+    progress.begin("find voxels", branches.len() as u64);
+    let touched: Vec<u32> = branches
+        .par_iter()
+        .map(|branch| {
+            progress.advance(1);
+            match branch.children {
+                None => 0,
+                Some(_) => target(branch).touched(corners).len() as u32,
+            }
+        })
+        .collect();
+    progress.end();
+    let rays = share_rays(&touched, options.rays);
+    progress.begin("shoot rays", rays.iter().map(|&n| u64::from(n)).sum());
+    let plane = |place: usize| {
+        let [a, b, c] = corners(place);
+        (b - a).cross(c - a).normalize_or(DVec3::Z)
+    };
+    let look = |place: usize, point: DVec3, towards_eye: DVec3| {
+        let mut triangle = surface.triangle(order[place] as usize);
+        triangle.corners = triangle.corners.map(|p| p - centre);
+        look_at(&triangle, point, towards_eye, plane(place))
+    };
+    let built: Vec<(Node, Vec<u8>)> = branches
+        .par_iter()
+        .enumerate()
+        .map(|(number, branch)| {
+            let mut node = outline(branch, centre);
+            if branch.children.is_none() {
+                return (node, Vec::new());
+            }
+            let target = target(branch);
+            let touched = target.touched(corners);
+            let sampled = target.sample(&touched, rays[number], number as u64, look, plane);
+            let voxels = keep(&mut node, &target.grid, &sampled, options.shader_blend);
+            node.touched = touched.len() as u32;
+            progress.advance(u64::from(rays[number]));
+            (node, voxels)
+        })
+        .collect();
+    progress.end();
+    let triangles = leaf_triangles(surface, &order, centre);
+    assemble(built, triangles, centre, options)
+}
+
+fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(), BuildError> {
+    if surface.is_empty() {
+        return Err(BuildError::Empty);
+    }
+    if u32::try_from(surface.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} triangles", surface.len())));
+    }
+    if !(2..=255).contains(&options.grid) {
+        return Err(BuildError::Option("a grid has 2 to 255 voxels a side"));
+    }
+    if options.leaf_triangles < 2 {
+        return Err(BuildError::Option(
+            "leaves have fewer than 2 triangles or more",
+        ));
+    }
+    if !(options.distance_voxels >= 1.0 && options.distance_voxels <= 1e6) {
+        return Err(BuildError::Option(
+            "the least distance is 1 to 1,000,000 voxels",
+        ));
+    }
+    Ok(())
+}
+
+/// What coordinates are relative to: zero, unless the mesh is so far from it
+/// that single precision would not hold its parts.
+fn centre<S: Surface + ?Sized>(surface: &S) -> Result<DVec3, BuildError> {
+    let (low, high) = surface.bounds();
+    let extent = (high - low).max_element();
+    let farthest = low.abs().max(high.abs()).max_element();
+    if !(farthest < 1e30 && extent > 1e-30) {
+        return Err(BuildError::Range);
+    }
+    Ok(if farthest > 16.0 * extent {
+        (low + high) / 2.0
+    } else {
+        DVec3::ZERO
+    })
+}
+
+/// Rays of each node, in proportion to the voxels that its triangles touch.
+fn share_rays(touched: &[u32], rays: Option<u64>) -> Vec<u32> {
+    let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
+    touched
+        .iter()
+        .map(|&n| {
+            let n = u64::from(n);
+            let share = match rays {
+                None => n * RAYS_PER_VOXEL,
+                // No overflow: 32 bits by 64.
+                Some(rays) => (u128::from(rays) * u128::from(n) / u128::from(all.max(1))) as u64,
+            };
+            // A node with triangles gets a ray at least.
+            share.clamp(u64::from(n > 0), MOST_RAYS) as u32
+        })
+        .collect()
+}
+
+/// Normal and colour of a triangle at a point, seen from a side.
+fn look_at(
+    triangle: &crate::mesh::Triangle,
+    point: DVec3,
+    towards_eye: DVec3,
+    plane: DVec3,
+) -> Look {
+    let shares = barycentric(&triangle.corners, point);
+    let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
+    let face = if plane.dot(towards_eye) >= 0.0 {
+        plane
+    } else {
+        -plane
+    };
+    let normal = blend(&triangle.normals).normalize_or(face);
+    Look {
+        towards_eye,
+        normal: if normal.dot(face) < 0.0 {
+            -normal
+        } else {
+            normal
+        },
+        color: blend(&triangle.colors),
+    }
+}
+
+/// A node without voxels.
+fn outline(branch: &Branch, centre: DVec3) -> Node {
+    let single = |p: DVec3| (p - centre).as_vec3().to_array();
+    Node {
+        low: single(branch.low),
+        high: single(branch.high),
+        is_leaf: u8::from(branch.children.is_none()),
+        level: branch.level,
+        // Fewer than 2^32 triangles, and fewer nodes than twice that: see `assemble`.
+        children: branch.children.map_or([0; 2], |c| c.map(|c| c as u32)),
+        first_triangle: branch.first as u32,
+        triangles: branch.count as u32,
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// Fits the voxels that were seen; gives their records, list by list.
+fn keep(node: &mut Node, grid: &Grid, sampled: &sample::Sampled, blend: Blend) -> Vec<u8> {
+    let mut lists: [Vec<u8>; 6] = Default::default();
+    let mut square_error = 0.0;
+    let mut looks = 0;
+    for seen in &sampled.seen {
+        let fitted = fit::fit(seen, blend);
+        let list = fitted.voxel.list();
+        fitted.voxel.write(&mut lists[list]);
+        node.counts[list] += 1;
+        square_error += fitted.square_error;
+        looks += seen.looks.len();
+        node.crossings = node.crossings.saturating_add(seen.crossings());
+    }
+    node.origin = grid.origin.as_vec3().to_array();
+    node.voxel = grid.voxel as f32;
+    node.cells = grid.cells;
+    node.rays = sampled.rays;
+    node.hits = sampled.hits;
+    node.error = libm::sqrt(square_error / f64::from(looks.max(1) as u32)) as f32;
+    lists.concat()
+}
+
+fn leaf_triangles<S: Surface + ?Sized>(
+    surface: &S,
+    order: &[u32],
+    centre: DVec3,
+) -> Vec<LeafTriangle> {
+    order
+        .par_iter()
+        .map(|&number| {
+            let triangle = surface.triangle(number as usize);
+            LeafTriangle {
+                corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
+                normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
+                colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+                spare: 0,
+            }
+        })
+        .collect()
+}
+
+fn assemble(
+    built: Vec<(Node, Vec<u8>)>,
+    triangles: Vec<LeafTriangle>,
+    centre: DVec3,
+    options: &BuildOptions,
+) -> Result<FarData, BuildError> {
+    if u32::try_from(built.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} nodes", built.len())));
+    }
+    let numbered: u64 = built.iter().map(|(node, _)| node.voxels()).sum();
+    let numbered = numbered + triangles.len() as u64;
+    if numbered >= u64::from(u32::MAX) {
+        let what = format!("{numbered} voxels and triangles");
+        return Err(BuildError::TooMany(what));
+    }
+    let mut nodes = Vec::with_capacity(built.len());
+    let mut voxels = Vec::new();
+    for (mut node, bytes) in built {
+        node.voxels_at = voxels.len() as u64;
+        node.checksum = if node.is_leaf() {
+            let first = node.first_triangle as usize;
+            let own = &triangles[first..first + node.triangles as usize];
+            xxh3_64(triangle_bytes(own))
+        } else {
+            xxh3_64(&bytes)
+        };
+        voxels.extend(bytes);
+        nodes.push(node);
+    }
+    Ok(FarData {
+        centre: centre.to_array(),
+        distance_voxels: options.distance_voxels,
+        opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
+        leaf_triangles: options.leaf_triangles,
+        grid: options.grid,
+        y_up: true,
+        nodes,
+        voxels,
+        triangles,
+    })
+}

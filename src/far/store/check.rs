@@ -1,0 +1,126 @@
+//! Whether a hierarchy makes sense: every field of every node.
+
+use crate::far::record::Node;
+
+/// What is wrong with a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub(super) node: usize,
+    pub(super) expected: String,
+}
+
+/// Checks all nodes against each other and against the sizes of the sections.
+pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<(), Fault> {
+    let fault = |node: usize, expected: String| Err(Fault { node, expected });
+    let Some(root) = nodes.first() else {
+        return fault(0, "a root".to_owned());
+    };
+    let is_root = root.level == 0 && root.first_triangle == 0;
+    if !is_root || u64::from(root.triangles) != triangles {
+        return fault(0, format!("a root with all {triangles} triangles"));
+    }
+    let mut has_parent = vec![false; nodes.len()];
+    has_parent[0] = true;
+    let (mut bytes, mut numbered) = (0u64, triangles);
+    for (i, node) in nodes.iter().enumerate() {
+        check_alone(node).or_else(|expected| fault(i, expected.to_owned()))?;
+        if node.voxels_at != bytes {
+            return fault(
+                i,
+                format!(
+                    "voxels at byte {bytes} of their section, not {}",
+                    node.voxels_at
+                ),
+            );
+        }
+        // Six counts of 32 bits by at most 39 bytes: no overflow; the sum is checked each time.
+        bytes += node.voxel_bytes();
+        numbered += node.voxels();
+        if bytes > voxel_bytes {
+            return fault(
+                i,
+                format!("voxels within the {voxel_bytes} bytes of their section"),
+            );
+        }
+        if !has_parent[i] {
+            return fault(i, "a parent before it".to_owned());
+        }
+        if node.is_leaf() {
+            continue;
+        }
+        check_children(nodes, i).or_else(|expected| fault(i, expected.to_owned()))?;
+        for child in node.children {
+            let child = child as usize;
+            if std::mem::replace(&mut has_parent[child], true) {
+                return fault(child, "one parent, not two".to_owned());
+            }
+        }
+    }
+    if bytes != voxel_bytes {
+        return fault(
+            nodes.len() - 1,
+            format!("{voxel_bytes} bytes of voxels, not {bytes}"),
+        );
+    }
+    if numbered >= u64::from(u32::MAX) {
+        return fault(0, "fewer than 2^32 voxels and triangles".to_owned());
+    }
+    Ok(())
+}
+
+fn check_alone(node: &Node) -> Result<(), &'static str> {
+    let ensure = |holds: bool, expected| if holds { Ok(()) } else { Err(expected) };
+    ensure(node.is_leaf <= 1, "a leaf or not, 1 or 0")?;
+    ensure(node.spare == 0, "zero in the spare field")?;
+    ensure(node.triangles > 0, "triangles")?;
+    let is_box = (0..3).all(|k| {
+        let (low, high) = (node.low[k], node.high[k]);
+        low.is_finite() && high.is_finite() && low <= high
+    });
+    ensure(is_box, "a box of finite numbers")?;
+    ensure(
+        node.error.is_finite() && node.error >= 0.0,
+        "an error of 0 or more",
+    )?;
+    if node.is_leaf() {
+        let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
+        let counts = [node.touched, node.rays, node.hits, node.crossings];
+        let is_empty = counts == [0; 4] && node.counts == [0; 6] && node.children == [0; 2];
+        return ensure(
+            is_plain && is_empty,
+            "a leaf without grid, voxels, rays or children",
+        );
+    }
+    let is_grid = node.voxel > 0.0
+        && node.voxel.is_finite()
+        && node.origin.iter().all(|c| c.is_finite())
+        && node.cells.iter().all(|&c| c > 0);
+    ensure(is_grid, "a grid")?;
+    let cells: u64 = node.cells.iter().map(|&c| u64::from(c)).product();
+    ensure(node.voxels() <= cells, "no more voxels than its grid has")?;
+    ensure(
+        u64::from(node.touched) <= cells,
+        "no more touched voxels than its grid has",
+    )?;
+    ensure(node.hits <= node.rays, "no more hits than rays")
+}
+
+fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {
+    let node = &nodes[number];
+    let [near, far] = node.children.map(|child| child as usize);
+    if near != number + 1 || far <= near || far >= nodes.len() {
+        return Err("its first child after it and its second after that");
+    }
+    let (near, far) = (&nodes[near], &nodes[far]);
+    let split = u64::from(node.first_triangle) + u64::from(near.triangles);
+    let shares = near.first_triangle == node.first_triangle
+        && u64::from(far.first_triangle) == split
+        && u64::from(near.triangles) + u64::from(far.triangles) == u64::from(node.triangles);
+    if !shares {
+        return Err("children that share its triangles");
+    }
+    if near.level != node.level + 1 || far.level != node.level + 1 {
+        return Err("children one level below");
+    }
+    Ok(())
+}

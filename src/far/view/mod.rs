@@ -1,0 +1,302 @@
+//! Far voxels to a picture.
+//!
+//! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
+//! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
+//!    above, number below, the least counts. That does not depend on who comes
+//!    first, hence neither on threads nor on what was found hidden.
+//! 3. `fill`: what is drawn so far, as a pyramid; nodes behind it are left out.
+//! 4. The winners' colours, then transparent voxels over them, back to front.
+
+mod cut;
+mod fill;
+mod opaque;
+mod splat;
+mod transparent;
+
+use glam::DVec3;
+
+use super::store::{FarError, FarFile};
+use crate::mesh::raster::{Light, RasterError, View};
+use crate::mesh::{linear_to_srgb, srgb_to_linear};
+use cut::Chosen;
+use fill::Fill;
+use opaque::Opaque;
+
+/// What opacities are used for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Opacity {
+    /// Every voxel is opaque: the method without anti-aliasing.
+    None,
+    /// One number a voxel: the mean of its six.
+    Scalar,
+    /// A number for each main direction.
+    #[default]
+    Six,
+}
+
+/// How far voxels are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewOptions {
+    /// Largest projected side of a voxel, pixels, above 0.
+    pub voxel_px: f64,
+    /// What opacities are used for.
+    pub opacity: Opacity,
+    /// The light; `None`: colours as they are.
+    pub light: Option<Light>,
+    /// What is behind, sRGB; `None`: transparent.
+    pub background: Option<[u8; 3]>,
+    /// Whether hidden nodes are left out. Never changes the picture.
+    pub culling: bool,
+    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the picture.
+    pub late: usize,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self {
+            voxel_px: 1.0,
+            opacity: Opacity::Six,
+            light: None,
+            background: None,
+            culling: true,
+            late: 1,
+        }
+    }
+}
+
+/// Why nothing was drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// The file's data is damaged.
+    #[error(transparent)]
+    File(#[from] FarError),
+    /// The camera or the picture's size.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// The size of voxels.
+    #[error("voxels are drawn at a size above 0 pixels, not {0}")]
+    VoxelSize(f64),
+}
+
+/// A finished picture, row by row from the top left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarPicture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Colour, sRGB, and coverage, not premultiplied.
+    pub rgba: Vec<[u8; 4]>,
+    /// Share of each pixel that is covered.
+    pub coverage: Vec<f32>,
+    /// View-axis depth of what is opaque, world units; infinite where nothing is.
+    pub depth: Vec<f32>,
+    /// Node of what is opaque; -1 where nothing is.
+    pub node: Vec<i32>,
+}
+
+/// What a frame took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Nodes that the cut was found by.
+    pub visited: u64,
+    /// Nodes of those beside or behind the picture.
+    pub outside: u64,
+    /// Nodes of the cut that are drawn as voxels, hidden or not.
+    pub voxel_nodes: u64,
+    /// Nodes of the cut that are drawn as triangles, hidden or not.
+    pub leaves: u64,
+    /// Nodes of the cut that were found hidden and left out.
+    pub hidden: u64,
+    /// Queries whether a node is hidden.
+    pub queries: u64,
+    /// Opaque voxels drawn.
+    pub opaque_voxels: u64,
+    /// Transparent voxels drawn.
+    pub transparent_voxels: u64,
+    /// Triangles given to the rasteriser.
+    pub triangles: u64,
+    /// Whether two triangles of different batches were equally deep somewhere
+    /// and the frame was drawn again in one.
+    pub drawn_twice: u64,
+}
+
+/// Draws one file, frame after frame, and remembers what was visible.
+#[derive(Debug)]
+pub struct FarViewer<'f> {
+    file: &'f FarFile,
+    /// Whether each node was visible in the last frame.
+    was_visible: Vec<bool>,
+}
+
+impl<'f> FarViewer<'f> {
+    /// Nothing was drawn yet.
+    #[must_use]
+    pub fn new(file: &'f FarFile) -> Self {
+        Self {
+            file,
+            was_visible: vec![false; file.nodes().len()],
+        }
+    }
+
+    /// Takes these nodes for those that were visible in the last frame, by
+    /// their numbers; others were hidden. May be wrong: the picture is the same.
+    pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
+        for (number, was_visible) in self.was_visible.iter_mut().enumerate() {
+            *was_visible = is_visible(number);
+        }
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn draw(
+        &mut self,
+        view: &View,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, Counts), ViewError> {
+        if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
+            return Err(ViewError::VoxelSize(options.voxel_px));
+        }
+        let mut counts = Counts::default();
+        let chosen = cut::cut(self.file, view, options.voxel_px, &mut counts);
+        let mut opaque = self.draw_opaque(view, options, &chosen, &mut counts)?;
+        if opaque.has_tie() {
+            // Rasterised in one go, whose rule for equal depths has more digits.
+            counts.drawn_twice = 1;
+            counts.opaque_voxels = 0;
+            counts.triangles = 0;
+            counts.hidden = 0;
+            opaque = Opaque::new(self.file, view, options)?;
+            opaque.draw(&chosen, &mut counts)?;
+        }
+        let fill = Fill::of(&opaque.depths(), view);
+        let mut transparent = Vec::new();
+        for node in &chosen {
+            let is_hidden = fill.hides(view, &node.outline);
+            self.was_visible[node.number] = !is_hidden;
+            if !(options.culling && is_hidden) {
+                transparent.push(node);
+            }
+        }
+        let mut pixels = opaque.resolve();
+        if options.opacity != Opacity::None {
+            let drawn = transparent::draw(self.file, view, options, &transparent, &mut pixels)?;
+            counts.transparent_voxels = drawn;
+        }
+        let depth: Vec<f32> = opaque.depths();
+        Ok((
+            FarPicture {
+                width: view.width,
+                height: view.height,
+                rgba: pixels
+                    .iter()
+                    .map(|p| p.encode(options.background))
+                    .collect(),
+                coverage: pixels.iter().map(|p| p.coverage).collect(),
+                node: opaque.nodes(),
+                depth,
+            },
+            counts,
+        ))
+    }
+
+    /// Nodes that were visible come first; the others in batches from near to
+    /// far, each asked for against what was drawn `late` batches before.
+    fn draw_opaque(
+        &self,
+        view: &View,
+        options: &ViewOptions,
+        chosen: &[Chosen],
+        counts: &mut Counts,
+    ) -> Result<Opaque<'f>, ViewError> {
+        let mut opaque = Opaque::new(self.file, view, options)?;
+        if !options.culling {
+            opaque.draw(chosen, counts)?;
+            return Ok(opaque);
+        }
+        let is_known = |node: &&Chosen| self.was_visible[node.number];
+        let (known, others): (Vec<&Chosen>, Vec<&Chosen>) = chosen.iter().partition(is_known);
+        opaque.draw(known, counts)?;
+        let mut fills = vec![Fill::of(&opaque.depths(), view)];
+        let batch = others.len().div_ceil(BATCHES).max(LEAST_BATCH);
+        for (number, nodes) in others.chunks(batch).enumerate() {
+            let fill = &fills[number.saturating_sub(options.late).min(fills.len() - 1)];
+            let mut visible = Vec::new();
+            for node in nodes {
+                counts.queries += 1;
+                if fill.hides(view, &node.outline) {
+                    counts.hidden += 1;
+                } else {
+                    visible.push(*node);
+                }
+            }
+            opaque.draw(visible, counts)?;
+            fills.push(Fill::of(&opaque.depths(), view));
+        }
+        Ok(opaque)
+    }
+}
+
+/// Batches of nodes that were not visible in the last frame.
+const BATCHES: usize = 6;
+/// Least nodes of a batch.
+const LEAST_BATCH: usize = 16;
+
+/// Linear light, premultiplied, and coverage.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Pixel {
+    light: [f32; 3],
+    coverage: f32,
+    /// Depth of what is opaque; infinite where nothing is.
+    depth: f32,
+}
+
+impl Pixel {
+    /// Lays something of a colour and opacity over it.
+    fn cover(&mut self, color: [f32; 3], opacity: f32) {
+        for (below, above) in self.light.iter_mut().zip(color) {
+            *below = above * opacity + *below * (1.0 - opacity);
+        }
+        self.coverage = opacity + self.coverage * (1.0 - opacity);
+    }
+
+    fn encode(&self, background: Option<[u8; 3]>) -> [u8; 4] {
+        let light = self.light.map(f64::from);
+        let coverage = f64::from(self.coverage);
+        let bytes = |light: [f64; 3]| light.map(linear_to_srgb);
+        match background {
+            Some(color) => {
+                let mixed =
+                    |k: usize| light[k] + (1.0 - coverage) * f64::from(srgb_to_linear(color[k]));
+                let [r, g, b] = bytes([0, 1, 2].map(mixed));
+                [r, g, b, 255]
+            }
+            None if self.coverage <= 0.0 => [0; 4],
+            None => {
+                let [r, g, b] = bytes(light.map(|l| l / coverage));
+                // 0 to 255.
+                [r, g, b, (coverage * 255.0 + 0.5) as u8]
+            }
+        }
+    }
+}
+
+/// Right, up and depth of a point.
+fn in_view(view: &View, point: DVec3) -> DVec3 {
+    let offset = point - view.eye;
+    DVec3::new(
+        offset.dot(view.right),
+        offset.dot(view.up),
+        offset.dot(view.forward),
+    )
+}
+
+/// Where a point of a view is in the picture, pixels from the top left corner.
+fn on_picture(view: &View, seen: DVec3) -> [f64; 2] {
+    [
+        f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
+        f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,
+    ]
+}

@@ -1,0 +1,321 @@
+//! Opaque voxels and triangles, with a depth buffer.
+
+use std::borrow::Borrow;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::cut::Chosen;
+use super::splat::Places;
+use super::{Counts, Opacity, Pixel, ViewError, ViewOptions};
+use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
+use crate::far::store::FarFile;
+use crate::graph::{PackedNormal, Silent};
+use crate::mesh::raster::{
+    self, NO_TRIANGLE, Pattern, RasterError, RasterOptions, RasterPicture, Samples, View,
+};
+use crate::mesh::{Surface, Triangle, srgb_to_linear};
+
+/// Nothing: as deep as can be, and no number.
+const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
+
+/// The buffer: for each pixel depth (bits of a positive `f32`, which order as
+/// numbers do) and number of the nearest voxel or triangle.
+pub(super) struct Opaque<'f> {
+    file: &'f FarFile,
+    view: View,
+    options: ViewOptions,
+    words: Vec<AtomicU64>,
+    /// Pictures of the batches' triangles, with the numbers of these.
+    pictures: Vec<(RasterPicture, Vec<u32>)>,
+    has_tie: bool,
+}
+
+impl<'f> Opaque<'f> {
+    pub(super) fn new(
+        file: &'f FarFile,
+        view: &View,
+        options: &ViewOptions,
+    ) -> Result<Self, ViewError> {
+        let side = 1..=raster::MAX_SIDE;
+        if !side.contains(&view.width) || !side.contains(&view.height) {
+            return Err(RasterError::Size(view.width, view.height).into());
+        }
+        let numbers = [view.eye, view.right, view.up, view.forward];
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let is_sound = numbers.iter().all(|v| v.is_finite());
+        if !(is_sound && positive(view.near) && positive(view.focal_px)) {
+            return Err(RasterError::Camera.into());
+        }
+        let pixels = view.width as usize * view.height as usize;
+        Ok(Self {
+            file,
+            view: *view,
+            options: *options,
+            words: (0..pixels).map(|_| AtomicU64::new(EMPTY)).collect(),
+            pictures: Vec::new(),
+            has_tie: false,
+        })
+    }
+
+    /// Draws what is opaque of some nodes. In any order and any batches the result is the same,
+    /// unless [`Opaque::has_tie`].
+    pub(super) fn draw<N: Borrow<Chosen> + Sync>(
+        &mut self,
+        nodes: impl IntoIterator<Item = N>,
+        counts: &mut Counts,
+    ) -> Result<(), ViewError> {
+        let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
+        let (leaves, inner): (Vec<Chosen>, Vec<Chosen>) = nodes
+            .into_iter()
+            .partition(|node| self.file.nodes()[node.number].is_leaf());
+        let drawn = inner
+            .par_iter()
+            .map(|node| self.voxels(node.number))
+            .collect::<Result<Vec<u64>, ViewError>>()?;
+        counts.opaque_voxels += drawn.iter().sum::<u64>();
+        if !leaves.is_empty() {
+            counts.triangles += self.leaves(&leaves)?;
+        }
+        Ok(())
+    }
+
+    fn voxels(&self, number: usize) -> Result<u64, ViewError> {
+        let node = &self.file.nodes()[number];
+        let places = Places::of(node, self.file.centre());
+        let mut id = self.file.first_voxel(number);
+        let mut drawn = 0;
+        let width = self.view.width as usize;
+        for (list, records) in self.file.lists(number)?.into_iter().enumerate() {
+            let is_opaque = LISTS[list].1 == OpacityKind::Opaque;
+            if !is_opaque && self.options.opacity != Opacity::None {
+                id += node.counts[list];
+                continue;
+            }
+            drawn += u64::from(node.counts[list]);
+            for record in records.chunks_exact(RECORD_BYTES[list]) {
+                if let Some(square) = places.square(&self.view, record) {
+                    let depth = (square.depth as f32).to_bits();
+                    let word = u64::from(depth) << 32 | u64::from(id);
+                    let [[x0, y0], [x1, y1]] = square.pixels(&self.view);
+                    for y in y0..y1 {
+                        for x in x0..x1 {
+                            self.put(y * width + x, word);
+                        }
+                    }
+                }
+                id += 1;
+            }
+        }
+        Ok(drawn)
+    }
+
+    fn put(&self, pixel: usize, word: u64) {
+        // Mostly hidden: reading alone does not take the line from other threads.
+        if self.words[pixel].load(Ordering::Relaxed) > word {
+            self.words[pixel].fetch_min(word, Ordering::Relaxed);
+        }
+    }
+
+    fn leaves(&mut self, leaves: &[Chosen]) -> Result<u64, ViewError> {
+        let mut numbers = Vec::new();
+        for leaf in leaves {
+            // Asked for so that they are checked.
+            self.file.triangles(leaf.number)?;
+            let node = &self.file.nodes()[leaf.number];
+            numbers.extend(node.first_triangle..node.first_triangle + node.triangles);
+        }
+        // The file's order, whatever is nearer.
+        numbers.sort_unstable();
+        let surface = Leaves {
+            file: self.file,
+            numbers,
+        };
+        let options = RasterOptions {
+            samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
+            light: self.options.light,
+            background: None,
+        };
+        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let voxels = self.file.voxels();
+        for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
+            if at == NO_TRIANGLE {
+                continue;
+            }
+            let id = voxels + surface.numbers[at as usize];
+            let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
+            let there = self.words[pixel].load(Ordering::Relaxed);
+            let is_triangle = there as u32 >= voxels && there != EMPTY;
+            self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
+            self.put(pixel, word);
+        }
+        let drawn = surface.numbers.len() as u64;
+        self.pictures.push((picture, surface.numbers));
+        Ok(drawn)
+    }
+
+    /// Whether triangles of two batches are equally deep in single precision,
+    /// so that which one shows depends on the batches.
+    pub(super) fn has_tie(&self) -> bool {
+        self.has_tie
+    }
+
+    /// Depth of each pixel.
+    pub(super) fn depths(&self) -> Vec<f32> {
+        let depth = |word: &AtomicU64| f32::from_bits((word.load(Ordering::Relaxed) >> 32) as u32);
+        self.words.iter().map(depth).collect()
+    }
+
+    /// Node of each pixel; -1 where there is none.
+    pub(super) fn nodes(&self) -> Vec<i32> {
+        let voxels = self.file.voxels();
+        let nodes = self.file.nodes();
+        let leaves: Vec<usize> = (0..nodes.len()).filter(|&n| nodes[n].is_leaf()).collect();
+        self.words
+            .iter()
+            .map(|word| {
+                let word = word.load(Ordering::Relaxed);
+                let id = word as u32;
+                let node = if word == EMPTY {
+                    return -1;
+                } else if id < voxels {
+                    self.node_of(id)
+                } else {
+                    let is_before = |&leaf: &usize| nodes[leaf].first_triangle <= id - voxels;
+                    leaves[leaves.partition_point(is_before) - 1]
+                };
+                i32::try_from(node).unwrap_or(i32::MAX)
+            })
+            .collect()
+    }
+
+    /// The node of a voxel.
+    fn node_of(&self, voxel: u32) -> usize {
+        let nodes = self.file.nodes().len();
+        let (mut low, mut high) = (0, nodes);
+        // The last node whose first voxel is not above; nodes without voxels
+        // stand before the one that has it.
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            if self.file.first_voxel(middle) <= voxel {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Colours of what is seen.
+    pub(super) fn resolve(&self) -> Vec<Pixel> {
+        let voxels = self.file.voxels();
+        self.words
+            .par_iter()
+            .enumerate()
+            .map(|(pixel, word)| {
+                let word = word.load(Ordering::Relaxed);
+                if word == EMPTY {
+                    return Pixel {
+                        depth: f32::INFINITY,
+                        ..Pixel::default()
+                    };
+                }
+                let id = word as u32;
+                let light = if id < voxels {
+                    self.voxel_light(id)
+                } else {
+                    self.triangle_light(pixel, id - voxels)
+                };
+                Pixel {
+                    light,
+                    coverage: 1.0,
+                    depth: f32::from_bits((word >> 32) as u32),
+                }
+            })
+            .collect()
+    }
+
+    fn voxel_light(&self, id: u32) -> [f32; 3] {
+        let number = self.node_of(id);
+        let mut rest = (id - self.file.first_voxel(number)) as usize;
+        // Was drawn, hence is sound.
+        let Ok(lists) = self.file.lists(number) else {
+            return [0.0; 3];
+        };
+        for (list, records) in lists.into_iter().enumerate() {
+            let count = records.len() / RECORD_BYTES[list];
+            if rest < count {
+                let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
+                let places = Places::of(&self.file.nodes()[number], self.file.centre());
+                let towards_eye = places.towards_eye(&self.view, &voxel.place);
+                return light_of(&voxel, towards_eye, self.file, &self.options);
+            }
+            rest -= count;
+        }
+        [0.0; 3]
+    }
+
+    fn triangle_light(&self, pixel: usize, number: u32) -> [f32; 3] {
+        for (picture, numbers) in &self.pictures {
+            let at = picture.triangle[pixel];
+            if at != NO_TRIANGLE && numbers[at as usize] == number {
+                let [r, g, b, _] = picture.rgba[pixel];
+                return [r, g, b].map(srgb_to_linear);
+            }
+        }
+        [0.0; 3]
+    }
+}
+
+/// Linear light of a voxel as seen from a direction.
+pub(super) fn light_of(
+    voxel: &Voxel,
+    towards_eye: DVec3,
+    file: &FarFile,
+    options: &ViewOptions,
+) -> [f32; 3] {
+    let (normal, color) = voxel.shader.seen_from(towards_eye, file.shader_blend());
+    let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
+    (color * share).as_vec3().to_array()
+}
+
+/// Triangles of a file, by their numbers.
+struct Leaves<'f> {
+    file: &'f FarFile,
+    numbers: Vec<u32>,
+}
+
+impl Leaves<'_> {
+    fn of(&self, number: usize) -> &LeafTriangle {
+        self.file.triangle(self.numbers[number] as usize)
+    }
+}
+
+impl Surface for Leaves<'_> {
+    fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        let centre = self.file.centre();
+        let corners = self.of(number).corners;
+        corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
+    }
+
+    fn triangle(&self, number: usize) -> Triangle {
+        let stored = self.of(number);
+        let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
+        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
+        Triangle {
+            corners: Surface::corners(self, number),
+            normals: stored.normals.map(normal),
+            colors: stored.colors.map(color),
+            alpha: 1.0,
+        }
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        self.file.bounds()
+    }
+}
