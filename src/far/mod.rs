@@ -18,7 +18,7 @@ use record::{LeafTriangle, Node};
 pub use build::{BuildError, BuildOptions, build};
 pub use store::{FarError, FarFile};
 
-/// Far voxels in memory, as [`build()`] makes them and [`store::write`] writes them.
+/// Far voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarData {
     /// What single precision coordinates are relative to, world units.

@@ -45,6 +45,10 @@ pub const OPACITY_BYTES: [usize; 6] = [0, 1, 6, 0, 1, 6];
 
 /// What a voxel looks like.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "lives on the stack for one voxel at a time"
+)]
 pub enum Shader {
     /// One normal; colours (linear light) seen from its side and from the other.
     Flat {

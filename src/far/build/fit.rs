@@ -110,7 +110,11 @@ fn complex(looks: &[Look], blend: Blend) -> Shader {
 
 fn main_direction(number: usize) -> DVec3 {
     let axis = [DVec3::X, DVec3::Y, DVec3::Z][number / 2];
-    if number % 2 == 0 { axis } else { -axis }
+    if number.is_multiple_of(2) {
+        axis
+    } else {
+        -axis
+    }
 }
 
 /// Sum of the square errors of what a shader shows of the looks.

@@ -472,8 +472,8 @@ impl Header {
             DAMAGED,
         )?;
         let blend = |offset: usize| {
-            let known = [Blend::Squares, Blend::Cosines].into_iter();
-            let found = known.filter(|&b| blend_byte(b) == header[offset]).next();
+            let mut known = [Blend::Squares, Blend::Cosines].into_iter();
+            let found = known.find(|&b| blend_byte(b) == header[offset]);
             found.ok_or_else(|| malformed(path, "header", offset as u64, "0 or 1", DAMAGED))
         };
         let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];

@@ -102,7 +102,7 @@ pub(super) fn cut(file: &FarFile, view: &View, voxel_px: f64, counts: &mut Count
         let is_small = voxel * view.focal_px <= voxel_px * distance;
         // Nearer, things that were taken to hide it may be behind the eye.
         let is_far = distance >= file.distance_voxels() * voxel;
-        if !node.is_leaf() && !(is_small && is_far) {
+        if !(node.is_leaf() || is_small && is_far) {
             waiting.extend(node.children.map(|child| child as usize));
             continue;
         }

@@ -1,0 +1,145 @@
+//! What is built: the same on any threads, better with more rays, level by level.
+
+use shiftvox::far::store::encode;
+use shiftvox::far::view::{FarViewer, ViewOptions};
+use shiftvox::far::{BuildError, BuildOptions, FarFile, build};
+use shiftvox::graph::Silent;
+use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
+
+use super::city::{city, far, light, on_threads, options, view};
+
+#[test]
+fn the_same_bytes_on_one_and_two_threads() {
+    let one = on_threads(1, || encode(&far(&options())).unwrap());
+    let two = on_threads(2, || encode(&far(&options())).unwrap());
+    assert!(one == two, "{} and {} bytes", one.len(), two.len());
+}
+
+#[test]
+fn a_ray_budget_is_kept_and_other_rays_are_other_bytes() {
+    let budget = |rays| {
+        far(&BuildOptions {
+            rays: Some(rays),
+            ..options()
+        })
+    };
+    let shot = |data: &shiftvox::far::FarData| data.nodes.iter().map(|n| u64::from(n.rays)).sum();
+    let (few, more) = (budget(20_000), budget(40_000));
+    let (shot_few, shot_more): (u64, u64) = (shot(&few), shot(&more));
+    assert!(shot_few <= 20_000 && shot_few > 19_000, "{shot_few}");
+    assert!(shot_more <= 40_000 && shot_more > 39_000, "{shot_more}");
+    let kept = |data: &shiftvox::far::FarData| data.nodes.iter().map(|n| n.voxels()).sum::<u64>();
+    // Too few rays make it seem that much is hidden.
+    assert!(kept(&more) > kept(&few));
+    assert!(few.nodes.iter().all(|n| n.voxels() <= u64::from(n.touched)));
+}
+
+#[test]
+fn bad_options_are_refused() {
+    let tries = [
+        BuildOptions {
+            grid: 1,
+            ..options()
+        },
+        BuildOptions {
+            grid: 256,
+            ..options()
+        },
+        BuildOptions {
+            leaf_triangles: 1,
+            ..options()
+        },
+        BuildOptions {
+            distance_voxels: f64::NAN,
+            ..options()
+        },
+    ];
+    for options in tries {
+        let refused = build(&city(), &options, &Silent);
+        assert!(matches!(refused, Err(BuildError::Option(_))), "{options:?}");
+    }
+}
+
+#[test]
+fn voxels_shrink_from_level_to_level() {
+    let data = far(&options());
+    let mut levels = 0;
+    for node in &data.nodes {
+        levels = levels.max(node.level);
+        for child in node.children.iter().filter(|_| !node.is_leaf()) {
+            let child = &data.nodes[*child as usize];
+            assert!(child.is_leaf() || child.voxel <= node.voxel);
+        }
+    }
+    assert!(levels >= 4, "{levels}");
+}
+
+/// Root mean square difference of the channels to 256 samples a pixel.
+fn error(file: &FarFile, view: &View, options: &ViewOptions) -> f64 {
+    let reference = raster::draw(
+        &city(),
+        view,
+        &RasterOptions {
+            samples: Samples::new(256, Pattern::Regular).unwrap(),
+            light: options.light,
+            background: options.background,
+        },
+        &Silent,
+    )
+    .unwrap();
+    let (picture, _) = FarViewer::new(file).draw(view, options).unwrap();
+    let pairs = picture.rgba.iter().zip(&reference.rgba);
+    let square = |(a, b): (&[u8; 4], &[u8; 4])| {
+        let channels = (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2));
+        channels.sum::<f64>() / 3.0
+    };
+    (pairs.map(square).sum::<f64>() / picture.rgba.len() as f64).sqrt()
+}
+
+fn shown(view: &View, voxel_px: f64) -> ViewOptions {
+    ViewOptions {
+        voxel_px,
+        light: light(view),
+        background: Some([240, 240, 245]),
+        ..ViewOptions::default()
+    }
+}
+
+#[test]
+fn finer_levels_have_less_error() {
+    let data = far(&BuildOptions {
+        rays: Some(2_000_000),
+        ..options()
+    });
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    let view = view(30.0, 0.6, 150.0, 256);
+    let errors: Vec<f64> = [1.0, 2.0, 4.0]
+        .into_iter()
+        .map(|px| error(&file, &view, &shown(&view, px)))
+        .collect();
+    assert!(
+        errors.windows(2).all(|pair| pair[0] < pair[1]),
+        "{errors:?}"
+    );
+}
+
+#[test]
+fn more_rays_never_raise_the_error_beyond_noise() {
+    let view = view(30.0, 0.6, 150.0, 192);
+    let errors: Vec<f64> = [30_000, 120_000, 480_000, 1_920_000]
+        .into_iter()
+        .map(|rays| {
+            let data = far(&BuildOptions {
+                rays: Some(rays),
+                ..options()
+            });
+            let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+            error(&file, &view, &shown(&view, 2.0))
+        })
+        .collect();
+    assert!(
+        errors.windows(2).all(|pair| pair[1] < pair[0] * 1.03),
+        "{errors:?}"
+    );
+    assert!(errors[3] < errors[0], "{errors:?}");
+}

@@ -1,0 +1,164 @@
+//! The program with far voxels: verbs, exit codes, messages.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+
+fn shiftvox(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    command.current_dir(folder);
+    command
+}
+
+/// A sheet of small triangles, as a Wavefront file.
+fn sheet() -> String {
+    let mut text = String::new();
+    for z in 0..12 {
+        for x in 0..12 {
+            text += &format!("v {x} {} {z}\n", (x * z) % 3);
+        }
+    }
+    for z in 0..11 {
+        for x in 1..12 {
+            let a = z * 12 + x;
+            text += &format!("f {a} {} {} {}\n", a + 1, a + 13, a + 12);
+        }
+    }
+    text
+}
+
+#[test]
+fn convert_info_render() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let settings = [
+        "--leaf-triangles",
+        "50",
+        "--grid",
+        "16",
+        "--rays",
+        "20000",
+        "-q",
+    ];
+    for (output, threads) in [("a.far", "1"), ("b.far", "2")] {
+        let command = ["convert", "sheet.obj", output, "--threads", threads];
+        shiftvox(at).args(command).args(settings).assert().success();
+    }
+    assert_eq!(
+        fs::read(at.join("a.far")).unwrap(),
+        fs::read(at.join("b.far")).unwrap()
+    );
+    shiftvox(at)
+        .args(["convert", "sheet.obj", "a.far"])
+        .assert()
+        .code(1);
+    let output = shiftvox(at)
+        .args(["info", "a.far", "--json"])
+        .assert()
+        .success();
+    let document: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    let scene = &document["scenes"][0];
+    assert_eq!(scene["triangles"], 242);
+    assert!(scene["levels"].as_array().unwrap().len() > 2);
+    let share = |name: &str| scene[name].as_f64().unwrap();
+    let sum = share("opaque_share") + share("scalar_share") + share("six_share");
+    assert!((sum - 1.0).abs() < 1e-9);
+    assert!(share("rays") <= 20_000.0 && share("rays_per_voxel") > 1.0);
+    let text = shiftvox(at).args(["info", "a.far"]).assert().success();
+    let text = String::from_utf8(text.get_output().stdout.clone()).unwrap();
+    assert!(text.contains("242") && text.contains("dropped"), "{text}");
+    let mut hashes = Vec::new();
+    for opacity in ["none", "scalar", "six"] {
+        // So far away that its nodes are drawn as voxels.
+        let render = [
+            "render",
+            "a.far",
+            "--engine",
+            "far",
+            "--size",
+            "256",
+            "--hash",
+            "--eye",
+            "200,200,200",
+            "--target",
+            "5,1,5",
+        ];
+        let more = ["--far-opacity", opacity, "-o", "{stem}.png", "--force"];
+        let output = shiftvox(at).args(render).args(more).assert().success();
+        hashes.push(output.get_output().stdout.clone());
+    }
+    assert!(hashes[0] != hashes[2]);
+    assert!(at.join("a.png").exists());
+}
+
+#[test]
+fn what_is_wrong_is_said_with_an_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let convert = [
+        "convert",
+        "sheet.obj",
+        "a.far",
+        "--leaf-triangles",
+        "100",
+        "-q",
+    ];
+    shiftvox(at).args(convert).assert().success();
+    let sound = fs::read(at.join("a.far")).unwrap();
+    let mut version = sound.clone();
+    version[8] = 9;
+    let mut voxel = sound.clone();
+    let middle = sound.len() / 2;
+    voxel[middle] ^= 4;
+    for (name, bytes) in [
+        ("cut.far", &sound[..sound.len() / 2]),
+        ("short.far", &sound[..20]),
+        ("version.far", &version),
+        ("voxel.far", &voxel),
+    ] {
+        fs::write(at.join(name), bytes).unwrap();
+        shiftvox(at).args(["info", name]).assert().code(4);
+        let render = [
+            "render", name, "--engine", "far", "--lod", "9", "-o", "x.png",
+        ];
+        if name != "voxel.far" {
+            shiftvox(at).args(render).assert().code(4);
+            assert!(!at.join("x.png").exists());
+        }
+    }
+    let usage: [&[&str]; 6] = [
+        &["render", "a.far", "-o", "x.png"],
+        &[
+            "render", "a.far", "--engine", "far", "--aa", "2", "-o", "x.png",
+        ],
+        &[
+            "render", "a.far", "--engine", "far", "--lod", "0", "-o", "x.png",
+        ],
+        &[
+            "turntable",
+            "sheet.obj",
+            "--engine",
+            "far",
+            "-o",
+            "##.png",
+            "--frames",
+            "2",
+        ],
+        &["convert", "sheet.obj", "b.vxg", "--rays", "7"],
+        &["convert", "sheet.obj", "b.far", "--memory", "1G"],
+    ];
+    for arguments in usage {
+        shiftvox(at).args(arguments).assert().code(2);
+    }
+    shiftvox(at)
+        .args(["render", "sheet.obj", "--engine", "far", "-o", "x.png"])
+        .assert()
+        .code(4);
+    shiftvox(at)
+        .args(["convert", "missing.obj", "b.far"])
+        .assert()
+        .code(4);
+}

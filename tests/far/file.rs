@@ -1,0 +1,118 @@
+//! The file: it comes back, and what is damaged is refused.
+
+use shiftvox::far::store::{FarError, encode, is_far};
+use shiftvox::far::{BuildOptions, FarFile};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::city::{far, options};
+
+fn small() -> Vec<u8> {
+    let options = BuildOptions {
+        rays: Some(3000),
+        leaf_triangles: 1500,
+        grid: 8,
+        ..options()
+    };
+    encode(&far(&options)).unwrap()
+}
+
+/// Whether a file is found to be damaged when it is opened or when all of it is read.
+fn is_refused(bytes: &[u8]) -> bool {
+    match FarFile::from_bytes(bytes).and_then(|file| file.verify()) {
+        Ok(()) => false,
+        Err(FarError::Malformed { .. }) => true,
+        Err(other) => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_file_comes_back() {
+    let data = far(&options());
+    let bytes = encode(&data).unwrap();
+    assert!(is_far(&bytes) && !is_far(b"solid"));
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.far");
+    std::fs::write(&path, &bytes).unwrap();
+    for file in [
+        FarFile::open(&path).unwrap(),
+        FarFile::from_bytes(&bytes).unwrap(),
+    ] {
+        file.verify().unwrap();
+        assert_eq!(file.nodes(), &data.nodes[..]);
+        assert_eq!(file.len(), bytes.len() as u64);
+        let mut triangles = Vec::new();
+        let mut voxels = Vec::new();
+        for (number, node) in data.nodes.iter().enumerate() {
+            if node.is_leaf() {
+                triangles.extend_from_slice(file.triangles(number).unwrap());
+            }
+            voxels.extend(file.lists(number).unwrap().concat());
+        }
+        assert_eq!(triangles, data.triangles);
+        assert_eq!(voxels, data.voxels);
+    }
+}
+
+#[test]
+fn truncated_files_are_refused() {
+    let bytes = small();
+    assert!(!is_refused(&bytes));
+    for length in (0..300).chain((300..bytes.len()).step_by(997)) {
+        assert!(is_refused(&bytes[..length]), "{length} of {}", bytes.len());
+    }
+    let longer = [&bytes[..], &[0]].concat();
+    assert!(is_refused(&longer));
+}
+
+#[test]
+fn every_flipped_bit_is_found() {
+    let bytes = small();
+    let header_and_nodes = 128 + 128 * 16;
+    let places = (0..header_and_nodes).chain((header_and_nodes..bytes.len()).step_by(61));
+    for place in places.filter(|&place| place < bytes.len()) {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 1 << (place % 8);
+        assert!(is_refused(&damaged), "byte {place}");
+    }
+}
+
+/// Gives header and hierarchy the checksums that they should have.
+fn with_checksums(mut bytes: Vec<u8>) -> Vec<u8> {
+    let nodes = u64::from_le_bytes(bytes[24..32].try_into().unwrap()) as usize;
+    if let Some(nodes) = bytes.get(128..128 + 128 * nodes) {
+        let checksum = xxh3_64(nodes).to_le_bytes();
+        bytes[96..104].copy_from_slice(&checksum);
+    }
+    let checksum = xxh3_64(&bytes[..120]).to_le_bytes();
+    bytes[120..128].copy_from_slice(&checksum);
+    bytes
+}
+
+#[test]
+fn fields_are_checked_behind_their_checksums() {
+    let bytes = small();
+    assert!(!is_refused(&with_checksums(bytes.clone())));
+    let mut version = bytes.clone();
+    version[8] = 2;
+    let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
+    assert!(error.to_string().contains("version 1, not 2"), "{error}");
+    // Every byte of the header and of the root, but for those that may have any
+    // value: the centre (48..72), the distance (72..80), the settings (80, 84),
+    // and of the root its box, origin and voxel, what was counted and the
+    // fit's error.
+    let header = (8..48).chain(86..91).chain(91..96).chain(104..120);
+    let root = (41..64).filter(|byte| !(41..43).contains(byte));
+    for place in header.chain(root.map(|byte| 128 + byte)) {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 0x40;
+        assert!(is_refused(&with_checksums(damaged)), "byte {place}");
+    }
+    // Any damage at all must not panic.
+    for place in 8..128 + 128 * 8 {
+        for flip in [0x01, 0x80, 0xff] {
+            let mut damaged = bytes.clone();
+            damaged[place] ^= flip;
+            let _ = is_refused(&with_checksums(damaged));
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Far voxels: build, file, view, command line.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+mod build;
+mod city;
+mod command;
+mod file;
+mod view;

@@ -1,0 +1,163 @@
+//! The view: culling, late answers, threads and batches never change a picture.
+
+use shiftvox::far::store::encode;
+use shiftvox::far::view::{FarViewer, Opacity, ViewError, ViewOptions};
+use shiftvox::far::{BuildOptions, FarFile};
+use shiftvox::graph::Silent;
+use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples};
+
+use super::city::{city, far, far_on_ground, light, on_threads, options, view};
+
+fn file() -> FarFile {
+    FarFile::from_bytes(&encode(&far(&options())).unwrap()).unwrap()
+}
+
+#[test]
+fn culling_and_late_answers_never_change_the_picture() {
+    let data = far_on_ground(&options());
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    let mut hidden = 0;
+    for opacity in [Opacity::None, Opacity::Scalar, Opacity::Six] {
+        let mut viewers: Vec<FarViewer<'_>> = (0..3).map(|_| FarViewer::new(&file)).collect();
+        for step in 0..8 {
+            // Before the wall twice, behind it, from above.
+            let (turn, height, voxel_px) = [
+                (0.0, 0.02, 1.0),
+                (0.0, 0.02, 2.0),
+                (180.0, 0.15, 1.0),
+                (0.0, 3.0, 0.1),
+            ][step % 4];
+            let step = step as f64;
+            let view = view(step * 4.0 - 12.0 + turn, height, 45.0 + 8.0 * step, 160);
+            let options = ViewOptions {
+                voxel_px,
+                opacity,
+                light: light(&view),
+                culling: false,
+                ..ViewOptions::default()
+            };
+            let (expected, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
+            // Viewers that remember, with answers sooner and later.
+            for (late, viewer) in [0, 1, 4].into_iter().zip(&mut viewers) {
+                let culled = ViewOptions {
+                    culling: true,
+                    late,
+                    ..options
+                };
+                let (picture, counts) = viewer.draw(&view, &culled).unwrap();
+                assert!(picture == expected, "{opacity:?}, step {step}, late {late}");
+                hidden += counts.hidden;
+                // Wrong memories: any third, and the ground alone.
+                let any = |node: usize| node % 3 == step as usize % 3;
+                let low = |node: usize| file.nodes()[node].high[1] < 0.0;
+                for is_low in [false, true] {
+                    let mut wrong = FarViewer::new(&file);
+                    wrong.remember(|node| if is_low { low(node) } else { any(node) });
+                    let (picture, _) = wrong.draw(&view, &culled).unwrap();
+                    assert!(
+                        picture == expected,
+                        "{opacity:?}, step {step}, wrong {is_low}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(hidden > 20, "{hidden} nodes were hidden");
+}
+
+#[test]
+fn threads_never_change_the_picture() {
+    let file = file();
+    let view = view(35.0, 0.4, 90.0, 200);
+    let draw = |threads| {
+        on_threads(threads, || {
+            FarViewer::new(&file)
+                .draw(&view, &ViewOptions::default())
+                .unwrap()
+        })
+    };
+    assert!(draw(1) == draw(2));
+}
+
+#[test]
+fn near_enough_it_is_the_triangles() {
+    let file = file();
+    let view = view(20.0, 0.3, 60.0, 200);
+    let options = ViewOptions {
+        voxel_px: 1e-6,
+        background: Some([10, 20, 30]),
+        ..ViewOptions::default()
+    };
+    let (picture, counts) = FarViewer::new(&file).draw(&view, &options).unwrap();
+    assert_eq!((counts.voxel_nodes, counts.opaque_voxels), (0, 0));
+    let expected = raster::draw(
+        &city(),
+        &view,
+        &RasterOptions {
+            samples: Samples::new(1, Pattern::Regular).unwrap(),
+            light: None,
+            background: options.background,
+        },
+        &Silent,
+    )
+    .unwrap();
+    // Colours are stored as bytes, and where two faces meet the order decides.
+    let differing = picture
+        .rgba
+        .iter()
+        .zip(&expected.rgba)
+        .filter(|(a, b)| a != b);
+    assert!(differing.count() < 40);
+    assert_eq!(picture.depth, expected.depth);
+}
+
+#[test]
+fn opacities_make_thin_parts_thin() {
+    let data = far(&BuildOptions {
+        rays: Some(1_000_000),
+        ..options()
+    });
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    let view = view(30.0, 0.5, 200.0, 200);
+    let reference = raster::draw(
+        &city(),
+        &view,
+        &RasterOptions {
+            samples: Samples::new(256, Pattern::Regular).unwrap(),
+            light: None,
+            background: None,
+        },
+        &Silent,
+    )
+    .unwrap();
+    let sum = |coverage: &[f32]| coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
+    let bias = |opacity| {
+        let options = ViewOptions {
+            voxel_px: 3.0,
+            opacity,
+            ..ViewOptions::default()
+        };
+        let (picture, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
+        sum(&picture.coverage) / sum(&reference.coverage) - 1.0
+    };
+    let (none, six) = (bias(Opacity::None), bias(Opacity::Six));
+    assert!(none > 0.1, "opaque voxels are bloated: {none}");
+    assert!(six.abs() < none / 2.0, "{six} {none}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let file = file();
+    let view = view(30.0, 0.5, 200.0, 64);
+    for voxel_px in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let options = ViewOptions {
+            voxel_px,
+            ..ViewOptions::default()
+        };
+        let refused = FarViewer::new(&file).draw(&view, &options);
+        assert!(matches!(refused, Err(ViewError::VoxelSize(_))));
+    }
+    let empty = raster::View { width: 0, ..view };
+    let refused = FarViewer::new(&file).draw(&empty, &ViewOptions::default());
+    assert!(matches!(refused, Err(ViewError::Raster(_))));
+}
