@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::json;
 
-use super::args::{Memory, SceneArgs};
+use super::args::{FarOpacityName, Memory, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::render::open;
@@ -32,7 +32,7 @@ pub struct ConvertArgs {
     /// Folder of the temporary files of --memory, about 22 bytes a voxel; else beside OUT
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
-    /// Of .far: rays of all nodes together [default: 12 for each voxel that triangles touch]
+    /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each that is seen]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub(super) rays: Option<u64>,
     /// Of .far: nodes with fewer triangles are leaves [default: 1000]
@@ -41,6 +41,9 @@ pub struct ConvertArgs {
     /// Of .far: voxels along a node's longest side [default: 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=255))]
     pub(super) grid: Option<u32>,
+    /// Of .far: what opacities are stored for [default: six]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub(super) far_opacity: Option<FarOpacityName>,
     #[command(flatten)]
     pub(super) scene: SceneArgs,
 }
@@ -59,9 +62,10 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return far::convert(args, console);
     }
-    if args.rays.is_some() || args.leaf_triangles.is_some() || args.grid.is_some() {
+    let settings = [args.rays.is_some(), args.leaf_triangles.is_some()];
+    if settings.contains(&true) || args.grid.is_some() || args.far_opacity.is_some() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles and --grid are for .far files",
+            "--rays, --leaf-triangles, --grid and --far-opacity are for .far files",
         ));
     }
     if let Some(memory) = args.memory {

@@ -18,14 +18,12 @@ use super::report::{self, grouped};
 use super::{outputs, scenes};
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::{is_far, write_to};
-use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewError, ViewOptions};
+use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::far::{BuildError, BuildOptions, FarError, FarFile, build};
-use crate::mesh::raster::{Light, View};
-use crate::picture::{self, AMBIENT, Background, KEY_LIGHT, Picture, Shading, store};
+use crate::lab::error::{mesh_light, mesh_view, picture_of_far};
+use crate::mesh::raster::View;
+use crate::picture::{self, Background, store};
 use crate::project::Camera;
-
-/// Share of the distance to the farthest corner below which nothing is drawn.
-const NEAR: f64 = 1e-6;
 
 impl From<FarError> for CliError {
     fn from(error: FarError) -> Self {
@@ -71,6 +69,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         rays: args.rays,
         leaf_triangles: args.leaf_triangles.unwrap_or(defaults.leaf_triangles),
         grid: args.grid.unwrap_or(defaults.grid),
+        opacity: opacity(args.far_opacity.unwrap_or_default()),
         ..defaults
     };
     let started = Instant::now();
@@ -343,7 +342,7 @@ pub(super) fn render_one(
     if args.print_camera && !console.json {
         console.data(camera_line(&camera))?;
     }
-    let view = view(&camera, &file)?;
+    let view = mesh_view(&camera, file.bounds()).map_err(CliError::usage)?;
     let options = options(args, &view);
     let mut viewer = FarViewer::new(&file);
     let mut times_ms = Vec::new();
@@ -355,7 +354,7 @@ pub(super) fn render_one(
         (drawn, counts) = viewer.draw(&view, &options)?;
         times_ms.push(milliseconds_since(started));
     }
-    let picture = as_picture(drawn);
+    let picture = picture_of_far(drawn);
     let hash = picture::hash(&picture);
     if args.hash && !console.json {
         console.data(if of > 1 {
@@ -439,63 +438,24 @@ fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
     Ok(())
 }
 
+fn opacity(name: FarOpacityName) -> Opacity {
+    match name {
+        FarOpacityName::None => Opacity::None,
+        FarOpacityName::Scalar => Opacity::Scalar,
+        FarOpacityName::Six => Opacity::Six,
+    }
+}
+
 fn options(args: &RenderArgs, view: &View) -> ViewOptions {
-    let key = KEY_LIGHT.normalize();
-    let light = Light {
-        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
-        ambient: AMBIENT,
-    };
     ViewOptions {
         voxel_px: args.engine.lod.unwrap_or(1.0),
-        opacity: match args.engine.far_opacity {
-            FarOpacityName::None => Opacity::None,
-            FarOpacityName::Scalar => Opacity::Scalar,
-            FarOpacityName::Six => Opacity::Six,
-        },
-        light: match args.picture.shading() {
-            Shading::Lambert => Some(light),
-            Shading::Flat => None,
-        },
+        opacity: opacity(args.engine.far_opacity),
+        light: mesh_light(view, args.picture.shading()),
         background: match args.picture.background.unwrap_or_default() {
             Background::None => None,
             Background::Color(color) => Some(color),
         },
         ..ViewOptions::default()
-    }
-}
-
-/// The camera as the viewer wants it.
-fn view(camera: &Camera, file: &FarFile) -> Result<View, CliError> {
-    let axes = camera.axes().map_err(CliError::usage)?;
-    let (low, high) = file.bounds();
-    let farthest = (camera.eye - low)
-        .abs()
-        .max((high - camera.eye).abs())
-        .length();
-    Ok(View {
-        eye: camera.eye,
-        right: axes.right,
-        up: axes.up,
-        forward: axes.forward,
-        focal_px: axes.focal_px,
-        width: camera.width,
-        height: camera.height,
-        near: farthest * NEAR,
-    })
-}
-
-/// As other engines' pictures, without normals and voxels.
-fn as_picture(drawn: FarPicture) -> Picture {
-    let pixels = drawn.rgba.len();
-    Picture {
-        width: drawn.width,
-        height: drawn.height,
-        rgba: drawn.rgba,
-        depth: drawn.depth,
-        normal: vec![[0.0; 3]; pixels],
-        voxel: vec![[0, 0, 0, -1]; pixels],
-        node: drawn.node,
-        records: None,
     }
 }
 

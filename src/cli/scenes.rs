@@ -1,5 +1,6 @@
 //! The only place of the command line that opens, makes and converts scenes.
 
+use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
@@ -13,8 +14,8 @@ use crate::graph::{
 use crate::mesh::{ColorSpace, LoadOptions, Mesh, MeshError};
 use crate::picture::store;
 use crate::scene::{
-    self, MeshOptions, MeshSummary, OpenError, OpenOptions, Opened, OutOfBounds, ReadOptions,
-    SceneError,
+    self, DETECT_BYTES, FileKind, MeshOptions, MeshSummary, OpenError, OpenOptions, Opened,
+    OutOfBounds, ReadOptions, SceneError, detect_with_length,
 };
 
 /// The scene that the demo draws: a tree, see `assets/ATTRIBUTION.md`.
@@ -74,6 +75,22 @@ pub(super) fn open(
     let started = Instant::now();
     let opened = scene::open(source, &options(args), progress)?;
     Ok(ready(opened, source, stem(source), args.mesh_up, started))
+}
+
+/// Whether a scene is a file of triangles, told by its content; a `.ply` by its faces.
+#[must_use]
+pub(super) fn is_mesh_file(source: &str) -> bool {
+    let mut beginning = Vec::new();
+    let read = std::fs::File::open(source).and_then(|file| {
+        let length = file.metadata()?.len();
+        file.take(DETECT_BYTES as u64).read_to_end(&mut beginning)?;
+        Ok(length)
+    });
+    match read.map(|length| detect_with_length(&beginning, length)) {
+        Ok(Some(FileKind::Ply)) => beginning.windows(12).any(|w| w == b"element face"),
+        Ok(Some(kind)) => kind.is_mesh(),
+        _ => false,
+    }
 }
 
 /// Reads a mesh for its triangles, and says which axis is up.

@@ -61,16 +61,27 @@ impl<const N: usize> Fit<N> {
         }
     }
 
-    /// Adds an observation.
-    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], value: &[f64; N]) {
+    /// Adds an observation of a weight.
+    pub(super) fn add(&mut self, shares: &[(usize, f64); 3], value: &[f64; N], weight: f64) {
         for &(i, share_i) in shares {
             for &(j, share_j) in shares {
-                self.matrix[i][j] += (share_i * share_j) as f32;
+                self.matrix[i][j] += (weight * share_i * share_j) as f32;
             }
             for (sum, &v) in self.right[i].iter_mut().zip(value) {
-                *sum += (share_i * v) as f32;
+                *sum += (weight * share_i * v) as f32;
             }
         }
+    }
+
+    /// The sum over all observations of their weight times the square of a
+    /// blend of six values.
+    pub(super) fn square_of(&self, values: &[f64; DIRECTIONS]) -> f64 {
+        let rows = self.matrix.iter().zip(values);
+        let row = |(row, value): (&[f32; DIRECTIONS], &f64)| {
+            let products = row.iter().zip(values).map(|(&m, v)| f64::from(m) * v);
+            value * products.sum::<f64>()
+        };
+        rows.map(row).sum()
     }
 
     /// The six values, each kept in `low..=high` and drawn to `prior` with the
@@ -120,6 +131,7 @@ mod tests {
         let truth = [0.1, 0.9, 0.3, 1.0, 0.0, 0.5];
         for blend in [Blend::Squares, Blend::Cosines] {
             let mut fit = Fit::<1>::new();
+            let mut square = 0.0;
             for i in 0..2000 {
                 let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 2000.0;
                 let around = f64::from(i) * 2.399_963_229_728_653;
@@ -127,8 +139,10 @@ mod tests {
                 let d = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
                 let shares = blend.shares(d);
                 let value = shares.iter().map(|&(k, share)| share * truth[k]).sum();
-                fit.add(&shares, &[value]);
+                fit.add(&shares, &[value], 2.0);
+                square += 2.0 * value * value;
             }
+            assert!((fit.square_of(&truth) - square).abs() < 1e-3 * square);
             let found = fit.solve(&[1.0], 1e-6, (0.0, 1.0));
             for k in 0..DIRECTIONS {
                 assert!(

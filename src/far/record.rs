@@ -27,6 +27,18 @@ pub enum OpacityKind {
     Six,
 }
 
+/// What opacities are used for: when a file is built, or when it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Opacity {
+    /// Every voxel is opaque: the method without anti-aliasing.
+    None,
+    /// One number a voxel: hits over hits and passes of all directions.
+    Scalar,
+    /// A number for each main direction, where they differ.
+    #[default]
+    Six,
+}
+
 /// The six lists of a node, in the order in which they are stored.
 pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Flat, OpacityKind::Opaque),
@@ -37,11 +49,14 @@ pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Complex, OpacityKind::Six),
 ];
 
-/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 1 or 6.
-pub const RECORD_BYTES: [usize; 6] = [11, 12, 17, 33, 34, 39];
+/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 1 or 4.
+pub const RECORD_BYTES: [usize; 6] = [11, 12, 15, 33, 34, 37];
 
-/// Bytes of the opacities in a voxel of each list.
-pub const OPACITY_BYTES: [usize; 6] = [0, 1, 6, 0, 1, 6];
+/// Bytes of the opacities in a voxel of each list: the scalar, and six of four bits.
+pub const OPACITY_BYTES: [usize; 6] = [0, 1, 4, 0, 1, 4];
+
+/// Steps of an opacity of a main direction: four bits, finer than tens of rays tell.
+const SIX_STEPS: f64 = 15.0;
 
 /// What a voxel looks like.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,7 +114,9 @@ pub struct Voxel {
     pub shader: Shader,
     /// Opacity seen from each main direction, 0 to 1.
     pub opacity: [f64; DIRECTIONS],
-    /// How that is stored.
+    /// Opacity over all directions, 0 to 1.
+    pub scalar: f64,
+    /// How they are stored.
     pub opacity_kind: OpacityKind,
 }
 
@@ -127,6 +144,23 @@ fn normal_of(bytes: &[u8]) -> DVec3 {
 fn opacity_byte(opacity: f64) -> u8 {
     // 0 to 255.
     (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
+}
+
+/// Six opacities in four bits each, lowest first, rounded up or down by lot, so
+/// that the mean over many voxels is kept: thin things do not vanish. The lot
+/// is drawn from the voxel's place.
+fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
+    let [x, y, z] = place.map(u64::from);
+    let mut bits = 0u32;
+    for (k, a) in opacity.iter().enumerate() {
+        let seed = (x << 24 | y << 16 | z << 8 | k as u64) + 1;
+        let lot = (seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
+        // 0 to 15.
+        let steps = (a.clamp(0.0, 1.0) * SIX_STEPS + lot).min(SIX_STEPS) as u32;
+        bits |= steps << (4 * k);
+    }
+    let [a, b, c, _] = bits.to_le_bytes();
+    [a, b, c]
 }
 
 impl Voxel {
@@ -160,8 +194,11 @@ impl Voxel {
         }
         match self.opacity_kind {
             OpacityKind::Opaque => {}
-            OpacityKind::Scalar => out.push(opacity_byte(self.opacity[0])),
-            OpacityKind::Six => out.extend(self.opacity.map(opacity_byte)),
+            OpacityKind::Scalar => out.push(opacity_byte(self.scalar)),
+            OpacityKind::Six => {
+                out.push(opacity_byte(self.scalar));
+                out.extend(six_bytes(&self.opacity, self.place));
+            }
         }
     }
 
@@ -185,22 +222,28 @@ impl Voxel {
                 (shader, 33)
             }
         };
+        let (scalar, opacity) = opacity_of(opacity_kind, &bytes[end..]);
         Self {
             place: [bytes[0], bytes[1], bytes[2]],
             shader,
-            opacity: opacity_of(opacity_kind, &bytes[end..]),
+            opacity,
+            scalar,
             opacity_kind,
         }
     }
 }
 
-/// The opacities at the end of a record.
-pub(super) fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> [f64; DIRECTIONS] {
-    let number = |byte: u8| f64::from(byte) / 255.0;
+/// The opacities at the end of a record: over all directions, and of each.
+fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> (f64, [f64; DIRECTIONS]) {
+    let scalar = |byte: u8| f64::from(byte) / 255.0;
     match kind {
-        OpacityKind::Opaque => [1.0; DIRECTIONS],
-        OpacityKind::Scalar => [number(bytes[0]); DIRECTIONS],
-        OpacityKind::Six => std::array::from_fn(|k| number(bytes[k])),
+        OpacityKind::Opaque => (1.0, [1.0; DIRECTIONS]),
+        OpacityKind::Scalar => (scalar(bytes[0]), [scalar(bytes[0]); DIRECTIONS]),
+        OpacityKind::Six => {
+            let steps = |k: usize| bytes[1 + k / 2] >> (4 * (k % 2)) & 15;
+            let six = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
+            (scalar(bytes[0]), six)
+        }
     }
 }
 
@@ -334,16 +377,17 @@ mod tests {
             },
         ];
         let opacities = [
-            (OpacityKind::Opaque, [1.0; 6]),
-            (OpacityKind::Scalar, [0.2; 6]),
-            (OpacityKind::Six, [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
+            (OpacityKind::Opaque, 1.0, [1.0; 6]),
+            (OpacityKind::Scalar, 0.2, [0.2; 6]),
+            (OpacityKind::Six, 0.6, [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
         ];
         for shader in shaders {
-            for (opacity_kind, opacity) in opacities {
+            for (opacity_kind, scalar, opacity) in opacities {
                 let voxel = Voxel {
                     place: [1, 2, 255],
                     shader,
                     opacity,
+                    scalar,
                     opacity_kind,
                 };
                 let mut bytes = Vec::new();
@@ -351,6 +395,21 @@ mod tests {
                 assert_eq!(bytes.len(), RECORD_BYTES[voxel.list()]);
                 assert_eq!(Voxel::read(voxel.list(), &bytes), voxel);
             }
+        }
+    }
+
+    #[test]
+    fn rounded_opacities_keep_their_mean() {
+        for opacity in [0.01, 0.3, 0.5, 0.97] {
+            let mut sum = 0.0;
+            for place in 0..4096u32 {
+                let place = [place % 16, place / 16 % 16, place / 256].map(|c| c as u8);
+                let [a, b, c] = six_bytes(&[opacity; DIRECTIONS], place);
+                let (_, six) = opacity_of(OpacityKind::Six, &[0, a, b, c]);
+                assert!(six.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
+                sum += six.iter().sum::<f64>() / DIRECTIONS as f64;
+            }
+            assert!((sum / 4096.0 - opacity).abs() < 2e-3, "{opacity}: {sum}");
         }
     }
 }

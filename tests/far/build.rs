@@ -108,7 +108,7 @@ fn shown(view: &View, voxel_px: f64) -> ViewOptions {
 #[test]
 fn finer_levels_have_less_error() {
     let data = far(&BuildOptions {
-        rays: Some(2_000_000),
+        rays: Some(800_000),
         ..options()
     });
     let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
@@ -126,7 +126,7 @@ fn finer_levels_have_less_error() {
 #[test]
 fn more_rays_never_raise_the_error_beyond_noise() {
     let view = view(30.0, 0.6, 150.0, 192);
-    let errors: Vec<f64> = [30_000, 120_000, 480_000, 1_920_000]
+    let errors: Vec<f64> = [15_000, 60_000, 240_000, 960_000]
         .into_iter()
         .map(|rays| {
             let data = far(&BuildOptions {

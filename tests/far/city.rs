@@ -78,6 +78,7 @@ fn blocks(has_ground: bool) -> Mesh {
 /// Small nodes, used from near.
 pub(crate) fn options() -> BuildOptions {
     BuildOptions {
+        rays: Some(150_000),
         leaf_triangles: 60,
         grid: 24,
         distance_voxels: 40.0,

@@ -93,9 +93,9 @@ fn fields_are_checked_behind_their_checksums() {
     let bytes = small();
     assert!(!is_refused(&with_checksums(bytes.clone())));
     let mut version = bytes.clone();
-    version[8] = 2;
+    version[8] = 3;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
-    assert!(error.to_string().contains("version 1, not 2"), "{error}");
+    assert!(error.to_string().contains("version 2, not 3"), "{error}");
     // Every byte of the header and of the root, but for those that may have any
     // value: the centre (48..72), the distance (72..80), the settings (80, 84),
     // and of the root its box, origin and voxel, what was counted and the

@@ -114,7 +114,7 @@ fn near_enough_it_is_the_triangles() {
 #[test]
 fn opacities_make_thin_parts_thin() {
     let data = far(&BuildOptions {
-        rays: Some(1_000_000),
+        rays: Some(500_000),
         ..options()
     });
     let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();

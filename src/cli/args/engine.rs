@@ -71,7 +71,7 @@ pub enum Isa {
 pub enum FarOpacityName {
     /// Every voxel is opaque: without anti-aliasing.
     None,
-    /// One number a voxel: the mean of its six.
+    /// One number a voxel: hits over rays, of all directions.
     Scalar,
     /// A number for each main direction.
     #[default]

@@ -6,6 +6,7 @@ use serde_json::json;
 use super::args::{ExportArgs, check_sizes};
 use super::context::Context;
 use super::export::{self, Results};
+use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use super::subjects;
 use crate::cli::args::{
@@ -42,6 +43,8 @@ pub(super) struct ErrorArgs {
     scenes: Vec<String>,
     #[command(flatten)]
     select: SelectArgs,
+    #[command(flatten)]
+    meshes: MeshMethodArgs,
     /// Pixels: 512 for a square, or 640x360 [default: 256]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
@@ -273,11 +276,20 @@ pub(super) fn run(
         look: Look::default(),
     };
     let options = args.select.options();
-    let mut references = experiment::References::default();
     let mut scenes = Vec::new();
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
-        let mut methods = methods(&args.select, &options, &subject, plan.look);
+        let mesh = args.meshes.open(name, &args.scene, console)?;
+        let mut methods = if args.meshes.has_voxels(mesh.is_some()) {
+            methods(&args.select, &options, &subject, plan.look)
+        } else {
+            Vec::new()
+        };
+        let mut references = experiment::References::default();
+        if let Some(mesh) = &mesh {
+            methods.extend(args.meshes.methods(mesh, plan.look));
+            references = experiment::References::of_triangles(&mesh.mesh);
+        }
         let progress = console.progress();
         let measured =
             experiment::measure(&subject, &mut methods, &plan, &mut references, progress)?;
@@ -296,7 +308,7 @@ pub(super) fn check_reference_size(size: (u32, u32)) -> Result<(), CliError> {
     Err(CliError::new(Kind::Limit, message).advise(format!("the most is {MOST_SIDE} a side")))
 }
 
-/// Everyone who draws. Another renderer joins here.
+/// The image-order engines with all settings. Renderers of meshes join in `meshes`.
 fn methods<'s>(
     select: &SelectArgs,
     options: &[SetupOptions],
@@ -411,7 +423,7 @@ fn page(scenes: &[SceneErrors], preface: &str) -> Result<Page, CliError> {
          exact rays through the same points; elsewhere: samples that show a voxel which neither is nor holds \
          the right one; coarser: a voxel that holds it, by level of detail. The reference has many exact rays \
          a pixel, so one sample a pixel cannot come near it, however exact. Bias: area covered too much, \
-         thin: on pixels of things thinner than a pixel. Beaten by: a method with no more operations, no more \
+         thin: on pixels of things thinner than a pixel. A mesh's reference has 256 samples of its triangles a pixel. Beaten by: a method with no more operations, no more \
          wrong coverage and no greater error, and less of one.",
     );
     for scene in scenes {

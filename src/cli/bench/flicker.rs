@@ -6,6 +6,7 @@ use serde_json::json;
 use super::args::ExportArgs;
 use super::error::{SCENES, check_reference_size};
 use super::export::{self, Results};
+use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs};
 use super::subjects;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
@@ -52,6 +53,8 @@ pub(super) struct FlickerArgs {
     #[arg(long, value_name = "N", default_value = "8",
           value_parser = clap::builder::PossibleValuesParser::new(["2", "4", "8", "16"]))]
     reference_samples: String,
+    #[command(flatten)]
+    meshes: MeshMethodArgs,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -128,9 +131,18 @@ pub(super) fn run(
         let method = |options| -> Box<dyn Method + '_> {
             Box::new(VoxelMethod::new(&subject.graph, engine, options, plan.look))
         };
-        let mut methods: Vec<_> = options().into_iter().map(method).collect();
+        let mesh = args.meshes.open(name, &args.scene, console)?;
+        let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
+            options().into_iter().map(method).collect()
+        } else {
+            Vec::new()
+        };
         // The first frame is the same for all motions.
         let mut references = References::default();
+        if let Some(mesh) = &mesh {
+            methods.extend(args.meshes.methods(mesh, plan.look));
+            references = References::of_triangles(&mesh.mesh);
+        }
         for motion in args.motions() {
             films.push(experiment::film(
                 &subject,

@@ -8,6 +8,7 @@ mod engines;
 mod error;
 pub(super) mod export;
 mod flicker;
+mod meshes;
 mod picture_export;
 mod scaling;
 pub(super) mod subjects;

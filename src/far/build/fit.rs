@@ -2,9 +2,10 @@
 
 use glam::DVec3;
 
+use super::count::Counted;
 use super::sample::{Look, Seen, main_normal};
 use crate::far::blend::{Blend, DIRECTIONS, Fit};
-use crate::far::record::{OpacityKind, Shader, Voxel};
+use crate::far::record::{Opacity, OpacityKind, Shader, Voxel};
 
 /// Weight of a normal's error beside a colour's: both are 0 to 1.
 const NORMAL_WEIGHT: f64 = 0.25;
@@ -14,10 +15,18 @@ const GOOD_ENOUGH: f64 = 5e-4;
 const WORTH_IT: f64 = 0.7;
 /// Fewer looks do not determine a complex shader.
 const LEAST_LOOKS: usize = 6;
-/// From this opacity on a voxel is opaque.
-const OPAQUE: f64 = 0.95;
-/// Opacities within this are one number.
-const ALIKE: f64 = 0.08;
+/// A voxel is stored as opaque if its opacity is this near 1, root of the mean
+/// square over the directions that rays crossed it from.
+const OPAQUE_WITHIN: f64 = 0.1;
+/// Six opacities are stored as one number if they are this near it.
+const ALIKE_WITHIN: f64 = 0.1;
+/// How much nearer six numbers come to hits and passes than one does by chance
+/// alone: this many binomial variances over the number of rays (the mean of chi
+/// square with 5 degrees of freedom).
+const NOISE: f64 = 5.0;
+/// Hits and passes that are added before the variance is taken, so that a few
+/// rays which all hit do not prove that all would.
+const DOUBT: f64 = 0.5;
 
 /// A fitted voxel, and the sum over its looks of the square error.
 pub(super) struct Fitted {
@@ -26,7 +35,7 @@ pub(super) struct Fitted {
 }
 
 /// Fits a voxel that was seen at least once.
-pub(super) fn fit(seen: &Seen, blend: Blend) -> Fitted {
+pub(super) fn fit(seen: &Seen, blend: Blend, use_of_opacity: Opacity) -> Fitted {
     let looks = &seen.looks;
     let count = looks.len().max(1) as f64;
     let flat = flat(looks);
@@ -39,29 +48,38 @@ pub(super) fn fit(seen: &Seen, blend: Blend) -> Fitted {
             chosen = (complex, complex_error);
         }
     }
-    let (opacity_kind, opacity) = classify(seen.opacity());
+    let (opacity_kind, opacity) = classify(&seen.counted, use_of_opacity);
+    let scalar = match opacity_kind {
+        OpacityKind::Opaque => 1.0,
+        OpacityKind::Scalar | OpacityKind::Six => seen.counted.scalar(),
+    };
     Fitted {
         voxel: Voxel {
             place: seen.place,
             shader: chosen.0,
             opacity,
+            scalar,
             opacity_kind,
         },
         square_error: chosen.1 * count,
     }
 }
 
-fn classify(opacity: [f64; DIRECTIONS]) -> (OpacityKind, [f64; DIRECTIONS]) {
-    let least = opacity.iter().fold(1.0, |m: f64, &a| m.min(a));
-    let most = opacity.iter().fold(0.0, |m: f64, &a| m.max(a));
-    if least >= OPAQUE {
+/// The least that says what rays found, within tolerance and noise.
+fn classify(counted: &Counted, most: Opacity) -> (OpacityKind, [f64; DIRECTIONS]) {
+    let rays = counted.independent();
+    let (six, scalar) = (counted.six(), counted.scalar());
+    let likely = (scalar * rays + DOUBT) / (rays + 2.0 * DOUBT);
+    let noise = NOISE * likely * (1.0 - likely) / rays.max(1.0);
+    let is_opaque = counted.square_from(&six, 1.0) <= OPAQUE_WITHIN * OPAQUE_WITHIN + noise;
+    if most == Opacity::None || is_opaque {
         return (OpacityKind::Opaque, [1.0; DIRECTIONS]);
     }
-    if most - least <= ALIKE {
-        let mean = opacity.iter().sum::<f64>() / DIRECTIONS as f64;
-        return (OpacityKind::Scalar, [mean; DIRECTIONS]);
+    let is_alike = counted.square_from(&six, scalar) <= ALIKE_WITHIN * ALIKE_WITHIN + noise;
+    if most == Opacity::Scalar || is_alike {
+        return (OpacityKind::Scalar, [scalar; DIRECTIONS]);
     }
-    (OpacityKind::Six, opacity)
+    (OpacityKind::Six, six)
 }
 
 fn flat(looks: &[Look]) -> Shader {
@@ -90,7 +108,7 @@ fn complex(looks: &[Look], blend: Blend) -> Shader {
     for look in looks {
         let (c, n) = (look.color, look.normal);
         let value = [c.x, c.y, c.z, n.x, n.y, n.z];
-        fit.add(&blend.shares(look.towards_eye), &value);
+        fit.add(&blend.shares(look.towards_eye), &value, 1.0);
         for (mean, value) in mean.iter_mut().zip(value) {
             *mean += value / looks.len() as f64;
         }
@@ -124,7 +142,8 @@ fn error(shader: &Shader, looks: &[Look], blend: Blend) -> f64 {
         .map(|look| {
             let (normal, color) = shader.seen_from(look.towards_eye, blend);
             let of_color = (color - look.color).length_squared() / 3.0;
-            let of_normal = (1.0 - normal.dot(look.normal)) / 2.0;
+            // Rounding must not make it negative.
+            let of_normal = (1.0 - normal.dot(look.normal)).max(0.0) / 2.0;
             of_color + NORMAL_WEIGHT * of_normal
         })
         .sum()
@@ -179,5 +198,64 @@ mod tests {
             let of_complex = error(&complex(&ball, blend), &ball, blend);
             assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
         }
+    }
+
+    /// Counts of evenly spread directions, of which a share of each hits.
+    fn counted(rays: u32, share: impl Fn(DVec3) -> f64) -> Counted {
+        let mut counted = Counted::default();
+        let mut chance = crate::far::build::sample::Chance::new(5);
+        let looks = looks(|eye| (eye, eye));
+        for ray in 0..rays as usize {
+            // The first few are spread, too.
+            let look = &looks[ray * 191 % looks.len()];
+            let is_hit = chance.unit() < share(look.towards_eye);
+            let shares = Blend::Cosines.shares(look.towards_eye);
+            counted.add(&shares, is_hit, 1.0);
+        }
+        counted
+    }
+
+    #[test]
+    fn six_opacities_are_stored_where_they_differ_by_more_than_chance() {
+        let kind = |rays, share: fn(DVec3) -> f64| {
+            let counted = counted(rays, share);
+            classify(&counted, Opacity::Six).0
+        };
+        let solid = |_: DVec3| 1.0;
+        let veil = |_: DVec3| 0.4;
+        // A sheet across y: all from above, little from the sides.
+        let sheet = |eye: DVec3| 0.2 + 0.8 * eye.y.abs();
+        for rays in [30, 100, 1000, 100_000] {
+            assert_eq!(kind(rays, solid), OpacityKind::Opaque, "{rays}");
+            assert_eq!(kind(rays, veil), OpacityKind::Scalar, "{rays}");
+        }
+        for rays in [100, 1000, 100_000] {
+            assert_eq!(kind(rays, sheet), OpacityKind::Six, "{rays}");
+        }
+        // What is asked for is the most that is stored.
+        let sheet = counted(1000, sheet);
+        assert_eq!(classify(&sheet, Opacity::Scalar).0, OpacityKind::Scalar);
+        assert_eq!(classify(&sheet, Opacity::None).0, OpacityKind::Opaque);
+        assert_eq!(
+            classify(&counted(0, solid), Opacity::Six).0,
+            OpacityKind::Opaque
+        );
+    }
+
+    #[test]
+    fn the_scalar_is_hits_over_hits_and_passes() {
+        // Half of what comes from +y hits, nothing of the rest: not the mean of six.
+        let mut counted = Counted::default();
+        for (eye, is_hit, weight) in [
+            (DVec3::Y, true, 1.0),
+            (DVec3::Y, false, 1.0),
+            (DVec3::X, false, 0.5),
+            (DVec3::X, false, 0.5),
+            (DVec3::Z, false, 1.0),
+        ] {
+            counted.add(&Blend::Cosines.shares(eye), is_hit, weight);
+        }
+        assert!((counted.scalar() - 0.25).abs() < 1e-12);
+        assert!((counted.independent() - 16.0 / 3.5).abs() < 1e-9);
     }
 }

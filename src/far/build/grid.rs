@@ -1,7 +1,6 @@
-//! The uniform grid of a node: which voxels there are, which a triangle
-//! touches, which a ray crosses.
+//! The uniform grid of a node: which voxels there are, which a ray crosses.
 
-use glam::{DVec3, IVec3};
+use glam::DVec3;
 
 /// Cubes from `origin`, as many along each axis as `cells` says (1 to 255).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,27 +66,6 @@ impl Grid {
     /// In world units, from voxels.
     pub(super) fn world(&self, local: DVec3) -> DVec3 {
         self.origin + local * self.voxel
-    }
-
-    /// Calls back with the voxels that a triangle touches, and some that its box and its plane touch.
-    pub(super) fn touched(&self, corners: &[DVec3; 3], mut visit: impl FnMut(usize)) {
-        let [a, b, c] = corners.map(|p| self.local(p));
-        let most = IVec3::from_array(self.cells.map(|n| i32::from(n) - 1));
-        let low = a.min(b).min(c).floor().as_ivec3().clamp(IVec3::ZERO, most);
-        let high = a.max(b).max(c).floor().as_ivec3().clamp(IVec3::ZERO, most);
-        let normal = (b - a).cross(c - a);
-        let reach = normal.abs().element_sum() * (0.5 + 1e-9);
-        for z in low.z..=high.z {
-            for y in low.y..=high.y {
-                for x in low.x..=high.x {
-                    let middle = IVec3::new(x, y, z).as_dvec3() + DVec3::splat(0.5);
-                    if (middle - a).dot(normal).abs() <= reach {
-                        // Within the cells, so within a byte.
-                        visit(self.number([x as u8, y as u8, z as u8]));
-                    }
-                }
-            }
-        }
     }
 
     /// The voxels along a ray, with the distances (in voxels) at which it enters and leaves each.

@@ -4,10 +4,10 @@ use glam::DVec3;
 
 use super::grid::Grid;
 use super::rays::Occluders;
-use super::sample::{Sampled, Seen, Target};
+use super::sample::{MOST_LOOKS, Rays, Sampled, Seen, Target};
 use super::{fit, look_at};
 use crate::far::blend::Blend;
-use crate::far::record::OpacityKind;
+use crate::far::record::{Opacity, OpacityKind};
 use crate::mesh::{Mesh, MeshBuilder, Surface};
 
 /// A mesh of boxes.
@@ -57,14 +57,13 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         distance: 64.0,
         opacity_blend,
     };
-    let touched = target.touched(corners);
     let plane = |i: usize| {
         let [a, b, c] = corners(i);
         (b - a).cross(c - a).normalize()
     };
     let look =
         |i: usize, point: DVec3, eye: DVec3| look_at(&mesh.triangle(i), point, eye, plane(i));
-    target.sample(&touched, rays, 7, look, plane)
+    target.sample(Rays::InAll(rays), u32::MAX, 7, corners, look, plane)
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
@@ -89,10 +88,10 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
         let [x, y, _] = seen.place;
         // The rim's voxels are filled in part.
         if (1..7).contains(&x) && (1..7).contains(&y) {
-            let fitted = fit::fit(seen, Blend::Squares);
+            let fitted = fit::fit(seen, Blend::Squares, Opacity::Six);
             inner += 1;
             opaque += u32::from(fitted.voxel.opacity_kind == OpacityKind::Opaque);
-            let opacity = seen.opacity();
+            let opacity = seen.counted.six();
             assert!(
                 opacity.iter().all(|&a| a > 0.98),
                 "{:?} {opacity:?}",
@@ -108,7 +107,7 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
 fn a_voxel_whose_lower_half_is_solid() {
     let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
     let sampled = all(&half, unit([1, 1, 1]), 60_000);
-    let opacity = at(&sampled, [0, 0, 0]).opacity();
+    let opacity = at(&sampled, [0, 0, 0]).counted.six();
     for (k, expected) in [0.5, 0.5, 1.0, 1.0, 0.5, 0.5].into_iter().enumerate() {
         assert!((opacity[k] - expected).abs() < 0.02, "{k}: {opacity:?}");
     }
@@ -118,7 +117,9 @@ fn a_voxel_whose_lower_half_is_solid() {
 fn cosines_blend_a_box_exactly_and_their_squares_do_not() {
     let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
     let error = |blend: Blend| {
-        let opacity = at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3]).opacity();
+        let opacity = at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3])
+            .counted
+            .six();
         let mut worst = 0.0f64;
         for degrees in 0..=90 {
             let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
@@ -153,7 +154,8 @@ fn a_fan_of_wires_has_analytic_coverage() {
         let width = 0.1 + 0.1 * f64::from(i);
         let rows: Vec<&Seen> = (2..6).map(|z| at(&sampled, [2 * i, 0, z])).collect();
         for k in [2, 3] {
-            let mean = rows.iter().map(|seen| seen.opacity()[k]).sum::<f64>() / rows.len() as f64;
+            let mean =
+                rows.iter().map(|seen| seen.counted.six()[k]).sum::<f64>() / rows.len() as f64;
             assert!(
                 (mean - width).abs() < 0.05,
                 "width {width}, direction {k}: {mean}"
@@ -177,7 +179,11 @@ fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
         Blend::Cosines,
     );
     assert_eq!((hidden.seen.len(), hidden.hits), (0, 0));
-    assert_eq!(hidden.rays, 2000, "the second half has nothing to aim at");
+    assert_eq!(
+        hidden.rays,
+        8 * MOST_LOOKS,
+        "all look and there is nothing to probe"
+    );
     let both = all(&boxes(&[core, shell]), unit([8; 3]), 20_000);
     assert!(
         both.seen
@@ -207,7 +213,7 @@ fn a_thin_floor_has_no_holes() {
     for seen in &sampled.seen {
         let [x, _, z] = seen.place;
         if (1..7).contains(&x) && (1..7).contains(&z) {
-            let opacity = seen.opacity();
+            let opacity = seen.counted.six();
             // A corner of the floor in a voxel is told from a thin thing.
             assert!(
                 opacity[2] > 0.9 && opacity[3] > 0.9,

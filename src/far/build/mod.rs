@@ -3,11 +3,13 @@
 //! The same triangles and options give the same bytes on any number of
 //! threads: a node's rays depend on its number and on nothing else.
 
+mod count;
 mod fit;
 mod grid;
 mod rays;
 mod sample;
 mod split;
+mod touch;
 
 #[cfg(test)]
 mod known;
@@ -20,17 +22,18 @@ pub use grid::Grid;
 
 use super::FarData;
 use super::blend::Blend;
-use super::record::{LeafTriangle, Node, triangle_bytes};
+use super::record::{LeafTriangle, Node, Opacity, triangle_bytes};
 use crate::graph::{PackedNormal, Progress};
 use crate::mesh::{Surface, barycentric, linear_to_srgb};
 use rays::Occluders;
-use sample::{Look, Target};
+use sample::{Look, Rays, Target};
 use split::{Branch, split};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// Rays of all nodes together; `None`: [`RAYS_PER_VOXEL`] for each voxel that triangles touch.
+    /// Rays of all nodes together; `None`: as many as look for what is seen, and
+    /// [`RAYS_PER_VOXEL`] for each voxel that is.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
     pub leaf_triangles: u32,
@@ -39,16 +42,18 @@ pub struct BuildOptions {
     /// Least distance from which a node is used, in its voxels: where the eye
     /// may be and what may hide the node follow from it.
     pub distance_voxels: f64,
+    /// What opacities are stored for: of `Six`, those that differ; of `None`, none.
+    pub opacity: Opacity,
     /// How opacities of main directions are blended.
     pub opacity_blend: Blend,
     /// How normals and materials of main directions are blended.
     pub shader_blend: Blend,
 }
 
-/// Rays for each voxel that triangles touch, where no number of rays is given.
-pub const RAYS_PER_VOXEL: u64 = 12;
+/// Rays for each voxel that is kept, where no number of rays is given.
+pub const RAYS_PER_VOXEL: u32 = 24;
 /// Most rays of a node: what its memory is kept to.
-const MOST_RAYS: u64 = 1 << 22;
+const MOST_RAYS: u32 = 1 << 22;
 
 impl Default for BuildOptions {
     fn default() -> Self {
@@ -57,6 +62,7 @@ impl Default for BuildOptions {
             leaf_triangles: 1000,
             grid: 64,
             distance_voxels: 256.0,
+            opacity: Opacity::Six,
             opacity_blend: Blend::Cosines,
             shader_blend: Blend::Squares,
         }
@@ -105,20 +111,26 @@ pub fn build<S: Surface + ?Sized>(
         distance: options.distance_voxels,
         opacity_blend: options.opacity_blend,
     };
-    progress.begin("find voxels", branches.len() as u64);
-    let touched: Vec<u32> = branches
-        .par_iter()
-        .map(|branch| {
-            progress.advance(1);
-            match branch.children {
-                None => 0,
-                Some(_) => target(branch).touched(corners).len() as u32,
-            }
-        })
-        .collect();
-    progress.end();
-    let rays = share_rays(&touched, options.rays);
-    progress.begin("shoot rays", rays.iter().map(|&n| u64::from(n)).sum());
+    let rays = match options.rays {
+        None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
+        Some(rays) => {
+            progress.begin("find voxels", order.len() as u64);
+            let touched: Vec<u32> = branches
+                .par_iter()
+                .map(|branch| {
+                    if branch.children.is_none() {
+                        progress.advance(branch.count as u64);
+                        return 0;
+                    }
+                    let own = branch.first..branch.first + branch.count;
+                    touch::count(&target(branch).grid, own.map(corners))
+                })
+                .collect();
+            progress.end();
+            share_rays(&touched, rays)
+        }
+    };
+    progress.begin("shoot rays", order.len() as u64);
     let plane = |place: usize| {
         let [a, b, c] = corners(place);
         (b - a).cross(c - a).normalize_or(DVec3::Z)
@@ -134,14 +146,14 @@ pub fn build<S: Surface + ?Sized>(
         .map(|(number, branch)| {
             let mut node = outline(branch, centre);
             if branch.children.is_none() {
+                // Every triangle is in one leaf: progress is told by these.
+                progress.advance(branch.count as u64);
                 return (node, Vec::new());
             }
             let target = target(branch);
-            let touched = target.touched(corners);
-            let sampled = target.sample(&touched, rays[number], number as u64, look, plane);
-            let voxels = keep(&mut node, &target.grid, &sampled, options.shader_blend);
-            node.touched = touched.len() as u32;
-            progress.advance(u64::from(rays[number]));
+            let seed = number as u64;
+            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, look, plane);
+            let voxels = keep(&mut node, &target.grid, &sampled, options);
             (node, voxels)
         })
         .collect();
@@ -190,19 +202,16 @@ fn centre<S: Surface + ?Sized>(surface: &S) -> Result<DVec3, BuildError> {
 }
 
 /// Rays of each node, in proportion to the voxels that its triangles touch.
-fn share_rays(touched: &[u32], rays: Option<u64>) -> Vec<u32> {
+fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
     let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
     touched
         .iter()
         .map(|&n| {
-            let n = u64::from(n);
-            let share = match rays {
-                None => n * RAYS_PER_VOXEL,
-                // No overflow: 32 bits by 64.
-                Some(rays) => (u128::from(rays) * u128::from(n) / u128::from(all.max(1))) as u64,
-            };
+            // No overflow: 64 bits by 32.
+            let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
             // A node with triangles gets a ray at least.
-            share.clamp(u64::from(n > 0), MOST_RAYS) as u32
+            let share = share.clamp(u128::from(n > 0), u128::from(MOST_RAYS));
+            Rays::InAll(share as u32)
         })
         .collect()
 }
@@ -250,22 +259,28 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
 }
 
 /// Fits the voxels that were seen; gives their records, list by list.
-fn keep(node: &mut Node, grid: &Grid, sampled: &sample::Sampled, blend: Blend) -> Vec<u8> {
+fn keep(
+    node: &mut Node,
+    grid: &Grid,
+    sampled: &sample::Sampled,
+    options: &BuildOptions,
+) -> Vec<u8> {
     let mut lists: [Vec<u8>; 6] = Default::default();
     let mut square_error = 0.0;
     let mut looks = 0;
     for seen in &sampled.seen {
-        let fitted = fit::fit(seen, blend);
+        let fitted = fit::fit(seen, options.shader_blend, options.opacity);
         let list = fitted.voxel.list();
         fitted.voxel.write(&mut lists[list]);
         node.counts[list] += 1;
         square_error += fitted.square_error;
         looks += seen.looks.len();
-        node.crossings = node.crossings.saturating_add(seen.crossings());
+        node.crossings = node.crossings.saturating_add(seen.counted.crossings);
     }
     node.origin = grid.origin.as_vec3().to_array();
     node.voxel = grid.voxel as f32;
     node.cells = grid.cells;
+    node.touched = sampled.touched;
     node.rays = sampled.rays;
     node.hits = sampled.hits;
     node.error = libm::sqrt(square_error / f64::from(looks.max(1) as u32)) as f32;

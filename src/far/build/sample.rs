@@ -1,26 +1,26 @@
-//! Rays at a node: which of its voxels are seen, what of them, and how many rays pass.
+//! Rays at a node: which of its voxels are seen, and what of them.
 //!
-//! A ray is aimed at a random point of the outline of a voxel, from a random
-//! direction, and begins on the surface S, all points of which are `distance`
-//! voxels from the grid. Everything between S and the voxel hides it. The first
-//! half of the rays is aimed at all voxels that triangles touch, the second at
-//! those that the first half saw. Every voxel that a ray crosses before its end
-//! counts it.
+//! First *looks* are aimed at points of what is in each voxel, from random
+//! directions, until one gets there: a voxel that none reaches is dropped.
+//! Then *probes* are aimed at random points of the outlines of the voxels that
+//! were seen, from random directions: what share of them ends in a voxel is
+//! its opacity, which `count` finds. Rays begin on the surface S, all points
+//! of which are `distance` voxels from the grid; everything from there on hides.
 
 use std::ops::Range;
 
 use glam::DVec3;
 
+use super::count::Counted;
 use super::grid::Grid;
 use super::rays::Occluders;
-use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use super::touch::{POINTS, Touched, touched};
+use crate::far::blend::Blend;
 
-/// Steps of the search for S along a ray, each halving what is left.
-const STEPS_TO_S: u32 = 24;
-/// Least cosine between normals of one object.
-const ONE_OBJECT: f64 = 0.9;
-/// How far behind a voxel the same object must go on, voxels along the ray.
-const GOES_ON: f64 = 1.8;
+/// Steps of the search for S along a ray; it is nearly straight after the first.
+const STEPS_TO_S: u32 = 3;
+/// Most looks at a voxel that none reached yet.
+pub(super) const MOST_LOOKS: u32 = 24;
 
 /// What a ray saw at its end.
 #[derive(Debug, Clone, Copy)]
@@ -38,24 +38,7 @@ pub(super) struct Look {
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
     pub(super) looks: Vec<Look>,
-    /// Rays that crossed it without an end in it, but for those that met the same object behind.
-    pub(super) passes: u32,
-    /// Rays that met the same object just behind it.
-    pub(super) went_on: u32,
-    opacity: Fit<1>,
-}
-
-impl Seen {
-    /// Opacity seen from each main direction: what makes the blend fit hits and
-    /// passes best; 1 where there were none.
-    pub(super) fn opacity(&self) -> [f64; DIRECTIONS] {
-        self.opacity.solve(&[1.0], 0.05, (0.0, 1.0)).map(|v| v[0])
-    }
-
-    /// Rays through it.
-    pub(super) fn crossings(&self) -> u32 {
-        self.looks.len() as u32 + self.passes + self.went_on
-    }
+    pub(super) counted: Counted,
 }
 
 /// What the rays of a node found.
@@ -63,6 +46,8 @@ impl Seen {
 pub(super) struct Sampled {
     /// In the order of the grid.
     pub(super) seen: Vec<Seen>,
+    /// Voxels that triangles touch, seen or not.
+    pub(super) touched: u32,
     pub(super) rays: u32,
     pub(super) hits: u32,
 }
@@ -78,14 +63,23 @@ pub(super) struct Target<'t> {
     pub(super) opacity_blend: Blend,
 }
 
+/// How many rays a node gets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Rays {
+    /// So many probes for each voxel that is seen.
+    PerVoxel(u32),
+    /// So many in all, of which at most half look.
+    InAll(u32),
+}
+
 /// A ray that ended, in voxels of the grid.
-struct Shot {
-    from: DVec3,
-    direction: DVec3,
+pub(super) struct Shot {
+    pub(super) from: DVec3,
+    pub(super) direction: DVec3,
     /// Where it ends along its direction; infinite where it meets nothing.
-    end: f64,
+    pub(super) end: f64,
     /// The triangle that it meets.
-    triangle: usize,
+    pub(super) triangle: usize,
 }
 
 /// Chance from a seed: SplitMix64.
@@ -97,7 +91,7 @@ impl Chance {
     }
 
     /// 0 to 1, without 1.
-    fn unit(&mut self) -> f64 {
+    pub(super) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
@@ -106,38 +100,33 @@ impl Chance {
 }
 
 impl Target<'_> {
-    /// Numbers of the voxels that the node's triangles touch, in order.
-    pub(super) fn touched(&self, corners: impl Fn(usize) -> [DVec3; 3]) -> Vec<u32> {
-        let mut is_touched = vec![false; self.grid.len()];
-        for triangle in self.own.clone() {
-            self.grid
-                .touched(&corners(triangle), |number| is_touched[number] = true);
-        }
-        numbers(&is_touched)
-    }
-
-    /// Shoots so many rays. `look` says normal and colour of a triangle at a point.
+    /// Shoots rays. `look` says normal and colour of a triangle at a point,
+    /// `plane` a triangle's unit normal; at most `most` rays are shot.
     pub(super) fn sample(
         &self,
-        touched: &[u32],
-        rays: u32,
+        rays: Rays,
+        most: u32,
         seed: u64,
+        corners: impl Fn(usize) -> [DVec3; 3],
         look: impl Fn(usize, DVec3, DVec3) -> Look,
         plane: impl Fn(usize) -> DVec3,
     ) -> Sampled {
         let mut chance = Chance::new(seed);
+        let touched = touched(&self.grid, self.own.clone().map(corners), &mut chance);
         let mut is_seen = vec![false; self.grid.len()];
-        let mut shots = Vec::with_capacity(rays as usize);
-        let first = rays.div_ceil(2);
-        self.shoot(touched, first, &mut chance, &mut shots, &mut is_seen);
-        let visible = numbers(&is_seen);
-        self.shoot(
-            &visible,
-            rays - first,
-            &mut chance,
-            &mut shots,
-            &mut is_seen,
-        );
+        let most_looks = match rays {
+            Rays::PerVoxel(_) => most / 2,
+            Rays::InAll(rays) => rays.min(most).div_ceil(2),
+        };
+        let mut shots = self.look(&touched, most_looks, &mut chance, &mut is_seen);
+        let looks = shots.len();
+        let aims = numbers(&is_seen);
+        let left = most - looks as u32;
+        let probes = match rays {
+            Rays::PerVoxel(probes) => left.min(probes.saturating_mul(aims.len() as u32)),
+            Rays::InAll(rays) => left.min(rays.saturating_sub(looks as u32)),
+        };
+        self.probe(&aims, probes, &mut chance, &mut shots, &mut is_seen);
         let mut slot = vec![u32::MAX; self.grid.len()];
         let mut seen: Vec<Seen> = Vec::new();
         for number in numbers(&is_seen) {
@@ -145,12 +134,9 @@ impl Target<'_> {
             seen.push(Seen {
                 place: self.grid.place(number as usize),
                 looks: Vec::new(),
-                passes: 0,
-                went_on: 0,
-                opacity: Fit::new(),
+                counted: Counted::default(),
             });
         }
-        let slot_of = |place: [u8; 3]| slot[self.grid.number(place)] as usize;
         let mut hits = 0;
         for shot in &shots {
             let Some(place) = self.end_of(shot) else {
@@ -158,22 +144,20 @@ impl Target<'_> {
             };
             hits += 1;
             let point = self.grid.world(shot.from + shot.direction * shot.end);
-            let at = &mut seen[slot_of(place)];
+            let at = &mut seen[slot[self.grid.number(place)] as usize];
             at.looks.push(look(shot.triangle, point, -shot.direction));
         }
-        let axes: Vec<DVec3> = seen.iter().map(|seen| main_normal(&seen.looks)).collect();
-        for shot in &shots {
-            self.count(shot, &slot, &axes, &plane, &mut seen);
-        }
+        self.count(&shots[looks..], &slot, &aims, plane, &mut seen);
         Sampled {
             seen,
+            touched: touched.len() as u32,
             rays: shots.len() as u32,
             hits,
         }
     }
 
     /// The voxel in which a ray ends at one of the node's own triangles.
-    fn end_of(&self, shot: &Shot) -> Option<[u8; 3]> {
+    pub(super) fn end_of(&self, shot: &Shot) -> Option<[u8; 3]> {
         if !self.own.contains(&shot.triangle) {
             return None;
         }
@@ -187,50 +171,37 @@ impl Target<'_> {
         last
     }
 
-    /// Counts a ray in the voxels that it crosses.
-    fn count(
+    /// Looks at every voxel until one look reaches something in it.
+    fn look(
         &self,
-        shot: &Shot,
-        slot: &[u32],
-        axes: &[DVec3],
-        plane: &impl Fn(usize) -> DVec3,
-        seen: &mut [Seen],
-    ) {
-        let end_place = self.end_of(shot);
-        let shares = self.opacity_blend.shares(-shot.direction);
-        for crossing in self.grid.along(shot.from, shot.direction) {
-            let number = slot[self.grid.number(crossing.place)] as usize;
-            if Some(crossing.place) == end_place {
-                if let Some(seen) = seen.get_mut(number) {
-                    seen.opacity.add(&shares, &[1.0]);
+        touched: &[Touched],
+        most: u32,
+        chance: &mut Chance,
+        is_seen: &mut [bool],
+    ) -> Vec<Shot> {
+        let mut shots = Vec::new();
+        let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
+        for turn in 0..MOST_LOOKS {
+            for (voxel, directions) in touched.iter().zip(&starts) {
+                if is_seen[voxel.number as usize] {
+                    continue;
                 }
-                return;
-            }
-            if crossing.leave > shot.end {
-                // Ends at a triangle of another node.
-                return;
-            }
-            let Some(seen) = seen.get_mut(number) else {
-                continue;
-            };
-            // A large object of which this voxel has a corner goes on behind it.
-            let goes_on = shot.end - crossing.leave < GOES_ON && {
-                let normal = plane(shot.triangle);
-                let middle = DVec3::from_array(crossing.place.map(f64::from)) + DVec3::splat(0.5);
-                let end = shot.from + shot.direction * shot.end;
-                normal.dot(axes[number]).abs() > ONE_OBJECT
-                    && (middle - end).dot(normal).abs() <= 0.5 * normal.abs().element_sum()
-            };
-            if goes_on {
-                seen.went_on += 1;
-            } else {
-                seen.passes += 1;
-                seen.opacity.add(&shares, &[0.0]);
+                if shots.len() as u32 >= most {
+                    return shots;
+                }
+                let point = voxel.points[turn as usize % POINTS];
+                let shot = self.shoot(point, directions.at(turn));
+                if let Some(place) = self.end_of(&shot) {
+                    is_seen[self.grid.number(place)] = true;
+                }
+                shots.push(shot);
             }
         }
+        shots
     }
 
-    fn shoot(
+    /// Probes voxels, in turn.
+    fn probe(
         &self,
         voxels: &[u32],
         rays: u32,
@@ -241,39 +212,13 @@ impl Target<'_> {
         if voxels.is_empty() {
             return;
         }
-        // Directions of a voxel's rays are spread by the sequence R2, from a
-        // start of its own.
-        let starts: Vec<[f64; 2]> = voxels
-            .iter()
-            .map(|_| [chance.unit(), chance.unit()])
-            .collect();
+        let starts: Vec<Directions> = voxels.iter().map(|_| Directions::new(chance)).collect();
+        shots.reserve_exact(rays as usize);
         for ray in 0..rays as usize {
             let aim = ray % voxels.len();
-            let turn = (ray / voxels.len()) as f64;
-            let [u, v] = starts[aim];
-            let u = (u + turn * 0.754_877_666_246_692_8).fract();
-            let v = (v + turn * 0.569_840_290_998_053_3).fract();
-            let z = 1.0 - 2.0 * u;
-            let ring = libm::sqrt((1.0 - z * z).max(0.0));
-            let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
-            let direction = DVec3::new(ring * cos, ring * sin, z);
+            let direction = starts[aim].at((ray / voxels.len()) as u32);
             let point = entry(self.grid.place(voxels[aim] as usize), direction, chance);
-            let from = point - direction * self.back_to_surface(point, direction);
-            let origin = self.grid.world(from);
-            let shot = match self.occluders.nearest(origin, direction) {
-                None => Shot {
-                    from,
-                    direction,
-                    end: f64::INFINITY,
-                    triangle: usize::MAX,
-                },
-                Some(meeting) => Shot {
-                    from,
-                    direction,
-                    end: meeting.distance / self.grid.voxel,
-                    triangle: meeting.triangle,
-                },
-            };
+            let shot = self.shoot(point, direction);
             if let Some(place) = self.end_of(&shot) {
                 is_seen[self.grid.number(place)] = true;
             }
@@ -281,21 +226,54 @@ impl Target<'_> {
         }
     }
 
+    /// A ray from S through a point of the grid.
+    fn shoot(&self, point: DVec3, direction: DVec3) -> Shot {
+        let from = point - direction * self.back_to_surface(point, direction);
+        let meeting = self.occluders.nearest(self.grid.world(from), direction);
+        Shot {
+            from,
+            direction,
+            end: meeting.map_or(f64::INFINITY, |m| m.distance / self.grid.voxel),
+            triangle: meeting.map_or(usize::MAX, |m| m.triangle),
+        }
+    }
+
     /// How far back from a point of the grid along a direction S is, voxels.
     fn back_to_surface(&self, point: DVec3, direction: DVec3) -> f64 {
         let cells = DVec3::from_array(self.grid.cells.map(f64::from));
-        let (mut near, mut far) = (0.0, self.distance + cells.length());
+        // The distance from the grid grows ever faster along the ray: Newton's
+        // steps from beyond S come nearer to it and never go past.
+        let mut back = self.distance + cells.length();
         for _ in 0..STEPS_TO_S {
-            let middle = (near + far) / 2.0;
-            let at = point - direction * middle;
-            let outside = (at - cells).max(-at).max(DVec3::ZERO).length();
-            if outside <= self.distance {
-                near = middle;
-            } else {
-                far = middle;
+            let at = point - direction * back;
+            let outside = (at - cells).max(DVec3::ZERO) + at.min(DVec3::ZERO);
+            let distance = outside.length();
+            let slope = -outside.dot(direction) / distance;
+            if !(slope > 0.0) {
+                break;
             }
+            back -= (distance - self.distance) / slope;
         }
-        near
+        back
+    }
+}
+
+/// Directions of a voxel's rays: spread by the sequence R2 from a start of its own.
+struct Directions([f64; 2]);
+
+impl Directions {
+    fn new(chance: &mut Chance) -> Self {
+        Self([chance.unit(), chance.unit()])
+    }
+
+    fn at(&self, turn: u32) -> DVec3 {
+        let turn = f64::from(turn);
+        let u = (self.0[0] + turn * 0.754_877_666_246_692_8).fract();
+        let v = (self.0[1] + turn * 0.569_840_290_998_053_3).fract();
+        let z = 1.0 - 2.0 * u;
+        let ring = libm::sqrt((1.0 - z * z).max(0.0));
+        let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
+        DVec3::new(ring * cos, ring * sin, z)
     }
 }
 

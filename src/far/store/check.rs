@@ -33,7 +33,7 @@ pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<
                 ),
             );
         }
-        // Six counts of 32 bits by at most 39 bytes: no overflow; the sum is checked each time.
+        // Six counts of 32 bits by at most 37 bytes: no overflow; the sum is checked each time.
         bytes += node.voxel_bytes();
         numbered += node.voxels();
         if bytes > voxel_bytes {

@@ -8,7 +8,7 @@ use crate::far::record::{NODE_BYTES, TRIANGLE_BYTES};
 /// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
 pub(super) const MAGIC: [u8; 8] = *b"\x89FAR\r\n\x1a\n";
 /// Version of the layout.
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 /// Bytes of the header.
 pub(super) const HEADER_BYTES: usize = 128;
 /// Sections begin at multiples of this.

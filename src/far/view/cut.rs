@@ -79,8 +79,14 @@ impl Outline {
     }
 }
 
-/// The cut, from near to far.
-pub(super) fn cut(file: &FarFile, view: &View, voxel_px: f64, counts: &mut Counts) -> Vec<Chosen> {
+/// The cut that `cut_of` asks for, of what is in `view`, from near to far.
+pub(super) fn cut(
+    file: &FarFile,
+    view: &View,
+    cut_of: &View,
+    voxel_px: f64,
+    counts: &mut Counts,
+) -> Vec<Chosen> {
     let mut chosen = Vec::new();
     let mut waiting = vec![0];
     while let Some(number) = waiting.pop() {
@@ -94,14 +100,13 @@ pub(super) fn cut(file: &FarFile, view: &View, voxel_px: f64, counts: &mut Count
             counts.outside += 1;
             continue;
         }
-        let distance = (low - view.eye)
-            .max(view.eye - high)
-            .max(DVec3::ZERO)
-            .length();
+        let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
+        let distance = distance_from(view.eye);
+        let from = distance_from(cut_of.eye);
         let voxel = f64::from(node.voxel);
-        let is_small = voxel * view.focal_px <= voxel_px * distance;
+        let is_small = voxel * cut_of.focal_px <= voxel_px * from;
         // Nearer, things that were taken to hide it may be behind the eye.
-        let is_far = distance >= file.distance_voxels() * voxel;
+        let is_far = from >= file.distance_voxels() * voxel;
         if !(node.is_leaf() || is_small && is_far) {
             waiting.extend(node.children.map(|child| child as usize));
             continue;

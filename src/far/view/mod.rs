@@ -15,24 +15,13 @@ mod transparent;
 
 use glam::DVec3;
 
+pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
 use crate::mesh::raster::{Light, RasterError, View};
 use crate::mesh::{linear_to_srgb, srgb_to_linear};
 use cut::Chosen;
 use fill::Fill;
 use opaque::Opaque;
-
-/// What opacities are used for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub enum Opacity {
-    /// Every voxel is opaque: the method without anti-aliasing.
-    None,
-    /// One number a voxel: the mean of its six.
-    Scalar,
-    /// A number for each main direction.
-    #[default]
-    Six,
-}
 
 /// How far voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -156,11 +145,25 @@ impl<'f> FarViewer<'f> {
         view: &View,
         options: &ViewOptions,
     ) -> Result<(FarPicture, Counts), ViewError> {
+        self.draw_with_cut_of(view, view, options)
+    }
+
+    /// Draws a frame with the nodes that would be drawn from elsewhere: what of
+    /// a change between frames is the hierarchy's.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn draw_with_cut_of(
+        &mut self,
+        view: &View,
+        cut_of: &View,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, Counts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
             return Err(ViewError::VoxelSize(options.voxel_px));
         }
         let mut counts = Counts::default();
-        let chosen = cut::cut(self.file, view, options.voxel_px, &mut counts);
+        let chosen = cut::cut(self.file, view, cut_of, options.voxel_px, &mut counts);
         let mut opaque = self.draw_opaque(view, options, &chosen, &mut counts)?;
         if opaque.has_tie() {
             // Rasterised in one go, whose rule for equal depths has more digits.

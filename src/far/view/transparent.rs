@@ -93,7 +93,7 @@ fn splats(
 fn opacity(voxel: &Voxel, square: &Square, blend: Blend, mode: Opacity) -> f64 {
     match mode {
         Opacity::None => 1.0,
-        Opacity::Scalar => voxel.opacity.iter().sum::<f64>() / voxel.opacity.len() as f64,
+        Opacity::Scalar => voxel.scalar,
         Opacity::Six => {
             let shares = blend.shares(square.towards_eye).into_iter();
             shares.map(|(k, share)| voxel.opacity[k] * share).sum()

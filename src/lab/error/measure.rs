@@ -6,6 +6,7 @@ use std::sync::Arc;
 use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
+use super::mesh_view::draw_reference;
 use super::method::{Method, Refused, Shown, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
 use super::reference::{Reference, Sampling, cast};
@@ -14,6 +15,7 @@ use crate::frame::Frame;
 use crate::graph::Progress;
 use crate::lab::bench::{BenchError, Clock, Schedule, Subject, Summary};
 use crate::measure::{CoverageError, Spread, count_elsewhere};
+use crate::mesh::Surface;
 use crate::picture::{Background, Picture, resolve};
 use crate::project::{Camera, Engine, FrameSetup, SetupOptions, Stats};
 use crate::rays::Rays;
@@ -141,11 +143,32 @@ fn outcome_or_reason<S: Serializer>(
 
 /// References, each cast once for a scene, a camera and a sampling.
 #[derive(Default)]
-pub struct References {
+pub struct References<'m> {
     cast: Vec<(String, Camera, Sampling, Arc<Reference>)>,
+    /// What is true of a scene that is a mesh: its triangles, not its voxels.
+    mesh: Option<&'m dyn Surface>,
 }
 
-impl References {
+impl<'m> References<'m> {
+    /// References that are triangles at 256 samples a pixel, whatever a sampling
+    /// says but for its seed.
+    #[must_use]
+    pub fn of_triangles(mesh: &'m dyn Surface) -> Self {
+        Self {
+            cast: Vec::new(),
+            mesh: Some(mesh),
+        }
+    }
+
+    /// Samples of a pixel.
+    #[must_use]
+    pub fn samples(&self, sampling: Sampling) -> u32 {
+        match self.mesh {
+            Some(_) => 256,
+            None => 1 << (2 * sampling.strata_log2),
+        }
+    }
+
     /// The reference of a subject from a camera, from memory if it was cast before.
     ///
     /// # Errors
@@ -164,16 +187,18 @@ impl References {
         if let Some((.., known)) = self.cast.iter().find(same) {
             return Ok(Arc::clone(known));
         }
-        let setup = truth(subject, camera, 0)?;
-        let background = Background::Color(look.background);
-        let reference = cast(
-            &subject.graph,
-            &setup,
-            look.shading,
-            background,
-            sampling,
-            progress,
-        );
+        let reference = match self.mesh {
+            Some(mesh) => draw_reference(mesh, camera, look, sampling.seed, progress)
+                .map_err(BenchError::Picture)?,
+            None => cast(
+                &subject.graph,
+                &truth(subject, camera, 0)?,
+                look.shading,
+                Background::Color(look.background),
+                sampling,
+                progress,
+            ),
+        };
         let reference = Arc::new(reference);
         let entry = (
             subject.name.clone(),
@@ -244,7 +269,7 @@ pub fn measure(
     subject: &Subject,
     methods: &mut [Box<dyn Method + '_>],
     plan: &Plan,
-    references: &mut References,
+    references: &mut References<'_>,
     progress: &dyn Progress,
 ) -> Result<SceneErrors, BenchError> {
     let camera = Camera {
@@ -329,7 +354,7 @@ pub fn measure(
         voxels: subject.graph.voxels,
         width: camera.width,
         height: camera.height,
-        reference_samples: 1 << (2 * plan.strata_log2),
+        reference_samples: references.samples(sampling(SEEDS[0])),
         noise_floor,
         rows,
         reference,
@@ -359,6 +384,8 @@ fn judged(
             elsewhere: count_elsewhere(&samples.voxel, &exact.voxel, graph.depth),
         });
     let voxel = graph.placement.voxel_size;
+    // Triangles and far voxels are elsewhere than the voxels of the graph.
+    let exact = exact.filter(|_| shown.samples.is_some());
     let depth_voxels =
         exact.map(|exact| Spread::of_depths(&shown.picture.depth, &exact.picture.depth, voxel));
     Ok(Judged {

@@ -1,21 +1,26 @@
 //! Run time against error.
 //!
 //! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
-//! many exact rays; [`measure()`] measures methods on a scene, error and time;
+//! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene, error and time;
 //! [`beaten_by`] and the plots say which of them are worth having.
 
 mod cut;
+mod far;
 mod measure;
+mod mesh_view;
 mod method;
 mod pareto;
 mod picture_error;
 mod reference;
 mod tables;
+mod triangles;
 mod vertices;
 mod voxels;
 
 pub use cut::cut_at;
+pub use far::{FarMethod, FarSettings, opacity_in_words, picture_of as picture_of_far};
 pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
+pub use mesh_view::{mesh_light, mesh_view};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
 #[cfg(feature = "cli")]
 pub use pareto::panels;
@@ -23,5 +28,6 @@ pub use pareto::{beaten_by, dominated};
 pub use picture_error::{Judge, PictureError};
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
 pub use tables::{rows, table, vertex_table};
+pub use triangles::TrianglesMethod;
 pub use vertices::vertex_levels;
 pub use voxels::{Look, VoxelMethod, tolerance_in_words};

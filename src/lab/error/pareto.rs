@@ -110,6 +110,8 @@ fn chart(scene: &SceneErrors, across: Across, up: Up) -> Chart {
     let place = |outcome: &Outcome| {
         let x = match across {
             Across::Time => outcome.thread.unwrap_or(outcome.wall).median_ms,
+            // Other families count other things.
+            Across::Work if outcome.samples.is_none() => f64::NAN,
             Across::Work => work(outcome),
         };
         let y = match up {

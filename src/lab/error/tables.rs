@@ -129,15 +129,13 @@ pub fn table(scene: &SceneErrors) -> Table {
 /// Everything, a row for each method and scene: CSV.
 #[must_use]
 pub fn rows(scenes: &[SceneErrors]) -> Table {
-    let first = scenes.iter().flat_map(|scene| &scene.rows).next();
-    let settings: Vec<&'static str> =
-        first.map_or_else(Vec::new, |row| row.settings.iter().map(|s| s.0).collect());
-    let counted = scenes.iter().flat_map(|scene| &scene.rows);
-    let counters: Vec<&'static str> = counted
-        .filter_map(|row| row.outcome.as_ref().ok())
-        .map(|outcome| outcome.counters.iter().map(|c| c.0).collect())
-        .next()
-        .unwrap_or_default();
+    // Of all families, each name once.
+    let (mut settings, mut counters) = (Vec::new(), Vec::new());
+    for row in scenes.iter().flat_map(|scene| &scene.rows) {
+        add_new(&mut settings, row.settings.iter().map(|s| s.0));
+        let counted = row.outcome.iter().flat_map(|outcome| &outcome.counters);
+        add_new(&mut counters, counted.map(|c| c.0));
+    }
     let mut columns = vec!["scene", "size", "method", "family"];
     columns.extend(&settings);
     columns.extend(["median_ms", "min_ms", "deviation_ms", "thread_median_ms"]);
@@ -192,6 +190,15 @@ pub fn rows(scenes: &[SceneErrors]) -> Table {
         }
     }
     table
+}
+
+/// Appends the names that are not there yet.
+fn add_new(names: &mut Vec<&'static str>, more: impl Iterator<Item = &'static str>) {
+    for name in more {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
 }
 
 /// Vertex errors by octree level of some methods of a scene.

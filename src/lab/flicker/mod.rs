@@ -91,7 +91,7 @@ pub fn film(
     motion: Motion,
     methods: &mut [Box<dyn Method + '_>],
     plan: &Plan,
-    references: &mut References,
+    references: &mut References<'_>,
     progress: &dyn Progress,
 ) -> Result<Films, BenchError> {
     let start = Camera {
@@ -138,13 +138,17 @@ pub fn film(
         })
         .collect();
     progress.end();
+    let samples = references.samples(Sampling {
+        strata_log2: plan.strata_log2,
+        seed: 1,
+    });
     Ok(Films {
         scene: subject.name.clone(),
         motion,
         width: plan.size.0,
         height: plan.size.1,
         frames: plan.frames,
-        reference_samples: 1 << (2 * plan.strata_log2),
+        reference_samples: samples,
         noise_floor,
         films,
     })

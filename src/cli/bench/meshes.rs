@@ -1,0 +1,144 @@
+//! The methods of meshes in `bench error` and `bench flicker`: triangles, and far voxels.
+
+use clap::{Args, ValueEnum};
+
+use crate::cli::args::SceneArgs;
+use crate::cli::console::Console;
+use crate::cli::error::CliError;
+use crate::cli::scenes;
+use crate::far::blend::Blend;
+use crate::far::store::encode;
+use crate::far::view::Opacity;
+use crate::far::{BuildOptions, FarFile, build};
+use crate::lab::error::{FarMethod, FarSettings, Look, Method, TrianglesMethod};
+use crate::mesh::Mesh;
+use crate::mesh::raster::{Pattern, Samples};
+
+/// Who draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum FamilyName {
+    /// The image-order engine, on voxels; a mesh is voxelised at --depth.
+    Voxels,
+    /// The triangle rasteriser at 1, 4 and 16 samples a pixel.
+    Triangles,
+    /// Far voxels, built of the mesh.
+    Far,
+}
+
+/// Which methods of meshes take part.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Meshes")]
+pub(super) struct MeshMethodArgs {
+    /// Who draws a scene that is a mesh [default: all]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    families: Vec<FamilyName>,
+    /// Rays of far voxels [default: as of convert]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    far_rays: Option<u64>,
+    /// Largest voxels of far voxels, pixels
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "PX,...",
+        default_value = "1,2"
+    )]
+    far_lods: Vec<f64>,
+    /// Build far voxels with other blends too
+    #[arg(long)]
+    far_blends: bool,
+}
+
+impl MeshMethodArgs {
+    fn has(&self, family: FamilyName) -> bool {
+        self.families.is_empty() || self.families.contains(&family)
+    }
+
+    /// Whether the image-order engine draws a scene.
+    pub(super) fn has_voxels(&self, is_mesh: bool) -> bool {
+        !is_mesh || self.has(FamilyName::Voxels)
+    }
+
+    /// Reads a scene that is a mesh and builds its far voxels; `None` of another scene.
+    pub(super) fn open(
+        &self,
+        name: &str,
+        args: &SceneArgs,
+        console: &Console,
+    ) -> Result<Option<MeshScene>, CliError> {
+        if !scenes::is_mesh_file(name) {
+            return Ok(None);
+        }
+        let (mesh, _) = scenes::open_mesh(name, args, console.progress())?;
+        let mut files = Vec::new();
+        if self.has(FamilyName::Far) {
+            for (label, options) in self.builds() {
+                let data = build(&mesh, &options, console.progress())?;
+                let bytes = encode(&data).map_err(CliError::usage)?;
+                files.push((label, FarFile::from_bytes(&bytes)?));
+            }
+        }
+        Ok(Some(MeshScene { mesh, files }))
+    }
+
+    fn builds(&self) -> Vec<(&'static str, BuildOptions)> {
+        let usual = BuildOptions {
+            rays: self.far_rays,
+            ..BuildOptions::default()
+        };
+        let mut builds = vec![("", usual)];
+        if self.far_blends {
+            let squares = BuildOptions {
+                opacity_blend: Blend::Squares,
+                ..usual
+            };
+            let cosines = BuildOptions {
+                shader_blend: Blend::Cosines,
+                ..usual
+            };
+            builds.push(("opacities by squares", squares));
+            builds.push(("shaders by cosines", cosines));
+        }
+        builds
+    }
+
+    /// The methods of a mesh but for the image-order engine's.
+    pub(super) fn methods<'m>(
+        &self,
+        scene: &'m MeshScene,
+        look: Look,
+    ) -> Vec<Box<dyn Method + 'm>> {
+        let mut methods: Vec<Box<dyn Method + 'm>> = Vec::new();
+        if self.has(FamilyName::Triangles) {
+            let samples = [1, 4, 16].into_iter();
+            let samples = samples.filter_map(|n| Samples::new(n, Pattern::Regular).ok());
+            methods.extend(samples.map(|samples| -> Box<dyn Method + 'm> {
+                Box::new(TrianglesMethod::new(&scene.mesh, samples, look))
+            }));
+        }
+        for (label, file) in &scene.files {
+            // Blends are seen where there are six opacities.
+            let opacities: &[Opacity] = if label.is_empty() {
+                &[Opacity::None, Opacity::Scalar, Opacity::Six]
+            } else {
+                &[Opacity::Six]
+            };
+            for &voxel_px in &self.far_lods {
+                methods.extend(opacities.iter().map(|&opacity| -> Box<dyn Method + 'm> {
+                    let settings = FarSettings {
+                        file: (*label).to_owned(),
+                        opacity,
+                        voxel_px,
+                    };
+                    Box::new(FarMethod::new(file, settings, look))
+                }));
+            }
+        }
+        methods
+    }
+}
+
+/// A scene that is a mesh, and its far voxels.
+pub(super) struct MeshScene {
+    pub(super) mesh: Mesh,
+    files: Vec<(&'static str, FarFile)>,
+}

@@ -1,0 +1,251 @@
+//! Which voxels triangles touch, and points of them in each voxel.
+//!
+//! A triangle is cut to the voxel's cube. If an area is left, the voxel is
+//! touched, and the points of that area are what rays that ask "is anything of
+//! this to be seen?" are aimed at. Of all that is in a voxel a few points are
+//! kept, drawn by lot in proportion to area, in one pass over the triangles.
+
+use glam::{DVec3, IVec3};
+
+use super::grid::Grid;
+use super::sample::Chance;
+
+/// Points that are kept of a voxel.
+pub(super) const POINTS: usize = 4;
+/// Most corners of a triangle cut by the six planes of a cube.
+const CORNERS: usize = 9;
+/// Area, of a voxel's face, below which a triangle only brushes a voxel.
+const LEAST_AREA: f64 = 1e-9;
+
+/// A voxel that triangles touch.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Touched {
+    /// Its number in the grid.
+    pub(super) number: u32,
+    /// Points of what is in it, in voxels from the grid's origin.
+    pub(super) points: [DVec3; POINTS],
+    /// Area of what is in it, in faces of a voxel.
+    area: f64,
+}
+
+/// The voxels that triangles touch, in the grid's order.
+pub(super) fn touched(
+    grid: &Grid,
+    triangles: impl Iterator<Item = [DVec3; 3]>,
+    chance: &mut Chance,
+) -> Vec<Touched> {
+    let mut slot = vec![u32::MAX; grid.len()];
+    let mut all: Vec<Touched> = Vec::new();
+    for corners in triangles {
+        let corners = corners.map(|p| grid.local(p));
+        parts(grid, &corners, |number, part| {
+            let area = part.area();
+            if area < LEAST_AREA {
+                return;
+            }
+            let place = &mut slot[number as usize];
+            if *place == u32::MAX {
+                // Fewer than 2^24 voxels in a grid.
+                *place = all.len() as u32;
+                all.push(Touched {
+                    number,
+                    points: [DVec3::ZERO; POINTS],
+                    area: 0.0,
+                });
+            }
+            let voxel = &mut all[*place as usize];
+            voxel.area += area;
+            for point in &mut voxel.points {
+                if chance.unit() * voxel.area < area {
+                    *point = part.point(chance);
+                }
+            }
+        });
+    }
+    all.sort_unstable_by_key(|voxel| voxel.number);
+    all
+}
+
+/// How many voxels triangles touch.
+pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) -> u32 {
+    let mut is_touched = vec![false; grid.len()];
+    let mut count = 0;
+    for corners in triangles {
+        let corners = corners.map(|p| grid.local(p));
+        parts(grid, &corners, |number, part| {
+            let mark = &mut is_touched[number as usize];
+            if !*mark && part.area() >= LEAST_AREA {
+                *mark = true;
+                count += 1;
+            }
+        });
+    }
+    count
+}
+
+/// Calls back with the part of a triangle (in voxels) in each voxel of a grid.
+fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Part)) {
+    let [a, b, c] = *corners;
+    let most = IVec3::from_array(grid.cells.map(|n| i32::from(n) - 1));
+    let place = |p: DVec3| p.floor().as_ivec3().clamp(IVec3::ZERO, most);
+    let (low, high) = (place(a.min(b).min(c)), place(a.max(b).max(c)));
+    let number = |at: IVec3| {
+        // Within the cells, so within a byte.
+        grid.number(at.to_array().map(|c| c as u8)) as u32
+    };
+    let whole = Part::of(corners);
+    if low == high {
+        visit(number(low), &whole);
+        return;
+    }
+    let normal = (b - a).cross(c - a);
+    let reach = normal.abs().element_sum() * (0.5 + 1e-9);
+    for z in low.z..=high.z {
+        for y in low.y..=high.y {
+            for x in low.x..=high.x {
+                let at = IVec3::new(x, y, z);
+                let corner = at.as_dvec3();
+                let middle = corner + DVec3::splat(0.5);
+                if (middle - a).dot(normal).abs() <= reach {
+                    visit(number(at), &whole.within(corner));
+                }
+            }
+        }
+    }
+}
+
+/// A convex polygon.
+#[derive(Debug, Clone, Copy)]
+struct Part {
+    corners: [DVec3; CORNERS],
+    count: usize,
+}
+
+impl Part {
+    fn of(triangle: &[DVec3; 3]) -> Self {
+        let mut corners = [DVec3::ZERO; CORNERS];
+        corners[..3].copy_from_slice(triangle);
+        Self { corners, count: 3 }
+    }
+
+    /// What lies in the unit cube from a corner on.
+    fn within(&self, corner: DVec3) -> Self {
+        let mut part = *self;
+        for axis in 0..3 {
+            part = part.cut(|p| p[axis] - corner[axis]);
+            part = part.cut(|p| corner[axis] + 1.0 - p[axis]);
+        }
+        part
+    }
+
+    /// What lies where `inside` is not negative.
+    fn cut(&self, inside: impl Fn(DVec3) -> f64) -> Self {
+        let mut part = Self {
+            corners: self.corners,
+            count: 0,
+        };
+        let mut put = |point: DVec3| {
+            // A cut adds one corner at most; rounding must not run over.
+            if part.count < CORNERS {
+                part.corners[part.count] = point;
+                part.count += 1;
+            }
+        };
+        for i in 0..self.count {
+            let (p, q) = (self.corners[i], self.corners[(i + 1) % self.count]);
+            let (d, e) = (inside(p), inside(q));
+            if d >= 0.0 {
+                put(p);
+            }
+            if (d >= 0.0) != (e >= 0.0) {
+                put(p + (q - p) * (d / (d - e)));
+            }
+        }
+        part
+    }
+
+    /// The triangles of a fan.
+    fn fan(&self) -> impl Iterator<Item = [DVec3; 3]> {
+        (1..self.count.max(1) - 1).map(|i| [0, i, i + 1].map(|corner| self.corners[corner]))
+    }
+
+    fn area(&self) -> f64 {
+        self.fan().map(area).sum()
+    }
+
+    /// A random point of it. It has an area.
+    fn point(&self, chance: &mut Chance) -> DVec3 {
+        let mut rest = chance.unit() * self.area();
+        let (mut u, mut v) = (chance.unit(), chance.unit());
+        if u + v > 1.0 {
+            (u, v) = (1.0 - u, 1.0 - v);
+        }
+        let mut found = self.corners[0];
+        for triangle in self.fan() {
+            let [a, b, c] = triangle;
+            found = a + (b - a) * u + (c - a) * v;
+            rest -= area(triangle);
+            if rest < 0.0 {
+                break;
+            }
+        }
+        found
+    }
+}
+
+fn area([a, b, c]: [DVec3; 3]) -> f64 {
+    (b - a).cross(c - a).length() / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit() -> Grid {
+        Grid {
+            origin: DVec3::ZERO,
+            voxel: 1.0,
+            cells: [8, 8, 8],
+        }
+    }
+
+    #[test]
+    fn parts_together_are_the_triangle_and_lie_in_their_voxels() {
+        let mut chance = Chance::new(3);
+        let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit()) * 8.0;
+        for _ in 0..200 {
+            let corners = [random(), random(), random()];
+            let mut sum = 0.0;
+            parts(&unit(), &corners, |number, part| {
+                sum += part.area();
+                let low = DVec3::from_array(unit().place(number as usize).map(f64::from));
+                for &corner in &part.corners[..part.count] {
+                    let inside = corner - low;
+                    assert!(inside.min_element() > -1e-9 && inside.max_element() < 1.0 + 1e-9);
+                }
+            });
+            assert!((sum - area(corners)).abs() < 1e-9 * sum.max(1.0), "{sum}");
+        }
+    }
+
+    #[test]
+    fn points_are_drawn_by_area_and_what_is_not_touched_has_none() {
+        // A large and a small triangle in one voxel, and one beside it.
+        let at = |x: f64, side: f64, z: f64| {
+            let low = DVec3::new(x, 0.1, z);
+            [low, low + DVec3::X * side, low + DVec3::Y * side]
+        };
+        let triangles = [at(0.1, 0.8, 0.5), at(0.1, 0.4, 0.2), at(1.3, 0.5, 0.5)];
+        let mut low = 0;
+        for seed in 0..500 {
+            let voxels = touched(&unit(), triangles.into_iter(), &mut Chance::new(seed));
+            let numbers: Vec<u32> = voxels.iter().map(|voxel| voxel.number).collect();
+            assert_eq!(numbers, [0, 1]);
+            assert_eq!(count(&unit(), triangles.into_iter()), 2);
+            low += voxels[0].points.iter().filter(|p| p.z < 0.3).count();
+        }
+        // A fifth of the area.
+        let share = low as f64 / (500 * POINTS) as f64;
+        assert!((share - 0.2).abs() < 0.04, "{share}");
+    }
+}

@@ -1,0 +1,163 @@
+//! Far voxels as a method.
+
+use super::mesh_view::{mesh_light, mesh_view};
+use super::method::{Method, Refused, Shown};
+use super::voxels::Look;
+use crate::far::FarFile;
+use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewOptions};
+use crate::mesh::raster::View;
+use crate::picture::Picture;
+use crate::project::Camera;
+
+/// What a far voxel method is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarSettings {
+    /// What is unlike other files of the scene, such as `plain cosines`; empty for the usual one.
+    pub file: String,
+    /// What opacities are used for.
+    pub opacity: Opacity,
+    /// Largest projected side of a voxel, pixels.
+    pub voxel_px: f64,
+}
+
+/// A file drawn with some settings.
+pub struct FarMethod<'f> {
+    file: &'f FarFile,
+    viewer: FarViewer<'f>,
+    settings: FarSettings,
+    look: Look,
+    view: Option<View>,
+}
+
+impl<'f> FarMethod<'f> {
+    /// Of a file.
+    #[must_use]
+    pub fn new(file: &'f FarFile, settings: FarSettings, look: Look) -> Self {
+        Self {
+            file,
+            viewer: FarViewer::new(file),
+            settings,
+            look,
+            view: None,
+        }
+    }
+
+    fn drawn(&mut self, cut_of: Option<&View>) -> Result<(FarPicture, Counts), Refused> {
+        let view = self.view.ok_or(Refused::because("no camera yet"))?;
+        let options = ViewOptions {
+            voxel_px: self.settings.voxel_px,
+            opacity: self.settings.opacity,
+            light: mesh_light(&view, self.look.shading),
+            background: Some(self.look.background),
+            ..ViewOptions::default()
+        };
+        let cut_of = cut_of.unwrap_or(&view);
+        let drawn = self.viewer.draw_with_cut_of(&view, cut_of, &options);
+        drawn.map_err(Refused::because)
+    }
+}
+
+/// Opacities in words.
+#[must_use]
+pub fn opacity_in_words(opacity: Opacity) -> &'static str {
+    match opacity {
+        Opacity::None => "none",
+        Opacity::Scalar => "scalar",
+        Opacity::Six => "six",
+    }
+}
+
+impl Method for FarMethod<'_> {
+    fn family(&self) -> &'static str {
+        "far"
+    }
+
+    fn name(&self) -> String {
+        let mut name = format!("far {}", opacity_in_words(self.settings.opacity));
+        if self.settings.voxel_px != 1.0 {
+            name += &format!(" lod {}", self.settings.voxel_px);
+        }
+        if !self.settings.file.is_empty() {
+            name += &format!(", {}", self.settings.file);
+        }
+        name
+    }
+
+    fn settings(&self) -> Vec<(&'static str, String)> {
+        vec![
+            (
+                "opacity",
+                opacity_in_words(self.settings.opacity).to_owned(),
+            ),
+            ("lod", self.settings.voxel_px.to_string()),
+            ("file", self.settings.file.clone()),
+        ]
+    }
+
+    fn kind(&self) -> String {
+        format!("far {}", opacity_in_words(self.settings.opacity))
+    }
+
+    fn begin(&mut self, camera: &Camera) -> Result<(), Refused> {
+        let view = mesh_view(camera, self.file.bounds()).map_err(Refused::because)?;
+        self.view = Some(view);
+        Ok(())
+    }
+
+    fn draw(&mut self) -> Result<(), Refused> {
+        std::hint::black_box(self.drawn(None)?);
+        Ok(())
+    }
+
+    fn show(&mut self) -> Result<Shown, Refused> {
+        let (drawn, counts) = self.drawn(None)?;
+        let shares = drawn.coverage.clone();
+        Ok(Shown {
+            picture: picture_of(drawn),
+            shares,
+            samples: None,
+            vertices: Vec::new(),
+            counters: vec![
+                (
+                    "primitives",
+                    counts.opaque_voxels + counts.transparent_voxels + counts.triangles,
+                ),
+                ("triangles", counts.triangles),
+                ("opaque_voxels", counts.opaque_voxels),
+                ("transparent_voxels", counts.transparent_voxels),
+                ("nodes_hidden", counts.hidden),
+            ],
+            remark: None,
+        })
+    }
+
+    fn picture(&mut self) -> Result<Picture, Refused> {
+        Ok(picture_of(self.drawn(None)?.0))
+    }
+
+    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
+        let other = mesh_view(other, self.file.bounds()).map_err(Refused::because)?;
+        Ok(Some(picture_of(self.drawn(Some(&other))?.0)))
+    }
+
+    fn end(&mut self) {
+        self.view = None;
+        self.viewer = FarViewer::new(self.file);
+    }
+}
+
+/// As other engines' pictures, without normals and voxels.
+#[must_use]
+pub fn picture_of(drawn: FarPicture) -> Picture {
+    let pixels = drawn.rgba.len();
+    Picture {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        depth: drawn.depth,
+        normal: vec![[0.0; 3]; pixels],
+        voxel: vec![[0, 0, 0, -1]; pixels],
+        node: drawn.node,
+        records: None,
+    }
+}
