@@ -41,6 +41,9 @@ pub struct ConvertArgs {
     /// Of .far: voxels along a node's longest side [default: 64]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=255))]
     pub(super) grid: Option<u32>,
+    /// Of .far: so many copies of the mesh, in rows on the ground
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(super) instances: Option<u32>,
     /// Of .far: what opacities are stored for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     pub(super) far_opacity: Option<FarOpacityName>,
@@ -62,10 +65,16 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return far::convert(args, console);
     }
-    let settings = [args.rays.is_some(), args.leaf_triangles.is_some()];
-    if settings.contains(&true) || args.grid.is_some() || args.far_opacity.is_some() {
+    let settings = [
+        args.rays.is_some(),
+        args.leaf_triangles.is_some(),
+        args.grid.is_some(),
+        args.instances.is_some(),
+        args.far_opacity.is_some(),
+    ];
+    if settings.contains(&true) {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --grid and --far-opacity are for .far files",
+            "--rays, --leaf-triangles, --grid, --instances and --far-opacity are for .far files",
         ));
     }
     if let Some(memory) = args.memory {

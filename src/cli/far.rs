@@ -5,6 +5,7 @@ use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
+use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::args::{Aov, EngineName, FarOpacityName, camera_line};
@@ -21,6 +22,7 @@ use crate::far::store::{is_far, write_to};
 use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::far::{BuildError, BuildOptions, FarError, FarFile, build};
 use crate::lab::error::{mesh_light, mesh_view, picture_of_far};
+use crate::mesh::Instances;
 use crate::mesh::raster::View;
 use crate::picture::{self, Background, store};
 use crate::project::Camera;
@@ -73,8 +75,16 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         ..defaults
     };
     let started = Instant::now();
-    let mut data = build(&mesh, &options, console.progress())
-        .map_err(|e| CliError::from(e).at(&args.input))?;
+    let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
+    let built = match args.instances {
+        None => build(&mesh, &options, console.progress()),
+        Some(count) => {
+            let places = in_rows(mesh.bounds(), up, count);
+            let fleet = Instances::new(mesh, places);
+            build(&fleet, &options, console.progress())
+        }
+    };
+    let mut data = built.map_err(|e| CliError::from(e).at(&args.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
     store::write_with(&args.output, args.force, |file| write_to(&data, file))?;
@@ -83,7 +93,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     console.note(format!(
         "{}: {} triangles, {} nodes, {} voxels, {} rays, {} bytes, built in {:.1} s",
         args.output.display(),
-        grouped(mesh.triangles().len() as u64),
+        grouped(triangles),
         grouped(file.nodes().len() as u64),
         grouped(facts.kept),
         grouped(facts.rays),
@@ -98,6 +108,36 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         console.document(&report::document("convert", fields))?;
     }
     Ok(())
+}
+
+/// Places of copies of what fills a box: in rows on the ground, a tenth of its
+/// longest side apart, each a quarter turn on from the one before.
+fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
+    let axis = match up {
+        Up::Y => DVec3::Y,
+        Up::Z => DVec3::Z,
+    };
+    // The next axes; turned about `axis`, the first becomes the second.
+    let (right, ahead) = (
+        DVec3::new(axis.y, axis.z, axis.x),
+        DVec3::new(axis.z, axis.x, axis.y),
+    );
+    let step = 1.1 * (high - low).max_element();
+    let middle = (low + high) / 2.0;
+    let across = (f64::from(count).sqrt().ceil() as u32).max(1);
+    (0..count)
+        .map(|number| {
+            let [column, row] = [number % across, number / across].map(f64::from);
+            let quarter = [right, ahead, -right, -ahead];
+            let turned = |k: u32| quarter[((k + number) % 4) as usize];
+            // Whole quarter turns, without the rounding of sines.
+            let columns =
+                |v: DVec3| axis * v.dot(axis) + turned(0) * v.dot(right) + turned(1) * v.dot(ahead);
+            let turn = DMat3::from_cols(columns(DVec3::X), columns(DVec3::Y), columns(DVec3::Z));
+            let place = middle + (right * column + ahead * row) * step;
+            DAffine3::from_mat3_translation(turn, place - turn * middle)
+        })
+        .collect()
 }
 
 /// Tells what is in a file, all of which is checked; as JSON if that is asked for.
@@ -331,7 +371,11 @@ pub(super) fn render_one(
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
     }
     let started = Instant::now();
-    let file = FarFile::open(Path::new(name))?;
+    let path = Path::new(name);
+    let file = match args.memory {
+        Some(memory) => FarFile::open_within(path, memory.bytes)?,
+        None => FarFile::open(path)?,
+    };
     let load_ms = milliseconds_since(started);
     let (low, high) = file.bounds();
     let up = if file.y_up() { Up::Y } else { Up::Z };
@@ -404,6 +448,7 @@ pub(super) fn render_one(
         "load_ms": load_ms,
         "render_ms": { "runs": times_ms.len(), "min": min, "median": median, "max": max },
         "counters": counted,
+        "memory": resident(&file),
         "hash": hash,
         "output": output,
     });
@@ -438,7 +483,18 @@ fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
     Ok(())
 }
 
-fn opacity(name: FarOpacityName) -> Opacity {
+/// What a budget of memory came to.
+pub(super) fn resident(file: &FarFile) -> Option<Value> {
+    let resident = file.resident()?;
+    Some(json!({
+        "bytes": resident.bytes,
+        "most_bytes": resident.most_bytes,
+        "nodes_released": resident.released,
+    }))
+}
+
+/// What a flag says of opacities.
+pub(super) fn opacity(name: FarOpacityName) -> Opacity {
     match name {
         FarOpacityName::None => Opacity::None,
         FarOpacityName::Scalar => Opacity::Scalar,

@@ -6,8 +6,8 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{
-    CameraArgs, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting, camera_line,
-    camera_settings,
+    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
+    camera_line, camera_settings,
 };
 use super::console::Console;
 use super::drawing::{Drawn, draw, min_median_max};
@@ -31,6 +31,9 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
+    /// Of .far files: keep at most this much of the nodes' data in memory: 512M, 2G [default: as the system decides]
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<DataBudget>,
     /// Print the picture's hash
     #[arg(long)]
     pub hash: bool,
@@ -193,6 +196,9 @@ fn render_one(
     if args.engine.engine == EngineName::Far || far::is_far_file(name) {
         let output = output_path(args, &scenes::stem(name));
         return far::render_one(args, name, of, output.as_deref(), console);
+    }
+    if args.memory.is_some() {
+        return Err(CliError::usage("--memory is for .far files"));
     }
     let scene = open(name, &args.scene, console)?;
     let output = output_path(args, &scene.stem);

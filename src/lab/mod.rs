@@ -10,3 +10,4 @@ pub mod model;
 pub mod reproduce;
 pub mod stress;
 pub mod vertex_error;
+pub mod walk;

@@ -74,11 +74,31 @@ pub fn srgb_to_linear(byte: u8) -> f32 {
     LINEAR[usize::from(byte)]
 }
 
+/// Steps of [`FIRST`]: bytes are no nearer to each other than this, but near black.
+const SLOTS: usize = 4096;
+
+/// For each slot of linear light the first byte whose light is not below the slot's.
+static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
+    std::array::from_fn(|slot| {
+        let light = slot as f64 / SLOTS as f64;
+        // At most 255: the last entry is 1, which no slot exceeds.
+        LINEAR.partition_point(|&entry| f64::from(entry) < light) as u8
+    })
+});
+
 /// The sRGB byte whose linear light is nearest; of two the brighter.
 #[must_use]
 pub fn linear_to_srgb(light: f64) -> u8 {
     let table: &[f32; 256] = &LINEAR;
-    let above = table.partition_point(|&entry| f64::from(entry) < light);
+    // Never below 0; what is not a number becomes 0, which is what a search would find.
+    let slot = ((light * SLOTS as f64) as usize).min(SLOTS - 1);
+    let mut above = usize::from(FIRST[slot]);
+    if light.is_nan() {
+        above = 0;
+    }
+    while above < 256 && f64::from(table[above]) < light {
+        above += 1;
+    }
     match above {
         0 => 0,
         256 => 255,
@@ -98,6 +118,25 @@ pub fn linear_to_srgb(light: f64) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_nearest_byte_is_found() {
+        let slow = |light: f64| {
+            let distance = |byte: &u8| (f64::from(srgb_to_linear(*byte)) - light).abs();
+            let nearest = (0..=255u8)
+                .rev()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            nearest.unwrap()
+        };
+        for step in -100..20_300 {
+            let light = f64::from(step) / 20_000.0;
+            assert_eq!(linear_to_srgb(light), slow(light), "{light}");
+        }
+        for byte in 0..=255 {
+            assert_eq!(linear_to_srgb(f64::from(srgb_to_linear(byte))), byte);
+        }
+        assert_eq!(linear_to_srgb(f64::NAN), 0);
+    }
 
     #[test]
     fn every_byte_survives_linear_light() {

@@ -94,6 +94,149 @@ fn convert_info_render() {
 }
 
 #[test]
+fn a_build_that_is_cut_short_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let program = assert_cmd::cargo::cargo_bin("shiftvox");
+    for wait_ms in [0, 5, 20, 80] {
+        let mut child = std::process::Command::new(&program)
+            .current_dir(at)
+            .args(["convert", "sheet.obj", "cut.far", "--rays", "300000", "-q"])
+            .args(["--leaf-triangles", "20"])
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(wait_ms));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if at.join("cut.far").exists() {
+            // It was done before: then it is whole.
+            shiftvox(at).args(["info", "cut.far"]).assert().success();
+            fs::remove_file(at.join("cut.far")).unwrap();
+        }
+    }
+    // Nothing of it is in the way of the next.
+    let again = ["convert", "sheet.obj", "cut.far", "--rays", "1000", "-q"];
+    shiftvox(at).args(again).assert().success();
+}
+
+#[test]
+fn copies_budgets_and_walks() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let convert = ["convert", "sheet.obj", "four.far", "--instances", "4"];
+    let settings = [
+        "--leaf-triangles",
+        "60",
+        "--grid",
+        "12",
+        "--rays",
+        "20000",
+        "-q",
+    ];
+    shiftvox(at).args(convert).args(settings).assert().success();
+    let json = |arguments: &[&str]| -> serde_json::Value {
+        let output = shiftvox(at)
+            .args(arguments)
+            .arg("--json")
+            .assert()
+            .success();
+        serde_json::from_slice(&output.get_output().stdout).unwrap()
+    };
+    let info = json(&["info", "four.far"]);
+    let scene = &info["scenes"][0];
+    assert_eq!(scene["triangles"], 4 * 242);
+    // Two by two, a tenth of a side apart, on the same ground.
+    let side = |k: usize| scene["high"][k].as_f64().unwrap() - scene["low"][k].as_f64().unwrap();
+    assert!((side(0) - 23.1).abs() < 0.1 && (side(2) - 23.1).abs() < 0.1);
+    assert!((side(1) - 2.0).abs() < 0.1);
+    let render = [
+        "render", "four.far", "--engine", "far", "--hash", "--size", "64",
+    ];
+    let free = json(&render);
+    let bound = json(&[&render[..], &["--memory", "2K"]].concat());
+    assert_eq!(free["scenes"][0]["hash"], bound["scenes"][0]["hash"]);
+    assert!(free["scenes"][0]["memory"].is_null());
+    if cfg!(unix) {
+        assert!(
+            bound["scenes"][0]["memory"]["nodes_released"]
+                .as_u64()
+                .unwrap()
+                > 0
+        );
+    }
+    let walk = json(&["bench", "walk", "four.far", "--frames", "4", "--size", "48"]);
+    let walks = walk["files"][0]["walks"].as_array().unwrap();
+    assert_eq!(
+        (walks.len(), walks[0]["ms"].as_array().unwrap().len()),
+        (2, 4)
+    );
+    assert_eq!(walks[0]["sums"]["transparent_voxels"], 0);
+}
+
+#[test]
+fn meshes_are_measured_against_their_triangles() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let measure = [
+        "bench",
+        "error",
+        "sheet.obj",
+        "--families",
+        "triangles,far",
+        "--depth",
+        "3",
+    ];
+    let settings = [
+        "--size",
+        "48",
+        "--runs",
+        "1",
+        "--warmup",
+        "0",
+        "--far-rays",
+        "5000",
+        "--json",
+    ];
+    let output = shiftvox(at).args(measure).args(settings).assert().success();
+    let document: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    let scene = &document["scenes"][0];
+    assert_eq!(scene["reference_samples"], 256);
+    let rows = scene["rows"].as_array().unwrap();
+    let error = |name: &str| {
+        let row = rows.iter().find(|row| row["method"] == name).unwrap();
+        row["outcome"]["picture"]["rms_linear"].as_f64().unwrap()
+    };
+    assert_eq!(rows.len(), 3 + 6);
+    assert!(error("triangles 16") < error("triangles 4"));
+    assert!(error("triangles 4") < error("triangles 1"));
+    assert!(error("far six") < 0.1);
+    let film = [
+        "bench",
+        "flicker",
+        "sheet.obj",
+        "--families",
+        "far",
+        "--motions",
+        "dolly",
+    ];
+    let settings = [
+        "--frames",
+        "2",
+        "--size",
+        "32",
+        "--depth",
+        "3",
+        "--far-rays",
+        "5000",
+        "--json",
+    ];
+    shiftvox(at).args(film).args(settings).assert().success();
+}
+
+#[test]
 fn what_is_wrong_is_said_with_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -129,7 +272,7 @@ fn what_is_wrong_is_said_with_an_exit_code() {
             assert!(!at.join("x.png").exists());
         }
     }
-    let usage: [&[&str]; 6] = [
+    let usage: [&[&str]; 8] = [
         &["render", "a.far", "-o", "x.png"],
         &[
             "render", "a.far", "--engine", "far", "--aa", "2", "-o", "x.png",
@@ -149,6 +292,8 @@ fn what_is_wrong_is_said_with_an_exit_code() {
         ],
         &["convert", "sheet.obj", "b.vxg", "--rays", "7"],
         &["convert", "sheet.obj", "b.far", "--memory", "1G"],
+        &["convert", "sheet.obj", "b.vxg", "--instances", "2"],
+        &["render", "sheet.obj", "--memory", "1G", "--hash"],
     ];
     for arguments in usage {
         shiftvox(at).args(arguments).assert().code(2);

@@ -1,7 +1,7 @@
 //! The view: culling, late answers, threads and batches never change a picture.
 
 use shiftvox::far::store::encode;
-use shiftvox::far::view::{FarViewer, Opacity, ViewError, ViewOptions};
+use shiftvox::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use shiftvox::far::{BuildOptions, FarFile};
 use shiftvox::graph::Silent;
 use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples};
@@ -63,6 +63,122 @@ fn culling_and_late_answers_never_change_the_picture() {
         }
     }
     assert!(hidden > 20, "{hidden} nodes were hidden");
+}
+
+#[test]
+fn hidden_branches_cost_no_work() {
+    let data = far_on_ground(&options());
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    // From below: the ground hides the city.
+    let view = view(20.0, -3.0, 60.0, 160);
+    let draw = |viewer: &mut FarViewer<'_>, culling| {
+        let options = ViewOptions {
+            culling,
+            voxel_px: 2.0,
+            ..ViewOptions::default()
+        };
+        viewer.draw(&view, &options).unwrap()
+    };
+    let mut viewer = FarViewer::new(&file);
+    let (picture, all) = draw(&mut viewer, false);
+    let (first, _) = draw(&mut viewer, true);
+    let (second, culled) = draw(&mut viewer, true);
+    assert!(picture == first && picture == second);
+    assert!(culled.hidden > 0);
+    let drawn = |counts: &Counts| counts.voxel_nodes + counts.leaves;
+    // A branch is asked for once, and nothing below it is looked at.
+    assert!(
+        culled.hidden + drawn(&culled) < drawn(&all),
+        "{culled:?} {all:?}"
+    );
+    assert!(culled.visited * 4 < all.visited * 3, "{culled:?} {all:?}");
+    let work = |counts: &Counts| counts.triangles + counts.opaque_voxels;
+    assert!(work(&culled) * 4 < work(&all) * 3, "{culled:?} {all:?}");
+    // Of a hidden node not even the data is read: nobody minds its damage.
+    let seen: std::collections::HashSet<i32> = picture.node.iter().copied().collect();
+    let unseen = (0..data.nodes.len()).rev().find(|&n| {
+        let node = &data.nodes[n];
+        let is_inside = node.low[1] > 0.5 && node.high[2] < 30.0;
+        !seen.contains(&(n as i32)) && node.is_leaf() && is_inside
+    });
+    let mut bytes = encode(&data).unwrap();
+    let triangle = data.nodes[unseen.unwrap()].first_triangle as usize;
+    let triangles_at = bytes.len() - 52 * data.triangles.len();
+    bytes[triangles_at + 52 * triangle] ^= 1;
+    let damaged = FarFile::from_bytes(&bytes).unwrap();
+    assert!(damaged.verify().is_err());
+    let (same, _) = draw(&mut FarViewer::new(&damaged), true);
+    assert!(same == picture);
+}
+
+#[test]
+fn a_budget_below_the_files_size_changes_nothing_but_time() {
+    let data = far_on_ground(&options());
+    let bytes = encode(&data).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.far");
+    std::fs::write(&path, &bytes).unwrap();
+    let whole = FarFile::open(&path).unwrap();
+    let budget = bytes.len() as u64 / 8;
+    let Ok(within) = FarFile::open_within(&path, budget) else {
+        eprintln!("skipped: this system does not let go of mapped pages");
+        return;
+    };
+    let most_node = data.nodes.iter().map(|node| {
+        let triangles = if node.is_leaf() { node.triangles } else { 0 };
+        node.voxel_bytes().max(52 * u64::from(triangles))
+    });
+    let most_node = most_node.max().unwrap();
+    let mut viewers = (FarViewer::new(&whole), FarViewer::new(&within));
+    for step in 0..6 {
+        let view = view(
+            f64::from(step) * 60.0,
+            0.4,
+            60.0 + 20.0 * f64::from(step),
+            128,
+        );
+        let options = ViewOptions::default();
+        let (expected, _) = viewers.0.draw(&view, &options).unwrap();
+        let (picture, _) = viewers.1.draw(&view, &options).unwrap();
+        assert!(picture == expected, "step {step}");
+        let resident = within.resident().unwrap();
+        assert!(resident.most_bytes <= budget.max(most_node), "{resident:?}");
+        if let Some(mapped) = mapped_bytes(&path) {
+            // Two maps of the file; pages of 4096 bytes hang over at both ends of a node.
+            let slack = 16 * 8192;
+            assert!(
+                mapped[1] <= resident.most_bytes + slack,
+                "{mapped:?} {budget}"
+            );
+        }
+    }
+    let resident = within.resident().unwrap();
+    assert!(resident.released > 10, "{resident:?}");
+    within.verify().unwrap();
+    assert!(within.resident().unwrap().most_bytes <= budget.max(most_node));
+    assert_eq!(whole.resident(), None);
+}
+
+/// Bytes of the maps of a file that are in memory, the fullest first; Linux tells.
+fn mapped_bytes(path: &std::path::Path) -> Option<Vec<u64>> {
+    let maps = std::fs::read_to_string("/proc/self/smaps").ok()?;
+    let name = path.canonicalize().ok()?.display().to_string();
+    let mut found = Vec::new();
+    let mut is_ours = false;
+    for line in maps.lines() {
+        if line.contains(" r")
+            && line.contains('-')
+            && line.contains(':')
+            && !line.starts_with("Rss")
+        {
+            is_ours = line.ends_with(&name);
+        } else if is_ours && line.starts_with("Rss:") {
+            let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+            found.push(kilobytes * 1024);
+        }
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
+    (found.len() == 2).then_some(found)
 }
 
 #[test]

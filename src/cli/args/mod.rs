@@ -14,7 +14,7 @@ pub use engine::{
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};
 pub use scene::{ColorName, OutOfBoundsName, SceneArgs, UpName};
-pub use values::{Memory, Point, Size, ThreadCounts, Tolerance};
+pub use values::{DataBudget, Memory, Point, Size, ThreadCounts, Tolerance};
 
 /// A setting as a configuration file has it: the flag's long name and its value.
 pub type Setting = (&'static str, toml::Value);

@@ -128,40 +128,59 @@ pub struct Memory {
 /// Least memory that an external build keeps to.
 const LEAST_MEMORY: u64 = 64 << 20;
 
+/// How much of a file's data may be in memory: as [`Memory`], any amount.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DataBudget {
+    /// Bytes.
+    pub bytes: u64,
+}
+
+impl FromStr for DataBudget {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        bytes_of(text).map(|bytes| Self { bytes })
+    }
+}
+
 impl FromStr for Memory {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let text = text.trim();
-        let upper = text.to_ascii_uppercase();
-        let amount = upper.strip_suffix("IB").or(upper.strip_suffix('B'));
-        let amount = amount.unwrap_or(&upper);
-        let (digits, shift) = match amount.char_indices().next_back() {
-            Some((end, unit @ ('K' | 'M' | 'G' | 'T'))) => {
-                let shift = match unit {
-                    'K' => 10,
-                    'M' => 20,
-                    'G' => 30,
-                    _ => 40,
-                };
-                (&amount[..end], shift)
-            }
-            _ => (amount, 0),
-        };
-        let wrong = || format!("expected an amount of memory such as 512M or 2G, not `{text}`");
-        let number: f64 = digits.parse().map_err(|_| wrong())?;
-        let bytes = number * (1u64 << shift) as f64;
-        // Exact below 2^53, which is more than any machine has.
-        if !(0.0..9e15).contains(&bytes) || digits.contains(['E', '+']) {
-            return Err(wrong());
-        }
-        if (bytes as u64) < LEAST_MEMORY {
+        let bytes = bytes_of(text)?;
+        if bytes < LEAST_MEMORY {
             return Err("building takes 64M at the least".to_owned());
         }
-        Ok(Self {
-            bytes: bytes as u64,
-        })
+        Ok(Self { bytes })
     }
+}
+
+/// Bytes in words: `512M`, `2G`.
+fn bytes_of(text: &str) -> Result<u64, String> {
+    let text = text.trim();
+    let upper = text.to_ascii_uppercase();
+    let amount = upper.strip_suffix("IB").or(upper.strip_suffix('B'));
+    let amount = amount.unwrap_or(&upper);
+    let (digits, shift) = match amount.char_indices().next_back() {
+        Some((end, unit @ ('K' | 'M' | 'G' | 'T'))) => {
+            let shift = match unit {
+                'K' => 10,
+                'M' => 20,
+                'G' => 30,
+                _ => 40,
+            };
+            (&amount[..end], shift)
+        }
+        _ => (amount, 0),
+    };
+    let wrong = || format!("expected an amount of memory such as 512M or 2G, not `{text}`");
+    let number: f64 = digits.parse().map_err(|_| wrong())?;
+    let bytes = number * (1u64 << shift) as f64;
+    // Exact below 2^53, which is more than any machine has.
+    if !(0.0..9e15).contains(&bytes) || digits.contains(['E', '+']) {
+        return Err(wrong());
+    }
+    Ok(bytes as u64)
 }
 
 #[cfg(test)]

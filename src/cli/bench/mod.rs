@@ -13,6 +13,7 @@ mod picture_export;
 mod scaling;
 pub(super) mod subjects;
 mod vertex_error;
+mod walk;
 
 use clap::{Args, Subcommand};
 
@@ -63,6 +64,8 @@ enum Experiment {
     /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
     /// its nodes were seen before, and which samples show the same node. Nothing is timed.
     Coherence(Box<coherence::CoherenceArgs>),
+    /// Frame times of far voxels along a walk, with and without opacities (.far files; see convert)
+    Walk(Box<walk::WalkArgs>),
     /// How far the paper's screen-space midpoints are from exact projection
     VertexError,
 }
@@ -91,6 +94,7 @@ pub(super) fn run(
         Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Flicker(args) => flicker::run(args, scenes, console),
         Experiment::Coherence(args) => coherence::run(args, scenes, console),
+        Experiment::Walk(args) => walk::run(args, console),
         Experiment::VertexError => vertex_error::run(console),
     }
 }

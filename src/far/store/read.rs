@@ -11,13 +11,14 @@ use glam::DVec3;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::budget::{Budget, Resident};
 use super::check::check;
 use super::error::{DAMAGED, FarError, NEWER, NOT_OURS};
 use super::format::{HEADER_BYTES, Layout, MAGIC, VERSION, at, layout};
 use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
-use crate::graph::vxg::map_file;
+use crate::graph::vxg::{map_file, release};
 
 /// Whether a file that begins with these bytes is a `.far` file (of any version).
 #[must_use]
@@ -53,6 +54,8 @@ pub struct FarFile {
     first_voxel: Vec<u32>,
     /// Nodes whose data was found sound.
     is_checked: Vec<AtomicBool>,
+    /// What limits how much of the data is in memory, if anything does.
+    budget: Option<Budget>,
     centre: DVec3,
     distance_voxels: f64,
     blends: [Blend; 2],
@@ -91,6 +94,44 @@ impl FarFile {
         Header::read(&beginning, metadata.len(), path)?;
         let map = map_file(&file).map_err(refused("map it into memory"))?;
         Self::of(Bytes::Mapped(map), path)
+    }
+
+    /// Opens a file of which at most so many bytes of nodes' data are in memory
+    /// at a time (a node that is larger is there alone). Header and hierarchy,
+    /// pictures and what is made of nodes while they are drawn come on top.
+    ///
+    /// # Errors
+    /// As [`FarFile::open`]; and where the system cannot let go of mapped pages.
+    pub fn open_within(path: &Path, bytes: u64) -> Result<Self, FarError> {
+        let mut file = Self::open(path)?;
+        let whole = file.bytes.get().len();
+        if let Bytes::Mapped(map) = &file.bytes
+            && !release(map, 0, whole)
+        {
+            return Err(FarError::Io {
+                file: path.to_owned(),
+                doing: "keep to a budget of memory",
+                source: io::Error::from(io::ErrorKind::Unsupported),
+            });
+        }
+        file.budget = Some(Budget::new(bytes, file.nodes.len()));
+        Ok(file)
+    }
+
+    /// What the budget came to; `None` without one.
+    #[must_use]
+    pub fn resident(&self) -> Option<Resident> {
+        self.budget.as_ref().map(Budget::resident)
+    }
+
+    /// Lets go of nodes' data that was let go of before, while it was in use.
+    pub(in crate::far) fn settle(&self, nodes: impl Iterator<Item = usize>) {
+        if let (Some(budget), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
+            for node in nodes.filter(|&node| !budget.is_here(node)) {
+                let place = self.place_of(node);
+                let _ = release(map, place.start, place.len());
+            }
+        }
     }
 
     /// A file that is held in memory; it is named `(memory)` in errors.
@@ -152,6 +193,7 @@ impl FarFile {
             .collect();
         Ok(Self {
             path: path.to_owned(),
+            budget: None,
             is_checked: nodes.iter().map(|_| AtomicBool::new(false)).collect(),
             places,
             nodes,
@@ -298,8 +340,27 @@ impl FarFile {
         &self.bytes.get()[range([begin, begin + self.nodes[node].voxel_bytes()])]
     }
 
-    /// Checks a node's data when it is first asked for.
+    /// Where a node's data is.
+    fn place_of(&self, number: usize) -> Range<usize> {
+        let node = &self.nodes[number];
+        if node.is_leaf() {
+            let size = size_of::<LeafTriangle>() as u64;
+            let begin = self.places.triangles[0] + u64::from(node.first_triangle) * size;
+            return range([begin, begin + u64::from(node.triangles) * size]);
+        }
+        let begin = self.places.voxels[0] + node.voxels_at;
+        range([begin, begin + node.voxel_bytes()])
+    }
+
+    /// Counts a node's data into the budget, and checks it when it is first asked for.
     fn ensure(&self, number: usize) -> Result<(), FarError> {
+        if let (Some(budget), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
+            let release_range = |range: &Range<usize>| {
+                // It did at the beginning; a page more in memory does no harm.
+                let _ = release(map, range.start, range.len());
+            };
+            budget.touch(number, || self.place_of(number), release_range);
+        }
         if self.is_checked[number].load(Ordering::Relaxed) {
             return Ok(());
         }

@@ -79,56 +79,92 @@ impl Outline {
     }
 }
 
-/// The cut that `cut_of` asks for, of what is in `view`, from near to far.
-pub(super) fn cut(
-    file: &FarFile,
-    view: &View,
-    cut_of: &View,
-    voxel_px: f64,
-    counts: &mut Counts,
-) -> Vec<Chosen> {
-    let mut chosen = Vec::new();
-    let mut waiting = vec![0];
-    while let Some(number) = waiting.pop() {
-        counts.visited += 1;
-        let node = &file.nodes()[number];
-        let (low, high) = node.bounds();
-        let (low, high) = (low + file.centre(), high + file.centre());
-        // Voxels are drawn as squares that reach beyond their cubes.
-        let outline = Outline::of(view, low, high, f64::from(node.voxel));
-        if outline.is_outside(view) {
-            counts.outside += 1;
-            continue;
-        }
-        let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
-        let distance = distance_from(view.eye);
-        let from = distance_from(cut_of.eye);
-        let voxel = f64::from(node.voxel);
-        let is_small = voxel * cut_of.focal_px <= voxel_px * from;
-        // Nearer, things that were taken to hide it may be behind the eye.
-        let is_far = from >= file.distance_voxels() * voxel;
-        if !(node.is_leaf() || is_small && is_far) {
-            waiting.extend(node.children.map(|child| child as usize));
-            continue;
-        }
-        if node.is_leaf() {
-            counts.leaves += 1;
-        } else {
-            counts.voxel_nodes += 1;
-        }
-        chosen.push(Chosen {
-            number,
-            distance,
-            middle: ((low + high) / 2.0 - view.eye).length(),
-            outline,
-        });
+/// A node in the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Found {
+    /// It is drawn: as voxels, or a leaf as triangles.
+    Drawn(Chosen),
+    /// Its children are. The outline holds all that is below.
+    Branch(Chosen),
+}
+
+impl Found {
+    pub(super) fn chosen(&self) -> &Chosen {
+        let (Self::Drawn(chosen) | Self::Branch(chosen)) = self;
+        chosen
     }
-    chosen.sort_by(|a, b| {
-        a.distance
-            .total_cmp(&b.distance)
-            .then(a.number.cmp(&b.number))
-    });
-    chosen
+}
+
+/// Where a node's children's voxels may reach beyond its own grid, in its voxels.
+const BRANCH_MARGIN: f64 = 2.0;
+
+/// Says of each node whether it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cut<'f> {
+    pub(super) file: &'f FarFile,
+    pub(super) view: View,
+    /// Whose cut it is.
+    pub(super) cut_of: View,
+    pub(super) voxel_px: f64,
+}
+
+impl Cut<'_> {
+    /// Looks at a node; `None` if it is beside or behind the picture.
+    pub(super) fn look(&self, number: usize, counts: &mut Counts) -> Option<Found> {
+        counts.visited += 1;
+        let node = &self.file.nodes()[number];
+        let centre = self.file.centre();
+        let (low, high) = node.bounds();
+        let (low, high) = (low + centre, high + centre);
+        let voxel = f64::from(node.voxel);
+        let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
+        let from = distance_from(self.cut_of.eye);
+        let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
+        // Nearer, things that were taken to hide it may be behind the eye.
+        let is_far = from >= self.file.distance_voxels() * voxel;
+        let is_drawn = node.is_leaf() || is_small && is_far;
+        // Voxels are drawn as squares that reach beyond their cubes.
+        let margin = if is_drawn {
+            voxel
+        } else {
+            BRANCH_MARGIN * voxel
+        };
+        let outline = Outline::of(&self.view, low, high, margin);
+        if outline.is_outside(&self.view) {
+            counts.outside += 1;
+            return None;
+        }
+        let chosen = Chosen {
+            number,
+            distance: distance_from(self.view.eye),
+            middle: ((low + high) / 2.0 - self.view.eye).length(),
+            outline,
+        };
+        Some(if is_drawn {
+            Found::Drawn(chosen)
+        } else {
+            Found::Branch(chosen)
+        })
+    }
+
+    /// All nodes that are drawn, hidden or not.
+    pub(super) fn all(&self, counts: &mut Counts) -> Vec<Chosen> {
+        let mut drawn = Vec::new();
+        let mut waiting = vec![0];
+        while let Some(number) = waiting.pop() {
+            match self.look(number, counts) {
+                None => {}
+                Some(Found::Drawn(chosen)) => drawn.push(chosen),
+                Some(Found::Branch(_)) => waiting.extend(self.children(number)),
+            }
+        }
+        drawn
+    }
+
+    pub(super) fn children(&self, number: usize) -> [usize; 2] {
+        let children = self.file.nodes()[number].children;
+        children.map(|child| child as usize)
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,8 @@
 //! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
 //!    above, number below, the least counts. That does not depend on who comes
 //!    first, hence neither on threads nor on what was found hidden.
-//! 3. `fill`: what is drawn so far, as a pyramid; nodes behind it are left out.
+//! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
+//!    hierarchy that are behind it are left out, with all below.
 //! 4. The winners' colours, then transparent voxels over them, back to front.
 
 mod cut;
@@ -12,6 +13,7 @@ mod fill;
 mod opaque;
 mod splat;
 mod transparent;
+mod visible;
 
 use glam::DVec3;
 
@@ -19,9 +21,10 @@ pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
 use crate::mesh::raster::{Light, RasterError, View};
 use crate::mesh::{linear_to_srgb, srgb_to_linear};
-use cut::Chosen;
+use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
+use visible::{Memory, Walked};
 
 /// How far voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,17 +90,17 @@ pub struct FarPicture {
 /// What a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Nodes that the cut was found by.
+    /// Nodes that were looked at.
     pub visited: u64,
     /// Nodes of those beside or behind the picture.
     pub outside: u64,
-    /// Nodes of the cut that are drawn as voxels, hidden or not.
+    /// Nodes drawn as voxels.
     pub voxel_nodes: u64,
-    /// Nodes of the cut that are drawn as triangles, hidden or not.
+    /// Nodes drawn as triangles.
     pub leaves: u64,
-    /// Nodes of the cut that were found hidden and left out.
+    /// Nodes and branches that were found hidden; nothing below them was looked at.
     pub hidden: u64,
-    /// Queries whether a node is hidden.
+    /// Queries whether a node or branch is hidden.
     pub queries: u64,
     /// Opaque voxels drawn.
     pub opaque_voxels: u64,
@@ -114,8 +117,7 @@ pub struct Counts {
 #[derive(Debug)]
 pub struct FarViewer<'f> {
     file: &'f FarFile,
-    /// Whether each node was visible in the last frame.
-    was_visible: Vec<bool>,
+    memory: Memory,
 }
 
 impl<'f> FarViewer<'f> {
@@ -124,16 +126,14 @@ impl<'f> FarViewer<'f> {
     pub fn new(file: &'f FarFile) -> Self {
         Self {
             file,
-            was_visible: vec![false; file.nodes().len()],
+            memory: Memory::new(file.nodes().len()),
         }
     }
 
     /// Takes these nodes for those that were visible in the last frame, by
     /// their numbers; others were hidden. May be wrong: the picture is the same.
     pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
-        for (number, was_visible) in self.was_visible.iter_mut().enumerate() {
-            *was_visible = is_visible(number);
-        }
+        self.memory.set(is_visible);
     }
 
     /// Draws a frame.
@@ -163,25 +163,40 @@ impl<'f> FarViewer<'f> {
             return Err(ViewError::VoxelSize(options.voxel_px));
         }
         let mut counts = Counts::default();
-        let chosen = cut::cut(self.file, view, cut_of, options.voxel_px, &mut counts);
-        let mut opaque = self.draw_opaque(view, options, &chosen, &mut counts)?;
+        let cut = Cut {
+            file: self.file,
+            view: *view,
+            cut_of: *cut_of,
+            voxel_px: options.voxel_px,
+        };
+        let mut opaque = Opaque::new(self.file, view, options)?;
+        let walked = if options.culling {
+            visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
+        } else {
+            let drawn = cut.all(&mut counts);
+            opaque.draw(&drawn, &mut counts)?;
+            Walked {
+                drawn,
+                branches: Vec::new(),
+            }
+        };
         if opaque.has_tie() {
             // Rasterised in one go, whose rule for equal depths has more digits.
             counts.drawn_twice = 1;
             counts.opaque_voxels = 0;
             counts.triangles = 0;
-            counts.hidden = 0;
             opaque = Opaque::new(self.file, view, options)?;
-            opaque.draw(&chosen, &mut counts)?;
+            opaque.draw(&walked.drawn, &mut counts)?;
         }
-        let fill = Fill::of(&opaque.depths(), view);
-        let mut transparent = Vec::new();
-        for node in &chosen {
-            let is_hidden = fill.hides(view, &node.outline);
-            self.was_visible[node.number] = !is_hidden;
-            if !(options.culling && is_hidden) {
-                transparent.push(node);
-            }
+        let is_leaf = |node: &&Chosen| self.file.nodes()[node.number].is_leaf();
+        counts.leaves = walked.drawn.iter().filter(is_leaf).count() as u64;
+        counts.voxel_nodes = walked.drawn.len() as u64 - counts.leaves;
+        let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
+        if options.culling {
+            let fill = Fill::of(&opaque.depths(), view);
+            transparent.retain(|node| !fill.hides(view, &node.outline));
+            let visible = transparent.iter().map(|node| node.number);
+            self.memory.end_frame(visible, &walked.branches, &cut);
         }
         let mut pixels = opaque.resolve();
         if options.opacity != Opacity::None {
@@ -189,6 +204,8 @@ impl<'f> FarViewer<'f> {
             counts.transparent_voxels = drawn;
         }
         let depth: Vec<f32> = opaque.depths();
+        self.file
+            .settle(walked.drawn.iter().map(|node| node.number));
         Ok((
             FarPicture {
                 width: view.width,
@@ -204,48 +221,7 @@ impl<'f> FarViewer<'f> {
             counts,
         ))
     }
-
-    /// Nodes that were visible come first; the others in batches from near to
-    /// far, each asked for against what was drawn `late` batches before.
-    fn draw_opaque(
-        &self,
-        view: &View,
-        options: &ViewOptions,
-        chosen: &[Chosen],
-        counts: &mut Counts,
-    ) -> Result<Opaque<'f>, ViewError> {
-        let mut opaque = Opaque::new(self.file, view, options)?;
-        if !options.culling {
-            opaque.draw(chosen, counts)?;
-            return Ok(opaque);
-        }
-        let is_known = |node: &&Chosen| self.was_visible[node.number];
-        let (known, others): (Vec<&Chosen>, Vec<&Chosen>) = chosen.iter().partition(is_known);
-        opaque.draw(known, counts)?;
-        let mut fills = vec![Fill::of(&opaque.depths(), view)];
-        let batch = others.len().div_ceil(BATCHES).max(LEAST_BATCH);
-        for (number, nodes) in others.chunks(batch).enumerate() {
-            let fill = &fills[number.saturating_sub(options.late).min(fills.len() - 1)];
-            let mut visible = Vec::new();
-            for node in nodes {
-                counts.queries += 1;
-                if fill.hides(view, &node.outline) {
-                    counts.hidden += 1;
-                } else {
-                    visible.push(*node);
-                }
-            }
-            opaque.draw(visible, counts)?;
-            fills.push(Fill::of(&opaque.depths(), view));
-        }
-        Ok(opaque)
-    }
 }
-
-/// Batches of nodes that were not visible in the last frame.
-const BATCHES: usize = 6;
-/// Least nodes of a batch.
-const LEAST_BATCH: usize = 16;
 
 /// Linear light, premultiplied, and coverage.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -266,6 +242,9 @@ impl Pixel {
     }
 
     fn encode(&self, background: Option<[u8; 3]>) -> [u8; 4] {
+        if self.coverage <= 0.0 {
+            return background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        }
         let light = self.light.map(f64::from);
         let coverage = f64::from(self.coverage);
         let bytes = |light: [f64; 3]| light.map(linear_to_srgb);
@@ -276,7 +255,6 @@ impl Pixel {
                 let [r, g, b] = bytes([0, 1, 2].map(mixed));
                 [r, g, b, 255]
             }
-            None if self.coverage <= 0.0 => [0; 4],
             None => {
                 let [r, g, b] = bytes(light.map(|l| l / coverage));
                 // 0 to 255.

@@ -44,3 +44,26 @@ pub(super) fn advise(map: &Mmap, access: Access) {
     #[cfg(not(unix))]
     let _ = (map, access);
 }
+
+/// Lets go of the pages of a range of bytes: they are read from the file again
+/// when they are next looked at. False where the system has no such call, or
+/// refuses it.
+pub(crate) fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
+    #[cfg(unix)]
+    {
+        if from > map.len() || bytes > map.len() - from {
+            return false;
+        }
+        // SAFETY: what this call can destroy are changes to private pages. The
+        // map is read-only, so there are none: every page that is dropped comes
+        // back with the file's bytes, and references into it stay valid.
+        let dropped =
+            unsafe { map.unchecked_advise_range(memmap2::UncheckedAdvice::DontNeed, from, bytes) };
+        dropped.is_ok()
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = (map, from, bytes);
+        false
+    }
+}

@@ -1,0 +1,138 @@
+//! How much of a mapped file's data is in memory, and what goes when it is too much.
+//!
+//! Nodes are let go of in the order of a clock: round and round, one that was
+//! used since the hand last passed is spared once. What was let go of is read
+//! from the file again when it is next drawn, so a budget costs time and
+//! changes nothing else.
+
+use std::collections::VecDeque;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Keeps to a budget.
+#[derive(Debug)]
+pub(super) struct Budget {
+    most: u64,
+    /// Nodes whose data is in memory.
+    is_here: Vec<AtomicBool>,
+    /// Those of them that were used since the hand passed.
+    was_used: Vec<AtomicBool>,
+    clock: Mutex<Clock>,
+}
+
+#[derive(Debug, Default)]
+struct Clock {
+    /// Nodes whose data is in memory, from the hand on, and where that is.
+    here: VecDeque<(usize, Range<usize>)>,
+    bytes: u64,
+    most_bytes: u64,
+    released: u64,
+}
+
+/// What a budget came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Resident {
+    /// Bytes of nodes that are in memory.
+    pub bytes: u64,
+    /// The most that there were.
+    pub most_bytes: u64,
+    /// How often a node was let go of.
+    pub released: u64,
+}
+
+impl Budget {
+    pub(super) fn new(most: u64, nodes: usize) -> Self {
+        let marks = || (0..nodes).map(|_| AtomicBool::new(false)).collect();
+        Self {
+            most,
+            is_here: marks(),
+            was_used: marks(),
+            clock: Mutex::new(Clock::default()),
+        }
+    }
+
+    /// Notes that a node's data is about to be looked at, and lets go of others
+    /// until it fits; a node larger than the budget is alone in memory.
+    pub(super) fn touch(
+        &self,
+        node: usize,
+        place: impl FnOnce() -> Range<usize>,
+        release: impl Fn(&Range<usize>),
+    ) {
+        self.was_used[node].store(true, Ordering::Relaxed);
+        if self.is_here[node].load(Ordering::Relaxed) {
+            return;
+        }
+        // Counts stay sound whoever panicked.
+        let mut clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        if self.is_here[node].swap(true, Ordering::Relaxed) {
+            return;
+        }
+        let place = place();
+        let bytes = place.len() as u64;
+        while clock.bytes.saturating_add(bytes) > self.most
+            && let Some((other, range)) = clock.here.pop_front()
+        {
+            if self.was_used[other].swap(false, Ordering::Relaxed) {
+                clock.here.push_back((other, range));
+                continue;
+            }
+            release(&range);
+            self.is_here[other].store(false, Ordering::Relaxed);
+            clock.bytes -= range.len() as u64;
+            clock.released += 1;
+        }
+        clock.bytes += bytes;
+        clock.most_bytes = clock.most_bytes.max(clock.bytes);
+        clock.here.push_back((node, place));
+    }
+
+    pub(super) fn is_here(&self, node: usize) -> bool {
+        self.is_here[node].load(Ordering::Relaxed)
+    }
+
+    pub(super) fn resident(&self) -> Resident {
+        let clock = self.clock.lock().unwrap_or_else(PoisonError::into_inner);
+        Resident {
+            bytes: clock.bytes,
+            most_bytes: clock.most_bytes,
+            released: clock.released,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_used_goes_first_and_the_budget_is_kept() {
+        let budget = Budget::new(100, 20);
+        let gone = Mutex::new(Vec::new());
+        let touch = |node: usize| {
+            let place = || node * 30..node * 30 + 30;
+            budget.touch(node, place, |range| {
+                gone.lock().unwrap().push(range.start / 30);
+            });
+        };
+        (0..3).for_each(touch);
+        // All were used: the hand spares each once, then takes the first.
+        touch(3);
+        assert_eq!(*gone.lock().unwrap(), [0]);
+        touch(2);
+        touch(4);
+        assert_eq!(*gone.lock().unwrap(), [0, 1]);
+        touch(5);
+        assert_eq!(gone.lock().unwrap().len(), 3);
+        assert!(!gone.lock().unwrap().contains(&2), "it was used");
+        let resident = budget.resident();
+        assert_eq!(
+            (resident.bytes, resident.most_bytes, resident.released),
+            (90, 90, 3)
+        );
+        // Larger than the budget: alone.
+        budget.touch(9, || 0..500, |_| {});
+        assert_eq!(budget.resident().bytes, 500);
+    }
+}
