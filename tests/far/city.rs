@@ -31,11 +31,11 @@ fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u3
 
 /// About 4000 triangles, 40 units wide.
 pub(crate) fn city() -> Mesh {
-    blocks(false)
+    blocks(false, false)
 }
 
-/// The city, on a ground or not.
-fn blocks(has_ground: bool) -> Mesh {
+/// The city, on a ground or not, behind a high wall or not.
+fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
     let mut builder = MeshBuilder::new();
     let colors = [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]];
     for (i, color) in colors.into_iter().enumerate() {
@@ -72,6 +72,10 @@ fn blocks(has_ground: bool) -> Mesh {
             builder.triangle(triangle, None, 1).unwrap();
         }
     }
+    for i in 0..if has_wall { 400 } else { 0 } {
+        let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
+        cuboid(&mut builder, [x, y, 70.0], [x + 4.0, y + 2.0, 70.5], 2);
+    }
     builder.finish("city").unwrap()
 }
 
@@ -93,7 +97,12 @@ pub(crate) fn far(options: &BuildOptions) -> FarData {
 
 /// The city on its ground as far voxels.
 pub(crate) fn far_on_ground(options: &BuildOptions) -> FarData {
-    build(&blocks(true), options, &Silent).unwrap()
+    build(&blocks(true, false), options, &Silent).unwrap()
+}
+
+/// The city behind a high wall as far voxels.
+pub(crate) fn far_behind_wall(options: &BuildOptions) -> FarData {
+    build(&blocks(true, true), options, &Silent).unwrap()
 }
 
 /// A view of the city from an angle around it and a distance.

@@ -26,6 +26,9 @@ pub fn is_far(beginning: &[u8]) -> bool {
     beginning.starts_with(&MAGIC)
 }
 
+/// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
+const BROUGHT_IN: u64 = 64 << 10;
+
 /// The bytes of a file, mapped or held.
 #[derive(Debug)]
 enum Bytes {
@@ -340,16 +343,21 @@ impl FarFile {
         &self.bytes.get()[range([begin, begin + self.nodes[node].voxel_bytes()])]
     }
 
-    /// Where a node's data is.
+    /// Where a node's data is, with what the system may bring in around it.
     fn place_of(&self, number: usize) -> Range<usize> {
         let node = &self.nodes[number];
-        if node.is_leaf() {
+        let (begin, bytes) = if node.is_leaf() {
             let size = size_of::<LeafTriangle>() as u64;
-            let begin = self.places.triangles[0] + u64::from(node.first_triangle) * size;
-            return range([begin, begin + u64::from(node.triangles) * size]);
-        }
-        let begin = self.places.voxels[0] + node.voxels_at;
-        range([begin, begin + node.voxel_bytes()])
+            let first = u64::from(node.first_triangle) * size;
+            (
+                self.places.triangles[0] + first,
+                u64::from(node.triangles) * size,
+            )
+        } else {
+            (self.places.voxels[0] + node.voxels_at, node.voxel_bytes())
+        };
+        let end = (begin + bytes).next_multiple_of(BROUGHT_IN);
+        range([begin / BROUGHT_IN * BROUGHT_IN, end.min(self.len())])
     }
 
     /// Counts a node's data into the budget, and checks it when it is first asked for.
