@@ -249,7 +249,8 @@ impl Target<'_> {
             let outside = (at - cells).max(DVec3::ZERO) + at.min(DVec3::ZERO);
             let distance = outside.length();
             let slope = -outside.dot(direction) / distance;
-            if !(slope > 0.0) {
+            // Beyond the grid there is a slope; not for a direction of zero length.
+            if slope.is_nan() || slope <= 0.0 {
                 break;
             }
             back -= (distance - self.distance) / slope;

@@ -38,7 +38,8 @@ pub(super) fn touched(
     let mut all: Vec<Touched> = Vec::new();
     for corners in triangles {
         let corners = corners.map(|p| grid.local(p));
-        parts(grid, &corners, |number, part| {
+        parts(grid, &corners, |number, piece| {
+            let part = piece.cut();
             let area = part.area();
             if area < LEAST_AREA {
                 return;
@@ -72,9 +73,9 @@ pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) ->
     let mut count = 0;
     for corners in triangles {
         let corners = corners.map(|p| grid.local(p));
-        parts(grid, &corners, |number, part| {
+        parts(grid, &corners, |number, piece| {
             let mark = &mut is_touched[number as usize];
-            if !*mark && part.area() >= LEAST_AREA {
+            if !*mark && piece.cut().area() >= LEAST_AREA {
                 *mark = true;
                 count += 1;
             }
@@ -83,8 +84,22 @@ pub(super) fn count(grid: &Grid, triangles: impl Iterator<Item = [DVec3; 3]>) ->
     count
 }
 
-/// Calls back with the part of a triangle (in voxels) in each voxel of a grid.
-fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Part)) {
+/// A triangle, and the voxel that it is to be cut to.
+struct Piece<'t> {
+    triangle: &'t Part,
+    /// The voxel's lowest corner; `None` where all of the triangle is in it.
+    voxel: Option<DVec3>,
+}
+
+impl Piece<'_> {
+    fn cut(&self) -> Part {
+        self.voxel
+            .map_or(*self.triangle, |corner| self.triangle.within(corner))
+    }
+}
+
+/// Calls back with the piece of a triangle (in voxels) in each voxel of a grid.
+fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Piece<'_>)) {
     let [a, b, c] = *corners;
     let most = IVec3::from_array(grid.cells.map(|n| i32::from(n) - 1));
     let place = |p: DVec3| p.floor().as_ivec3().clamp(IVec3::ZERO, most);
@@ -95,7 +110,11 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Part)) {
     };
     let whole = Part::of(corners);
     if low == high {
-        visit(number(low), &whole);
+        let piece = Piece {
+            triangle: &whole,
+            voxel: None,
+        };
+        visit(number(low), &piece);
         return;
     }
     let normal = (b - a).cross(c - a);
@@ -107,7 +126,11 @@ fn parts(grid: &Grid, corners: &[DVec3; 3], mut visit: impl FnMut(u32, &Part)) {
                 let corner = at.as_dvec3();
                 let middle = corner + DVec3::splat(0.5);
                 if (middle - a).dot(normal).abs() <= reach {
-                    visit(number(at), &whole.within(corner));
+                    let piece = Piece {
+                        triangle: &whole,
+                        voxel: Some(corner),
+                    };
+                    visit(number(at), &piece);
                 }
             }
         }
@@ -132,8 +155,16 @@ impl Part {
     fn within(&self, corner: DVec3) -> Self {
         let mut part = *self;
         for axis in 0..3 {
-            part = part.cut(|p| p[axis] - corner[axis]);
-            part = part.cut(|p| corner[axis] + 1.0 - p[axis]);
+            let along = part.corners[..part.count].iter().map(|p| p[axis]);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| {
+                (low.min(at), high.max(at))
+            });
+            if low < corner[axis] {
+                part = part.cut(|p| p[axis] - corner[axis]);
+            }
+            if high > corner[axis] + 1.0 {
+                part = part.cut(|p| corner[axis] + 1.0 - p[axis]);
+            }
         }
         part
     }
@@ -216,7 +247,8 @@ mod tests {
         for _ in 0..200 {
             let corners = [random(), random(), random()];
             let mut sum = 0.0;
-            parts(&unit(), &corners, |number, part| {
+            parts(&unit(), &corners, |number, piece| {
+                let part = piece.cut();
                 sum += part.area();
                 let low = DVec3::from_array(unit().place(number as usize).map(f64::from));
                 for &corner in &part.corners[..part.count] {
