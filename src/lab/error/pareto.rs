@@ -1,6 +1,8 @@
 //! Which methods are worth having: those that no other beats in everything.
 
-use super::measure::{Outcome, Row, SceneErrors};
+#[cfg(feature = "cli")]
+use super::measure::SceneErrors;
+use super::measure::{Outcome, Row};
 #[cfg(feature = "cli")]
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
