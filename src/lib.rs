@@ -15,6 +15,7 @@ pub mod project;
 pub mod rays;
 pub mod report;
 pub mod scene;
+pub mod textured;
 
 #[cfg(feature = "cli")]
 pub mod cli;

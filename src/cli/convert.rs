@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::args::{FarOpacityName, Memory, SceneArgs};
@@ -10,9 +10,28 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::render::open;
 use super::scenes::Written;
-use super::{far, report, scenes};
+use super::{far, report, scenes, textured};
 use crate::graph::{BuildOptions, ExternalOptions};
 use crate::picture::store;
+use crate::textured::Element;
+
+/// Which voxels an erosion takes away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum ElementName {
+    /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
+    Cube,
+    /// Those with an empty cell at one of their six sides.
+    Sides,
+}
+
+impl ElementName {
+    pub(super) fn element(self) -> Element {
+        match self {
+            Self::Cube => Element::Cube,
+            Self::Sides => Element::Sides,
+        }
+    }
+}
 
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
@@ -20,7 +39,8 @@ pub struct ConvertArgs {
     /// Scene to read, told by its content
     #[arg(value_name = "IN")]
     pub(super) input: String,
-    /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh, .far
+    /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
+    /// .far (far voxels) or .tvx (textured voxels)
     #[arg(value_name = "OUT")]
     pub(super) output: PathBuf,
     /// Replace a file that exists
@@ -38,9 +58,17 @@ pub struct ConvertArgs {
     /// Of .far: nodes with fewer triangles are leaves [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     pub(super) leaf_triangles: Option<u32>,
-    /// Of .far: voxels along a node's longest side [default: 64]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=255))]
-    pub(super) grid: Option<u32>,
+    /// Of .far: voxels along a node's longest side [default: 64]. Of .tvx: cells along each axis, an
+    /// even number, or several such as 4,8,16,32: a file with a grid of each [default: 16]
+    #[arg(long, value_name = "N", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(2..=255))]
+    pub(super) grid: Vec<u32>,
+    /// Of .tvx: texels along the side of a voxel's face [default: 16]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub(super) texels: Option<u32>,
+    /// Of .tvx: which voxels an erosion takes away [default: cube]
+    #[arg(long, value_enum, value_name = "ELEMENT")]
+    pub(super) element: Option<ElementName>,
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) instances: Option<u32>,
@@ -53,11 +81,23 @@ pub struct ConvertArgs {
 
 pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
     store::check_free(&args.output, args.force)?;
-    if args
-        .output
-        .extension()
-        .is_some_and(|ending| ending == "far")
-    {
+    let is_ending = |name: &str| args.output.extension().is_some_and(|ending| ending == name);
+    if !is_ending("tvx") && (args.texels.is_some() || args.element.is_some()) {
+        return Err(CliError::usage("--texels and --element are for .tvx files"));
+    }
+    if is_ending("tvx") {
+        if args.memory.is_some() || args.rays.is_some() || args.leaf_triangles.is_some() {
+            return Err(CliError::usage(
+                "a .tvx takes --grid, --texels and --element; --memory is for .vxg files, \
+                 --rays and --leaf-triangles are for .far files",
+            ));
+        }
+        return textured::convert(args, console);
+    }
+    if is_ending("far") {
+        if args.grid.len() > 1 {
+            return Err(CliError::usage("a .far has one --grid"));
+        }
         if args.memory.is_some() {
             return Err(CliError::usage(
                 "--memory is for .vxg files; a .far is built in memory",
@@ -68,13 +108,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     let settings = [
         args.rays.is_some(),
         args.leaf_triangles.is_some(),
-        args.grid.is_some(),
         args.instances.is_some(),
         args.far_opacity.is_some(),
+        !args.grid.is_empty(),
     ];
     if settings.contains(&true) {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --grid, --instances and --far-opacity are for .far files",
+            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
         ));
     }
     if let Some(memory) = args.memory {

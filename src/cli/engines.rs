@@ -50,6 +50,10 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
             "--engine far draws a .far file, and only render does",
         )
         .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far --engine far")),
+        EngineName::Textured => Err(CliError::usage(
+            "--engine textured draws a .tvx file, and only render does",
+        )
+        .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx --engine textured")),
     }
 }
 

@@ -70,7 +70,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     let options = BuildOptions {
         rays: args.rays,
         leaf_triangles: args.leaf_triangles.unwrap_or(defaults.leaf_triangles),
-        grid: args.grid.unwrap_or(defaults.grid),
+        grid: args.grid.first().copied().unwrap_or(defaults.grid),
         opacity: opacity(args.far_opacity.unwrap_or_default()),
         ..defaults
     };

@@ -6,11 +6,11 @@ use serde_json::{Value, json};
 use super::args::{CameraArgs, SceneArgs, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::far;
 use super::fit::Bounds;
 use super::render::{choose_scenes, open};
 use super::report::{self, grouped};
 use super::scenes::{self, Scene};
+use super::{far, textured};
 use crate::graph::Graph;
 
 /// Arguments of `info`.
@@ -19,6 +19,9 @@ pub struct InfoArgs {
     /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
     #[arg(value_name = "SCENE")]
     scenes: Vec<String>,
+    /// Of .tvx: the table of faces, voxels and surfels of each level of detail
+    #[arg(long)]
+    levels: bool,
     #[command(flatten)]
     scene: SceneArgs,
 }
@@ -33,8 +36,14 @@ pub(super) fn run(
     let mut results = Vec::new();
     let mut first_failure = None;
     for name in &names {
-        if far::is_far_file(name) {
-            match far::info(name, console) {
+        let is_textured = textured::is_textured_file(name);
+        if is_textured || far::is_far_file(name) {
+            let told = if is_textured {
+                textured::info(name, args.levels, console)
+            } else {
+                far::info(name, console)
+            };
+            match told {
                 Ok(Some(described)) => results.push(described),
                 Ok(None) => {}
                 Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),

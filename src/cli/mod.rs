@@ -17,6 +17,7 @@ pub mod fit;
 pub mod generate;
 pub mod info;
 mod manual;
+mod mesh_view;
 mod model;
 mod outputs;
 pub mod render;
@@ -24,6 +25,7 @@ mod report;
 mod reproduce;
 mod scenes;
 mod stress;
+mod textured;
 pub mod triangles;
 pub mod turntable;
 

@@ -14,7 +14,7 @@ use super::drawing::{Drawn, draw, min_median_max};
 use super::error::{CliError, Kind};
 use super::fit::Bounds;
 use super::scenes::Scene;
-use super::{far, outputs, report, scenes};
+use super::{far, outputs, report, scenes, textured};
 use crate::picture;
 use crate::project::Camera;
 
@@ -196,6 +196,10 @@ fn render_one(
     if args.engine.engine == EngineName::Far || far::is_far_file(name) {
         let output = output_path(args, &scenes::stem(name));
         return far::render_one(args, name, of, output.as_deref(), console);
+    }
+    if args.engine.engine == EngineName::Textured || textured::is_textured_file(name) {
+        let output = output_path(args, &scenes::stem(name));
+        return textured::render_one(args, name, of, output.as_deref(), console);
     }
     if args.memory.is_some() {
         return Err(CliError::usage("--memory is for .far files"));

@@ -253,7 +253,7 @@ pub(super) fn write(
                 "{}: cannot tell the format to write from the ending",
                 output.display()
             ))
-            .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far"));
+            .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx"));
         }
     }
     progress.end();

@@ -36,6 +36,18 @@ pub trait Surface: Sync {
 
     /// Lowest and highest corner of the box around all triangles.
     fn bounds(&self) -> (DVec3, DVec3);
+
+    /// Whether triangle `number` is textured: then the rasteriser asks
+    /// [`Surface::texture`] at each point of it. No triangle of a mesh is.
+    fn is_textured(&self, _number: usize) -> bool {
+        false
+    }
+
+    /// Colour (linear light) and unit normal of a textured triangle at a point
+    /// of it; `None` where it is transparent.
+    fn texture(&self, _number: usize, _point: DVec3) -> Option<(DVec3, DVec3)> {
+        None
+    }
 }
 
 impl Surface for Mesh {

@@ -1,5 +1,8 @@
 //! The engine and what it computes with.
 
+use std::fmt;
+use std::str::FromStr;
+
 use clap::{Args, ValueEnum};
 use hwmodel::Overflow;
 
@@ -18,6 +21,8 @@ pub enum EngineName {
     Rays,
     /// Far voxels, of a .far file; see `convert`.
     Far,
+    /// Textured voxels, of a .tvx file; see `convert`.
+    Textured,
 }
 
 /// How a record holds its projected vertices.
@@ -78,6 +83,37 @@ pub enum FarOpacityName {
     Six,
 }
 
+/// How often textured voxels are eroded: a number, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Erosion {
+    /// The level of fewest faces whose texels are at most a pixel.
+    #[default]
+    Auto,
+    /// So often; beyond the last level primitives alone are left.
+    Level(u32),
+}
+
+impl FromStr for Erosion {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self::Auto);
+        }
+        let level = text.parse().map(Self::Level);
+        level.map_err(|_| "expected a number of erosions, 0 or more, or auto".to_owned())
+    }
+}
+
+impl fmt::Display for Erosion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Auto => f.write_str("auto"),
+            Self::Level(level) => level.fmt(f),
+        }
+    }
+}
+
 /// The engine and what it computes with.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
@@ -98,8 +134,8 @@ pub struct EngineArgs {
     /// As the paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves. Of --engine far: the
-    /// largest voxel, above 0 [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves. Of --engine far
+    /// and --erosion auto: the largest voxel or texel, above 0 [default: 1]
     #[arg(long, value_name = "PX")]
     pub lod: Option<f64>,
     /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
@@ -117,6 +153,14 @@ pub struct EngineArgs {
     /// What --engine far uses opacities for
     #[arg(long, value_enum, default_value_t, value_name = "KIND")]
     pub far_opacity: FarOpacityName,
+    /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all grids,
+    /// whose texels are no larger than a pixel
+    #[arg(long, value_name = "K|auto", default_value_t)]
+    pub erosion: Erosion,
+    /// The grid of --erosion K, by its number of cells [default: the coarsest whose texels are no
+    /// larger than a pixel, or else the finest]
+    #[arg(long, value_name = "CELLS")]
+    pub erosion_grid: Option<u32>,
 }
 
 impl EngineArgs {
@@ -188,7 +232,12 @@ impl EngineArgs {
             ("overflow", word(&self.overflow)),
             ("isa", word(&self.isa)),
             ("far-opacity", word(&self.far_opacity)),
+            ("erosion", self.erosion.to_string().into()),
         ];
+        settings.extend(
+            self.erosion_grid
+                .map(|g| ("erosion-grid", i64::from(g).into())),
+        );
         settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
         settings
     }

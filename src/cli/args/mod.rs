@@ -9,7 +9,7 @@ mod values;
 
 pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
 pub use engine::{
-    CageName, CoverageName, EngineArgs, EngineName, FarOpacityName, Isa, OverflowName,
+    CageName, CoverageName, EngineArgs, EngineName, Erosion, FarOpacityName, Isa, OverflowName,
 };
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};

@@ -18,7 +18,7 @@ struct Edge {
 
 /// A triangle of the picture's plane.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Edges([Edge; 3]);
+pub(crate) struct Edges([Edge; 3]);
 
 /// How much of a pixel a triangle covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,7 +30,7 @@ pub(super) enum Cover {
 
 impl Edges {
     /// Two edges and the line between their ends; `None` without area.
-    pub(super) fn new(points: [[i64; 2]; 3]) -> Option<Self> {
+    pub(crate) fn new(points: [[i64; 2]; 3]) -> Option<Self> {
         let [a, b, c] = points;
         let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         let turned = match area {
@@ -76,7 +76,7 @@ impl Edges {
 
     /// Whether a sample so many steps from the corner is covered.
     #[inline]
-    pub(super) fn covers(&self, [x, y]: [i64; 2]) -> bool {
+    pub(crate) fn covers(&self, [x, y]: [i64; 2]) -> bool {
         self.0
             .iter()
             .all(|edge| edge.at + edge.right * x + edge.down * y >= 0)

@@ -18,6 +18,7 @@ mod tile;
 use glam::DVec3;
 use rayon::prelude::*;
 
+pub(crate) use edges::Edges;
 pub use samples::{Pattern, Samples, SamplesError};
 pub use shade::Light;
 

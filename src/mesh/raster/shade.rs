@@ -77,6 +77,27 @@ impl Nearness {
     }
 }
 
+/// The point that a place of the picture, in 1/4096 pixel from its corner, sees at a depth.
+#[inline]
+pub(super) fn point_seen(view: &View, x: f64, y: f64, depth: f64) -> DVec3 {
+    let scale = depth / view.focal_px;
+    let across = x / SUBPIXELS as f64 - f64::from(view.width) / 2.0;
+    let upwards = f64::from(view.height) / 2.0 - y / SUBPIXELS as f64;
+    view.eye + view.forward * depth + view.right * (across * scale) + view.up * (upwards * scale)
+}
+
+/// Linear light of a point with a colour and a normal, turned to the eye.
+pub(super) fn light_of(
+    view: &View,
+    light: Option<&Light>,
+    point: DVec3,
+    (color, normal): (DVec3, DVec3),
+) -> DVec3 {
+    let Some(light) = light else { return color };
+    let is_front = normal.dot(view.eye - point) >= 0.0;
+    color * light.on(if is_front { normal } else { -normal })
+}
+
 /// A triangle's colours as light, ready to be asked for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
@@ -115,13 +136,7 @@ impl Paint {
         if let Some(flat) = self.flat {
             return flat;
         }
-        let scale = depth / view.focal_px;
-        let across = x / SUBPIXELS as f64 - f64::from(view.width) / 2.0;
-        let upwards = f64::from(view.height) / 2.0 - y / SUBPIXELS as f64;
-        let point = view.eye
-            + view.forward * depth
-            + view.right * (across * scale)
-            + view.up * (upwards * scale);
+        let point = point_seen(view, x, y, depth);
         self.mixed(barycentric(&self.triangle.corners, point), light)
     }
 

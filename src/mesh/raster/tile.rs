@@ -6,7 +6,7 @@ use super::bins::{Bins, TILE};
 use super::clip::Outline;
 use super::edges::{Cover, Edges};
 use super::samples::{Places, SUBPIXELS};
-use super::shade::{Nearness, Paint};
+use super::shade::{Nearness, Paint, light_of, point_seen};
 use super::{NO_TRIANGLE, RasterOptions, RasterPicture, View};
 use crate::mesh::Surface;
 use crate::mesh::material::{linear_to_srgb, srgb_to_linear};
@@ -63,7 +63,7 @@ impl Tile {
             triangle: vec![NO_TRIANGLE; samples],
         };
         for triangle in bins.triangles(number) {
-            buffer.triangle(triangle, &surface.corners(triangle as usize));
+            buffer.triangle(surface, triangle);
         }
         Self {
             corner,
@@ -89,29 +89,31 @@ impl Tile {
 
 impl Buffer<'_> {
     /// Draws a triangle, cut into a fan where the view has cut corners off.
-    fn triangle(&mut self, number: u32, corners: &[DVec3; 3]) {
-        let Some(outline) = Outline::of(self.view, corners) else {
+    fn triangle<S: Surface + ?Sized>(&mut self, surface: &S, number: u32) {
+        let corners = surface.corners(number as usize);
+        let Some(outline) = Outline::of(self.view, &corners) else {
             return;
         };
-        let nearness = Nearness::of(self.view, corners);
+        let nearness = Nearness::of(self.view, &corners);
         let [low, high] = outline.pixels();
         let points = outline.points();
         for pair in points[1..].windows(2) {
             let Some(edges) = Edges::new([points[0], pair[0], pair[1]]) else {
                 continue;
             };
-            self.part(number, &edges, &nearness, low, high);
+            self.part(surface, number, &edges, &nearness, [low, high]);
         }
     }
 
-    fn part(
+    fn part<S: Surface + ?Sized>(
         &mut self,
+        surface: &S,
         number: u32,
         edges: &Edges,
         nearness: &Nearness,
-        low: [i64; 2],
-        high: [i64; 2],
+        [low, high]: [[i64; 2]; 2],
     ) {
+        let is_textured = surface.is_textured(number as usize);
         let corner = self.corner.map(i64::from);
         let size = [self.columns, self.rows].map(i64::from);
         let begin = [0, 1].map(|k| low[k].max(corner[k]));
@@ -132,11 +134,16 @@ impl Buffer<'_> {
                     if cover == Cover::Part && !here.covers(place) {
                         continue;
                     }
-                    let near = nearness.at(
-                        (x * SUBPIXELS + place[0]) as f64,
-                        (y * SUBPIXELS + place[1]) as f64,
-                    );
+                    let [sample_x, sample_y] =
+                        [x * SUBPIXELS + place[0], y * SUBPIXELS + place[1]].map(|c| c as f64);
+                    let near = nearness.at(sample_x, sample_y);
                     if near > self.nearness[at + sample] {
+                        if is_textured {
+                            let point = point_seen(self.view, sample_x, sample_y, 1.0 / near);
+                            if surface.texture(number as usize, point).is_none() {
+                                continue;
+                            }
+                        }
                         self.nearness[at + sample] = near;
                         self.triangle[at + sample] = number;
                     }
@@ -180,7 +187,14 @@ impl Buffer<'_> {
                     let place = self.places.of(i)[sample];
                     let [x, y] = [0, 1]
                         .map(|k| f64::from(pixel[k]) * SUBPIXELS as f64 + f64::from(place[k]));
-                    sum += paint.light(self.view, light, x, y, 1.0 / self.nearness[at]);
+                    let depth = 1.0 / self.nearness[at];
+                    sum += if surface.is_textured(number as usize) {
+                        let point = point_seen(self.view, x, y, depth);
+                        let look = surface.texture(number as usize, point);
+                        look.map_or(DVec3::ZERO, |look| light_of(self.view, light, point, look))
+                    } else {
+                        paint.light(self.view, light, x, y, depth)
+                    };
                 }
                 let at = i * per_pixel + middle;
                 let nearness = self.nearness[at];

@@ -20,7 +20,7 @@ pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH};
 use super::Surface;
 use crate::graph::{Progress, Voxel};
 use block::Block;
-use touch::Prepared;
+pub(crate) use touch::{Prepared, child};
 
 /// Levels of a subtree that one thread does at a time.
 const BLOCK_LEVELS: u32 = 5;
@@ -118,7 +118,7 @@ impl<S: Surface + ?Sized> Walk<'_, S> {
                 .filter(|(_, mask)| **mask >> octant & 1 == 1)
                 .map(|(number, _)| *number)
                 .collect();
-            self.node(touching, touch::child(corner, half, octant), level + 1);
+            self.node(touching, child(corner, half, octant), level + 1);
         }
     }
 

@@ -7,7 +7,7 @@
 //! the normal is zero and separates nothing; the other directions are then
 //! those of a segment, or of a point, and still decide exactly.
 //!
-//! Bits: coordinates are below 2^30, edges below 2^30 in size, so a product of
+//! Bits: coordinates of triangles and corners of cubes are below 2^30, edges below 2^30 in size, so a product of
 //! an edge and an axis dotted with a corner stays below 2^61. The normal is
 //! below 2^61, and dotted with a corner below 2^93: that one is `i128`.
 
@@ -44,7 +44,7 @@ impl Flat {
 
 /// A triangle with its directions.
 #[derive(Debug, Clone)]
-pub(super) struct Prepared {
+pub(crate) struct Prepared {
     /// Corners on the lattice.
     pub(super) corners: [[i64; 3]; 3],
     low: [i64; 3],
@@ -60,7 +60,7 @@ pub(super) struct Prepared {
 const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 impl Prepared {
-    pub(super) fn new(corners: [[i64; 3]; 3]) -> Self {
+    pub(crate) fn new(corners: [[i64; 3]; 3]) -> Self {
         let [a, b, c] = corners;
         let edges = [subtract(b, a), subtract(c, b), subtract(a, c)];
         let normal = cross(edges[0], edges[1]);
@@ -84,7 +84,7 @@ impl Prepared {
 
     /// Whether the triangle touches the closed cube.
     #[inline]
-    pub(super) fn touches(&self, corner: [i64; 3], side: i64) -> bool {
+    pub(crate) fn touches(&self, corner: [i64; 3], side: i64) -> bool {
         for k in 0..3 {
             if corner[k] > self.high[k] || corner[k] + side < self.low[k] {
                 return false;
@@ -123,7 +123,7 @@ impl Prepared {
 
 /// The corner of a child, given its side.
 #[inline]
-pub(super) fn child(corner: [i64; 3], half: i64, octant: u8) -> [i64; 3] {
+pub(crate) fn child(corner: [i64; 3], half: i64, octant: u8) -> [i64; 3] {
     std::array::from_fn(|k| corner[k] + half * i64::from(octant >> (2 - k) & 1))
 }
 

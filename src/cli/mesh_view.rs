@@ -1,0 +1,147 @@
+//! What pictures of meshes share on the command line: camera, light, times, hash, files.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::args::{PictureArgs, camera_line};
+use super::console::Console;
+use super::drawing::min_median_max;
+use super::error::{CliError, Kind};
+use super::outputs;
+use super::render::RenderArgs;
+use super::report::{self, grouped};
+use crate::mesh::raster::{Light, View};
+use crate::picture::{self, AMBIENT, Background, KEY_LIGHT, Picture, Shading};
+use crate::project::Camera;
+use glam::DVec3;
+
+/// Share of the distance to the farthest corner below which nothing is drawn.
+const NEAR: f64 = 1e-6;
+
+/// The camera as the rasteriser wants it, for something within a box.
+pub(super) fn view(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, CliError> {
+    let axes = camera.axes().map_err(CliError::usage)?;
+    let farthest = (camera.eye - low)
+        .abs()
+        .max((high - camera.eye).abs())
+        .length();
+    Ok(View {
+        eye: camera.eye,
+        right: axes.right,
+        up: axes.up,
+        forward: axes.forward,
+        focal_px: axes.focal_px,
+        width: camera.width,
+        height: camera.height,
+        near: farthest * NEAR,
+    })
+}
+
+/// The key light, which moves with the camera.
+pub(super) fn key_light(view: &View) -> Light {
+    let key = KEY_LIGHT.normalize();
+    Light {
+        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
+        ambient: AMBIENT,
+    }
+}
+
+/// The light of a picture, if its colours depend on it.
+pub(super) fn light(args: &PictureArgs, view: &View) -> Option<Light> {
+    match args.shading() {
+        Shading::Lambert => Some(key_light(view)),
+        Shading::Flat => None,
+    }
+}
+
+/// What is behind, sRGB, if anything.
+pub(super) fn background(args: &PictureArgs) -> Option<[u8; 3]> {
+    match args.background.unwrap_or_default() {
+        Background::None => None,
+        Background::Color(color) => Some(color),
+    }
+}
+
+/// A picture that was drawn without the voxel engines, and what it took.
+pub(super) struct MeshDrawn<'d> {
+    pub(super) name: &'d str,
+    pub(super) engine: &'static str,
+    pub(super) camera: &'d Camera,
+    pub(super) picture: &'d Picture,
+    pub(super) load_ms: f64,
+    pub(super) times_ms: &'d [f64],
+    pub(super) counters: Vec<(&'static str, Value)>,
+}
+
+impl MeshDrawn<'_> {
+    /// Writes the picture and says what is asked for: `of` is the number of scenes.
+    pub(super) fn finish(
+        &self,
+        args: &RenderArgs,
+        of: usize,
+        output: Option<&Path>,
+        console: &Console,
+    ) -> Result<Value, CliError> {
+        let Self { name, picture, .. } = self;
+        if args.print_camera && !console.json {
+            console.data(camera_line(self.camera))?;
+        }
+        let hash = picture::hash(picture);
+        if args.hash && !console.json {
+            console.data(if of > 1 {
+                format!("{hash}  {name}")
+            } else {
+                hash.clone()
+            })?;
+        }
+        if let Some(path) = output {
+            outputs::write(picture, path, &args.picture.aov, args.out.force)?;
+        }
+        let (min, median, max) = min_median_max(self.times_ms);
+        if args.repeat > 1 && !console.json {
+            let times = [("min ms", min), ("median ms", median), ("max ms", max)];
+            let times = times.map(|(name, ms)| vec![name.to_owned(), format!("{ms:.3}")]);
+            let counted = self.counters.iter();
+            let counted = counted.map(|(name, count)| vec![(*name).to_owned(), told(count)]);
+            let rows = times.into_iter().chain(counted).collect();
+            let head = vec![(*name).to_owned(), "one frame".to_owned()];
+            console.data(report::table(head, rows))?;
+        }
+        if let Some(path) = output {
+            console.note(format!("{}: drawn in {median:.1} ms", path.display()));
+        }
+        for (name, count) in &self.counters {
+            console.detail(format!("  {name}: {}", told(count)));
+        }
+        if let Some(expected) = &args.expect_hash
+            && !expected.eq_ignore_ascii_case(&hash)
+        {
+            return Err(CliError::new(
+                Kind::Failed,
+                format!("{name}: the picture's hash is {hash}, expected {expected}"),
+            ));
+        }
+        let counters = self.counters.iter();
+        let counters: serde_json::Map<String, Value> = counters
+            .map(|(name, count)| ((*name).to_owned(), count.clone()))
+            .collect();
+        Ok(json!({
+            "scene": name,
+            "engine": self.engine,
+            "width": picture.width,
+            "height": picture.height,
+            "pixels_drawn": picture.drawn(),
+            "camera": report::camera(self.camera),
+            "load_ms": self.load_ms,
+            "render_ms": { "runs": self.times_ms.len(), "min": min, "median": median, "max": max },
+            "counters": counters,
+            "hash": hash,
+            "output": output,
+        }))
+    }
+}
+
+fn told(count: &Value) -> String {
+    count.as_u64().map_or_else(|| count.to_string(), grouped)
+}

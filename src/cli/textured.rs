@@ -1,0 +1,380 @@
+//! Textured voxels on the command line: `convert`, `info` and `render` of `.tvx` files.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::args::{Aov, EngineName, Erosion};
+use super::console::Console;
+use super::convert::ConvertArgs;
+use super::drawing::milliseconds_since;
+use super::error::{CliError, Kind};
+use super::fit::{Bounds, Up};
+use super::mesh_view::{MeshDrawn, background, light, view};
+use super::outputs;
+use super::render::RenderArgs;
+use super::report::{self, grouped};
+use super::scenes;
+use crate::mesh::raster::{NO_TRIANGLE, Pattern, RasterPicture, Samples, View};
+use crate::picture::{Picture, store};
+use crate::project::Camera;
+use crate::textured::levels::LevelRow;
+use crate::textured::record::Primitive;
+use crate::textured::store::{Grid, is_textured, write_to};
+use crate::textured::view::{Counts, Detail, ViewError, ViewOptions, choose_grid, draw};
+use crate::textured::{BuildError, BuildOptions, Element, TexturedError, TexturedFile, build};
+
+impl From<TexturedError> for CliError {
+    fn from(error: TexturedError) -> Self {
+        Self::new(Kind::Input, error)
+    }
+}
+
+impl From<BuildError> for CliError {
+    fn from(error: BuildError) -> Self {
+        let kind = match error {
+            BuildError::Empty | BuildError::Range => Kind::Input,
+            BuildError::TooMany(_) => Kind::Limit,
+            BuildError::Grid { .. } | BuildError::Grids => Kind::Usage,
+        };
+        Self::new(kind, error)
+    }
+}
+
+impl From<ViewError> for CliError {
+    fn from(error: ViewError) -> Self {
+        match error {
+            ViewError::File(error) => error.into(),
+            ViewError::Raster(_) | ViewError::Grid(..) | ViewError::TexelSize(_) => {
+                Self::usage(error)
+            }
+        }
+    }
+}
+
+/// Whether a scene's name is that of a `.tvx` file, told by its content.
+pub(super) fn is_textured_file(name: &str) -> bool {
+    let mut beginning = [0; 8];
+    let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
+    read.is_ok() && is_textured(&beginning)
+}
+
+/// Builds textured voxels of a mesh and writes them.
+pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
+    let defaults = BuildOptions::default();
+    let options = BuildOptions {
+        grids: if args.grid.is_empty() {
+            defaults.grids
+        } else {
+            args.grid.clone()
+        },
+        texels: args.texels.unwrap_or(defaults.texels),
+        element: args.element.map_or(defaults.element, |e| e.element()),
+    };
+    let (mesh, up) = scenes::open_mesh(&args.input, &args.scene, console.progress())?;
+    for warning in mesh.warnings() {
+        console.note(format!("{}: {warning}", args.input));
+    }
+    let started = Instant::now();
+    let mut data = build(&mesh, &options, console.progress())
+        .map_err(|e| CliError::from(e).at(&args.input))?;
+    data.y_up = up == Up::Y;
+    let build_ms = milliseconds_since(started);
+    store::write_with(&args.output, args.force, |file| write_to(&data, file))?;
+    let file = TexturedFile::open(&args.output)?;
+    let voxels: u64 = (0..file.grids())
+        .map(|g| file.grid(g).voxels().len() as u64)
+        .sum();
+    console.note(format!(
+        "{}: {} triangles, {} voxels, {} bytes, built in {:.2} s",
+        args.output.display(),
+        grouped(mesh.triangles().len() as u64),
+        grouped(voxels),
+        grouped(file.len()),
+        build_ms / 1e3
+    ));
+    if console.json {
+        let mut fields = describe(&file, &args.input);
+        fields["input"] = json!(args.input);
+        fields["output"] = json!(args.output);
+        fields["build_ms"] = json!(build_ms);
+        console.document(&report::document("convert", fields))?;
+    }
+    Ok(())
+}
+
+/// Tells what is in a file, all of which is checked; as JSON if that is asked for.
+pub(super) fn info(
+    name: &str,
+    with_levels: bool,
+    console: &Console,
+) -> Result<Option<Value>, CliError> {
+    let file = TexturedFile::open(Path::new(name))?;
+    file.verify()?;
+    if console.json {
+        return Ok(Some(describe(&file, name)));
+    }
+    console.data(tell(&file, name, with_levels))?;
+    Ok(None)
+}
+
+fn describe(file: &TexturedFile, name: &str) -> Value {
+    let (low, high) = file.bounds();
+    let grids: Vec<Value> = (0..file.grids())
+        .map(|g| describe_grid(&file.grid(g)))
+        .collect();
+    json!({
+        "scene": name,
+        "format": ".tvx",
+        "low": low.to_array(),
+        "high": high.to_array(),
+        "triangles": file.primitives().len(),
+        "grids": grids,
+        "bytes": file.len(),
+    })
+}
+
+fn describe_grid(grid: &Grid<'_>) -> Value {
+    let lattice = grid.lattice();
+    let [voxels, lists, textures] = grid.bytes();
+    let [projected, afresh] = grid.projected();
+    let row = |row: &LevelRow| {
+        json!({
+            "level": row.level,
+            "faces": row.faces,
+            "primitives": row.primitives,
+            "voxels": row.voxels,
+            "surfels": row.surfels,
+        })
+    };
+    json!({
+        "cells": lattice.cells(),
+        "texels": lattice.texels(),
+        "element": element_name(grid.element()),
+        "cell_size_world": lattice.cell_size().to_array(),
+        "voxels": grid.voxels().len(),
+        "listed_primitives": grid.listed(),
+        "textures": grid.textures(),
+        "texels_projected": projected,
+        "texels_projected_afresh": afresh,
+        "voxel_bytes": voxels,
+        "list_bytes": lists,
+        "texture_bytes": textures,
+        "levels": grid.levels().rows().iter().map(row).collect::<Vec<Value>>(),
+    })
+}
+
+fn element_name(element: Element) -> &'static str {
+    match element {
+        Element::Cube => "cube",
+        Element::Sides => "sides",
+    }
+}
+
+fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
+    let (low, high) = file.bounds();
+    let mut parts = vec![format!(
+        "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles {}\nbytes     {}",
+        grouped(file.primitives().len() as u64),
+        grouped(file.len())
+    )];
+    let head = [
+        "grid",
+        "texels",
+        "voxels",
+        "listed",
+        "sub-textures",
+        "bytes",
+        "levels",
+    ];
+    let head = head.map(String::from).to_vec();
+    let rows = (0..file.grids()).map(|number| {
+        let grid = file.grid(number);
+        let lattice = grid.lattice();
+        vec![
+            format!("{} ({})", lattice.cells(), element_name(grid.element())),
+            lattice.texels().to_string(),
+            grouped(grid.voxels().len() as u64),
+            grouped(grid.listed()),
+            grouped(grid.textures()),
+            grouped(grid.bytes().iter().sum::<u64>()),
+            grid.levels().rows().len().to_string(),
+        ]
+    });
+    parts.push(report::table(head, rows.collect()));
+    for number in 0..file.grids() {
+        let grid = file.grid(number);
+        let [projected, afresh] = grid.projected();
+        parts.push(format!(
+            "grid {}: {} texels projected, slice by slice; {} had each volume been projected afresh",
+            grid.lattice().cells(),
+            grouped(projected),
+            grouped(afresh)
+        ));
+        if with_levels {
+            parts.push(level_table(&grid));
+        }
+    }
+    parts.join("\n\n")
+}
+
+/// The paper's Fig. 12 (c): what each level shows.
+fn level_table(grid: &Grid<'_>) -> String {
+    let head = ["level", "faces", "primitives", "voxels", "surfels"];
+    let rows = grid.levels().rows().iter().map(|row| {
+        let numbers = [
+            u64::from(row.level),
+            row.faces,
+            row.primitives,
+            row.voxels,
+            row.surfels,
+        ];
+        numbers.map(grouped).to_vec()
+    });
+    report::table(head.map(String::from).to_vec(), rows.collect())
+}
+
+/// Draws a picture of a `.tvx` file.
+pub(super) fn render_one(
+    args: &RenderArgs,
+    name: &str,
+    of: usize,
+    output: Option<&Path>,
+    console: &Console,
+) -> Result<(Camera, Value), CliError> {
+    check(args, name)?;
+    if let Some(path) = output {
+        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
+    }
+    let started = Instant::now();
+    let file = TexturedFile::open(Path::new(name))?;
+    let load_ms = milliseconds_since(started);
+    let up = args.scene.up_or(if file.y_up() { Up::Y } else { Up::Z });
+    let size = args.picture.size();
+    let camera = args.camera.camera(&bounds(&file), up, size, 0.0);
+    let view = view(&camera, file.bounds())?;
+    let options = options(args, &file, &view)?;
+    let mut times_ms = Vec::new();
+    let started = Instant::now();
+    let (mut drawn, mut counts) = draw(&file, &view, &options)?;
+    times_ms.push(milliseconds_since(started));
+    for _ in 1..args.repeat {
+        let started = Instant::now();
+        (drawn, counts) = draw(&file, &view, &options)?;
+        times_ms.push(milliseconds_since(started));
+    }
+    let picture = as_picture(drawn);
+    let drawn = MeshDrawn {
+        name,
+        engine: "textured",
+        camera: &camera,
+        picture: &picture,
+        load_ms,
+        times_ms: &times_ms,
+        counters: counters(&file, &counts),
+    };
+    let result = drawn.finish(args, of, output, console)?;
+    Ok((camera, result))
+}
+
+/// The box and the corners of all primitives, for a fitted camera: the one that
+/// the mesh's triangles get.
+fn bounds(file: &TexturedFile) -> Bounds {
+    let (low, high) = file.bounds();
+    let hull = file.primitives().iter().flat_map(Primitive::positions);
+    Bounds {
+        low,
+        high,
+        hull: hull.collect(),
+    }
+}
+
+/// Refuses what the engine does not do, and files that it does not draw.
+fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
+    if !is_textured_file(name) {
+        // A file that is not there is told as such.
+        TexturedFile::open(Path::new(name)).map_err(|error| {
+            let advice = "--engine textured draws .tvx files: shiftvox convert MESH OUT.tvx";
+            CliError::from(error).advise(advice)
+        })?;
+    }
+    if args.engine.engine != EngineName::Textured {
+        return Err(CliError::usage(format!("{name}: this is a .tvx file"))
+            .advise("draw it with --engine textured"));
+    }
+    let unknown = |aov: &&Aov| !matches!(aov, Aov::Depth | Aov::Color);
+    if let Some(aov) = args.picture.aov.iter().find(unknown) {
+        return Err(
+            CliError::usage(format!("--engine textured has no --aov {}", aov.name()))
+                .advise("it has depth and color"),
+        );
+    }
+    Ok(())
+}
+
+fn options(args: &RenderArgs, file: &TexturedFile, view: &View) -> Result<ViewOptions, CliError> {
+    let number_of = |cells: u32| {
+        let found = (0..file.grids()).find(|&g| file.grid(g).lattice().cells() == cells);
+        found.ok_or_else(|| {
+            let all = (0..file.grids()).map(|g| file.grid(g).lattice().cells().to_string());
+            let all = all.collect::<Vec<String>>().join(", ");
+            CliError::usage(format!("the file has no grid of {cells} cells"))
+                .advise(format!("it has grids of {all}"))
+        })
+    };
+    let grid = args.engine.erosion_grid.map(number_of).transpose()?;
+    let detail = match args.engine.erosion {
+        Erosion::Auto if grid.is_some() => {
+            return Err(CliError::usage(
+                "--erosion-grid needs --erosion K; auto chooses the grid too",
+            ));
+        }
+        Erosion::Auto => Detail::Auto {
+            texel_px: args.engine.lod.unwrap_or(1.0),
+        },
+        Erosion::Level(level) => Detail::Level {
+            grid: grid.unwrap_or_else(|| choose_grid(file, view, level)),
+            level,
+        },
+    };
+    let per_pixel = 1 << (2 * args.picture.aa_log2());
+    Ok(ViewOptions {
+        detail,
+        samples: Samples::new(per_pixel, Pattern::Regular).map_err(CliError::usage)?,
+        light: light(&args.picture, view),
+        background: background(&args.picture),
+    })
+}
+
+/// As other engines' pictures, without normals, voxels and nodes.
+fn as_picture(drawn: RasterPicture) -> Picture {
+    let pixels = drawn.rgba.len();
+    let is_drawn = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
+    Picture {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        depth: drawn.depth,
+        normal: vec![[0.0; 3]; pixels],
+        voxel: vec![[0, 0, 0, -1]; pixels],
+        node: drawn.triangle.iter().map(is_drawn).collect(),
+        records: None,
+    }
+}
+
+fn counters(file: &TexturedFile, counts: &Counts) -> Vec<(&'static str, Value)> {
+    let choice = &counts.choice;
+    let cells = file.grid(choice.grid).lattice().cells();
+    vec![
+        ("grid", json!(cells)),
+        ("erosion", json!(choice.level)),
+        // None where the eye is among the voxels.
+        ("texel_px", json!((choice.texel_px * 1e3).round() / 1e3)),
+        ("primitives", json!(counts.primitives)),
+        ("voxels", json!(counts.voxels)),
+        ("surfels", json!(counts.surfels)),
+    ]
+}

@@ -1,0 +1,134 @@
+//! The cells of a grid, and the integers in which they are told apart.
+
+use glam::DVec3;
+
+/// Most cells along an axis.
+pub const MOST_CELLS: u32 = 128;
+/// Most texels along the side of a face.
+pub const MOST_TEXELS: u32 = 64;
+/// Most texels along the side of a whole texture.
+pub const MOST_ACROSS: u32 = 4096;
+/// Bits of a coordinate on the lattice: edge functions and the test whether a
+/// triangle touches a cube have room for one more.
+const BITS: u32 = 29;
+
+/// A grid of equal cells around a box, with a lattice of whole numbers on which
+/// cells and the middles of texels lie exactly.
+///
+/// The box is divided into the same number of cells along each axis, as in the
+/// paper, so cells are not cubes; an axis along which the mesh is thinner than
+/// the longest side of a cell gets that much. On the lattice cells are cubes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    cells: u32,
+    texels: u32,
+    origin: DVec3,
+    span: DVec3,
+    /// Lattice steps of a texel: even.
+    texel: i64,
+}
+
+impl Lattice {
+    /// The grid of `cells` (even, 2 to [`MOST_CELLS`]) with `texels` (1 to
+    /// [`MOST_TEXELS`]) a face around a box. Other numbers give a grid that
+    /// makes no sense, so callers check them with [`Lattice::is_possible`].
+    #[must_use]
+    pub fn around(low: DVec3, high: DVec3, cells: u32, texels: u32) -> Self {
+        let extent = high - low;
+        let least = extent.max_element() / f64::from(cells);
+        let span = extent.max(DVec3::splat(least));
+        let origin = (low + high) * 0.5 - span * 0.5;
+        let across = 2 * i64::from(cells) * i64::from(texels);
+        Self {
+            cells,
+            texels,
+            origin,
+            span,
+            texel: 2 * ((1 << BITS) / across),
+        }
+    }
+
+    /// Whether there is a grid of so many cells and texels.
+    #[must_use]
+    pub fn is_possible(cells: u32, texels: u32) -> bool {
+        (2..=MOST_CELLS).contains(&cells)
+            && cells.is_multiple_of(2)
+            && (1..=MOST_TEXELS).contains(&texels)
+            && cells * texels <= MOST_ACROSS
+    }
+
+    /// Cells along each axis.
+    #[must_use]
+    pub fn cells(&self) -> u32 {
+        self.cells
+    }
+
+    /// Texels along the side of a face.
+    #[must_use]
+    pub fn texels(&self) -> u32 {
+        self.texels
+    }
+
+    /// Sides of a cell, world units.
+    #[must_use]
+    pub fn cell_size(&self) -> DVec3 {
+        self.span / f64::from(self.cells)
+    }
+
+    /// The longest side of a texel, world units.
+    #[must_use]
+    pub fn texel_size(&self) -> f64 {
+        self.cell_size().max_element() / f64::from(self.texels)
+    }
+
+    /// Lowest corner of a cell, world units.
+    #[must_use]
+    pub fn corner(&self, cell: [u32; 3]) -> DVec3 {
+        // Not from the cell's size: the last cell ends where the box ends.
+        let share = DVec3::from_array(cell.map(|c| f64::from(c) / f64::from(self.cells)));
+        self.origin + self.span * share
+    }
+
+    /// Lattice steps along the side of a texel.
+    #[must_use]
+    pub fn texel_steps(&self) -> i64 {
+        self.texel
+    }
+
+    /// Lattice steps along the side of a cell.
+    #[must_use]
+    pub fn cell_steps(&self) -> i64 {
+        self.texel * i64::from(self.texels)
+    }
+
+    /// Lattice steps along the side of the box, at most 2^29.
+    #[must_use]
+    pub fn steps(&self) -> i64 {
+        self.cell_steps() * i64::from(self.cells)
+    }
+
+    /// The nearest point of the lattice.
+    #[must_use]
+    pub fn point(&self, world: DVec3) -> [i64; 3] {
+        let most = self.steps() as f64;
+        let at = (world - self.origin) / self.span * most;
+        at.to_array()
+            .map(|c| libm::round(c.clamp(0.0, most)) as i64)
+    }
+
+    /// Where a point of the lattice is in the world.
+    #[must_use]
+    pub fn world(&self, point: [i64; 3]) -> DVec3 {
+        let share = DVec3::from_array(point.map(|c| c as f64)) / self.steps() as f64;
+        self.origin + self.span * share
+    }
+}
+
+/// The axes of a face: along its columns and along its rows, for the axis it stands on.
+pub const ACROSS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+
+/// Whether a cell is in the half from which an axis is looked at from its positive end.
+#[must_use]
+pub fn is_positive_half(slice: u32, cells: u32) -> bool {
+    slice >= cells / 2
+}

@@ -1,0 +1,123 @@
+//! The layout of a `.tvx` file: `spec/textured.md`.
+//!
+//! A header of 128 bytes, an entry for each grid, primitives; then for each grid
+//! its voxels, lists and sub-textures. Sections are aligned to 64 bytes with
+//! zeros between. All numbers are little-endian.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
+
+/// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
+pub(super) const MAGIC: [u8; 8] = *b"\x89TVX\r\n\x1a\n";
+/// Version of the layout.
+pub(super) const VERSION: u32 = 1;
+/// Bytes of the header.
+pub(super) const HEADER_BYTES: usize = 128;
+/// Sections begin at multiples of this.
+const ALIGNMENT: u64 = 64;
+
+/// Where things are in the header.
+pub(super) mod at {
+    pub(in super::super) const VERSION: usize = 8;
+    pub(in super::super) const HEADER_BYTES: usize = 12;
+    pub(in super::super) const FILE_BYTES: usize = 16;
+    pub(in super::super) const PRIMITIVES: usize = 24;
+    pub(in super::super) const LOW: usize = 32;
+    pub(in super::super) const HIGH: usize = 56;
+    pub(in super::super) const GRIDS: usize = 80;
+    pub(in super::super) const Y_UP: usize = 84;
+    pub(in super::super) const SPARE: std::ops::Range<usize> = 85..104;
+    pub(in super::super) const PRIMITIVES_CHECKSUM: usize = 104;
+    pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
+    pub(in super::super) const CHECKSUM: usize = 120;
+}
+
+/// What the file says of a grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct GridEntry {
+    pub(super) cells: u32,
+    pub(super) texels: u32,
+    /// 0: cube, 1: sides.
+    pub(super) element: u32,
+    pub(super) spare: u32,
+    pub(super) voxels: u64,
+    pub(super) listed: u64,
+    /// Sub-textures.
+    pub(super) textures: u64,
+    pub(super) projected: u64,
+    pub(super) projected_afresh: u64,
+    pub(super) voxels_checksum: u64,
+    pub(super) lists_checksum: u64,
+    pub(super) textures_checksum: u64,
+}
+
+/// Bytes of a [`GridEntry`].
+pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
+
+/// Where a grid's sections lie: begin and end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct GridPlaces {
+    pub(super) voxels: [u64; 2],
+    pub(super) lists: [u64; 2],
+    pub(super) textures: [u64; 2],
+}
+
+/// Where the sections lie.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) entries: [u64; 2],
+    pub(super) primitives: [u64; 2],
+    pub(super) grids: Vec<GridPlaces>,
+}
+
+impl Layout {
+    /// There is only one. Saturates.
+    pub(super) fn of(primitives: u64, grids: &[GridEntry]) -> Self {
+        let align = |at: u64| at.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
+        let after = |at: u64, count: u64, bytes: usize| {
+            let begin = align(at);
+            [
+                begin,
+                begin.saturating_add(count.saturating_mul(bytes as u64)),
+            ]
+        };
+        let entries = after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
+        let primitives = after(entries[1], primitives, PRIMITIVE_BYTES);
+        let mut end = primitives[1];
+        let places = grids.iter().map(|grid| {
+            let voxels = after(end, grid.voxels, VOXEL_BYTES);
+            let lists = after(voxels[1], grid.listed, size_of::<u32>());
+            let face = u64::from(grid.texels).saturating_mul(u64::from(grid.texels));
+            let textures = after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
+            end = textures[1];
+            GridPlaces {
+                voxels,
+                lists,
+                textures,
+            }
+        });
+        Self {
+            entries,
+            primitives,
+            grids: places.collect(),
+        }
+    }
+
+    /// Bytes of the file.
+    pub(super) fn end(&self) -> u64 {
+        self.grids
+            .last()
+            .map_or(self.primitives[1], |g| g.textures[1])
+    }
+
+    /// All sections, in order.
+    pub(super) fn sections(&self) -> impl Iterator<Item = [u64; 2]> + '_ {
+        let of_grids = self
+            .grids
+            .iter()
+            .flat_map(|g| [g.voxels, g.lists, g.textures]);
+        [self.entries, self.primitives].into_iter().chain(of_grids)
+    }
+}
