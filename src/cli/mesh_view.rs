@@ -11,40 +11,15 @@ use super::error::{CliError, Kind};
 use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
+use crate::lab::methods::{key_light, view_of};
 use crate::mesh::raster::{Light, View};
-use crate::picture::{self, AMBIENT, Background, KEY_LIGHT, Picture, Shading};
+use crate::picture::{self, Background, Picture, Shading};
 use crate::project::Camera;
 use glam::DVec3;
 
-/// Share of the distance to the farthest corner below which nothing is drawn.
-const NEAR: f64 = 1e-6;
-
 /// The camera as the rasteriser wants it, for something within a box.
-pub(super) fn view(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, CliError> {
-    let axes = camera.axes().map_err(CliError::usage)?;
-    let farthest = (camera.eye - low)
-        .abs()
-        .max((high - camera.eye).abs())
-        .length();
-    Ok(View {
-        eye: camera.eye,
-        right: axes.right,
-        up: axes.up,
-        forward: axes.forward,
-        focal_px: axes.focal_px,
-        width: camera.width,
-        height: camera.height,
-        near: farthest * NEAR,
-    })
-}
-
-/// The key light, which moves with the camera.
-pub(super) fn key_light(view: &View) -> Light {
-    let key = KEY_LIGHT.normalize();
-    Light {
-        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
-        ambient: AMBIENT,
-    }
+pub(super) fn view(camera: &Camera, bounds: (DVec3, DVec3)) -> Result<View, CliError> {
+    view_of(camera, bounds).map_err(CliError::usage)
 }
 
 /// The light of a picture, if its colours depend on it.

@@ -18,8 +18,9 @@ use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
 use super::scenes;
-use crate::mesh::raster::{NO_TRIANGLE, Pattern, RasterPicture, Samples, View};
-use crate::picture::{Picture, store};
+use crate::lab::methods::as_picture;
+use crate::mesh::raster::{Pattern, Samples, View};
+use crate::picture::store;
 use crate::project::Camera;
 use crate::textured::levels::LevelRow;
 use crate::textured::record::Primitive;
@@ -347,22 +348,6 @@ fn options(args: &RenderArgs, file: &TexturedFile, view: &View) -> Result<ViewOp
         light: light(&args.picture, view),
         background: background(&args.picture),
     })
-}
-
-/// As other engines' pictures, without normals, voxels and nodes.
-fn as_picture(drawn: RasterPicture) -> Picture {
-    let pixels = drawn.rgba.len();
-    let is_drawn = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
-    Picture {
-        width: drawn.width,
-        height: drawn.height,
-        rgba: drawn.rgba,
-        depth: drawn.depth,
-        normal: vec![[0.0; 3]; pixels],
-        voxel: vec![[0, 0, 0, -1]; pixels],
-        node: drawn.triangle.iter().map(is_drawn).collect(),
-        records: None,
-    }
 }
 
 fn counters(file: &TexturedFile, counts: &Counts) -> Vec<(&'static str, Value)> {

@@ -173,7 +173,7 @@ impl TrianglesArgs {
 }
 
 /// The mesh's box and its vertices, for a fitted camera.
-fn bounds(mesh: &Mesh) -> Bounds {
+pub(super) fn bounds(mesh: &Mesh) -> Bounds {
     let (low, high) = mesh.bounds();
     let points = mesh.triangles().iter().flatten();
     let hull = points.map(|&i| DVec3::from_array(mesh.positions()[i as usize].map(f64::from)));

@@ -9,6 +9,7 @@ mod error;
 pub(super) mod export;
 mod flicker;
 mod meshes;
+mod methods;
 mod picture_export;
 mod scaling;
 pub(super) mod subjects;
@@ -59,6 +60,12 @@ enum Experiment {
     /// Films of a turntable, a dolly and a pan of less than a pixel, against films of references. Flicker is
     /// what changes from frame to frame other than in the reference; pop, what level of detail alone changes. Nothing is timed.
     Flicker(Box<flicker::FlickerArgs>),
+    /// All ways to draw a mesh side by side: triangles, the image-order engine on its voxels, far voxels,
+    /// textured voxels
+    ///
+    /// From where the mesh fills the picture to where it is 8 pixels high: time, error against triangles with
+    /// 256 samples a pixel, flicker, bytes, build time, counters.
+    Methods(Box<methods::MethodsArgs>),
     /// What the next frame of a turntable has in common with the last
     ///
     /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
@@ -93,6 +100,7 @@ pub(super) fn run(
         Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
         Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Flicker(args) => flicker::run(args, scenes, console),
+        Experiment::Methods(args) => methods::run(args, console),
         Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::Walk(args) => walk::run(args, console),
         Experiment::VertexError => vertex_error::run(console),

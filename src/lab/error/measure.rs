@@ -396,9 +396,10 @@ fn judged(
 }
 
 /// Times of frames drawn in turn, on one thread: wall, and processor time.
-type Times = Vec<(Summary, Option<Summary>)>;
+pub(in crate::lab) type Times = Vec<(Summary, Option<Summary>)>;
 
-fn race(
+/// Lets methods draw in turn from a camera, those that take part.
+pub(in crate::lab) fn race(
     methods: &mut [Box<dyn Method + '_>],
     taking_part: &[bool],
     camera: &Camera,

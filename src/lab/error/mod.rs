@@ -19,6 +19,7 @@ mod voxels;
 
 pub use cut::cut_at;
 pub use far::{FarMethod, FarSettings, opacity_in_words, picture_of as picture_of_far};
+pub(in crate::lab) use measure::race;
 pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
 pub use mesh_view::{mesh_light, mesh_view};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};

@@ -167,7 +167,7 @@ fn light_of(picture: &Picture) -> LinearPicture {
 }
 
 /// Films one method.
-fn restless(
+pub(in crate::lab) fn restless(
     method: &mut dyn Method,
     cameras: &[Camera],
     truth: &[LinearPicture],

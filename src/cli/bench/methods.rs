@@ -1,0 +1,374 @@
+//! `bench methods`: all ways to draw a mesh, side by side.
+
+use std::path::Path;
+use std::time::Instant;
+
+use clap::Args;
+use serde_json::json;
+
+use super::args::ExportArgs;
+use super::context::Context;
+use super::error::check_reference_size;
+use super::export::{self, Results};
+use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
+use crate::cli::args::{CameraArgs, SceneArgs, Size};
+use crate::cli::console::Console;
+use crate::cli::drawing::milliseconds_since;
+use crate::cli::error::{CliError, Kind};
+use crate::cli::{engines, render, report, scenes, triangles};
+use crate::far::view::Opacity;
+use crate::far::{self, FarFile};
+use crate::graph::Graph;
+use crate::lab::bench::Schedule;
+use crate::lab::error::{Look, Method, Refused, VoxelMethod};
+use crate::lab::flicker::Motion;
+use crate::lab::methods::{
+    self as experiment, Distance, Facts, FarMethod, MeshMethods, Plan, TexturedMethod,
+    TrianglesMethod,
+};
+use crate::mesh::Mesh;
+use crate::project::{Coverage, SetupOptions};
+use crate::report::html::Page;
+use crate::report::plot::Panel;
+use crate::textured::view::Detail;
+use crate::textured::{self, TexturedFile};
+
+/// Pixels a side where nothing is said.
+const DEFAULT_SIDE: u32 = 256;
+/// Grids of the textured voxels.
+const GRIDS: [u32; 6] = [2, 4, 8, 16, 32, 64];
+
+/// Arguments of `bench methods`.
+#[derive(Debug, Args)]
+pub(super) struct MethodsArgs {
+    /// Meshes: .obj, .ply, .stl, .gltf or .glb
+    #[arg(value_name = "MESH", required = true)]
+    meshes: Vec<String>,
+    /// Pixels of the nearest picture: 256 for a square, or 640x360 [default: 256]
+    #[arg(long, value_name = "N|WxH")]
+    size: Option<Size>,
+    /// The distance is doubled, and the picture halved, as long as it keeps so many pixels down
+    #[arg(long, value_name = "PX", default_value_t = 8,
+          value_parser = clap::value_parser!(u32).range(4..=4096))]
+    least: u32,
+    /// Frames of each method before those that count
+    #[arg(long, value_name = "N", default_value_t = 1,
+          value_parser = clap::value_parser!(u32).range(0..=1000))]
+    warmup: u32,
+    /// Frames of each method that count; methods take turns
+    #[arg(long, value_name = "N", default_value_t = 5,
+          value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    runs: u32,
+    /// Frames of the film in which flicker is looked for, an eighth of a pixel apart; 0: none
+    #[arg(long, value_name = "N", default_value_t = 5,
+          value_parser = clap::value_parser!(u32).range(0..=1000))]
+    frames: u32,
+    #[command(flatten)]
+    camera: CameraArgs,
+    #[command(flatten)]
+    scene: SceneArgs,
+    #[command(flatten)]
+    export: ExportArgs,
+    #[command(flatten)]
+    page: PagesArgs,
+    #[command(flatten)]
+    strips: StripsArgs,
+}
+
+pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError> {
+    export::check(&args.export)?;
+    pictures::check(&args.page, &args.export, &args.meshes)?;
+    args.camera.check().map_err(CliError::usage)?;
+    let square = (DEFAULT_SIDE, DEFAULT_SIDE);
+    let size = args.size.map_or(square, |size| (size.width, size.height));
+    check_reference_size(size)?;
+    if size.0.min(size.1) < args.least {
+        return Err(CliError::usage(format!(
+            "a picture of {}x{} has less than --least {} pixels",
+            size.0, size.1, args.least
+        )));
+    }
+    let context = Context::now();
+    context.warn(console);
+    let plan = Plan {
+        halvings: (size.0.min(size.1) / args.least).ilog2(),
+        schedule: Schedule {
+            warmup: args.warmup,
+            runs: args.runs,
+        },
+        frames: args.frames,
+        motion: Motion::Pan { pixels: 0.125 },
+        look: Look::default(),
+    };
+    let mut meshes = Vec::new();
+    for name in &args.meshes {
+        meshes.push(measure(args, name, size, &plan, console)?);
+    }
+    write(args, &meshes, &context, plan.schedule, console)
+}
+
+/// What is made of a mesh for the methods, and what that took.
+struct Made {
+    graph: Graph,
+    graph_ms: f64,
+    far: FarFile,
+    far_ms: f64,
+    textured: TexturedFile,
+    textured_ms: f64,
+}
+
+impl Made {
+    fn of(
+        args: &MethodsArgs,
+        name: &str,
+        mesh: &Mesh,
+        console: &Console,
+    ) -> Result<Self, CliError> {
+        let scene = render::open(name, &args.scene, console)?;
+        let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
+        let failed = |e: std::io::Error| CliError::new(Kind::Run, e);
+        let started = Instant::now();
+        let data = far::build(mesh, &far::BuildOptions::default(), console.progress())?;
+        let far_ms = milliseconds_since(started);
+        let far = FarFile::from_bytes(&far::store::encode(&data).map_err(failed)?)?;
+        let started = Instant::now();
+        let options = textured::BuildOptions {
+            grids: GRIDS.to_vec(),
+            ..textured::BuildOptions::default()
+        };
+        let data = textured::build(mesh, &options, console.progress())?;
+        let textured_ms = milliseconds_since(started);
+        let bytes = textured::store::encode(&data).map_err(failed)?;
+        Ok(Self {
+            graph_ms: scene.load_ms - read_ms,
+            graph: scene.graph,
+            far,
+            far_ms,
+            textured: TexturedFile::from_bytes(&bytes)?,
+            textured_ms,
+        })
+    }
+}
+
+/// Everyone who draws. Another method joins here.
+fn methods<'m>(
+    mesh: &'m Mesh,
+    made: &'m Made,
+    look: Look,
+) -> Result<Vec<(Facts, Box<dyn Method + 'm>)>, Refused> {
+    let mut all: Vec<(Facts, Box<dyn Method + 'm>)> = Vec::new();
+    let mut add = |label: &str, bytes: u64, build_ms: f64, method: Box<dyn Method + 'm>| {
+        let facts = Facts {
+            label: label.to_owned(),
+            bytes,
+            build_ms,
+        };
+        all.push((facts, method));
+    };
+    for samples in [1, 4, 16] {
+        let method = TrianglesMethod::new(mesh, samples, look)?;
+        let label = format!("triangles, {samples}");
+        add(&label, mesh.bytes(), 0.0, Box::new(method));
+    }
+    let rules = [
+        ("voxels center", Coverage::Center, 0),
+        ("voxels exact", Coverage::Exact, 0),
+        ("voxels exact, 16", Coverage::Exact, 2),
+    ];
+    for (label, coverage, aa_log2) in rules {
+        let options = SetupOptions {
+            coverage,
+            aa_log2,
+            ..SetupOptions::default()
+        };
+        let engine = (engines::FAST.name, engines::FAST.make);
+        let method = VoxelMethod::new(&made.graph, engine, options, look);
+        add(label, made.graph.bytes(), made.graph_ms, Box::new(method));
+    }
+    let opacities = [
+        ("far none", Opacity::None),
+        ("far scalar", Opacity::Scalar),
+        ("far six", Opacity::Six),
+    ];
+    for (label, opacity) in opacities {
+        let method = FarMethod::new(&made.far, opacity, look);
+        add(label, made.far.len(), made.far_ms, Box::new(method));
+    }
+    let sixteen = GRIDS.iter().position(|&cells| cells == 16).unwrap_or(0);
+    let level = |level| Detail::Level {
+        grid: sixteen,
+        level,
+    };
+    let auto = Detail::Auto { texel_px: 1.0 };
+    let details = [
+        ("textured auto", auto, 1),
+        ("textured auto, 4", auto, 4),
+        ("textured 16, eroded 0", level(0), 1),
+        ("textured 16, eroded 1", level(1), 1),
+    ];
+    for (label, detail, samples) in details {
+        let method = TexturedMethod::new(&made.textured, detail, samples, look)?;
+        let bytes = made.textured.len();
+        add(label, bytes, made.textured_ms, Box::new(method));
+    }
+    Ok(all)
+}
+
+fn measure(
+    args: &MethodsArgs,
+    name: &str,
+    size: (u32, u32),
+    plan: &Plan,
+    console: &Console,
+) -> Result<MeshMethods, CliError> {
+    let (mesh, up) = scenes::open_mesh(name, &args.scene, console.progress())?;
+    let camera = args.camera.camera(&triangles::bounds(&mesh), up, size, 0.0);
+    let made = Made::of(args, name, &mesh, console)?;
+    let all = methods(&mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
+    let (facts, mut methods): (Vec<Facts>, Vec<Box<dyn Method + '_>>) = all.into_iter().unzip();
+    let progress = console.progress();
+    let short = Path::new(name).file_stem().map(|s| s.to_string_lossy());
+    let short = short.as_deref().unwrap_or(name);
+    Ok(experiment::measure(
+        (short, &mesh),
+        &camera,
+        &mut methods,
+        facts,
+        plan,
+        progress,
+    )?)
+}
+
+fn write(
+    args: &MethodsArgs,
+    meshes: &[MeshMethods],
+    context: &Context,
+    schedule: Schedule,
+    console: &Console,
+) -> Result<(), CliError> {
+    let panels: Vec<(String, Vec<Panel>)> = meshes
+        .iter()
+        .map(|mesh| (mesh.mesh.clone(), experiment::panels(mesh)))
+        .collect();
+    pictures::write_plots(&args.export, &panels, console)?;
+    if let Some(folder) = &args.strips.strips {
+        for (mesh, distance) in all(meshes) {
+            let scene = format!("{}-{}", mesh.mesh, distance.size.1);
+            let png = strip(distance)?;
+            pictures::write_strip(folder, &scene, "all methods", &png, args.export.force)?;
+        }
+        console.note(format!("{}: strips written", folder.display()));
+    }
+    let preface = context.markdown(schedule);
+    let page = || page(meshes, &panels, &preface);
+    pictures::write_page(&args.page, &args.export, page, console)?;
+    let mut fields = context.json(schedule, &SetupOptions::default());
+    fields["meshes"] = json!(meshes);
+    let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));
+    let results = Results {
+        document: report::document("bench methods", fields),
+        rows: experiment::rows(meshes),
+        tables: tables.collect(),
+        more_tables: Vec::new(),
+        preface: preface.clone(),
+        panels: Vec::new(),
+    };
+    // Plots are written by now, mesh by mesh.
+    let export = ExportArgs {
+        export_svg: None,
+        ..args.export.clone()
+    };
+    export::write(&results, &export, console)
+}
+
+/// Every mesh at every distance.
+fn all(meshes: &[MeshMethods]) -> impl Iterator<Item = (&MeshMethods, &Distance)> {
+    meshes
+        .iter()
+        .flat_map(|mesh| mesh.distances.iter().map(move |distance| (mesh, distance)))
+}
+
+/// Pixels a side that small pictures are enlarged to, about.
+const SHOWN_SIDE: u32 = 192;
+
+/// The reference, then each method's picture, enlarged by a whole number.
+fn enlarged(distance: &Distance) -> impl Iterator<Item = (usize, Vec<[u8; 4]>)> {
+    let factor = (SHOWN_SIDE / distance.size.1.max(1)).max(1) as usize;
+    let (width, height) = (distance.size.0 as usize, distance.size.1 as usize);
+    let pictures = std::iter::once(&distance.reference.rgba).chain(&distance.pictures);
+    pictures.map(move |picture| {
+        let row =
+            move |y: usize| (0..width * factor).map(move |x| (y / factor) * width + x / factor);
+        let pixels = (0..height * factor).flat_map(row);
+        // Of a method that refused there is no picture.
+        let pixel = |at: usize| picture.get(at).copied().unwrap_or([255; 4]);
+        (width * factor, pixels.map(pixel).collect())
+    })
+}
+
+/// All pictures of a distance side by side.
+fn strip(distance: &Distance) -> Result<Vec<u8>, CliError> {
+    const GAP: usize = 4;
+    let pictures: Vec<(usize, Vec<[u8; 4]>)> = enlarged(distance).collect();
+    let across = pictures[0].0;
+    let height = pictures[0].1.len() / across;
+    let mut strip = Vec::new();
+    for y in 0..height {
+        for (place, (_, picture)) in pictures.iter().enumerate() {
+            if place > 0 {
+                strip.extend([[255; 4]; GAP]);
+            }
+            strip.extend(&picture[y * across..(y + 1) * across]);
+        }
+    }
+    let width = strip.len() / height;
+    encode(width, height, &strip)
+}
+
+fn encode(width: usize, height: usize, pixels: &[[u8; 4]]) -> Result<Vec<u8>, CliError> {
+    let png = crate::picture::png::encode(width as u32, height as u32, pixels);
+    png.map_err(|e| CliError::new(Kind::Run, e))
+}
+
+fn page(
+    meshes: &[MeshMethods],
+    panels: &[(String, Vec<Panel>)],
+    preface: &str,
+) -> Result<Page, CliError> {
+    let mut page = Page::new("All methods on meshes");
+    page.lines(preface.trim());
+    page.text(
+        "Triangles with 1, 4 and 16 samples a pixel; the image-order engine on the voxelised mesh by its rules \
+         center and exact, and exact with 16 samples; far voxels opaque, with one opacity and with six; textured \
+         voxels, level of detail chosen by texels of a pixel or given. Each distance is twice the one before, and \
+         the picture half as large, so that the mesh always fills it. ms: processor time of one thread; a frame of \
+         voxels is clear, traverse, colours without light, that of other methods has the light in it. Error: \
+         against the triangles with 256 samples; bias: area covered too much; wrong share: too much and too \
+         little together. Flicker: over a film whose camera moves an eighth of a pixel a frame; pop: what changes \
+         by level of detail alone. Work is what a method counts first, comparable within its family. The machine \
+         is a shared one: times say which is faster where they are far apart.",
+    );
+    for (mesh, (_, panels)) in meshes.iter().zip(panels) {
+        page.chapter(&format!("{}, {} triangles", mesh.mesh, mesh.triangles));
+        for distance in &mesh.distances {
+            let (width, height) = distance.size;
+            page.section(&format!("{width} x {height} pixels"));
+            let labels = std::iter::once("reference, 256 samples");
+            let labels = labels.chain(mesh.facts.iter().map(|facts| facts.label.as_str()));
+            let mut shown = Vec::new();
+            for ((width, picture), label) in enlarged(distance).zip(labels) {
+                shown.push((encode(width, picture.len() / width, &picture)?, label));
+            }
+            let shown: Vec<(&[u8], &str)> = shown.iter().map(|(p, l)| (p.as_slice(), *l)).collect();
+            page.pictures(&shown);
+            page.table(&experiment::table(mesh, distance));
+        }
+        page.section("Plots");
+        pictures::plots(
+            &mut page,
+            panels,
+            "Grey: dominated. The line joins what is not.",
+        )?;
+    }
+    Ok(page)
+}

@@ -1,0 +1,269 @@
+//! Methods on a mesh, distance by distance: time, error, flicker.
+
+use serde::{Serialize, Serializer};
+
+use super::camera::{at_distance, view_of};
+use super::triangles::options;
+use crate::graph::Progress;
+use crate::graph::Silent;
+use crate::lab::bench::{BenchError, Schedule, Summary};
+use crate::lab::error::{Judge, Look, Method, PictureError, Reference, Refused, Shown, race};
+use crate::lab::flicker::{Motion, restless};
+use crate::measure::LinearPicture;
+use crate::mesh::Surface;
+use crate::mesh::raster::{self, Pattern, Samples};
+use crate::project::{Camera, Stats};
+
+/// What is measured, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct Plan {
+    /// Halvings of the picture: so many distances, and the first.
+    pub halvings: u32,
+    /// How often each method draws.
+    pub schedule: Schedule,
+    /// Frames of the film in which flicker is looked for; below 2: none.
+    pub frames: u32,
+    /// How a film's camera moves.
+    pub motion: Motion,
+    /// How samples become colours.
+    pub look: Look,
+}
+
+/// Samples of the reference.
+const REFERENCE_SAMPLES: u32 = 256;
+
+/// What is known of a method beside its pictures.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Facts {
+    /// What tables call it.
+    pub label: String,
+    /// Bytes of what it draws.
+    pub bytes: u64,
+    /// Time to make that of the mesh, milliseconds.
+    pub build_ms: f64,
+}
+
+/// A method at a distance.
+#[derive(Debug, Clone, Serialize)]
+pub struct Row {
+    /// What it is called.
+    pub method: String,
+    /// Its family.
+    pub family: &'static str,
+    /// What came of it, or why nothing did.
+    #[serde(serialize_with = "outcome_or_reason")]
+    pub outcome: Result<Outcome, Refused>,
+}
+
+/// What came of a method at a distance.
+#[derive(Debug, Clone, Serialize)]
+pub struct Outcome {
+    /// Wall time of a frame, one thread.
+    pub wall: Summary,
+    /// Processor time of a frame.
+    pub thread: Option<Summary>,
+    /// Against the reference.
+    pub picture: PictureError,
+    /// Flicker of a film against the reference film; rms of linear light.
+    pub flicker: Option<f64>,
+    /// What changes where level of detail alone does, from frame to frame of the film.
+    pub pop: Option<f64>,
+    /// What it counted; the first is its work.
+    #[serde(serialize_with = "as_map")]
+    pub counters: Stats,
+    /// Anything else.
+    pub remark: Option<String>,
+}
+
+fn as_map<S: Serializer>(entries: &Stats, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(entries.iter().map(|(name, value)| (name, value)))
+}
+
+fn outcome_or_reason<S: Serializer>(
+    outcome: &Result<Outcome, Refused>,
+    to: S,
+) -> Result<S::Ok, S::Error> {
+    match outcome {
+        Ok(outcome) => outcome.serialize(to),
+        Err(Refused(reason)) => to.collect_map([("refused", reason)]),
+    }
+}
+
+/// All methods at a distance.
+#[derive(Debug, Clone, Serialize)]
+pub struct Distance {
+    /// Pixels across and down, which the mesh about fills.
+    pub size: (u32, u32),
+    /// From eye to target, world units.
+    pub distance_world: f64,
+    /// What a second reference of another seed is from the first.
+    pub noise_floor: PictureError,
+    /// The methods.
+    pub rows: Vec<Row>,
+    /// The reference.
+    #[serde(skip)]
+    pub reference: Reference,
+    /// The methods' pictures, in the order of rows; empty for those without.
+    #[serde(skip)]
+    pub pictures: Vec<Vec<[u8; 4]>>,
+}
+
+/// All methods on a mesh.
+#[derive(Debug, Clone, Serialize)]
+pub struct MeshMethods {
+    /// The mesh.
+    pub mesh: String,
+    /// Its triangles.
+    pub triangles: u64,
+    /// The methods, in the order of the rows.
+    pub facts: Vec<Facts>,
+    /// From near to far.
+    pub distances: Vec<Distance>,
+}
+
+/// Measures methods on a mesh, from a camera and from farther and farther off.
+///
+/// # Errors
+/// When the camera cannot see, or there is no thread. A method without a
+/// picture is no error but a row that says why.
+pub fn measure<S: Surface + ?Sized>(
+    (name, mesh): (&str, &S),
+    camera: &Camera,
+    methods: &mut [Box<dyn Method + '_>],
+    facts: Vec<Facts>,
+    plan: &Plan,
+    progress: &dyn Progress,
+) -> Result<MeshMethods, BenchError> {
+    let mut distances = Vec::new();
+    for halvings in 0..=plan.halvings {
+        let camera = at_distance(camera, halvings);
+        distances.push(at(mesh, &camera, methods, plan, progress)?);
+    }
+    Ok(MeshMethods {
+        mesh: name.to_owned(),
+        triangles: mesh.len() as u64,
+        facts,
+        distances,
+    })
+}
+
+fn at<S: Surface + ?Sized>(
+    mesh: &S,
+    camera: &Camera,
+    methods: &mut [Box<dyn Method + '_>],
+    plan: &Plan,
+    progress: &dyn Progress,
+) -> Result<Distance, BenchError> {
+    let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
+    let cameras: Vec<Camera> = (0..plan.frames.max(1))
+        .map(|frame| plan.motion.after(camera, frame))
+        .collect::<Result<_, _>>()
+        .map_err(|e| failed(&e))?;
+    progress.begin("drawing references", cameras.len() as u64);
+    let mut films = Vec::new();
+    for camera in &cameras {
+        films.push(reference(mesh, camera, plan.look, 1)?);
+        progress.advance(1);
+    }
+    progress.end();
+    let second = reference(mesh, camera, plan.look, 2)?;
+    let judge = Judge::new(&films[0]);
+    let noise_floor = judge.judge(&second.rgba, &second.shares);
+    let noise_floor = noise_floor.map_err(|e| failed(&e))?;
+    let light = |r: &Reference| LinearPicture::of((r.width, r.height, &r.rgba));
+    let truth: Vec<LinearPicture> = films.iter().map(light).collect();
+
+    progress.begin("judging pictures", methods.len() as u64);
+    let mut shown: Vec<Result<Seen, Refused>> = Vec::new();
+    for method in &mut *methods {
+        shown.push(seen(method.as_mut(), &cameras, &judge, &truth));
+        method.end();
+        progress.advance(1);
+    }
+    progress.end();
+    let taking_part: Vec<bool> = shown.iter().map(Result::is_ok).collect();
+    let times = race(methods, &taking_part, camera, plan.schedule, progress)?;
+    let mut pictures = Vec::new();
+    let mut rows = Vec::new();
+    for ((method, seen), (wall, thread)) in methods.iter().zip(shown).zip(times) {
+        let outcome = seen.map(|seen| {
+            pictures.push(seen.shown.picture.rgba);
+            Outcome {
+                wall,
+                thread,
+                picture: seen.picture,
+                flicker: seen.flicker,
+                pop: seen.pop,
+                counters: seen.shown.counters,
+                remark: seen.shown.remark,
+            }
+        });
+        if outcome.is_err() {
+            pictures.push(Vec::new());
+        }
+        rows.push(Row {
+            method: method.name(),
+            family: method.family(),
+            outcome,
+        });
+    }
+    Ok(Distance {
+        size: (camera.width, camera.height),
+        distance_world: (camera.eye - camera.target).length(),
+        noise_floor,
+        rows,
+        reference: films.swap_remove(0),
+        pictures,
+    })
+}
+
+/// What was seen of a method, nothing of it timed.
+struct Seen {
+    shown: Shown,
+    picture: PictureError,
+    flicker: Option<f64>,
+    pop: Option<f64>,
+}
+
+fn seen(
+    method: &mut dyn Method,
+    cameras: &[Camera],
+    judge: &Judge<'_>,
+    truth: &[LinearPicture],
+) -> Result<Seen, Refused> {
+    method.begin(&cameras[0])?;
+    let shown = method.show()?;
+    let picture = judge.judge(&shown.picture.rgba, &shown.shares);
+    let picture = picture.map_err(Refused::because)?;
+    let film = match cameras.len() {
+        0 | 1 => None,
+        _ => Some(restless(method, cameras, truth)?),
+    };
+    Ok(Seen {
+        shown,
+        picture,
+        flicker: film.as_ref().map(|film| film.flicker),
+        pop: film.and_then(|film| film.pop),
+    })
+}
+
+/// The mesh's triangles with 256 samples a pixel, stratified.
+fn reference<S: Surface + ?Sized>(
+    mesh: &S,
+    camera: &Camera,
+    look: Look,
+    seed: u64,
+) -> Result<Reference, BenchError> {
+    let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
+    let view = view_of(camera, mesh.bounds()).map_err(|e| failed(&e))?;
+    let samples = Samples::new(REFERENCE_SAMPLES, Pattern::Stratified { seed });
+    let samples = samples.map_err(|e| failed(&e))?;
+    let drawn = raster::draw(mesh, &view, &options(&view, samples, look), &Silent);
+    let drawn = drawn.map_err(|e| failed(&e))?;
+    Ok(Reference {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        shares: drawn.coverage,
+    })
+}

@@ -1,0 +1,99 @@
+//! Which method is worth having at which distance.
+
+use super::measure::{Distance, MeshMethods, Outcome};
+use crate::lab::error::dominated;
+use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
+
+/// For each distance time against error; then error, time and flicker over distances.
+#[must_use]
+pub fn panels(mesh: &MeshMethods) -> Vec<Panel> {
+    let mut panels: Vec<Panel> = mesh.distances.iter().map(|d| pareto(mesh, d)).collect();
+    let error = |o: &Outcome| Some(o.picture.flip);
+    let time = |o: &Outcome| Some(o.thread.as_ref().unwrap_or(&o.wall).median_ms);
+    let flicker = |o: &Outcome| o.flicker.map(|f| 1e3 * f);
+    panels.push(over_distances(mesh, "error: mean FLIP", error));
+    panels.push(over_distances(mesh, "ms a frame, one thread", time));
+    panels.push(over_distances(
+        mesh,
+        "flicker, thousandths of white",
+        flicker,
+    ));
+    panels
+}
+
+fn axis(label: &str) -> Axis {
+    Axis {
+        label: label.to_owned(),
+        scale: Scale::Log,
+    }
+}
+
+fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
+    let done: Vec<(&str, &str, [f64; 2])> = distance
+        .rows
+        .iter()
+        .zip(&mesh.facts)
+        .filter_map(|(row, facts)| {
+            let outcome = row.outcome.as_ref().ok()?;
+            let time = outcome.thread.as_ref().unwrap_or(&outcome.wall);
+            let place = [time.median_ms, outcome.picture.flip];
+            Some((facts.label.as_str(), row.family, place))
+        })
+        .collect();
+    let places: Vec<[f64; 2]> = done.iter().map(|(.., place)| *place).collect();
+    let mut front: Vec<(f64, f64)> = Vec::new();
+    let mut families: Vec<Series> = Vec::new();
+    let mut grey = Series::dots("dominated", Vec::new());
+    grey.grey = true;
+    for ((label, family, [x, y]), is_dominated) in done.iter().zip(dominated(&places)) {
+        let point = Point {
+            x: *x,
+            y: *y,
+            label: Some((*label).to_owned()),
+        };
+        if is_dominated {
+            grey.points.push(point);
+            continue;
+        }
+        front.push((*x, *y));
+        match families.iter_mut().find(|series| series.name == *family) {
+            Some(series) => series.points.push(point),
+            None => families.push(Series::dots(*family, vec![point])),
+        }
+    }
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut line = Series::curve("", front);
+    (line.dots, line.grey) = (false, true);
+    let mut series = vec![grey, line];
+    series.extend(families);
+    let (width, height) = distance.size;
+    Panel::Chart(Chart {
+        title: format!("{}, {width} x {height} pixels", mesh.mesh),
+        x: axis("ms a frame, one thread (median)"),
+        y: axis("error against 256 samples: mean FLIP"),
+        series,
+        level: Some((distance.noise_floor.flip, "noise floor".to_owned())),
+    })
+}
+
+fn over_distances(
+    mesh: &MeshMethods,
+    label: &str,
+    value: impl Fn(&Outcome) -> Option<f64>,
+) -> Panel {
+    let points = mesh.facts.iter().enumerate().flat_map(|(place, facts)| {
+        let value = &value;
+        mesh.distances.iter().filter_map(move |distance| {
+            let outcome = distance.rows[place].outcome.as_ref().ok()?;
+            let at = (f64::from(distance.size.1), value(outcome)?);
+            Some((facts.label.clone(), at))
+        })
+    });
+    Panel::Chart(Chart {
+        title: format!("{}: {label}", mesh.mesh),
+        x: axis("pixels down the picture"),
+        y: axis(label),
+        series: Series::collect(points),
+        level: None,
+    })
+}
