@@ -4,6 +4,7 @@
 mod command;
 mod file;
 mod levels;
+mod methods;
 mod models;
 mod scenes;
 mod textures;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::args::ExportArgs;
@@ -35,8 +35,24 @@ use crate::textured::{self, TexturedFile};
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 256;
-/// Grids of the textured voxels.
-const GRIDS: [u32; 6] = [2, 4, 8, 16, 32, 64];
+/// Grids of the textured voxels whose level is chosen by distance. Few texels a
+/// face: what is shown on a face is off by about a cell, which should not be many pixels.
+const GRIDS: [u32; 6] = [4, 8, 16, 32, 64, 128];
+/// Texels along a face of those.
+const TEXELS: u32 = 4;
+
+/// Ways to draw a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Family {
+    /// Triangles with a depth buffer, 1, 4 and 16 samples a pixel.
+    Triangles,
+    /// The image-order engine on the voxelised mesh.
+    Voxels,
+    /// Far voxels.
+    Far,
+    /// Textured voxels.
+    Textured,
+}
 
 /// Arguments of `bench methods`.
 #[derive(Debug, Args)]
@@ -63,6 +79,9 @@ pub(super) struct MethodsArgs {
     #[arg(long, value_name = "N", default_value_t = 5,
           value_parser = clap::value_parser!(u32).range(0..=1000))]
     frames: u32,
+    /// Methods to measure [default: all]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
+    only: Vec<Family>,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -107,14 +126,18 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     write(args, &meshes, &context, plan.schedule, console)
 }
 
-/// What is made of a mesh for the methods, and what that took.
+impl MethodsArgs {
+    fn takes(&self, family: Family) -> bool {
+        self.only.is_empty() || self.only.contains(&family)
+    }
+}
+
+/// What is made of a mesh for the methods, and how many milliseconds that took.
 struct Made {
-    graph: Graph,
-    graph_ms: f64,
-    far: FarFile,
-    far_ms: f64,
-    textured: TexturedFile,
-    textured_ms: f64,
+    voxels: Option<(Graph, f64)>,
+    far: Option<(FarFile, f64)>,
+    /// The paper's grid, and those that a level is chosen from by distance.
+    textured: Option<[(TexturedFile, f64); 2]>,
 }
 
 impl Made {
@@ -124,92 +147,122 @@ impl Made {
         mesh: &Mesh,
         console: &Console,
     ) -> Result<Self, CliError> {
-        let scene = render::open(name, &args.scene, console)?;
-        let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
-        let failed = |e: std::io::Error| CliError::new(Kind::Run, e);
-        let started = Instant::now();
-        let data = far::build(mesh, &far::BuildOptions::default(), console.progress())?;
-        let far_ms = milliseconds_since(started);
-        let far = FarFile::from_bytes(&far::store::encode(&data).map_err(failed)?)?;
-        let started = Instant::now();
-        let options = textured::BuildOptions {
-            grids: GRIDS.to_vec(),
-            ..textured::BuildOptions::default()
+        let mut made = Self {
+            voxels: None,
+            far: None,
+            textured: None,
         };
-        let data = textured::build(mesh, &options, console.progress())?;
-        let textured_ms = milliseconds_since(started);
-        let bytes = textured::store::encode(&data).map_err(failed)?;
-        Ok(Self {
-            graph_ms: scene.load_ms - read_ms,
-            graph: scene.graph,
-            far,
-            far_ms,
-            textured: TexturedFile::from_bytes(&bytes)?,
-            textured_ms,
-        })
+        if args.takes(Family::Voxels) {
+            let scene = render::open(name, &args.scene, console)?;
+            let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
+            made.voxels = Some((scene.graph, scene.load_ms - read_ms));
+        }
+        if args.takes(Family::Far) {
+            let started = Instant::now();
+            let data = far::build(mesh, &far::BuildOptions::default(), console.progress())?;
+            let ms = milliseconds_since(started);
+            let bytes = far::store::encode(&data).map_err(|e| CliError::new(Kind::Run, e))?;
+            made.far = Some((FarFile::from_bytes(&bytes)?, ms));
+        }
+        if args.takes(Family::Textured) {
+            let by_distance = textured::BuildOptions {
+                grids: GRIDS.to_vec(),
+                texels: TEXELS,
+                ..textured::BuildOptions::default()
+            };
+            made.textured = Some([
+                textured_of(mesh, &textured::BuildOptions::default(), console)?,
+                textured_of(mesh, &by_distance, console)?,
+            ]);
+        }
+        Ok(made)
     }
+}
+
+fn textured_of(
+    mesh: &Mesh,
+    options: &textured::BuildOptions,
+    console: &Console,
+) -> Result<(TexturedFile, f64), CliError> {
+    let started = Instant::now();
+    let data = textured::build(mesh, options, console.progress())?;
+    let ms = milliseconds_since(started);
+    let bytes = textured::store::encode(&data).map_err(|e| CliError::new(Kind::Run, e))?;
+    Ok((TexturedFile::from_bytes(&bytes)?, ms))
+}
+
+/// A method, and what is known of it.
+type Candidate<'m> = (Facts, Box<dyn Method + 'm>);
+
+fn candidate<'m>(
+    label: impl Into<String>,
+    bytes: u64,
+    build_ms: f64,
+    method: impl Method + 'm,
+) -> Candidate<'m> {
+    let facts = Facts {
+        label: label.into(),
+        bytes,
+        build_ms,
+    };
+    (facts, Box::new(method))
 }
 
 /// Everyone who draws. Another method joins here.
 fn methods<'m>(
+    args: &MethodsArgs,
     mesh: &'m Mesh,
     made: &'m Made,
     look: Look,
-) -> Result<Vec<(Facts, Box<dyn Method + 'm>)>, Refused> {
-    let mut all: Vec<(Facts, Box<dyn Method + 'm>)> = Vec::new();
-    let mut add = |label: &str, bytes: u64, build_ms: f64, method: Box<dyn Method + 'm>| {
-        let facts = Facts {
-            label: label.to_owned(),
-            bytes,
-            build_ms,
-        };
-        all.push((facts, method));
-    };
-    for samples in [1, 4, 16] {
-        let method = TrianglesMethod::new(mesh, samples, look)?;
-        let label = format!("triangles, {samples}");
-        add(&label, mesh.bytes(), 0.0, Box::new(method));
+) -> Result<Vec<Candidate<'m>>, Refused> {
+    let mut all = Vec::new();
+    if args.takes(Family::Triangles) {
+        for samples in [1, 4, 16] {
+            let method = TrianglesMethod::new(mesh, samples, look)?;
+            let label = format!("triangles, {samples}");
+            all.push(candidate(label, mesh.bytes(), 0.0, method));
+        }
     }
-    let rules = [
-        ("voxels center", Coverage::Center, 0),
-        ("voxels exact", Coverage::Exact, 0),
-        ("voxels exact, 16", Coverage::Exact, 2),
-    ];
-    for (label, coverage, aa_log2) in rules {
-        let options = SetupOptions {
-            coverage,
-            aa_log2,
-            ..SetupOptions::default()
-        };
-        let engine = (engines::FAST.name, engines::FAST.make);
-        let method = VoxelMethod::new(&made.graph, engine, options, look);
-        add(label, made.graph.bytes(), made.graph_ms, Box::new(method));
+    if let Some((graph, ms)) = &made.voxels {
+        let rules = [
+            ("voxels center", Coverage::Center, 0),
+            ("voxels exact", Coverage::Exact, 0),
+            ("voxels exact, 16", Coverage::Exact, 2),
+        ];
+        for (label, coverage, aa_log2) in rules {
+            let options = SetupOptions {
+                coverage,
+                aa_log2,
+                ..SetupOptions::default()
+            };
+            let engine = (engines::FAST.name, engines::FAST.make);
+            let method = VoxelMethod::new(graph, engine, options, look);
+            all.push(candidate(label, graph.bytes(), *ms, method));
+        }
     }
-    let opacities = [
-        ("far none", Opacity::None),
-        ("far scalar", Opacity::Scalar),
-        ("far six", Opacity::Six),
-    ];
-    for (label, opacity) in opacities {
-        let method = FarMethod::new(&made.far, opacity, look);
-        add(label, made.far.len(), made.far_ms, Box::new(method));
+    if let Some((file, ms)) = &made.far {
+        let opacities = [
+            ("far none", Opacity::None),
+            ("far scalar", Opacity::Scalar),
+            ("far six", Opacity::Six),
+        ];
+        for (label, opacity) in opacities {
+            let method = FarMethod::new(file, opacity, look);
+            all.push(candidate(label, file.len(), *ms, method));
+        }
     }
-    let sixteen = GRIDS.iter().position(|&cells| cells == 16).unwrap_or(0);
-    let level = |level| Detail::Level {
-        grid: sixteen,
-        level,
-    };
-    let auto = Detail::Auto { texel_px: 1.0 };
-    let details = [
-        ("textured auto", auto, 1),
-        ("textured auto, 4", auto, 4),
-        ("textured 16, eroded 0", level(0), 1),
-        ("textured 16, eroded 1", level(1), 1),
-    ];
-    for (label, detail, samples) in details {
-        let method = TexturedMethod::new(&made.textured, detail, samples, look)?;
-        let bytes = made.textured.len();
-        add(label, bytes, made.textured_ms, Box::new(method));
+    if let Some([(paper, paper_ms), (file, ms)]) = &made.textured {
+        for level in 0..2 {
+            let method = TexturedMethod::new(paper, Detail::Level { grid: 0, level }, 1, look)?;
+            let label = format!("textured 16, eroded {level}");
+            all.push(candidate(label, paper.len(), *paper_ms, method));
+        }
+        for samples in [1, 4] {
+            let detail = Detail::Auto { texel_px: 1.0 };
+            let method = TexturedMethod::new(file, detail, samples, look)?;
+            let label = format!("textured auto, {samples}");
+            all.push(candidate(label, file.len(), *ms, method));
+        }
     }
     Ok(all)
 }
@@ -224,8 +277,8 @@ fn measure(
     let (mesh, up) = scenes::open_mesh(name, &args.scene, console.progress())?;
     let camera = args.camera.camera(&triangles::bounds(&mesh), up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
-    let all = methods(&mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
-    let (facts, mut methods): (Vec<Facts>, Vec<Box<dyn Method + '_>>) = all.into_iter().unzip();
+    let all = methods(args, &mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
+    let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let progress = console.progress();
     let short = Path::new(name).file_stem().map(|s| s.to_string_lossy());
     let short = short.as_deref().unwrap_or(name);
