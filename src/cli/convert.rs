@@ -66,7 +66,7 @@ pub struct ConvertArgs {
     /// Of .tvx: texels along the side of a voxel's face [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
     pub(super) texels: Option<u32>,
-    /// Of .tvx: which voxels an erosion takes away [default: cube]
+    /// Of .tvx: which voxels an erosion takes away [default: sides]
     #[arg(long, value_enum, value_name = "ELEMENT")]
     pub(super) element: Option<ElementName>,
     /// Of .far: so many copies of the mesh, in rows on the ground

@@ -26,10 +26,11 @@ use record::{Primitive, Texel, VoxelRecord};
 /// Which voxels an erosion takes away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum Element {
-    /// Those with an empty cell among the 26 around them: the paper's structuring element, 3 x 3 x 3.
-    #[default]
+    /// Those with an empty cell among the 26 around them: a structuring element of 3 x 3 x 3, as the paper says.
     Cube,
-    /// Those with an empty cell at one of their six sides: the paper's words.
+    /// Those with an empty cell at one of their six sides, as the paper says too, and as its
+    /// table must have been made (`spec/textured.md`).
+    #[default]
     Sides,
 }
 

@@ -36,7 +36,7 @@ impl Default for BuildOptions {
         Self {
             grids: vec![16],
             texels: 16,
-            element: Element::Cube,
+            element: Element::default(),
         }
     }
 }
