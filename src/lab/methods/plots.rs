@@ -28,6 +28,12 @@ fn axis(label: &str) -> Axis {
     }
 }
 
+/// Whether two names would be on top of each other, on axes of two to four decades.
+fn covers(a: &[f64; 2], b: &[f64; 2]) -> bool {
+    let apart = |k: usize| libm::log10(a[k] / b[k]).abs();
+    apart(0) < 0.45 && apart(1) < 0.06
+}
+
 fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     let done: Vec<(&str, &str, [f64; 2])> = distance
         .rows
@@ -45,11 +51,20 @@ fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     let mut families: Vec<Series> = Vec::new();
     let mut grey = Series::dots("dominated", Vec::new());
     grey.grey = true;
-    for ((label, family, [x, y]), is_dominated) in done.iter().zip(dominated(&places)) {
+    // Those that nothing beats come first: they keep their names.
+    let mut points: Vec<_> = done.iter().zip(dominated(&places)).collect();
+    points.sort_by_key(|(_, is_dominated)| *is_dominated);
+    let mut named: Vec<[f64; 2]> = Vec::new();
+    for ((label, family, place), is_dominated) in points {
+        let [x, y] = place;
+        let is_covered = named.iter().any(|other| covers(other, place));
+        if !is_covered {
+            named.push(*place);
+        }
         let point = Point {
             x: *x,
             y: *y,
-            label: Some((*label).to_owned()),
+            label: (!is_covered).then(|| (*label).to_owned()),
         };
         if is_dominated {
             grey.points.push(point);
