@@ -325,6 +325,7 @@ mod tests {
             box_bits: 11 + left,
             half_width: [0; LANES],
             reach: [0; LANES],
+            bound: [0; LANES],
             doubt: [0; LANES],
             half_edge: [[0; LANES]; 3],
             child,
