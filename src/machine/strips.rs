@@ -71,8 +71,9 @@ pub(super) struct Subtree {
     half_edge: [[WideWord; 3]; FUNCTIONS],
     /// By function, half the width of a voxel of the finest level.
     half_width: [WideWord; FUNCTIONS],
-    /// By function, how much more than half its width bounds a voxel of any level.
-    slack: [WideWord; FUNCTIONS],
+    /// By function, how much more than half its width bounds a voxel of any
+    /// level, if anything.
+    slack: Option<[WideWord; FUNCTIONS]>,
     /// Octree level of the finest voxels: solids, by nature or by level of detail.
     finest: u32,
 }
@@ -122,13 +123,12 @@ impl Subtree {
             let sum = dp.add(x, y);
             dp.add(sum, z)
         });
-        let slack = step.map(|[x, y]| match constants.strip_slack {
-            Some(places) => {
+        let slack = constants.strip_slack.map(|places| {
+            step.map(|[x, y]| {
                 let (x, y) = (magnitude(dp, x), magnitude(dp, y));
                 let both = dp.add(x, y);
                 dp.shr(both, places)
-            }
-            None => WideWord::ZERO,
+            })
         });
         dp.tap(
             Block::StripLattice,
@@ -142,7 +142,7 @@ impl Subtree {
                 Short::unsigned(levels, LEVEL_BITS),
                 step,
                 half_edge,
-                [half_width, slack],
+                [half_width, slack.unwrap_or_default()],
                 value,
             ),
         );
@@ -217,7 +217,10 @@ impl Subtree {
         level: u32,
     ) -> WideWord {
         let half = dp.shl(self.half_width[function], self.finest - level);
-        dp.add(half, self.slack[function])
+        match &self.slack {
+            Some(slack) => dp.add(half, slack[function]),
+            None => half,
+        }
     }
 
     /// What a sample and what half edges at the finest level add to a function
