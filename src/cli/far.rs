@@ -1,30 +1,29 @@
 //! Far voxels on the command line: `convert`, `info` and `render` of `.far` files.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 
-use super::args::{Aov, EngineName, FarOpacityName, camera_line};
+use super::args::{Aov, EngineName, FarOpacityName};
 use super::console::Console;
 use super::convert::ConvertArgs;
-use super::drawing::{milliseconds_since, min_median_max};
+use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
+use super::mesh_view::{self, MeshDrawn, background, view};
+use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
-use super::{outputs, scenes};
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::{is_far, write_to};
 use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::far::{BuildError, BuildOptions, FarError, FarFile, build};
-use crate::lab::error::{mesh_light, mesh_view, picture_of_far};
+use crate::lab::mesh_view::{light_of, picture_of_far};
 use crate::mesh::Instances;
 use crate::mesh::raster::View;
-use crate::picture::{self, Background, store};
+use crate::picture::store;
 use crate::project::Camera;
 
 impl From<FarError> for CliError {
@@ -55,17 +54,12 @@ impl From<ViewError> for CliError {
 
 /// Whether a scene's name is that of a `.far` file, told by its content.
 pub(super) fn is_far_file(name: &str) -> bool {
-    let mut beginning = [0; 8];
-    let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
-    read.is_ok() && is_far(&beginning)
+    mesh_view::begins(name, is_far)
 }
 
 /// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
-    let (mesh, up) = scenes::open_mesh(&args.input, &args.scene, console.progress())?;
-    for warning in mesh.warnings() {
-        console.note(format!("{}: {warning}", args.input));
-    }
+    let (mesh, up) = mesh_view::open(&args.input, &args.scene, console)?;
     let defaults = BuildOptions::default();
     let options = BuildOptions {
         rays: args.rays,
@@ -383,10 +377,7 @@ pub(super) fn render_one(
     let camera = args
         .camera
         .camera(&Bounds::of_box(low, high), up, args.picture.size(), 0.0);
-    if args.print_camera && !console.json {
-        console.data(camera_line(&camera))?;
-    }
-    let view = mesh_view(&camera, file.bounds()).map_err(CliError::usage)?;
+    let view = view(&camera, file.bounds())?;
     let options = options(args, &view);
     let mut viewer = FarViewer::new(&file);
     let mut times_ms = Vec::new();
@@ -399,59 +390,17 @@ pub(super) fn render_one(
         times_ms.push(milliseconds_since(started));
     }
     let picture = picture_of_far(drawn);
-    let hash = picture::hash(&picture);
-    if args.hash && !console.json {
-        console.data(if of > 1 {
-            format!("{hash}  {name}")
-        } else {
-            hash.clone()
-        })?;
-    }
-    if let Some(path) = output {
-        outputs::write(&picture, path, &args.picture.aov, args.out.force)?;
-    }
-    let (min, median, max) = min_median_max(&times_ms);
-    if args.repeat > 1 && !console.json {
-        let times = [("min ms", min), ("median ms", median), ("max ms", max)];
-        let times = times.map(|(name, ms)| vec![name.to_owned(), format!("{ms:.3}")]);
-        let counted = counters(&counts);
-        let counted = counted.map(|(name, count)| vec![name.to_owned(), grouped(count)]);
-        let rows = times.into_iter().chain(counted).collect();
-        let head = vec![name.to_owned(), "one frame".to_owned()];
-        console.data(report::table(head, rows))?;
-    }
-    if let Some(path) = output {
-        console.note(format!("{}: drawn in {median:.1} ms", path.display()));
-    }
-    for (name, count) in counters(&counts) {
-        console.detail(format!("  {name}: {}", grouped(count)));
-    }
-    if let Some(expected) = &args.expect_hash
-        && !expected.eq_ignore_ascii_case(&hash)
-    {
-        return Err(CliError::new(
-            Kind::Failed,
-            format!("{name}: the picture's hash is {hash}, expected {expected}"),
-        ));
-    }
-    let counted: serde_json::Map<String, Value> = counters(&counts)
-        .into_iter()
-        .map(|(name, count)| (name.to_owned(), count.into()))
-        .collect();
-    let result = json!({
-        "scene": name,
-        "engine": "far",
-        "width": picture.width,
-        "height": picture.height,
-        "pixels_drawn": picture.rgba.len() - picture.node.iter().filter(|&&n| n < 0).count(),
-        "camera": report::camera(&camera),
-        "load_ms": load_ms,
-        "render_ms": { "runs": times_ms.len(), "min": min, "median": median, "max": max },
-        "counters": counted,
-        "memory": resident(&file),
-        "hash": hash,
-        "output": output,
-    });
+    let drawn = MeshDrawn {
+        name,
+        engine: "far",
+        camera: &camera,
+        picture: &picture,
+        load_ms,
+        times_ms: &times_ms,
+        counters: counters(&counts),
+        memory: Some(json!(resident(&file))),
+    };
+    let result = drawn.finish(args, of, output, console)?;
     Ok((camera, result))
 }
 
@@ -506,17 +455,14 @@ fn options(args: &RenderArgs, view: &View) -> ViewOptions {
     ViewOptions {
         voxel_px: args.engine.lod.unwrap_or(1.0),
         opacity: opacity(args.engine.far_opacity),
-        light: mesh_light(view, args.picture.shading()),
-        background: match args.picture.background.unwrap_or_default() {
-            Background::None => None,
-            Background::Color(color) => Some(color),
-        },
+        light: light_of(view, args.picture.shading()),
+        background: background(args.picture.background),
         ..ViewOptions::default()
     }
 }
 
-fn counters(counts: &Counts) -> [(&'static str, u64); 10] {
-    [
+fn counters(counts: &Counts) -> Vec<(&'static str, Value)> {
+    let counters = [
         ("nodes_visited", counts.visited),
         ("nodes_outside", counts.outside),
         ("voxel_nodes", counts.voxel_nodes),
@@ -527,5 +473,6 @@ fn counters(counts: &Counts) -> [(&'static str, u64); 10] {
         ("transparent_voxels", counts.transparent_voxels),
         ("triangles", counts.triangles),
         ("drawn_twice", counts.drawn_twice),
-    ]
+    ];
+    counters.map(|(name, count)| (name, count.into())).to_vec()
 }

@@ -1,41 +1,58 @@
-//! What pictures of meshes share on the command line: camera, light, times, hash, files.
+//! What methods of meshes share on the command line: reading a mesh, telling
+//! files by their beginning, camera, background, times, hash, files.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
+use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::args::{PictureArgs, camera_line};
+use super::args::{SceneArgs, camera_line};
 use super::console::Console;
 use super::drawing::min_median_max;
 use super::error::{CliError, Kind};
-use super::outputs;
+use super::fit::Up;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
-use crate::lab::methods::{key_light, view_of};
-use crate::mesh::raster::{Light, View};
-use crate::picture::{self, Background, Picture, Shading};
+use super::{outputs, scenes};
+use crate::lab::mesh_view::view_of;
+use crate::mesh::Mesh;
+use crate::mesh::raster::View;
+use crate::picture::{self, Background, Picture};
 use crate::project::Camera;
-use glam::DVec3;
 
 /// The camera as the rasteriser wants it, for something within a box.
 pub(super) fn view(camera: &Camera, bounds: (DVec3, DVec3)) -> Result<View, CliError> {
     view_of(camera, bounds).map_err(CliError::usage)
 }
 
-/// The light of a picture, if its colours depend on it.
-pub(super) fn light(args: &PictureArgs, view: &View) -> Option<Light> {
-    match args.shading() {
-        Shading::Lambert => Some(key_light(view)),
-        Shading::Flat => None,
-    }
-}
-
 /// What is behind, sRGB, if anything.
-pub(super) fn background(args: &PictureArgs) -> Option<[u8; 3]> {
-    match args.background.unwrap_or_default() {
+pub(super) fn background(given: Option<Background>) -> Option<[u8; 3]> {
+    match given.unwrap_or_default() {
         Background::None => None,
         Background::Color(color) => Some(color),
     }
+}
+
+/// Reads a mesh and tells its warnings; and which axis is up, for fitted cameras.
+pub(super) fn open(
+    name: &str,
+    args: &SceneArgs,
+    console: &Console,
+) -> Result<(Mesh, Up), CliError> {
+    let (mesh, up) = scenes::open_mesh(name, args, console.progress())?;
+    for warning in mesh.warnings() {
+        console.note(format!("{name}: {warning}"));
+    }
+    Ok((mesh, up))
+}
+
+/// Whether a file can be read and its first eight bytes are as they should be.
+pub(super) fn begins(name: &str, is_right: impl Fn(&[u8]) -> bool) -> bool {
+    let mut beginning = [0; 8];
+    let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
+    read.is_ok() && is_right(&beginning)
 }
 
 /// A picture that was drawn without the voxel engines, and what it took.
@@ -47,6 +64,8 @@ pub(super) struct MeshDrawn<'d> {
     pub(super) load_ms: f64,
     pub(super) times_ms: &'d [f64],
     pub(super) counters: Vec<(&'static str, Value)>,
+    /// What a budget of memory came to, null without one; `None` of what has no budgets.
+    pub(super) memory: Option<Value>,
 }
 
 impl MeshDrawn<'_> {
@@ -101,7 +120,7 @@ impl MeshDrawn<'_> {
         let counters: serde_json::Map<String, Value> = counters
             .map(|(name, count)| ((*name).to_owned(), count.clone()))
             .collect();
-        Ok(json!({
+        let mut result = json!({
             "scene": name,
             "engine": self.engine,
             "width": picture.width,
@@ -113,7 +132,11 @@ impl MeshDrawn<'_> {
             "counters": counters,
             "hash": hash,
             "output": output,
-        }))
+        });
+        if let Some(memory) = &self.memory {
+            result["memory"] = memory.clone();
+        }
+        Ok(result)
     }
 }
 

@@ -1,7 +1,5 @@
 //! Textured voxels on the command line: `convert`, `info` and `render` of `.tvx` files.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
@@ -13,12 +11,11 @@ use super::convert::ConvertArgs;
 use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
-use super::mesh_view::{MeshDrawn, background, light, view};
+use super::mesh_view::{self, MeshDrawn, background, view};
 use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
-use super::scenes;
-use crate::lab::methods::as_picture;
+use crate::lab::mesh_view::{light_of, picture_of_triangles};
 use crate::mesh::raster::{Pattern, Samples, View};
 use crate::picture::store;
 use crate::project::Camera;
@@ -58,9 +55,7 @@ impl From<ViewError> for CliError {
 
 /// Whether a scene's name is that of a `.tvx` file, told by its content.
 pub(super) fn is_textured_file(name: &str) -> bool {
-    let mut beginning = [0; 8];
-    let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
-    read.is_ok() && is_textured(&beginning)
+    mesh_view::begins(name, is_textured)
 }
 
 /// Builds textured voxels of a mesh and writes them.
@@ -75,10 +70,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         texels: args.texels.unwrap_or(defaults.texels),
         element: args.element.map_or(defaults.element, |e| e.element()),
     };
-    let (mesh, up) = scenes::open_mesh(&args.input, &args.scene, console.progress())?;
-    for warning in mesh.warnings() {
-        console.note(format!("{}: {warning}", args.input));
-    }
+    let (mesh, up) = mesh_view::open(&args.input, &args.scene, console)?;
     let started = Instant::now();
     let mut data = build(&mesh, &options, console.progress())
         .map_err(|e| CliError::from(e).at(&args.input))?;
@@ -267,7 +259,7 @@ pub(super) fn render_one(
         (drawn, counts) = draw(&file, &view, &options)?;
         times_ms.push(milliseconds_since(started));
     }
-    let picture = as_picture(drawn);
+    let picture = picture_of_triangles(drawn);
     let drawn = MeshDrawn {
         name,
         engine: "textured",
@@ -276,6 +268,7 @@ pub(super) fn render_one(
         load_ms,
         times_ms: &times_ms,
         counters: counters(&file, &counts),
+        memory: None,
     };
     let result = drawn.finish(args, of, output, console)?;
     Ok((camera, result))
@@ -345,8 +338,8 @@ fn options(args: &RenderArgs, file: &TexturedFile, view: &View) -> Result<ViewOp
     Ok(ViewOptions {
         detail,
         samples: Samples::new(per_pixel, Pattern::Regular).map_err(CliError::usage)?,
-        light: light(&args.picture, view),
-        background: background(&args.picture),
+        light: light_of(view, args.picture.shading()),
+        background: background(args.picture.background),
     })
 }
 

@@ -10,17 +10,16 @@ use serde_json::json;
 
 use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
+use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::Bounds;
-use super::{outputs, report, scenes};
+use super::mesh_view::{self, background};
+use super::{outputs, report};
+use crate::lab::mesh_view::light_of;
 use crate::mesh::Mesh;
-use crate::mesh::raster::{self, Light, Pattern, RasterOptions, Samples, View};
+use crate::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
 use crate::picture::npy::{self, Array, Values};
-use crate::picture::{AMBIENT, Background, KEY_LIGHT, png, store};
-use crate::project::Camera;
-
-/// Share of the distance to the farthest corner below which nothing is drawn.
-const NEAR: f64 = 1e-6;
+use crate::picture::{Background, Shading, png, store};
 
 /// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -88,22 +87,19 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         store::check_free(&path, args.force)?;
     }
     let started = Instant::now();
-    let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console.progress())?;
-    let load_ms = started.elapsed().as_secs_f64() * 1e3;
-    for warning in mesh.warnings() {
-        console.note(format!("{}: {warning}", args.mesh));
-    }
+    let (mesh, up) = mesh_view::open(&args.mesh, &args.scene, console)?;
+    let load_ms = milliseconds_since(started);
     let size = args.size.map_or((512, 512), |s| (s.width, s.height));
     let camera = args.camera.camera(&bounds(&mesh), up, size, 0.0);
     let run_error = |e: &dyn std::fmt::Display| {
         CliError::new(Kind::Run, format!("{}: {e}", args.output.display()))
     };
-    let view = view(&camera, &mesh).map_err(CliError::usage)?;
+    let view = mesh_view::view(&camera, mesh.bounds())?;
     let options = args.options(&view).map_err(|e| run_error(&e))?;
     let started = Instant::now();
     let picture =
         raster::draw(&mesh, &view, &options, console.progress()).map_err(|e| run_error(&e))?;
-    let draw_ms = started.elapsed().as_secs_f64() * 1e3;
+    let draw_ms = milliseconds_since(started);
     let bytes = png::encode(picture.width, picture.height, &picture.rgba);
     store::write(&args.output, &bytes.map_err(|e| run_error(&e))?, args.force)?;
     for (path, values) in args.paths().into_iter().skip(1).zip(&args.aov) {
@@ -155,19 +151,16 @@ impl TrianglesArgs {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
-        let key = KEY_LIGHT.normalize();
-        let light = Light {
-            towards: view.right * key.x + view.up * key.y - view.forward * key.z,
-            ambient: AMBIENT,
+        let shading = if self.flat {
+            Shading::Flat
+        } else {
+            Shading::Lambert
         };
         Ok(RasterOptions {
             // The flag takes these numbers only.
             samples: Samples::new(self.samples.parse().unwrap_or(16), pattern)?,
-            light: (!self.flat).then_some(light),
-            background: match self.background.unwrap_or_default() {
-                Background::None => None,
-                Background::Color(color) => Some(color),
-            },
+            light: light_of(view, shading),
+            background: background(self.background),
         })
     }
 }
@@ -182,24 +175,4 @@ pub(super) fn bounds(mesh: &Mesh) -> Bounds {
         high,
         hull: hull.collect(),
     }
-}
-
-/// The camera as the rasteriser wants it.
-fn view(camera: &Camera, mesh: &Mesh) -> Result<View, String> {
-    let axes = camera.axes().map_err(|e| e.to_string())?;
-    let (low, high) = mesh.bounds();
-    let farthest = (camera.eye - low)
-        .abs()
-        .max((high - camera.eye).abs())
-        .length();
-    Ok(View {
-        eye: camera.eye,
-        right: axes.right,
-        up: axes.up,
-        forward: axes.forward,
-        focal_px: axes.focal_px,
-        width: camera.width,
-        height: camera.height,
-        near: farthest * NEAR,
-    })
 }

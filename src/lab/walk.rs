@@ -10,7 +10,9 @@ use serde::Serialize;
 use crate::far::FarFile;
 use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::lab::bench::Clock;
-use crate::lab::error::{Look, mesh_light, mesh_view, opacity_in_words};
+use crate::lab::error::Look;
+use crate::lab::mesh_view::{light_of, view_of};
+use crate::lab::methods::opacity_in_words;
 use crate::project::Camera;
 #[cfg(feature = "cli")]
 use crate::report::plot::{Axis, Chart, Panel, Scale, Series};
@@ -114,7 +116,7 @@ pub fn walk(file: &FarFile, plan: &Plan) -> Result<Vec<Walk>, ViewError> {
         let mut viewers: Vec<FarViewer<'_>> = viewers.collect();
         for frame in 0..plan.frames {
             // Up is never along the view, and all numbers are finite.
-            let Ok(view) = mesh_view(&camera(file, frame, plan), file.bounds()) else {
+            let Ok(view) = view_of(&camera(file, frame, plan), file.bounds()) else {
                 continue;
             };
             let kinds = plan.opacities.iter().zip(&mut viewers).zip(&mut walks);
@@ -122,7 +124,7 @@ pub fn walk(file: &FarFile, plan: &Plan) -> Result<Vec<Walk>, ViewError> {
                 let options = ViewOptions {
                     voxel_px: plan.voxel_px,
                     opacity,
-                    light: mesh_light(&view, look.shading),
+                    light: light_of(&view, look.shading),
                     background: Some(look.background),
                     culling: plan.culling,
                     ..ViewOptions::default()

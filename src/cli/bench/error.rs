@@ -287,7 +287,7 @@ pub(super) fn run(
         };
         let mut references = experiment::References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look));
+            methods.extend(args.meshes.methods(mesh, plan.look)?);
             references = experiment::References::of_triangles(&mesh.mesh);
         }
         let progress = console.progress();

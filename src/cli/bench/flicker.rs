@@ -140,7 +140,7 @@ pub(super) fn run(
         // The first frame is the same for all motions.
         let mut references = References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look));
+            methods.extend(args.meshes.methods(mesh, plan.look)?);
             references = References::of_triangles(&mesh.mesh);
         }
         for motion in args.motions() {

@@ -1,18 +1,25 @@
-//! The methods of meshes in `bench error` and `bench flicker`: triangles, and far voxels.
+//! The methods of meshes in `bench error` and `bench flicker`: triangles, and
+//! far voxels; and how far voxels are made for an experiment.
+
+use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
 use crate::cli::args::SceneArgs;
 use crate::cli::console::Console;
-use crate::cli::error::CliError;
+use crate::cli::drawing::milliseconds_since;
+use crate::cli::error::{CliError, Kind};
 use crate::cli::scenes;
 use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{FarMethod, FarSettings, Look, Method, TrianglesMethod};
+use crate::lab::error::{Look, Method};
+use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
 use crate::mesh::Mesh;
-use crate::mesh::raster::{Pattern, Samples};
+
+/// Samples a pixel that triangles are drawn with.
+pub(super) const TRIANGLE_SAMPLES: [u32; 3] = [1, 4, 16];
 
 /// Who draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -72,9 +79,7 @@ impl MeshMethodArgs {
         let mut files = Vec::new();
         if self.has(FamilyName::Far) {
             for (label, options) in self.builds() {
-                let data = build(&mesh, &options, console.progress())?;
-                let bytes = encode(&data).map_err(CliError::usage)?;
-                files.push((label, FarFile::from_bytes(&bytes)?));
+                files.push((label, far_of(&mesh, &options, console)?.0));
             }
         }
         Ok(Some(MeshScene { mesh, files }))
@@ -102,18 +107,20 @@ impl MeshMethodArgs {
     }
 
     /// The methods of a mesh but for the image-order engine's.
+    ///
+    /// # Errors
+    /// None: triangles can be drawn with these samples.
     pub(super) fn methods<'m>(
         &self,
         scene: &'m MeshScene,
         look: Look,
-    ) -> Vec<Box<dyn Method + 'm>> {
+    ) -> Result<Vec<Box<dyn Method + 'm>>, CliError> {
         let mut methods: Vec<Box<dyn Method + 'm>> = Vec::new();
         if self.has(FamilyName::Triangles) {
-            let samples = [1, 4, 16].into_iter();
-            let samples = samples.filter_map(|n| Samples::new(n, Pattern::Regular).ok());
-            methods.extend(samples.map(|samples| -> Box<dyn Method + 'm> {
-                Box::new(TrianglesMethod::new(&scene.mesh, samples, look))
-            }));
+            for samples in TRIANGLE_SAMPLES {
+                let method = TrianglesMethod::new(&scene.mesh, samples, look);
+                methods.push(Box::new(method.map_err(|e| CliError::new(Kind::Run, e))?));
+            }
         }
         for (label, file) in &scene.files {
             // Blends are seen where there are six opacities.
@@ -133,8 +140,21 @@ impl MeshMethodArgs {
                 }));
             }
         }
-        methods
+        Ok(methods)
     }
+}
+
+/// Far voxels of a mesh, as a file in memory, and how many milliseconds building them took.
+pub(super) fn far_of(
+    mesh: &Mesh,
+    options: &BuildOptions,
+    console: &Console,
+) -> Result<(FarFile, f64), CliError> {
+    let started = Instant::now();
+    let data = build(mesh, options, console.progress())?;
+    let ms = milliseconds_since(started);
+    let bytes = encode(&data).map_err(|e| CliError::new(Kind::Run, e))?;
+    Ok((FarFile::from_bytes(&bytes)?, ms))
 }
 
 /// A scene that is a mesh, and its far voxels.

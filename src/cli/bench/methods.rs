@@ -10,6 +10,7 @@ use super::args::ExportArgs;
 use super::context::Context;
 use super::error::check_reference_size;
 use super::export::{self, Results};
+use super::meshes::{TRIANGLE_SAMPLES, far_of};
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
@@ -17,16 +18,16 @@ use crate::cli::drawing::milliseconds_since;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::{engines, render, report, scenes, triangles};
 use crate::far::view::Opacity;
-use crate::far::{self, FarFile};
+use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
 use crate::lab::error::{Look, Method, Refused, VoxelMethod};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarMethod, MeshMethods, Plan, TexturedMethod,
+    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, Plan, TexturedMethod,
     TrianglesMethod,
 };
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Surface};
 use crate::project::{Coverage, SetupOptions};
 use crate::report::html::Page;
 use crate::report::plot::Panel;
@@ -158,11 +159,7 @@ impl Made {
             made.voxels = Some((scene.graph, scene.load_ms - read_ms));
         }
         if args.takes(Family::Far) {
-            let started = Instant::now();
-            let data = far::build(mesh, &far::BuildOptions::default(), console.progress())?;
-            let ms = milliseconds_since(started);
-            let bytes = far::store::encode(&data).map_err(|e| CliError::new(Kind::Run, e))?;
-            made.far = Some((FarFile::from_bytes(&bytes)?, ms));
+            made.far = Some(far_of(mesh, &BuildOptions::default(), console)?);
         }
         if args.takes(Family::Textured) {
             let by_distance = textured::BuildOptions {
@@ -217,7 +214,7 @@ fn methods<'m>(
 ) -> Result<Vec<Candidate<'m>>, Refused> {
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
-        for samples in [1, 4, 16] {
+        for samples in TRIANGLE_SAMPLES {
             let method = TrianglesMethod::new(mesh, samples, look)?;
             let label = format!("triangles, {samples}");
             all.push(candidate(label, mesh.bytes(), 0.0, method));
@@ -247,7 +244,11 @@ fn methods<'m>(
             ("far six", Opacity::Six),
         ];
         for (label, opacity) in opacities {
-            let method = FarMethod::new(file, opacity, look);
+            let settings = FarSettings {
+                opacity,
+                ..FarSettings::default()
+            };
+            let method = FarMethod::new(file, settings, look);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
@@ -279,11 +280,12 @@ fn measure(
     let made = Made::of(args, name, &mesh, console)?;
     let all = methods(args, &mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
     let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let surface: &dyn Surface = &mesh;
     let progress = console.progress();
     let short = Path::new(name).file_stem().map(|s| s.to_string_lossy());
     let short = short.as_deref().unwrap_or(name);
     Ok(experiment::measure(
-        (short, &mesh),
+        (short, surface),
         &camera,
         &mut methods,
         facts,

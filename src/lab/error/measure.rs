@@ -6,10 +6,9 @@ use std::sync::Arc;
 use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
-use super::mesh_view::draw_reference;
 use super::method::{Method, Refused, Shown, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
-use super::reference::{Reference, Sampling, cast};
+use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::Look;
 use crate::frame::Frame;
 use crate::graph::Progress;
@@ -124,15 +123,17 @@ pub struct SceneErrors {
     pub pictures: Vec<Vec<[u8; 4]>>,
 }
 
-fn as_map<S: Serializer, V: Serialize>(
+/// Names and values as an object.
+pub(in crate::lab) fn as_map<S: Serializer, V: Serialize>(
     entries: &[(&'static str, V)],
     to: S,
 ) -> Result<S::Ok, S::Error> {
     to.collect_map(entries.iter().map(|(name, value)| (name, value)))
 }
 
-fn outcome_or_reason<S: Serializer>(
-    outcome: &Result<Outcome, Refused>,
+/// What came of a method, or why nothing did.
+pub(in crate::lab) fn outcome_or_reason<S: Serializer, O: Serialize>(
+    outcome: &Result<O, Refused>,
     to: S,
 ) -> Result<S::Ok, S::Error> {
     match outcome {
@@ -164,7 +165,7 @@ impl<'m> References<'m> {
     #[must_use]
     pub fn samples(&self, sampling: Sampling) -> u32 {
         match self.mesh {
-            Some(_) => 256,
+            Some(_) => TRIANGLE_SAMPLES,
             None => 1 << (2 * sampling.strata_log2),
         }
     }
@@ -188,8 +189,7 @@ impl<'m> References<'m> {
             return Ok(Arc::clone(known));
         }
         let reference = match self.mesh {
-            Some(mesh) => draw_reference(mesh, camera, look, sampling.seed, progress)
-                .map_err(BenchError::Picture)?,
+            Some(mesh) => of_triangles(mesh, camera, look, sampling.seed, progress)?,
             None => cast(
                 &subject.graph,
                 &truth(subject, camera, 0)?,

@@ -5,30 +5,25 @@
 //! [`beaten_by`] and the plots say which of them are worth having.
 
 mod cut;
-mod far;
 mod measure;
-mod mesh_view;
 mod method;
 mod pareto;
 mod picture_error;
 mod reference;
 mod tables;
-mod triangles;
 mod vertices;
 mod voxels;
 
 pub use cut::cut_at;
-pub use far::{FarMethod, FarSettings, opacity_in_words, picture_of as picture_of_far};
-pub(in crate::lab) use measure::race;
 pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
-pub use mesh_view::{mesh_light, mesh_view};
+pub(in crate::lab) use measure::{as_map, outcome_or_reason, race};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
 #[cfg(feature = "cli")]
 pub use pareto::panels;
 pub use pareto::{beaten_by, dominated};
 pub use picture_error::{Judge, PictureError};
+pub(in crate::lab) use reference::of_triangles;
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
 pub use tables::{rows, table, vertex_table};
-pub use triangles::TrianglesMethod;
 pub use vertices::vertex_levels;
 pub use voxels::{Look, VoxelMethod, tolerance_in_words};

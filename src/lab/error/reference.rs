@@ -1,10 +1,16 @@
-//! The picture that others are measured against: many exact rays a pixel.
+//! The picture that others are measured against: many exact rays a pixel, or
+//! many samples of a mesh's triangles.
 
 use rayon::prelude::*;
 
+use super::voxels::Look;
 use crate::graph::{Graph, Progress};
+use crate::lab::bench::BenchError;
+use crate::lab::mesh_view::{light_of, view_of};
+use crate::mesh::Surface;
+use crate::mesh::raster::{self, Pattern, RasterOptions, Samples};
 use crate::picture::{Background, Shader, Shading};
-use crate::project::FrameSetup;
+use crate::project::{Camera, FrameSetup};
 use crate::rays::{Caster, MAX_CASTER_LEVELS};
 
 /// How a reference is sampled.
@@ -86,6 +92,38 @@ pub fn cast(
     }
 }
 
+/// Samples a pixel of the reference of a mesh.
+pub(super) const TRIANGLE_SAMPLES: u32 = 256;
+
+/// A reference of a mesh: its triangles at 256 samples a pixel, one drawn by
+/// lot in each of equal squares: another seed, another picture.
+///
+/// # Errors
+/// When the camera cannot see, or the picture is too large.
+pub(in crate::lab) fn of_triangles(
+    surface: &dyn Surface,
+    camera: &Camera,
+    look: Look,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<Reference, BenchError> {
+    let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
+    let view = view_of(camera, surface.bounds()).map_err(|e| failed(&e))?;
+    let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
+    let options = RasterOptions {
+        samples: samples.map_err(|e| failed(&e))?,
+        light: light_of(&view, look.shading),
+        background: Some(look.background),
+    };
+    let drawn = raster::draw(surface, &view, &options, progress).map_err(|e| failed(&e))?;
+    Ok(Reference {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        shares: drawn.coverage,
+    })
+}
+
 struct Pixels<'g> {
     caster: Caster<'g>,
     shader: Shader<'g>,
@@ -150,7 +188,7 @@ mod tests {
     use crate::frame::Frame;
     use crate::graph::{Placement, Silent, Store};
     use crate::picture::resolve;
-    use crate::project::{Camera, Engine, SetupOptions};
+    use crate::project::{Engine, SetupOptions};
     use crate::rays::Rays;
 
     /// One voxel, `[0, 1]^3`.

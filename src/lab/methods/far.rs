@@ -1,55 +1,81 @@
 //! Far voxels as a method.
 
-use super::{key_light, view_of};
 use crate::far::FarFile;
 use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewOptions};
 use crate::lab::error::{Look, Method, Refused, Shown};
+use crate::lab::mesh_view::{light_of, picture_of_far, view_of};
 use crate::mesh::raster::View;
-use crate::picture::{Picture, Shading};
+use crate::picture::Picture;
 use crate::project::Camera;
 
-/// A `.far` file, drawn with opacities or without.
+/// What a far voxel method is. By default: the usual file, six opacities, voxels of at most a pixel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarSettings {
+    /// What is unlike other files of the scene, such as `plain cosines`; empty for the usual one.
+    pub file: String,
+    /// What opacities are used for.
+    pub opacity: Opacity,
+    /// Largest projected side of a voxel, pixels.
+    pub voxel_px: f64,
+}
+
+impl Default for FarSettings {
+    fn default() -> Self {
+        let ViewOptions {
+            opacity, voxel_px, ..
+        } = ViewOptions::default();
+        Self {
+            file: String::new(),
+            opacity,
+            voxel_px,
+        }
+    }
+}
+
+/// A file drawn with some settings.
 pub struct FarMethod<'f> {
     file: &'f FarFile,
-    opacity: Opacity,
+    viewer: FarViewer<'f>,
+    settings: FarSettings,
     look: Look,
-    ready: Option<(View, FarViewer<'f>)>,
+    view: Option<View>,
 }
 
 impl<'f> FarMethod<'f> {
-    /// Voxels of at most a pixel.
+    /// Of a file.
     #[must_use]
-    pub fn new(file: &'f FarFile, opacity: Opacity, look: Look) -> Self {
+    pub fn new(file: &'f FarFile, settings: FarSettings, look: Look) -> Self {
         Self {
             file,
-            opacity,
+            viewer: FarViewer::new(file),
+            settings,
             look,
-            ready: None,
+            view: None,
         }
     }
 
-    fn drawn(&mut self) -> Result<(FarPicture, Counts), Refused> {
-        let Some((view, viewer)) = &mut self.ready else {
-            return Err(Refused::because("no camera yet"));
-        };
+    fn drawn(&mut self, cut_of: Option<&View>) -> Result<(FarPicture, Counts), Refused> {
+        let view = self.view.ok_or(Refused::because("no camera yet"))?;
         let options = ViewOptions {
-            opacity: self.opacity,
-            light: match self.look.shading {
-                Shading::Lambert => Some(key_light(view)),
-                Shading::Flat => None,
-            },
+            voxel_px: self.settings.voxel_px,
+            opacity: self.settings.opacity,
+            light: light_of(&view, self.look.shading),
             background: Some(self.look.background),
             ..ViewOptions::default()
         };
-        viewer.draw(view, &options).map_err(Refused::because)
+        let cut_of = cut_of.unwrap_or(&view);
+        let drawn = self.viewer.draw_with_cut_of(&view, cut_of, &options);
+        drawn.map_err(Refused::because)
     }
+}
 
-    fn opacity_name(&self) -> &'static str {
-        match self.opacity {
-            Opacity::None => "none",
-            Opacity::Scalar => "scalar",
-            Opacity::Six => "six",
-        }
+/// Opacities in words.
+#[must_use]
+pub fn opacity_in_words(opacity: Opacity) -> &'static str {
+    match opacity {
+        Opacity::None => "none",
+        Opacity::Scalar => "scalar",
+        Opacity::Six => "six",
     }
 }
 
@@ -59,34 +85,49 @@ impl Method for FarMethod<'_> {
     }
 
     fn name(&self) -> String {
-        format!("far {}", self.opacity_name())
+        let mut name = format!("far {}", opacity_in_words(self.settings.opacity));
+        if self.settings.voxel_px != 1.0 {
+            name += &format!(" lod {}", self.settings.voxel_px);
+        }
+        if !self.settings.file.is_empty() {
+            name += &format!(", {}", self.settings.file);
+        }
+        name
     }
 
     fn settings(&self) -> Vec<(&'static str, String)> {
-        vec![("opacity", self.opacity_name().to_owned())]
+        vec![
+            (
+                "opacity",
+                opacity_in_words(self.settings.opacity).to_owned(),
+            ),
+            ("lod", self.settings.voxel_px.to_string()),
+            ("file", self.settings.file.clone()),
+        ]
     }
 
     fn kind(&self) -> String {
-        "far voxels".to_owned()
+        format!("far {}", opacity_in_words(self.settings.opacity))
     }
 
     fn begin(&mut self, camera: &Camera) -> Result<(), Refused> {
         let view = view_of(camera, self.file.bounds()).map_err(Refused::because)?;
-        self.ready = Some((view, FarViewer::new(self.file)));
+        self.view = Some(view);
         Ok(())
     }
 
     fn draw(&mut self) -> Result<(), Refused> {
-        std::hint::black_box(self.drawn()?);
+        std::hint::black_box(self.drawn(None)?);
         Ok(())
     }
 
     fn show(&mut self) -> Result<Shown, Refused> {
-        let (drawn, counts) = self.drawn()?;
+        let (drawn, counts) = self.drawn(None)?;
+        let shares = drawn.coverage.clone();
         let voxels = counts.opaque_voxels + counts.transparent_voxels;
         Ok(Shown {
-            shares: drawn.coverage.clone(),
-            picture: as_picture(drawn),
+            picture: picture_of_far(drawn),
+            shares,
             samples: None,
             vertices: Vec::new(),
             counters: vec![
@@ -95,34 +136,23 @@ impl Method for FarMethod<'_> {
                 ("transparent_voxels", counts.transparent_voxels),
                 ("triangles", counts.triangles),
                 ("nodes_visited", counts.visited),
+                ("nodes_hidden", counts.hidden),
             ],
             remark: (voxels == 0).then(|| "triangles alone".to_owned()),
         })
     }
 
     fn picture(&mut self) -> Result<Picture, Refused> {
-        self.drawn().map(|(drawn, _)| as_picture(drawn))
+        Ok(picture_of_far(self.drawn(None)?.0))
     }
 
-    fn picture_with_cut_of(&mut self, _other: &Camera) -> Result<Option<Picture>, Refused> {
-        Ok(None)
+    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
+        let other = view_of(other, self.file.bounds()).map_err(Refused::because)?;
+        Ok(Some(picture_of_far(self.drawn(Some(&other))?.0)))
     }
 
     fn end(&mut self) {
-        self.ready = None;
-    }
-}
-
-fn as_picture(drawn: FarPicture) -> Picture {
-    let pixels = drawn.rgba.len();
-    Picture {
-        width: drawn.width,
-        height: drawn.height,
-        rgba: drawn.rgba,
-        depth: drawn.depth,
-        normal: vec![[0.0; 3]; pixels],
-        voxel: vec![[0, 0, 0, -1]; pixels],
-        node: drawn.node,
-        records: None,
+        self.view = None;
+        self.viewer = FarViewer::new(self.file);
     }
 }

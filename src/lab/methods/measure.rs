@@ -1,17 +1,17 @@
 //! Methods on a mesh, distance by distance: time, error, flicker.
 
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
-use super::camera::{at_distance, view_of};
-use super::triangles::options;
-use crate::graph::Progress;
-use crate::graph::Silent;
+use super::distance::at_distance;
+use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Schedule, Summary};
-use crate::lab::error::{Judge, Look, Method, PictureError, Reference, Refused, Shown, race};
+use crate::lab::error::{
+    Judge, Look, Method, PictureError, Reference, Refused, Shown, as_map, of_triangles,
+    outcome_or_reason, race,
+};
 use crate::lab::flicker::{Motion, restless};
 use crate::measure::LinearPicture;
 use crate::mesh::Surface;
-use crate::mesh::raster::{self, Pattern, Samples};
 use crate::project::{Camera, Stats};
 
 /// What is measured, and how.
@@ -28,9 +28,6 @@ pub struct Plan {
     /// How samples become colours.
     pub look: Look,
 }
-
-/// Samples of the reference.
-const REFERENCE_SAMPLES: u32 = 256;
 
 /// What is known of a method beside its pictures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -75,20 +72,6 @@ pub struct Outcome {
     pub remark: Option<String>,
 }
 
-fn as_map<S: Serializer>(entries: &Stats, to: S) -> Result<S::Ok, S::Error> {
-    to.collect_map(entries.iter().map(|(name, value)| (name, value)))
-}
-
-fn outcome_or_reason<S: Serializer>(
-    outcome: &Result<Outcome, Refused>,
-    to: S,
-) -> Result<S::Ok, S::Error> {
-    match outcome {
-        Ok(outcome) => outcome.serialize(to),
-        Err(Refused(reason)) => to.collect_map([("refused", reason)]),
-    }
-}
-
 /// All methods at a distance.
 #[derive(Debug, Clone, Serialize)]
 pub struct Distance {
@@ -126,8 +109,8 @@ pub struct MeshMethods {
 /// # Errors
 /// When the camera cannot see, or there is no thread. A method without a
 /// picture is no error but a row that says why.
-pub fn measure<S: Surface + ?Sized>(
-    (name, mesh): (&str, &S),
+pub fn measure(
+    (name, mesh): (&str, &dyn Surface),
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
     facts: Vec<Facts>,
@@ -147,8 +130,8 @@ pub fn measure<S: Surface + ?Sized>(
     })
 }
 
-fn at<S: Surface + ?Sized>(
-    mesh: &S,
+fn at(
+    mesh: &dyn Surface,
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
     plan: &Plan,
@@ -162,11 +145,11 @@ fn at<S: Surface + ?Sized>(
     progress.begin("drawing references", cameras.len() as u64);
     let mut films = Vec::new();
     for camera in &cameras {
-        films.push(reference(mesh, camera, plan.look, 1)?);
+        films.push(of_triangles(mesh, camera, plan.look, 1, &Silent)?);
         progress.advance(1);
     }
     progress.end();
-    let second = reference(mesh, camera, plan.look, 2)?;
+    let second = of_triangles(mesh, camera, plan.look, 2, &Silent)?;
     let judge = Judge::new(&films[0]);
     let noise_floor = judge.judge(&second.rgba, &second.shares);
     let noise_floor = noise_floor.map_err(|e| failed(&e))?;
@@ -244,26 +227,5 @@ fn seen(
         picture,
         flicker: film.as_ref().map(|film| film.flicker),
         pop: film.and_then(|film| film.pop),
-    })
-}
-
-/// The mesh's triangles with 256 samples a pixel, stratified.
-fn reference<S: Surface + ?Sized>(
-    mesh: &S,
-    camera: &Camera,
-    look: Look,
-    seed: u64,
-) -> Result<Reference, BenchError> {
-    let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
-    let view = view_of(camera, mesh.bounds()).map_err(|e| failed(&e))?;
-    let samples = Samples::new(REFERENCE_SAMPLES, Pattern::Stratified { seed });
-    let samples = samples.map_err(|e| failed(&e))?;
-    let drawn = raster::draw(mesh, &view, &options(&view, samples, look), &Silent);
-    let drawn = drawn.map_err(|e| failed(&e))?;
-    Ok(Reference {
-        width: drawn.width,
-        height: drawn.height,
-        rgba: drawn.rgba,
-        shares: drawn.coverage,
     })
 }

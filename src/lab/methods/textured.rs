@@ -1,8 +1,8 @@
 //! Textured voxels as a method.
 
 use super::triangles::{options, shown};
-use super::{as_picture, view_of};
 use crate::lab::error::{Look, Method, Refused, Shown};
+use crate::lab::mesh_view::{picture_of_triangles, view_of};
 use crate::mesh::raster::{Pattern, RasterPicture, Samples, View};
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -118,7 +118,8 @@ impl Method for TexturedMethod<'_> {
     }
 
     fn picture(&mut self) -> Result<Picture, Refused> {
-        self.drawn(self.detail).map(|(drawn, _)| as_picture(drawn))
+        self.drawn(self.detail)
+            .map(|(drawn, _)| picture_of_triangles(drawn))
     }
 
     fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
@@ -132,7 +133,7 @@ impl Method for TexturedMethod<'_> {
             level: choice.level,
         };
         let (drawn, _) = self.drawn(detail)?;
-        Ok(Some(as_picture(drawn)))
+        Ok(Some(picture_of_triangles(drawn)))
     }
 
     fn end(&mut self) {

@@ -1,57 +1,50 @@
-//! Triangles with a depth buffer: the honest rival.
+//! The triangle rasteriser as a method: what other ways to draw a mesh have to beat.
 
-use super::{as_picture, key_light, view_of};
 use crate::graph::Silent;
 use crate::lab::error::{Look, Method, Refused, Shown};
+use crate::lab::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::mesh::Surface;
 use crate::mesh::raster::{self, Pattern, RasterOptions, RasterPicture, Samples, View};
-use crate::picture::{Picture, Shading};
-use crate::project::Camera;
+use crate::picture::Picture;
+use crate::project::{Camera, Stats};
 
-/// A mesh drawn as triangles.
-pub struct TrianglesMethod<'m, S: ?Sized> {
-    mesh: &'m S,
+/// Triangles at some samples a pixel, in the middles of equal squares.
+pub struct TrianglesMethod<'m> {
+    surface: &'m dyn Surface,
     samples: Samples,
     look: Look,
-    ready: Option<(View, RasterOptions)>,
+    view: Option<View>,
 }
 
-impl<'m, S: Surface + ?Sized> TrianglesMethod<'m, S> {
-    /// With 1, 4, 16 or 256 samples a pixel, in the middles of equal squares.
+impl<'m> TrianglesMethod<'m> {
+    /// With 1, 4, 16 or 256 samples a pixel.
     ///
     /// # Errors
     /// With another number.
-    pub fn new(mesh: &'m S, per_pixel: u32, look: Look) -> Result<Self, Refused> {
+    pub fn new(surface: &'m dyn Surface, per_pixel: u32, look: Look) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
-            mesh,
+            surface,
             samples,
             look,
-            ready: None,
+            view: None,
         })
     }
 
     fn drawn(&self) -> Result<RasterPicture, Refused> {
-        let Some((view, options)) = &self.ready else {
-            return Err(Refused::because("no camera yet"));
-        };
-        raster::draw(self.mesh, view, options, &Silent).map_err(Refused::because)
+        let view = self.view.ok_or(Refused::because("no camera yet"))?;
+        let options = options(&view, self.samples, self.look);
+        raster::draw(self.surface, &view, &options, &Silent).map_err(Refused::because)
     }
 }
 
-impl<S: Surface + ?Sized> Method for TrianglesMethod<'_, S>
-where
-    for<'m> &'m S: Send,
-{
+impl Method for TrianglesMethod<'_> {
     fn family(&self) -> &'static str {
         "triangles"
     }
 
     fn name(&self) -> String {
-        match self.samples.per_pixel() {
-            1 => "triangles".to_owned(),
-            more => format!("triangles {more}"),
-        }
+        format!("triangles {}", self.samples.per_pixel())
     }
 
     fn settings(&self) -> Vec<(&'static str, String)> {
@@ -63,8 +56,8 @@ where
     }
 
     fn begin(&mut self, camera: &Camera) -> Result<(), Refused> {
-        let view = view_of(camera, self.mesh.bounds()).map_err(Refused::because)?;
-        self.ready = Some((view, options(&view, self.samples, self.look)));
+        let view = view_of(camera, self.surface.bounds()).map_err(Refused::because)?;
+        self.view = Some(view);
         Ok(())
     }
 
@@ -75,26 +68,24 @@ where
 
     fn show(&mut self) -> Result<Shown, Refused> {
         let drawn = self.drawn()?;
-        let pixels = drawn.rgba.len() * self.samples.per_pixel();
-        Ok(shown(
-            drawn,
-            vec![
-                ("triangles", self.mesh.len() as u64),
-                ("samples", pixels as u64),
-            ],
-        ))
+        let samples = drawn.rgba.len() * self.samples.per_pixel();
+        let counters = vec![
+            ("triangles", self.surface.len() as u64),
+            ("samples", samples as u64),
+        ];
+        Ok(shown(drawn, counters))
     }
 
     fn picture(&mut self) -> Result<Picture, Refused> {
-        self.drawn().map(as_picture)
+        Ok(picture_of_triangles(self.drawn()?))
     }
 
-    fn picture_with_cut_of(&mut self, _other: &Camera) -> Result<Option<Picture>, Refused> {
+    fn picture_with_cut_of(&mut self, _: &Camera) -> Result<Option<Picture>, Refused> {
         Ok(None)
     }
 
     fn end(&mut self) {
-        self.ready = None;
+        self.view = None;
     }
 }
 
@@ -102,19 +93,16 @@ where
 pub(super) fn options(view: &View, samples: Samples, look: Look) -> RasterOptions {
     RasterOptions {
         samples,
-        light: match look.shading {
-            Shading::Lambert => Some(key_light(view)),
-            Shading::Flat => None,
-        },
+        light: light_of(view, look.shading),
         background: Some(look.background),
     }
 }
 
 /// A rasterised picture and what was counted.
-pub(super) fn shown(drawn: RasterPicture, counters: crate::project::Stats) -> Shown {
+pub(super) fn shown(drawn: RasterPicture, counters: Stats) -> Shown {
     Shown {
         shares: drawn.coverage.clone(),
-        picture: as_picture(drawn),
+        picture: picture_of_triangles(drawn),
         samples: None,
         vertices: Vec::new(),
         counters,

@@ -1,45 +1,6 @@
-//! Cameras of pictures of meshes.
+//! Cameras farther and farther off.
 
-use glam::DVec3;
-
-use crate::mesh::raster::{Light, View};
-use crate::picture::{AMBIENT, KEY_LIGHT};
-use crate::project::{Camera, CameraError};
-
-/// Share of the distance to the farthest corner below which nothing is drawn.
-const NEAR: f64 = 1e-6;
-
-/// The camera as the rasteriser wants it, for something within a box.
-///
-/// # Errors
-/// When the camera cannot see.
-pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, CameraError> {
-    let axes = camera.axes()?;
-    let farthest = (camera.eye - low)
-        .abs()
-        .max((high - camera.eye).abs())
-        .length();
-    Ok(View {
-        eye: camera.eye,
-        right: axes.right,
-        up: axes.up,
-        forward: axes.forward,
-        focal_px: axes.focal_px,
-        width: camera.width,
-        height: camera.height,
-        near: farthest * NEAR,
-    })
-}
-
-/// The key light, which moves with the camera.
-#[must_use]
-pub fn key_light(view: &View) -> Light {
-    let key = KEY_LIGHT.normalize();
-    Light {
-        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
-        ambient: AMBIENT,
-    }
-}
+use crate::project::Camera;
 
 /// The camera `2^halvings` times as far from its target, whose picture is as
 /// many times smaller: what is around the target, at the same pixels per unit of slope.
@@ -61,6 +22,8 @@ pub fn at_distance(camera: &Camera, halvings: u32) -> Camera {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     #[test]

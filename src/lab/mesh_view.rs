@@ -1,0 +1,87 @@
+//! Cameras, light and pictures of renderers of meshes: triangles, far voxels,
+//! textured voxels. They take and give what the image-order engines do not.
+
+use glam::DVec3;
+
+use crate::far::view::FarPicture;
+use crate::mesh::raster::{Light, NO_TRIANGLE, RasterPicture, View};
+use crate::picture::{AMBIENT, KEY_LIGHT, Picture, Shading};
+use crate::project::{Camera, CameraError};
+
+/// Share of the distance to the farthest corner below which nothing is drawn.
+const NEAR: f64 = 1e-6;
+
+/// A camera's view of what is in a box.
+///
+/// # Errors
+/// When the camera has no direction or a number that is not finite.
+pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, CameraError> {
+    let axes = camera.axes()?;
+    let farthest = (camera.eye - low)
+        .abs()
+        .max((high - camera.eye).abs())
+        .length();
+    Ok(View {
+        eye: camera.eye,
+        right: axes.right,
+        up: axes.up,
+        forward: axes.forward,
+        focal_px: axes.focal_px,
+        width: camera.width,
+        height: camera.height,
+        near: farthest * NEAR,
+    })
+}
+
+/// The key light of all engines, which moves with the camera; none for flat shading.
+#[must_use]
+pub fn light_of(view: &View, shading: Shading) -> Option<Light> {
+    let key = KEY_LIGHT.normalize();
+    let light = Light {
+        towards: view.right * key.x + view.up * key.y - view.forward * key.z,
+        ambient: AMBIENT,
+    };
+    match shading {
+        Shading::Lambert => Some(light),
+        Shading::Flat => None,
+    }
+}
+
+/// A rasterised picture as those of other engines, without normals and voxels;
+/// its node is 0 where a triangle is seen, else -1.
+#[must_use]
+pub fn picture_of_triangles(drawn: RasterPicture) -> Picture {
+    let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
+    picture(
+        (drawn.width, drawn.height),
+        drawn.rgba,
+        drawn.depth,
+        drawn.triangle.iter().map(node).collect(),
+    )
+}
+
+/// A picture of far voxels as those of other engines, without normals and voxels.
+#[must_use]
+pub fn picture_of_far(drawn: FarPicture) -> Picture {
+    let size = (drawn.width, drawn.height);
+    picture(size, drawn.rgba, drawn.depth, drawn.node)
+}
+
+fn picture(
+    (width, height): (u32, u32),
+    rgba: Vec<[u8; 4]>,
+    depth: Vec<f32>,
+    node: Vec<i32>,
+) -> Picture {
+    let pixels = rgba.len();
+    Picture {
+        width,
+        height,
+        rgba,
+        depth,
+        normal: vec![[0.0; 3]; pixels],
+        voxel: vec![[0, 0, 0, -1]; pixels],
+        node,
+        records: None,
+    }
+}
