@@ -12,25 +12,19 @@ use super::convert::ConvertArgs;
 use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
-use super::mesh_view::{self, MeshDrawn, background, view};
+use super::mesh_view::{self, FileEngine, MeshDrawn, background, repeated, view};
 use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::{is_far, write_to};
 use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
-use crate::far::{BuildError, BuildOptions, FarError, FarFile, build};
+use crate::far::{BuildError, BuildOptions, FarFile, build};
 use crate::lab::mesh_view::{light_of, picture_of_far};
 use crate::mesh::Instances;
 use crate::mesh::raster::View;
 use crate::picture::store;
 use crate::project::Camera;
-
-impl From<FarError> for CliError {
-    fn from(error: FarError) -> Self {
-        Self::new(Kind::Input, error)
-    }
-}
 
 impl From<BuildError> for CliError {
     fn from(error: BuildError) -> Self {
@@ -380,15 +374,7 @@ pub(super) fn render_one(
     let view = view(&camera, file.bounds())?;
     let options = options(args, &view);
     let mut viewer = FarViewer::new(&file);
-    let mut times_ms = Vec::new();
-    let started = Instant::now();
-    let (mut drawn, mut counts) = viewer.draw(&view, &options)?;
-    times_ms.push(milliseconds_since(started));
-    for _ in 1..args.repeat {
-        let started = Instant::now();
-        (drawn, counts) = viewer.draw(&view, &options)?;
-        times_ms.push(milliseconds_since(started));
-    }
+    let ((drawn, counts), times_ms) = repeated(args.repeat, || Ok(viewer.draw(&view, &options)?))?;
     let picture = picture_of_far(drawn);
     let drawn = MeshDrawn {
         name,
@@ -404,30 +390,21 @@ pub(super) fn render_one(
     Ok((camera, result))
 }
 
+const ENGINE: FileEngine = FileEngine {
+    engine: EngineName::Far,
+    name: "far",
+    ending: ".far",
+    buffers: &[Aov::Depth, Aov::Node, Aov::Color],
+};
+
 /// Refuses what the engine does not do, and files that it does not draw.
 fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
-    if !is_far_file(name) {
-        // A file that is not there is told as such.
-        FarFile::open(Path::new(name)).map_err(|error| {
-            let advice = "--engine far draws .far files: shiftvox convert MESH OUT.far";
-            CliError::from(error).advise(advice)
-        })?;
-    }
-    if args.engine.engine != EngineName::Far {
-        return Err(CliError::usage(format!("{name}: this is a .far file"))
-            .advise("draw it with --engine far"));
-    }
+    let open = |path: &Path| FarFile::open(path).map(|_| ());
+    ENGINE.check(args, name, is_far_file(name), open)?;
     if args.picture.aa_log2() > 0 {
         return Err(CliError::usage(
             "--engine far has no --aa above 1: its voxels have opacities",
         ));
-    }
-    let unknown = |aov: &&Aov| !matches!(aov, Aov::Depth | Aov::Node | Aov::Color);
-    if let Some(aov) = args.picture.aov.iter().find(unknown) {
-        return Err(
-            CliError::usage(format!("--engine far has no --aov {}", aov.name()))
-                .advise("it has depth, node and color"),
-        );
     }
     Ok(())
 }

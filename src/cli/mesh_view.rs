@@ -4,23 +4,31 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::time::Instant;
 
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::args::{SceneArgs, camera_line};
+use super::args::{Aov, EngineName, SceneArgs, camera_line};
 use super::console::Console;
-use super::drawing::min_median_max;
+use super::drawing::{milliseconds_since, min_median_max};
 use super::error::{CliError, Kind};
 use super::fit::Up;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
 use super::{outputs, scenes};
+use crate::graph::file::FileError;
 use crate::lab::mesh_view::view_of;
 use crate::mesh::Mesh;
 use crate::mesh::raster::View;
 use crate::picture::{self, Background, Picture};
 use crate::project::Camera;
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        Self::new(Kind::Input, error)
+    }
+}
 
 /// The camera as the rasteriser wants it, for something within a box.
 pub(super) fn view(camera: &Camera, bounds: (DVec3, DVec3)) -> Result<View, CliError> {
@@ -53,6 +61,66 @@ pub(super) fn begins(name: &str, is_right: impl Fn(&[u8]) -> bool) -> bool {
     let mut beginning = [0; 8];
     let read = File::open(name).and_then(|mut file| file.read_exact(&mut beginning));
     read.is_ok() && is_right(&beginning)
+}
+
+/// An engine that draws one kind of file and nothing else draws.
+pub(super) struct FileEngine {
+    pub(super) engine: EngineName,
+    /// As flags name it.
+    pub(super) name: &'static str,
+    /// The ending of its files, with the dot.
+    pub(super) ending: &'static str,
+    /// Buffers that it has beside the picture, two or more.
+    pub(super) buffers: &'static [Aov],
+}
+
+impl FileEngine {
+    /// Refuses files of another kind, of which `open` says why, and what the engine does not do.
+    pub(super) fn check(
+        &self,
+        args: &RenderArgs,
+        scene: &str,
+        is_right: bool,
+        open: impl FnOnce(&Path) -> Result<(), FileError>,
+    ) -> Result<(), CliError> {
+        let Self { name, ending, .. } = self;
+        if !is_right {
+            // A file that is not there is told as such.
+            open(Path::new(scene)).map_err(|error| {
+                CliError::from(error).advise(format!(
+                    "--engine {name} draws {ending} files: shiftvox convert MESH OUT{ending}"
+                ))
+            })?;
+        }
+        if args.engine.engine != self.engine {
+            let message = format!("{scene}: this is a {ending} file");
+            return Err(CliError::usage(message).advise(format!("draw it with --engine {name}")));
+        }
+        let unknown = |aov: &&Aov| !self.buffers.contains(aov);
+        let Some(unknown) = args.picture.aov.iter().find(unknown) else {
+            return Ok(());
+        };
+        let mut known: Vec<&str> = self.buffers.iter().map(|aov| aov.name()).collect();
+        let last = known.pop().unwrap_or_default();
+        let message = format!("--engine {name} has no --aov {}", unknown.name());
+        Err(CliError::usage(message).advise(format!("it has {} and {last}", known.join(", "))))
+    }
+}
+
+/// Draws a frame so many times; the last one, and how long each took, milliseconds.
+pub(super) fn repeated<T>(
+    times: u32,
+    mut draw: impl FnMut() -> Result<T, CliError>,
+) -> Result<(T, Vec<f64>), CliError> {
+    let mut times_ms = Vec::new();
+    loop {
+        let started = Instant::now();
+        let drawn = draw()?;
+        times_ms.push(milliseconds_since(started));
+        if times_ms.len() >= times as usize {
+            return Ok((drawn, times_ms));
+        }
+    }
 }
 
 /// A picture that was drawn without the voxel engines, and what it took.

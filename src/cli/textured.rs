@@ -11,7 +11,7 @@ use super::convert::ConvertArgs;
 use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
-use super::mesh_view::{self, MeshDrawn, background, view};
+use super::mesh_view::{self, FileEngine, MeshDrawn, background, repeated, view};
 use super::outputs;
 use super::render::RenderArgs;
 use super::report::{self, grouped};
@@ -23,13 +23,7 @@ use crate::textured::levels::LevelRow;
 use crate::textured::record::Primitive;
 use crate::textured::store::{Grid, is_textured, write_to};
 use crate::textured::view::{Counts, Detail, ViewError, ViewOptions, choose_grid, draw};
-use crate::textured::{BuildError, BuildOptions, Element, TexturedError, TexturedFile, build};
-
-impl From<TexturedError> for CliError {
-    fn from(error: TexturedError) -> Self {
-        Self::new(Kind::Input, error)
-    }
-}
+use crate::textured::{BuildError, BuildOptions, Element, TexturedFile, build};
 
 impl From<BuildError> for CliError {
     fn from(error: BuildError) -> Self {
@@ -238,7 +232,8 @@ pub(super) fn render_one(
     output: Option<&Path>,
     console: &Console,
 ) -> Result<(Camera, Value), CliError> {
-    check(args, name)?;
+    let open = |path: &Path| TexturedFile::open(path).map(|_| ());
+    ENGINE.check(args, name, is_textured_file(name), open)?;
     if let Some(path) = output {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
     }
@@ -250,15 +245,7 @@ pub(super) fn render_one(
     let camera = args.camera.camera(&bounds(&file), up, size, 0.0);
     let view = view(&camera, file.bounds())?;
     let options = options(args, &file, &view)?;
-    let mut times_ms = Vec::new();
-    let started = Instant::now();
-    let (mut drawn, mut counts) = draw(&file, &view, &options)?;
-    times_ms.push(milliseconds_since(started));
-    for _ in 1..args.repeat {
-        let started = Instant::now();
-        (drawn, counts) = draw(&file, &view, &options)?;
-        times_ms.push(milliseconds_since(started));
-    }
+    let ((drawn, counts), times_ms) = repeated(args.repeat, || Ok(draw(&file, &view, &options)?))?;
     let picture = picture_of_triangles(drawn);
     let drawn = MeshDrawn {
         name,
@@ -286,28 +273,12 @@ fn bounds(file: &TexturedFile) -> Bounds {
     }
 }
 
-/// Refuses what the engine does not do, and files that it does not draw.
-fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
-    if !is_textured_file(name) {
-        // A file that is not there is told as such.
-        TexturedFile::open(Path::new(name)).map_err(|error| {
-            let advice = "--engine textured draws .tvx files: shiftvox convert MESH OUT.tvx";
-            CliError::from(error).advise(advice)
-        })?;
-    }
-    if args.engine.engine != EngineName::Textured {
-        return Err(CliError::usage(format!("{name}: this is a .tvx file"))
-            .advise("draw it with --engine textured"));
-    }
-    let unknown = |aov: &&Aov| !matches!(aov, Aov::Depth | Aov::Color);
-    if let Some(aov) = args.picture.aov.iter().find(unknown) {
-        return Err(
-            CliError::usage(format!("--engine textured has no --aov {}", aov.name()))
-                .advise("it has depth and color"),
-        );
-    }
-    Ok(())
-}
+const ENGINE: FileEngine = FileEngine {
+    engine: EngineName::Textured,
+    name: "textured",
+    ending: ".tvx",
+    buffers: &[Aov::Depth, Aov::Color],
+};
 
 fn options(args: &RenderArgs, file: &TexturedFile, view: &View) -> Result<ViewOptions, CliError> {
     let number_of = |cells: u32| {

@@ -3,6 +3,7 @@
 mod average;
 pub mod build;
 pub mod external;
+pub(crate) mod file;
 pub mod linked;
 pub mod merge;
 mod morton;

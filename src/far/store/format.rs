@@ -4,21 +4,20 @@
 //! bytes with zeros between. All numbers are little-endian.
 
 use crate::far::record::{NODE_BYTES, TRIANGLE_BYTES};
+use crate::graph::file::{Format, HEADER_BYTES, section_after};
 
-/// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
-pub(super) const MAGIC: [u8; 8] = *b"\x89FAR\r\n\x1a\n";
-/// Version of the layout.
-pub(super) const VERSION: u32 = 2;
-/// Bytes of the header.
-pub(super) const HEADER_BYTES: usize = 128;
-/// Sections begin at multiples of this.
-const ALIGNMENT: u64 = 64;
+/// How files begin.
+pub(super) const FORMAT: Format = Format {
+    ending: ".far",
+    // As in PNG, they show a transfer that changes line ends or bit 7.
+    magic: *b"\x89FAR\r\n\x1a\n",
+    version: 2,
+    signature: "the signature of a .far file",
+    not_ours: "is this a .far file? Make one of a mesh with `convert`",
+};
 
-/// Where things are in the header.
+/// Where things are in the header, beside what every header has.
 pub(super) mod at {
-    pub(in super::super) const VERSION: usize = 8;
-    pub(in super::super) const HEADER_BYTES: usize = 12;
-    pub(in super::super) const FILE_BYTES: usize = 16;
     pub(in super::super) const NODES: usize = 24;
     pub(in super::super) const VOXEL_BYTES: usize = 32;
     pub(in super::super) const TRIANGLES: usize = 40;
@@ -32,7 +31,6 @@ pub(super) mod at {
     pub(in super::super) const SPARE: std::ops::Range<usize> = 91..96;
     pub(in super::super) const NODES_CHECKSUM: usize = 96;
     pub(in super::super) const MORE_SPARE: std::ops::Range<usize> = 104..120;
-    pub(in super::super) const CHECKSUM: usize = 120;
 }
 
 /// Where the sections lie.
@@ -46,11 +44,9 @@ pub(super) struct Layout {
 /// Begin and end of each section, in bytes, for so many nodes, bytes of voxels
 /// and triangles. There is only one layout. Saturates.
 pub(super) fn layout(nodes: u64, voxel_bytes: u64, triangles: u64) -> Layout {
-    let align = |at: u64| at.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
-    let after = |at: u64, bytes: u64| [align(at), align(at).saturating_add(bytes)];
-    let nodes = after(HEADER_BYTES as u64, nodes.saturating_mul(NODE_BYTES as u64));
-    let voxels = after(nodes[1], voxel_bytes);
-    let triangles = after(voxels[1], triangles.saturating_mul(TRIANGLE_BYTES as u64));
+    let nodes = section_after(HEADER_BYTES as u64, nodes, NODE_BYTES);
+    let voxels = section_after(nodes[1], voxel_bytes, 1);
+    let triangles = section_after(voxels[1], triangles, TRIANGLE_BYTES);
     Layout {
         nodes,
         voxels,

@@ -8,12 +8,11 @@
 
 mod budget;
 mod check;
-mod error;
 mod format;
 mod read;
 mod write;
 
+pub use crate::graph::file::FileError as FarError;
 pub use budget::Resident;
-pub use error::FarError;
 pub use read::{FarFile, is_far};
 pub use write::{encode, write_to};

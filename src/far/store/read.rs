@@ -1,50 +1,31 @@
 //! Reading a `.far` file: on demand, or all of it.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
-use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
-use super::error::{DAMAGED, FarError, NEWER, NOT_OURS};
-use super::format::{HEADER_BYTES, Layout, MAGIC, VERSION, at, layout};
+use super::format::{FORMAT, Layout, at, layout};
 use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
-use crate::graph::vxg::{map_file, release};
+use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use crate::graph::vxg::release;
 
 /// Whether a file that begins with these bytes is a `.far` file (of any version).
 #[must_use]
 pub fn is_far(beginning: &[u8]) -> bool {
-    beginning.starts_with(&MAGIC)
+    beginning.starts_with(&FORMAT.magic)
 }
 
 /// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
 const BROUGHT_IN: u64 = 64 << 10;
-
-/// The bytes of a file, mapped or held.
-#[derive(Debug)]
-enum Bytes {
-    Mapped(Arc<Mmap>),
-    /// In words of 64 bits, so that records are aligned; and how many bytes count.
-    Held(Vec<u64>, usize),
-}
-
-impl Bytes {
-    fn get(&self) -> &[u8] {
-        match self {
-            Self::Mapped(map) => map,
-            Self::Held(words, length) => &bytemuck::cast_slice(words)[..*length],
-        }
-    }
-}
 
 /// An open `.far` file.
 #[derive(Debug)]
@@ -74,29 +55,10 @@ impl FarFile {
     /// When it cannot be read, is something else, is truncated, or a field of header or
     /// hierarchy is not as it should be.
     pub fn open(path: &Path) -> Result<Self, FarError> {
-        let refused = |doing: &'static str| {
-            move |source: io::Error| FarError::Io {
-                file: path.to_owned(),
-                doing,
-                source,
-            }
-        };
-        let mut file = File::open(path).map_err(refused("open it"))?;
-        let metadata = file.metadata().map_err(refused("ask for its length"))?;
-        if !metadata.is_file() {
-            return Err(refused("map it")(io::Error::other(
-                "it is not a regular file",
-            )));
-        }
-        // The header is read, not mapped: only a file of the right length is mapped.
-        let mut beginning = Vec::with_capacity(HEADER_BYTES);
-        (&mut file)
-            .take(HEADER_BYTES as u64)
-            .read_to_end(&mut beginning)
-            .map_err(refused("read its header"))?;
-        Header::read(&beginning, metadata.len(), path)?;
-        let map = map_file(&file).map_err(refused("map it into memory"))?;
-        Self::of(Bytes::Mapped(map), path)
+        let refused = |refused| FarError::refused(path, refused);
+        let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+        Header::read(&opened.beginning, opened.bytes, path)?;
+        Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
     /// Opens a file of which at most so many bytes of nodes' data are in memory
@@ -142,35 +104,24 @@ impl FarFile {
     /// # Errors
     /// As [`FarFile::open`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FarError> {
-        let mut words = vec![0u64; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Self::of(Bytes::Held(words, bytes.len()), Path::new("(memory)"))
+        Self::of(Bytes::held(bytes), Path::new("(memory)"))
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, FarError> {
-        if cfg!(target_endian = "big") {
-            return Err(FarError::ByteOrder(path.to_owned()));
-        }
+        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = Header::read(all, all.len() as u64, path)?;
         let places = header.places;
-        let mut end = HEADER_BYTES as u64;
-        for section in [places.nodes, places.voxels, places.triangles] {
-            let padding = &all[range([end, section[0]])];
-            if padding.iter().any(|&byte| byte != 0) {
-                return Err(malformed(path, "padding", end, "zeros", DAMAGED));
-            }
-            end = section[1];
-        }
+        let sections = [places.nodes, places.voxels, places.triangles];
+        check_padding(all, sections.into_iter(), path)?;
         let node_bytes = &all[range(places.nodes)];
         if xxh3_64(node_bytes) != header.nodes_checksum {
             let expected = format!("checksum {:016x} of the hierarchy", header.nodes_checksum);
-            return Err(malformed(
+            return Err(FarError::damaged(
                 path,
                 "hierarchy",
                 places.nodes[0],
                 expected,
-                DAMAGED,
             ));
         }
         let nodes: Vec<Node> = bytemuck::pod_collect_to_vec(node_bytes);
@@ -182,7 +133,7 @@ impl FarFile {
         .map_err(|fault| {
             let offset = places.nodes[0] + (fault.node * size_of::<Node>()) as u64;
             let expected = format!("node {} to have {}", fault.node, fault.expected);
-            malformed(path, "hierarchy", offset, expected, DAMAGED)
+            FarError::damaged(path, "hierarchy", offset, expected)
         })?;
         let mut next = 0;
         let first_voxel = nodes
@@ -374,7 +325,7 @@ impl FarFile {
         }
         let node = &self.nodes[number];
         let damaged = |section, offset, expected: String| {
-            Err(malformed(&self.path, section, offset, expected, DAMAGED))
+            Err(FarError::damaged(&self.path, section, offset, expected))
         };
         if node.is_leaf() {
             let triangles = self.triangles_of(number);
@@ -420,27 +371,6 @@ impl FarFile {
     }
 }
 
-/// A place in a mapped file: within the address space, as the file's length is.
-fn range([begin, end]: [u64; 2]) -> Range<usize> {
-    begin as usize..end as usize
-}
-
-fn malformed(
-    path: &Path,
-    section: &'static str,
-    offset: u64,
-    expected: impl Into<String>,
-    advice: &'static str,
-) -> FarError {
-    FarError::Malformed {
-        file: path.to_owned(),
-        section,
-        offset,
-        expected: expected.into(),
-        advice,
-    }
-}
-
 /// The header, decoded and checked.
 struct Header {
     places: Layout,
@@ -457,111 +387,40 @@ struct Header {
 impl Header {
     /// Reads a header from the beginning of a file of `file_bytes`.
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, FarError> {
-        let ensure = |holds: bool, offset: usize, expected: String, advice: &'static str| {
-            if holds {
-                return Ok(());
-            }
-            Err(malformed(path, "header", offset as u64, expected, advice))
-        };
-        let signature = "the signature of a .far file".to_owned();
-        ensure(is_far(beginning), 0, signature, NOT_OURS)?;
-        let Some(header) = beginning.first_chunk::<HEADER_BYTES>() else {
-            let expected = format!("{HEADER_BYTES} bytes, not {}", beginning.len());
-            return Err(malformed(
-                path,
-                "header",
-                beginning.len() as u64,
-                expected,
-                DAMAGED,
-            ));
-        };
-        let eight = |offset: usize| -> [u8; 8] { std::array::from_fn(|i| header[offset + i]) };
-        let u64_at = |offset: usize| u64::from_le_bytes(eight(offset));
-        let f64_at = |offset: usize| f64::from_le_bytes(eight(offset));
-        let u32_at =
-            |offset: usize| u32::from_le_bytes(std::array::from_fn(|i| header[offset + i]));
-        let version = u32_at(at::VERSION);
-        let stored = u64_at(at::CHECKSUM);
-        let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
-        // A sound header of another version is no damage.
-        let expected = format!("version {VERSION}, not {version}");
-        ensure(version == VERSION || !sound, at::VERSION, expected, NEWER)?;
-        ensure(
-            sound,
-            at::CHECKSUM,
-            format!("header checksum {stored:016x}"),
-            DAMAGED,
-        )?;
-        let length = u32_at(at::HEADER_BYTES);
-        let expected = format!("a header length of {HEADER_BYTES}, not {length}");
-        ensure(
-            length == HEADER_BYTES as u32,
-            at::HEADER_BYTES,
-            expected,
-            DAMAGED,
-        )?;
+        let header = FORMAT.read(beginning, file_bytes, path)?;
         let [nodes, voxel_bytes, triangles] =
-            [at::NODES, at::VOXEL_BYTES, at::TRIANGLES].map(u64_at);
+            [at::NODES, at::VOXEL_BYTES, at::TRIANGLES].map(|at| header.u64_at(at));
         let places = layout(nodes, voxel_bytes, triangles);
-        let said = u64_at(at::FILE_BYTES);
-        let expected = format!("a file of {said} bytes, not {file_bytes}");
-        ensure(said == file_bytes, at::FILE_BYTES, expected, DAMAGED)?;
-        let expected = format!("sections that end with the file at byte {file_bytes}");
-        ensure(
-            places.triangles[1] == file_bytes,
-            at::NODES,
-            expected,
-            DAMAGED,
-        )?;
-        let spare = [at::SPARE, at::MORE_SPARE];
-        let is_spare = spare.into_iter().all(|r| header[r].iter().all(|&b| b == 0));
-        ensure(is_spare, at::SPARE.start, "zeros".to_owned(), DAMAGED)?;
-        let centre = [0, 8, 16].map(|skip| f64_at(at::CENTRE + skip));
-        let is_finite = centre.iter().all(|c| c.is_finite());
-        ensure(is_finite, at::CENTRE, "finite numbers".to_owned(), DAMAGED)?;
-        let distance_voxels = f64_at(at::DISTANCE);
+        header.ensure(places.triangles[1] == file_bytes, at::NODES, || {
+            format!("sections that end with the file at byte {file_bytes}")
+        })?;
+        let is_spare = header.is_zero(at::SPARE) && header.is_zero(at::MORE_SPARE);
+        header.ensure(is_spare, at::SPARE.start, || "zeros")?;
+        let centre = DVec3::from_array(header.f64s_at(at::CENTRE));
+        header.ensure(centre.is_finite(), at::CENTRE, || "finite numbers")?;
+        let [distance_voxels] = header.f64s_at(at::DISTANCE);
         let is_distance = (1.0..=1e6).contains(&distance_voxels);
-        ensure(
-            is_distance,
-            at::DISTANCE,
-            "1 to 1,000,000 voxels".to_owned(),
-            DAMAGED,
-        )?;
-        let (leaf_triangles, grid) = (u32_at(at::LEAF), u32_at(at::GRID));
-        ensure(
-            leaf_triangles >= 2,
-            at::LEAF,
-            "2 or more".to_owned(),
-            DAMAGED,
-        )?;
-        ensure(
-            (2..=255).contains(&grid),
-            at::GRID,
-            "2 to 255".to_owned(),
-            DAMAGED,
-        )?;
+        header.ensure(is_distance, at::DISTANCE, || "1 to 1,000,000 voxels")?;
+        let (leaf_triangles, grid) = (header.u32_at(at::LEAF), header.u32_at(at::GRID));
+        header.ensure(leaf_triangles >= 2, at::LEAF, || "2 or more")?;
+        header.ensure((2..=255).contains(&grid), at::GRID, || "2 to 255")?;
         let blend = |offset: usize| {
             let mut known = [Blend::Squares, Blend::Cosines].into_iter();
-            let found = known.find(|&b| blend_byte(b) == header[offset]);
-            found.ok_or_else(|| malformed(path, "header", offset as u64, "0 or 1", DAMAGED))
+            let found = known.find(|&b| blend_byte(b) == header.byte_at(offset));
+            found.ok_or_else(|| FarError::damaged(path, "header", offset as u64, "0 or 1"))
         };
         let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];
-        ensure(
-            header[at::Y_UP] <= 1,
-            at::Y_UP,
-            "0 or 1".to_owned(),
-            DAMAGED,
-        )?;
+        header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
         Ok(Self {
             places,
             triangles,
-            centre: DVec3::from_array(centre),
+            centre,
             distance_voxels,
             leaf_triangles,
             grid,
             blends,
-            y_up: header[at::Y_UP] == 1,
-            nodes_checksum: u64_at(at::NODES_CHECKSUM),
+            y_up: header.byte_at(at::Y_UP) == 1,
+            nodes_checksum: header.u64_at(at::NODES_CHECKSUM),
         })
     }
 }

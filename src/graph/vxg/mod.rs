@@ -18,7 +18,8 @@ mod read;
 mod write;
 
 pub use error::VxgError;
-pub(crate) use map::{map as map_file, release};
+pub(in crate::graph) use map::map as map_file;
+pub(crate) use map::release;
 pub use pages::MappedPages;
 pub use read::{from_bytes, is_vxg, open, verify};
 pub(in crate::graph) use write::{check_free, write_pieces};

@@ -1,7 +1,5 @@
 //! Reading a `.vxg` file: lazily, or all of it.
 
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,7 +11,8 @@ use super::format::{
     HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION,
     at, layout,
 };
-use super::map::{Access, advise, map};
+use super::map::{Access, advise};
+use crate::graph::file::{self, Refused};
 use crate::graph::{Graph, Invalid, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).
@@ -85,34 +84,21 @@ impl std::ops::Deref for Bytes {
 }
 
 fn open_with_header(path: &Path) -> Result<(Graph, Header, Bytes), VxgError> {
-    let refused = |doing: &'static str| {
-        move |source: io::Error| VxgError::Io {
-            file: path.to_owned(),
-            doing,
-            source,
-        }
+    let refused = |doing, source| VxgError::Io {
+        file: path.to_owned(),
+        doing,
+        source,
     };
-    let mut file = File::open(path).map_err(refused("open it"))?;
-    let metadata = file.metadata().map_err(refused("ask for its length"))?;
-    if !metadata.is_file() {
-        let source = io::Error::other("it is not a regular file");
-        return Err(refused("map it")(source));
-    }
-    let file_bytes = metadata.len();
-    // The header is read, not mapped: only a file of the right length is mapped.
-    let mut beginning = Vec::with_capacity(HEADER_BYTES);
-    (&mut file)
-        .take(HEADER_BYTES as u64)
-        .read_to_end(&mut beginning)
-        .map_err(refused("read its header"))?;
-    let header = Header::read(&beginning, file_bytes, path)?;
+    let told = |Refused { doing, source }| refused(doing, source);
+    let opened = file::open(path, HEADER_BYTES).map_err(told)?;
+    let header = Header::read(&opened.beginning, opened.bytes, path)?;
     if cfg!(target_endian = "little") {
-        let map = map(&file).map_err(refused("map it into memory"))?;
+        let map = opened.map().map_err(told)?;
         advise(&map, Access::Scattered);
         let graph = header.graph_mapped(&map, path)?;
         return Ok((graph, header, Bytes::Mapped(map)));
     }
-    let bytes = std::fs::read(path).map_err(refused("read it"))?;
+    let bytes = std::fs::read(path).map_err(|source| refused("read it", source))?;
     let graph = header.graph_owned(&bytes, path)?;
     Ok((graph, header, Bytes::Read(bytes)))
 }

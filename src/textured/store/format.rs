@@ -6,22 +6,21 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use crate::graph::file::{Format, HEADER_BYTES, section_after};
 use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
 
-/// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
-pub(super) const MAGIC: [u8; 8] = *b"\x89TVX\r\n\x1a\n";
-/// Version of the layout.
-pub(super) const VERSION: u32 = 1;
-/// Bytes of the header.
-pub(super) const HEADER_BYTES: usize = 128;
-/// Sections begin at multiples of this.
-const ALIGNMENT: u64 = 64;
+/// How files begin.
+pub(super) const FORMAT: Format = Format {
+    ending: ".tvx",
+    // As in PNG, they show a transfer that changes line ends or bit 7.
+    magic: *b"\x89TVX\r\n\x1a\n",
+    version: 1,
+    signature: "the signature of a .tvx file",
+    not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
+};
 
-/// Where things are in the header.
+/// Where things are in the header, beside what every header has.
 pub(super) mod at {
-    pub(in super::super) const VERSION: usize = 8;
-    pub(in super::super) const HEADER_BYTES: usize = 12;
-    pub(in super::super) const FILE_BYTES: usize = 16;
     pub(in super::super) const PRIMITIVES: usize = 24;
     pub(in super::super) const LOW: usize = 32;
     pub(in super::super) const HIGH: usize = 56;
@@ -30,7 +29,6 @@ pub(super) mod at {
     pub(in super::super) const SPARE: std::ops::Range<usize> = 85..104;
     pub(in super::super) const PRIMITIVES_CHECKSUM: usize = 104;
     pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
-    pub(in super::super) const CHECKSUM: usize = 120;
 }
 
 /// What the file says of a grid.
@@ -75,22 +73,14 @@ pub(super) struct Layout {
 impl Layout {
     /// There is only one. Saturates.
     pub(super) fn of(primitives: u64, grids: &[GridEntry]) -> Self {
-        let align = |at: u64| at.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
-        let after = |at: u64, count: u64, bytes: usize| {
-            let begin = align(at);
-            [
-                begin,
-                begin.saturating_add(count.saturating_mul(bytes as u64)),
-            ]
-        };
-        let entries = after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
-        let primitives = after(entries[1], primitives, PRIMITIVE_BYTES);
+        let entries = section_after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
+        let primitives = section_after(entries[1], primitives, PRIMITIVE_BYTES);
         let mut end = primitives[1];
         let places = grids.iter().map(|grid| {
-            let voxels = after(end, grid.voxels, VOXEL_BYTES);
-            let lists = after(voxels[1], grid.listed, size_of::<u32>());
+            let voxels = section_after(end, grid.voxels, VOXEL_BYTES);
+            let lists = section_after(voxels[1], grid.listed, size_of::<u32>());
             let face = u64::from(grid.texels).saturating_mul(u64::from(grid.texels));
-            let textures = after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
+            let textures = section_after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
             end = textures[1];
             GridPlaces {
                 voxels,

@@ -5,11 +5,10 @@
 //! [`TexturedFile::verify`] asks for all, and computes erosion depths again.
 
 mod check;
-mod error;
 mod format;
 mod read;
 mod write;
 
-pub use error::TexturedError;
+pub use crate::graph::file::FileError as TexturedError;
 pub use read::{Grid, TexturedFile, is_textured};
 pub use write::{encode, write_to};

@@ -1,20 +1,15 @@
 //! Reading a `.tvx` file: mapped, or held in memory.
 
-use std::fs::File;
-use std::io::{self, Read};
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use glam::DVec3;
-use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
+use super::TexturedError;
 use super::check::{Part, check, check_entry, check_primitives};
-use super::error::{DAMAGED, NEWER, NOT_OURS, TexturedError};
-use super::format::{ENTRY_BYTES, GridEntry, GridPlaces, HEADER_BYTES, Layout, MAGIC, VERSION, at};
-use crate::graph::vxg::map_file;
+use super::format::{ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, at};
+use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
@@ -23,24 +18,7 @@ use crate::textured::{Element, Lattice};
 /// Whether a file that begins with these bytes is a `.tvx` file (of any version).
 #[must_use]
 pub fn is_textured(beginning: &[u8]) -> bool {
-    beginning.starts_with(&MAGIC)
-}
-
-/// The bytes of a file, mapped or held.
-#[derive(Debug)]
-enum Bytes {
-    Mapped(Arc<Mmap>),
-    /// In words of 64 bits, so that records are aligned; and how many bytes count.
-    Held(Vec<u64>, usize),
-}
-
-impl Bytes {
-    fn get(&self) -> &[u8] {
-        match self {
-            Self::Mapped(map) => map,
-            Self::Held(words, length) => &bytemuck::cast_slice(words)[..*length],
-        }
-    }
+    beginning.starts_with(&FORMAT.magic)
 }
 
 /// An open `.tvx` file.
@@ -65,28 +43,10 @@ impl TexturedFile {
     /// # Errors
     /// When it cannot be read, is something else, is truncated, or a field is not as it should be.
     pub fn open(path: &Path) -> Result<Self, TexturedError> {
-        let refused = |doing: &'static str| {
-            move |source: io::Error| TexturedError::Io {
-                file: path.to_owned(),
-                doing,
-                source,
-            }
-        };
-        let mut file = File::open(path).map_err(refused("open it"))?;
-        let metadata = file.metadata().map_err(refused("ask for its length"))?;
-        if !metadata.is_file() {
-            let reason = io::Error::other("it is not a regular file");
-            return Err(refused("map it")(reason));
-        }
-        // The header is read, not mapped: only a file of the right length is mapped.
-        let mut beginning = Vec::with_capacity(HEADER_BYTES);
-        (&mut file)
-            .take(HEADER_BYTES as u64)
-            .read_to_end(&mut beginning)
-            .map_err(refused("read its header"))?;
-        Header::read(&beginning, metadata.len(), path)?;
-        let map = map_file(&file).map_err(refused("map it into memory"))?;
-        Self::of(Bytes::Mapped(map), path)
+        let refused = |refused| TexturedError::refused(path, refused);
+        let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+        Header::read(&opened.beginning, opened.bytes, path)?;
+        Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
     /// A file that is held in memory; it is named `(memory)` in errors.
@@ -94,15 +54,11 @@ impl TexturedFile {
     /// # Errors
     /// As [`TexturedFile::open`].
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, TexturedError> {
-        let mut words = vec![0u64; bytes.len().div_ceil(8)];
-        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
-        Self::of(Bytes::Held(words, bytes.len()), Path::new("(memory)"))
+        Self::of(Bytes::held(bytes), Path::new("(memory)"))
     }
 
     fn of(bytes: Bytes, path: &Path) -> Result<Self, TexturedError> {
-        if cfg!(target_endian = "big") {
-            return Err(TexturedError::ByteOrder(path.to_owned()));
-        }
+        FORMAT.check_byte_order(path)?;
         let all = bytes.get();
         let header = Header::read(all, all.len() as u64, path)?;
         let entries = header.entries(all, path)?;
@@ -110,15 +66,9 @@ impl TexturedFile {
         if layout.end() != all.len() as u64 {
             let expected = format!("sections that end with the file at byte {}", all.len());
             let offset = layout.entries[0];
-            return Err(malformed(path, "grids", offset, expected, DAMAGED));
+            return Err(TexturedError::damaged(path, "grids", offset, expected));
         }
-        let mut end = HEADER_BYTES as u64;
-        for section in layout.sections() {
-            if all[range([end, section[0]])].iter().any(|&byte| byte != 0) {
-                return Err(malformed(path, "padding", end, "zeros", DAMAGED));
-            }
-            end = section[1];
-        }
+        check_padding(all, layout.sections(), path)?;
         let mut file = Self {
             path: path.to_owned(),
             is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
@@ -187,7 +137,7 @@ impl TexturedFile {
         offset: u64,
         expected: impl Into<String>,
     ) -> TexturedError {
-        malformed(&self.path, section, offset, expected, DAMAGED)
+        TexturedError::damaged(&self.path, section, offset, expected)
     }
 
     /// Lowest and highest corner of the box around all primitives, world units.
@@ -384,27 +334,6 @@ impl<'f> Grid<'f> {
     }
 }
 
-/// A place in a file: within the address space, as the file's length is.
-fn range([begin, end]: [u64; 2]) -> Range<usize> {
-    begin as usize..end as usize
-}
-
-fn malformed(
-    path: &Path,
-    section: &'static str,
-    offset: u64,
-    expected: impl Into<String>,
-    advice: &'static str,
-) -> TexturedError {
-    TexturedError::Malformed {
-        file: path.to_owned(),
-        section,
-        offset,
-        expected: expected.into(),
-        advice,
-    }
-}
-
 /// The header, decoded and checked.
 struct Header {
     primitives: u64,
@@ -419,77 +348,27 @@ struct Header {
 impl Header {
     /// Reads a header from the beginning of a file of `file_bytes`.
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, TexturedError> {
-        let ensure = |holds: bool, offset: usize, expected: String, advice: &'static str| {
-            if holds {
-                return Ok(());
-            }
-            Err(malformed(path, "header", offset as u64, expected, advice))
-        };
-        let signature = "the signature of a .tvx file".to_owned();
-        ensure(is_textured(beginning), 0, signature, NOT_OURS)?;
-        let Some(header) = beginning.first_chunk::<HEADER_BYTES>() else {
-            let length = beginning.len();
-            let expected = format!("{HEADER_BYTES} bytes, not {length}");
-            return Err(malformed(path, "header", length as u64, expected, DAMAGED));
-        };
-        let eight = |offset: usize| -> [u8; 8] { std::array::from_fn(|i| header[offset + i]) };
-        let u64_at = |offset: usize| u64::from_le_bytes(eight(offset));
-        let point_at = |offset: usize| {
-            DVec3::from_array([0, 8, 16].map(|skip| f64::from_le_bytes(eight(offset + skip))))
-        };
-        let u32_at =
-            |offset: usize| u32::from_le_bytes(std::array::from_fn(|i| header[offset + i]));
-        let version = u32_at(at::VERSION);
-        let stored = u64_at(at::CHECKSUM);
-        let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
-        // A sound header of another version is no damage.
-        let expected = format!("version {VERSION}, not {version}");
-        ensure(version == VERSION || !sound, at::VERSION, expected, NEWER)?;
-        let expected = format!("header checksum {stored:016x}");
-        ensure(sound, at::CHECKSUM, expected, DAMAGED)?;
-        let length = u32_at(at::HEADER_BYTES);
-        let expected = format!("a header length of {HEADER_BYTES}, not {length}");
-        ensure(
-            length == HEADER_BYTES as u32,
-            at::HEADER_BYTES,
-            expected,
-            DAMAGED,
-        )?;
-        let said = u64_at(at::FILE_BYTES);
-        let expected = format!("a file of {said} bytes, not {file_bytes}");
-        ensure(said == file_bytes, at::FILE_BYTES, expected, DAMAGED)?;
-        let is_spare = header[at::SPARE].iter().all(|&byte| byte == 0);
-        ensure(is_spare, at::SPARE.start, "zeros".to_owned(), DAMAGED)?;
-        let grids = u32_at(at::GRIDS) as usize;
-        let expected = format!("1 to {MOST_GRIDS} grids, not {grids}");
-        ensure(
-            (1..=MOST_GRIDS).contains(&grids),
-            at::GRIDS,
-            expected,
-            DAMAGED,
-        )?;
-        let primitives = u64_at(at::PRIMITIVES);
+        let header = FORMAT.read(beginning, file_bytes, path)?;
+        header.ensure(header.is_zero(at::SPARE), at::SPARE.start, || "zeros")?;
+        let grids = header.u32_at(at::GRIDS) as usize;
+        header.ensure((1..=MOST_GRIDS).contains(&grids), at::GRIDS, || {
+            format!("1 to {MOST_GRIDS} grids, not {grids}")
+        })?;
+        let primitives = header.u64_at(at::PRIMITIVES);
         let is_numbered = (1..u64::from(u32::MAX)).contains(&primitives);
-        let expected = "1 to 2^32 primitives".to_owned();
-        ensure(is_numbered, at::PRIMITIVES, expected, DAMAGED)?;
-        let (low, high) = (point_at(at::LOW), point_at(at::HIGH));
+        header.ensure(is_numbered, at::PRIMITIVES, || "1 to 2^32 primitives")?;
+        let [low, high] = [at::LOW, at::HIGH].map(|at| DVec3::from_array(header.f64s_at(at)));
         let is_box = low.is_finite() && high.is_finite() && (high - low).max_element() > 0.0;
-        let expected = "a box of finite numbers".to_owned();
-        ensure(is_box, at::LOW, expected, DAMAGED)?;
-        ensure(
-            header[at::Y_UP] <= 1,
-            at::Y_UP,
-            "0 or 1".to_owned(),
-            DAMAGED,
-        )?;
+        header.ensure(is_box, at::LOW, || "a box of finite numbers")?;
+        header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
         Ok(Self {
             primitives,
             grids,
             low,
             high,
-            y_up: header[at::Y_UP] == 1,
-            primitives_checksum: u64_at(at::PRIMITIVES_CHECKSUM),
-            grids_checksum: u64_at(at::GRIDS_CHECKSUM),
+            y_up: header.byte_at(at::Y_UP) == 1,
+            primitives_checksum: header.u64_at(at::PRIMITIVES_CHECKSUM),
+            grids_checksum: header.u64_at(at::GRIDS_CHECKSUM),
         })
     }
 
@@ -498,11 +377,21 @@ impl Header {
         let [begin, end] = [HEADER_BYTES, HEADER_BYTES + self.grids * ENTRY_BYTES];
         let Some(bytes) = all.get(begin..end) else {
             let expected = format!("{} grids", self.grids);
-            return Err(malformed(path, "grids", begin as u64, expected, DAMAGED));
+            return Err(TexturedError::damaged(
+                path,
+                "grids",
+                begin as u64,
+                expected,
+            ));
         };
         if xxh3_64(bytes) != self.grids_checksum {
             let expected = format!("checksum {:016x}", self.grids_checksum);
-            return Err(malformed(path, "grids", begin as u64, expected, DAMAGED));
+            return Err(TexturedError::damaged(
+                path,
+                "grids",
+                begin as u64,
+                expected,
+            ));
         }
         let entries: Vec<GridEntry> = bytemuck::pod_collect_to_vec(bytes);
         for (number, entry) in entries.iter().enumerate() {
@@ -514,7 +403,7 @@ impl Header {
             });
             sound.map_err(|expected| {
                 let offset = (begin + number * ENTRY_BYTES) as u64;
-                malformed(path, "grids", offset, expected, DAMAGED)
+                TexturedError::damaged(path, "grids", offset, expected)
             })?;
         }
         Ok(entries)

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use bytemuck::cast_slice;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::format::{GridEntry, HEADER_BYTES, Layout, MAGIC, VERSION, at};
+use super::format::{FORMAT, GridEntry, Layout, at};
+use crate::graph::file::{self, HEADER_BYTES};
 use crate::textured::{Element, GridData, TexturedData};
 
 /// Writes textured voxels: to a temporary file, say, that then gets its name
@@ -14,14 +15,8 @@ use crate::textured::{Element, GridData, TexturedData};
 /// # Errors
 /// What the writer says; a machine that stores the highest byte first.
 pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
-    if cfg!(target_endian = "big") {
-        return Err(io::Error::other(
-            ".tvx files are not written on machines of this byte order",
-        ));
-    }
     let entries: Vec<GridEntry> = data.grids.iter().map(entry).collect();
     let layout = Layout::of(data.primitives.len() as u64, &entries);
-    out.write_all(&header(data, &entries, &layout))?;
     let mut sections: Vec<&[u8]> = vec![cast_slice(&entries), cast_slice(&data.primitives)];
     for grid in &data.grids {
         let parts: [&[u8]; 3] = [
@@ -31,14 +26,8 @@ pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
         ];
         sections.extend(parts);
     }
-    let mut written = HEADER_BYTES as u64;
-    for ([begin, end], bytes) in layout.sections().zip(sections) {
-        // Less than the alignment.
-        out.write_all(&[0; 64][..(begin - written) as usize])?;
-        out.write_all(bytes)?;
-        written = end;
-    }
-    Ok(())
+    let header = header(data, &entries, &layout);
+    file::write(&FORMAT, &header, layout.sections().zip(sections), out)
 }
 
 /// The bytes of a whole file.
@@ -77,30 +66,21 @@ pub(super) fn element_number(element: Element) -> u32 {
 }
 
 fn header(data: &TexturedData, entries: &[GridEntry], layout: &Layout) -> [u8; HEADER_BYTES] {
-    let mut header = [0u8; HEADER_BYTES];
-    let mut put = |offset: usize, bytes: &[u8]| {
-        header[offset..offset + bytes.len()].copy_from_slice(bytes);
-    };
-    put(0, &MAGIC);
-    put(at::VERSION, &VERSION.to_le_bytes());
-    put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
-    put(at::FILE_BYTES, &layout.end().to_le_bytes());
-    put(
-        at::PRIMITIVES,
-        &(data.primitives.len() as u64).to_le_bytes(),
-    );
-    for k in 0..3 {
-        put(at::LOW + 8 * k, &data.low[k].to_le_bytes());
-        put(at::HIGH + 8 * k, &data.high[k].to_le_bytes());
-    }
-    // At most 16.
-    put(at::GRIDS, &(entries.len() as u32).to_le_bytes());
-    put(at::Y_UP, &[u8::from(data.y_up)]);
-    let primitives = xxh3_64(cast_slice(&data.primitives));
-    put(at::PRIMITIVES_CHECKSUM, &primitives.to_le_bytes());
-    let grids = xxh3_64(cast_slice(entries));
-    put(at::GRIDS_CHECKSUM, &grids.to_le_bytes());
-    let checksum = xxh3_64(&header[..at::CHECKSUM]);
-    header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());
-    header
+    FORMAT.header(layout.end(), |put| {
+        put(
+            at::PRIMITIVES,
+            &(data.primitives.len() as u64).to_le_bytes(),
+        );
+        for k in 0..3 {
+            put(at::LOW + 8 * k, &data.low[k].to_le_bytes());
+            put(at::HIGH + 8 * k, &data.high[k].to_le_bytes());
+        }
+        // At most 16.
+        put(at::GRIDS, &(entries.len() as u32).to_le_bytes());
+        put(at::Y_UP, &[u8::from(data.y_up)]);
+        let primitives = xxh3_64(cast_slice(&data.primitives));
+        put(at::PRIMITIVES_CHECKSUM, &primitives.to_le_bytes());
+        let grids = xxh3_64(cast_slice(entries));
+        put(at::GRIDS_CHECKSUM, &grids.to_le_bytes());
+    })
 }

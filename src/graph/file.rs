@@ -1,0 +1,364 @@
+//! Files that are used in place, mapped or held: what all formats of this
+//! program that are have in common. A header of fixed length with a checksum,
+//! then sections, each aligned to 64 bytes with zeros between.
+
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use memmap2::Mmap;
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::vxg::map_file;
+
+/// Sections begin at multiples of this.
+pub(crate) const ALIGNMENT: u64 = 64;
+
+/// Why a file of a mesh method was not read or written.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// The operating system refused.
+    #[error("{}: cannot {doing}: {source}", file.display())]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// What was tried.
+        doing: &'static str,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file is not as it should be.
+    #[error("{}: {section}, byte {offset}: expected {expected}; {advice}", file.display())]
+    Malformed {
+        /// The file.
+        file: PathBuf,
+        /// The header, or a section.
+        section: &'static str,
+        /// Bytes from the beginning of the file.
+        offset: u64,
+        /// What should have been there, and what was.
+        expected: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// A machine that stores the highest byte first.
+    #[error("{}: {ending} files are used in place, which this machine's byte order does not allow", file.display())]
+    ByteOrder {
+        /// The file.
+        file: PathBuf,
+        /// The ending of such files, with its dot.
+        ending: &'static str,
+    },
+}
+
+/// Advice for a damaged file.
+const DAMAGED: &str = "the file is damaged: copy it again, or convert it again from its mesh";
+/// Advice for a file of another program version.
+const NEWER: &str = "the file is of another version: convert it again with this one";
+
+impl FileError {
+    /// A file that is damaged somewhere.
+    pub(crate) fn damaged(
+        path: &Path,
+        section: &'static str,
+        offset: u64,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self::Malformed {
+            file: path.to_owned(),
+            section,
+            offset,
+            expected: expected.into(),
+            advice: DAMAGED,
+        }
+    }
+
+    /// What the system says of a file.
+    pub(crate) fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
+        Self::Io {
+            file: path.to_owned(),
+            doing,
+            source,
+        }
+    }
+}
+
+/// What the operating system refused to do with a file.
+pub(crate) struct Refused {
+    pub(crate) doing: &'static str,
+    pub(crate) source: io::Error,
+}
+
+/// A file that is open, of which only the header was read.
+pub(crate) struct Opened {
+    pub(crate) file: File,
+    /// Its length in bytes.
+    pub(crate) bytes: u64,
+    /// Its header; shorter where the file is.
+    pub(crate) beginning: Vec<u8>,
+}
+
+/// Opens a regular file and reads its header: a file is not mapped before its
+/// length was found right.
+pub(crate) fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
+    let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
+    let mut file = File::open(path).map_err(refused("open it"))?;
+    let metadata = file.metadata().map_err(refused("ask for its length"))?;
+    if !metadata.is_file() {
+        let source = io::Error::other("it is not a regular file");
+        return Err(refused("map it")(source));
+    }
+    let mut beginning = Vec::with_capacity(header_bytes);
+    (&mut file)
+        .take(header_bytes as u64)
+        .read_to_end(&mut beginning)
+        .map_err(refused("read its header"))?;
+    Ok(Opened {
+        file,
+        bytes: metadata.len(),
+        beginning,
+    })
+}
+
+impl Opened {
+    /// Maps all of it.
+    pub(crate) fn map(&self) -> Result<Arc<Mmap>, Refused> {
+        let doing = "map it into memory";
+        map_file(&self.file).map_err(|source| Refused { doing, source })
+    }
+}
+
+/// The bytes of a file, mapped or held.
+#[derive(Debug)]
+pub(crate) enum Bytes {
+    Mapped(Arc<Mmap>),
+    /// In words of 64 bits, so that records are aligned; and how many bytes count.
+    Held(Vec<u64>, usize),
+}
+
+impl Bytes {
+    /// A copy of some bytes.
+    pub(crate) fn held(bytes: &[u8]) -> Self {
+        let mut words = vec![0u64; bytes.len().div_ceil(8)];
+        bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
+        Self::Held(words, bytes.len())
+    }
+
+    pub(crate) fn get(&self) -> &[u8] {
+        match self {
+            Self::Mapped(map) => map,
+            Self::Held(words, length) => &bytemuck::cast_slice(words)[..*length],
+        }
+    }
+}
+
+/// A place in a mapped file: within the address space, as the file's length is.
+pub(crate) fn range([begin, end]: [u64; 2]) -> Range<usize> {
+    begin as usize..end as usize
+}
+
+/// The next section after a byte, so many items of so many bytes. Saturates.
+pub(crate) fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
+    let begin = end.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
+    let bytes = count.saturating_mul(item_bytes as u64);
+    [begin, begin.saturating_add(bytes)]
+}
+
+/// A format: how its header begins. Each has version, header length and file
+/// length at the same places.
+pub(crate) struct Format {
+    /// The ending of its files, with the dot.
+    pub(crate) ending: &'static str,
+    /// First eight bytes.
+    pub(crate) magic: [u8; 8],
+    /// Version of the layout.
+    pub(crate) version: u32,
+    /// What a header should begin with.
+    pub(crate) signature: &'static str,
+    /// Advice for a file that is something else.
+    pub(crate) not_ours: &'static str,
+}
+
+/// Bytes of a header.
+pub(crate) const HEADER_BYTES: usize = 128;
+
+/// Where things are in the header of every format.
+mod at {
+    pub(super) const VERSION: usize = 8;
+    pub(super) const HEADER_BYTES: usize = 12;
+    pub(super) const FILE_BYTES: usize = 16;
+    pub(super) const CHECKSUM: usize = 120;
+}
+
+impl Format {
+    /// Refuses machines whose byte order does not allow to use a file in place.
+    pub(crate) fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
+        if cfg!(target_endian = "big") {
+            return Err(FileError::ByteOrder {
+                file: path.to_owned(),
+                ending: self.ending,
+            });
+        }
+        Ok(())
+    }
+
+    /// A header that is filled in by `fields`, which is handed a function that
+    /// puts bytes at an offset: with what every header has.
+    pub(crate) fn header(
+        &self,
+        file_bytes: u64,
+        fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
+    ) -> [u8; HEADER_BYTES] {
+        let mut header = [0u8; HEADER_BYTES];
+        let mut put = |offset: usize, bytes: &[u8]| {
+            header[offset..offset + bytes.len()].copy_from_slice(bytes);
+        };
+        put(0, &self.magic);
+        put(at::VERSION, &self.version.to_le_bytes());
+        put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
+        put(at::FILE_BYTES, &file_bytes.to_le_bytes());
+        fields(&mut put);
+        let checksum = xxh3_64(&header[..at::CHECKSUM]);
+        header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());
+        header
+    }
+
+    /// Checks what every header has, of a file of `file_bytes` that begins so.
+    pub(crate) fn read<'f>(
+        &self,
+        beginning: &'f [u8],
+        file_bytes: u64,
+        path: &'f Path,
+    ) -> Result<Fields<'f>, FileError> {
+        let other = |offset: usize, expected: String, advice: &'static str| FileError::Malformed {
+            file: path.to_owned(),
+            section: "header",
+            offset: offset as u64,
+            expected,
+            advice,
+        };
+        if !beginning.starts_with(&self.magic) {
+            return Err(other(0, self.signature.to_owned(), self.not_ours));
+        }
+        let Some(header) = beginning.first_chunk::<HEADER_BYTES>() else {
+            let length = beginning.len();
+            let expected = format!("{HEADER_BYTES} bytes, not {length}");
+            return Err(other(length, expected, DAMAGED));
+        };
+        let fields = Fields { header, path };
+        let version = fields.u32_at(at::VERSION);
+        let stored = fields.u64_at(at::CHECKSUM);
+        let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
+        // A sound header of another version is no damage.
+        if version != self.version && sound {
+            let expected = format!("version {}, not {version}", self.version);
+            return Err(other(at::VERSION, expected, NEWER));
+        }
+        fields.ensure(sound, at::CHECKSUM, || {
+            format!("header checksum {stored:016x}")
+        })?;
+        let length = fields.u32_at(at::HEADER_BYTES);
+        fields.ensure(length == HEADER_BYTES as u32, at::HEADER_BYTES, || {
+            format!("a header length of {HEADER_BYTES}, not {length}")
+        })?;
+        let said = fields.u64_at(at::FILE_BYTES);
+        fields.ensure(said == file_bytes, at::FILE_BYTES, || {
+            format!("a file of {said} bytes, not {file_bytes}")
+        })?;
+        Ok(fields)
+    }
+}
+
+/// The fields of a header that begins as it should.
+pub(crate) struct Fields<'f> {
+    header: &'f [u8; HEADER_BYTES],
+    path: &'f Path,
+}
+
+/// Offsets are those of a format: within the header.
+impl Fields<'_> {
+    pub(crate) fn byte_at(&self, offset: usize) -> u8 {
+        self.header[offset]
+    }
+
+    pub(crate) fn u32_at(&self, offset: usize) -> u32 {
+        u32::from_le_bytes(std::array::from_fn(|i| self.header[offset + i]))
+    }
+
+    pub(crate) fn u64_at(&self, offset: usize) -> u64 {
+        u64::from_le_bytes(std::array::from_fn(|i| self.header[offset + i]))
+    }
+
+    /// As many numbers of double precision as are wanted, one after the other.
+    pub(crate) fn f64s_at<const N: usize>(&self, offset: usize) -> [f64; N] {
+        std::array::from_fn(|k| f64::from_bits(self.u64_at(offset + 8 * k)))
+    }
+
+    pub(crate) fn is_zero(&self, range: Range<usize>) -> bool {
+        self.header[range].iter().all(|&byte| byte == 0)
+    }
+
+    /// Says what was expected at an offset, where it does not hold.
+    pub(crate) fn ensure<E: Into<String>>(
+        &self,
+        holds: bool,
+        offset: usize,
+        expected: impl FnOnce() -> E,
+    ) -> Result<(), FileError> {
+        if holds {
+            return Ok(());
+        }
+        Err(FileError::damaged(
+            self.path,
+            "header",
+            offset as u64,
+            expected(),
+        ))
+    }
+}
+
+/// Checks that there is nothing between header and sections, which are in the
+/// order of the file and within it.
+pub(crate) fn check_padding(
+    all: &[u8],
+    sections: impl Iterator<Item = [u64; 2]>,
+    path: &Path,
+) -> Result<(), FileError> {
+    let mut end = HEADER_BYTES as u64;
+    for section in sections {
+        if all[range([end, section[0]])].iter().any(|&byte| byte != 0) {
+            return Err(FileError::damaged(path, "padding", end, "zeros"));
+        }
+        end = section[1];
+    }
+    Ok(())
+}
+
+/// Writes header and sections, in the order of the file, with zeros between.
+///
+/// # Errors
+/// What the writer says; a machine that stores the highest byte first.
+pub(crate) fn write<'s>(
+    format: &Format,
+    header: &[u8; HEADER_BYTES],
+    sections: impl Iterator<Item = ([u64; 2], &'s [u8])>,
+    out: &mut dyn Write,
+) -> io::Result<()> {
+    if cfg!(target_endian = "big") {
+        return Err(io::Error::other(format!(
+            "{} files are not written on machines of this byte order",
+            format.ending
+        )));
+    }
+    out.write_all(header)?;
+    let mut written = HEADER_BYTES as u64;
+    for ([begin, end], bytes) in sections {
+        // Less than the alignment.
+        out.write_all(&[0; ALIGNMENT as usize][..(begin - written) as usize])?;
+        out.write_all(bytes)?;
+        written = end;
+    }
+    Ok(())
+}
