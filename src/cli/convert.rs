@@ -79,6 +79,16 @@ pub struct ConvertArgs {
     pub(super) scene: SceneArgs,
 }
 
+impl ConvertArgs {
+    /// Whether there is a setting of `.far` files alone.
+    fn has_far_settings(&self) -> bool {
+        self.rays.is_some()
+            || self.leaf_triangles.is_some()
+            || self.instances.is_some()
+            || self.far_opacity.is_some()
+    }
+}
+
 pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
     store::check_free(&args.output, args.force)?;
     let is_ending = |name: &str| args.output.extension().is_some_and(|ending| ending == name);
@@ -86,10 +96,10 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         return Err(CliError::usage("--texels and --element are for .tvx files"));
     }
     if is_ending("tvx") {
-        if args.memory.is_some() || args.rays.is_some() || args.leaf_triangles.is_some() {
+        if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
                 "a .tvx takes --grid, --texels and --element; --memory is for .vxg files, \
-                 --rays and --leaf-triangles are for .far files",
+                 --rays, --leaf-triangles, --instances and --far-opacity are for .far files",
             ));
         }
         return textured::convert(args, console);
@@ -105,14 +115,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return far::convert(args, console);
     }
-    let settings = [
-        args.rays.is_some(),
-        args.leaf_triangles.is_some(),
-        args.instances.is_some(),
-        args.far_opacity.is_some(),
-        !args.grid.is_empty(),
-    ];
-    if settings.contains(&true) {
+    if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
             "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
         ));
@@ -196,4 +199,39 @@ pub(super) fn tell(
         console.document(&report::document(verb, fields))?;
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Command;
+
+    use super::*;
+    use crate::{far, textured};
+
+    #[test]
+    fn help_states_the_true_defaults() {
+        let command = ConvertArgs::augment_args(Command::new("convert"));
+        let states = |flag: &str, default: &str| {
+            let argument = command.get_arguments().find(|a| a.get_id() == flag);
+            let help = argument.unwrap().get_help().unwrap().to_string();
+            let stated = format!("[default: {default}]");
+            assert!(help.contains(&stated), "{flag}: {help}, not {stated}");
+        };
+        let (of_far, of_tvx) = (
+            far::BuildOptions::default(),
+            textured::BuildOptions::default(),
+        );
+        states("leaf_triangles", &of_far.leaf_triangles.to_string());
+        states("grid", &of_far.grid.to_string());
+        states("grid", &of_tvx.grids[0].to_string());
+        states("texels", &of_tvx.texels.to_string());
+        let elements = ElementName::value_variants().iter();
+        for name in elements.filter(|name| name.element() == of_tvx.element) {
+            states("element", name.to_possible_value().unwrap().get_name());
+        }
+        let opacities = FarOpacityName::value_variants().iter();
+        for name in opacities.filter(|&&name| super::far::opacity(name) == of_far.opacity) {
+            states("far_opacity", name.to_possible_value().unwrap().get_name());
+        }
+    }
 }

@@ -113,7 +113,7 @@ fn what_is_refused() {
     let mut damaged = bytes.clone();
     *damaged.last_mut().unwrap() ^= 1;
     fs::write(at.join("damaged.tvx"), damaged).unwrap();
-    let cases: [(&[&str], i32, &str); 20] = [
+    let cases: [(&[&str], i32, &str); 22] = [
         (
             &["convert", "sheet.obj", "x.tvx", "--grid", "0"],
             2,
@@ -161,6 +161,16 @@ fn what_is_refused() {
             &["convert", "sheet.obj", "x.tvx", "--memory", "64M"],
             2,
             "--memory",
+        ),
+        (
+            &["convert", "sheet.obj", "x.tvx", "--instances", "4"],
+            2,
+            "--instances",
+        ),
+        (
+            &["convert", "sheet.obj", "x.tvx", "--far-opacity", "six"],
+            2,
+            "--far-opacity",
         ),
         (
             &["convert", "sheet.obj", "x.vxg", "--texels", "4"],
