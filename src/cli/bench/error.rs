@@ -261,9 +261,7 @@ pub(super) fn run(
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
     pictures::check(&args.page, &args.export, &names)?;
-    let square = (DEFAULT_SIDE, DEFAULT_SIDE);
-    let size = args.size.map_or(square, |size| (size.width, size.height));
-    check_reference_size(size)?;
+    let size = reference_size(args.size, DEFAULT_SIDE)?;
     let context = Context::now();
     context.warn(console);
     let plan = Plan {
@@ -298,11 +296,16 @@ pub(super) fn run(
     write(args, &scenes, &context, plan.schedule, console)
 }
 
-/// Refuses pictures that are too large for a reference.
-pub(super) fn check_reference_size(size: (u32, u32)) -> Result<(), CliError> {
+/// The size that `--size` says, else a square; refuses what is too large for a reference.
+pub(super) fn reference_size(
+    given: Option<Size>,
+    default_side: u32,
+) -> Result<(u32, u32), CliError> {
+    let square = (default_side, default_side);
+    let size = given.map_or(square, |size| (size.width, size.height));
     check_sizes(&[size])?;
     if size.0.max(size.1) <= MOST_SIDE {
-        return Ok(());
+        return Ok(size);
     }
     let message = format!("a picture of {}x{} has no reference", size.0, size.1);
     Err(CliError::new(Kind::Limit, message).advise(format!("the most is {MOST_SIDE} a side")))
@@ -381,12 +384,7 @@ fn write(
         preface: preface.clone(),
         panels: Vec::new(),
     };
-    // Plots are written by now, scene by scene.
-    let export = ExportArgs {
-        export_svg: None,
-        ..args.export.clone()
-    };
-    export::write(&results, &export, console)
+    export::write_without_plots(&results, &args.export, console)
 }
 
 /// The methods of a scene that are worth a look: those named, and those that nothing beats.

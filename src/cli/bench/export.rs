@@ -81,6 +81,19 @@ pub(in crate::cli) fn write(
     print(&results.tables, console)
 }
 
+/// The same where plots were written before, one file a scene.
+pub(super) fn write_without_plots(
+    results: &Results,
+    args: &ExportArgs,
+    console: &Console,
+) -> Result<(), CliError> {
+    let args = ExportArgs {
+        export_svg: None,
+        ..args.clone()
+    };
+    write(results, &args, console)
+}
+
 /// What tables look like on a terminal, one below the other.
 pub(super) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
     let tables: Vec<String> = tables.iter().map(in_text).collect();

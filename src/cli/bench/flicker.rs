@@ -4,7 +4,7 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::args::ExportArgs;
-use super::error::{SCENES, check_reference_size};
+use super::error::{SCENES, reference_size};
 use super::export::{self, Results};
 use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs};
@@ -114,9 +114,7 @@ pub(super) fn run(
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
     pictures::check(&args.page, &args.export, &names)?;
-    let square = (DEFAULT_SIDE, DEFAULT_SIDE);
-    let size = args.size.map_or(square, |size| (size.width, size.height));
-    check_reference_size(size)?;
+    let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
     let plan = Plan {
         size,
@@ -192,10 +190,5 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
         preface: "The same in every run.\n".to_owned(),
         panels: Vec::new(),
     };
-    // Plots are written by now, scene by scene.
-    let export = ExportArgs {
-        export_svg: None,
-        ..args.export.clone()
-    };
-    export::write(&results, &export, console)
+    export::write_without_plots(&results, &args.export, console)
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::args::ExportArgs;
 use super::context::Context;
-use super::error::check_reference_size;
+use super::error::reference_size;
 use super::export::{self, Results};
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
@@ -99,9 +99,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     export::check(&args.export)?;
     pictures::check(&args.page, &args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
-    let square = (DEFAULT_SIDE, DEFAULT_SIDE);
-    let size = args.size.map_or(square, |size| (size.width, size.height));
-    check_reference_size(size)?;
+    let size = reference_size(args.size, DEFAULT_SIDE)?;
     if size.0.min(size.1) < args.least {
         return Err(CliError::usage(format!(
             "a picture of {}x{} has less than --least {} pixels",
@@ -328,12 +326,7 @@ fn write(
         preface: preface.clone(),
         panels: Vec::new(),
     };
-    // Plots are written by now, mesh by mesh.
-    let export = ExportArgs {
-        export_svg: None,
-        ..args.export.clone()
-    };
-    export::write(&results, &export, console)
+    export::write_without_plots(&results, &args.export, console)
 }
 
 /// Every mesh at every distance.
