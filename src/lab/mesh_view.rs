@@ -85,3 +85,30 @@ fn picture(
         records: None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_key_light_is_above_and_behind_the_camera() {
+        let camera = Camera {
+            eye: DVec3::new(0.0, -10.0, 0.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 64,
+            height: 64,
+        };
+        let view = view_of(&camera, (DVec3::splat(-1.0), DVec3::ONE)).unwrap();
+        // The farthest corner is at y = 1.
+        let farthest = DVec3::new(1.0, 11.0, 1.0).length();
+        assert!((view.near - 1e-6 * farthest).abs() < 1e-12);
+        let light = light_of(&view, Shading::Lambert).unwrap();
+        // It looks along y: right is x, up is z, and what is behind is at -y.
+        let [right, up, behind] = KEY_LIGHT.normalize().to_array();
+        let expected = DVec3::new(right, -behind, up);
+        assert!((light.towards - expected).length() < 1e-12);
+        assert!(light_of(&view, Shading::Flat).is_none());
+    }
+}
