@@ -59,22 +59,27 @@ impl<'s> Book<'s> {
         (w.into_iter().min().unwrap_or(0), least)
     }
 
-    /// Screen positions of eight vertices, each rounded down.
-    fn projected(&self, path: &[u8]) -> [[Wide; 8]; 2] {
+    /// Screen positions of eight vertices, each rounded down; `None` if one of
+    /// them is not before the eye, where nothing may be projected.
+    fn projected(&self, path: &[u8]) -> Option<[[Wide; 8]; 2]> {
         let clip = self.clip(path);
+        if clip[2].iter().any(|&w| w <= 0) {
+            return None;
+        }
         let bits = self.setup.levels + self.setup.format.frac();
-        [0, 1].map(|c| std::array::from_fn(|v| (clip[c][v] << bits).div_euclid(clip[2][v])))
+        Some([0, 1].map(|c| std::array::from_fn(|v| (clip[c][v] << bits).div_euclid(clip[2][v]))))
     }
 
     /// What a voxel is held as that changed `changed` levels below the root,
-    /// or not at all. `None` for a level below a lattice's finest.
+    /// or not at all. `None` for a level below a lattice's finest, and for a
+    /// change that may not be.
     pub(super) fn held(&self, path: &[u8], changed: Option<usize>) -> Option<Held> {
         let narrow = |values: [Wide; 8]| values.map(|v| i64::try_from(v).unwrap_or(i64::MAX));
         let Some(changed) = changed else {
             return Some(Held::Clip(self.clip(path).map(narrow)));
         };
         let (to, below) = path.split_at(changed);
-        let projected = self.projected(to);
+        let projected = self.projected(to)?;
         if self.setup.options.coverage == Coverage::Exact {
             return self.strips(projected, changed as u32, below);
         }
