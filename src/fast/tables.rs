@@ -23,8 +23,9 @@ impl Coarse {
         shift: [0; 4],
     };
 
-    /// Cuts the strips of 64 parts to bytes (8 for a node one level above the
-    /// finest): of the children of a node's children, or of its children.
+    /// Cuts the strips of parts to bytes: of a node one level above the finest,
+    /// of its 8 children; of one two or three levels above, of the 64 children of
+    /// its children, which are one finest voxel wide, or two.
     /// `left`: levels from the node to the finest.
     ///
     /// Sums of cut numbers are at most one below the cut sum, differences at
@@ -86,7 +87,7 @@ pub(super) struct Tables {
     pub(super) by_function: [[i32; 8]; STRIPS + 2],
     /// What so many columns, and so many rows, add.
     steps: [[[i32; LANES]; 8]; 2],
-    /// Half the width of a finest voxel, and what bounds it beyond that.
+    /// The bound of a finest voxel: [`Subtree::bound`].
     pub(super) half: [i32; LANES],
     /// Twice as much.
     pub(super) width: [i32; LANES],
@@ -164,7 +165,7 @@ impl Tables {
         let mut most = 0;
         for f in 0..STRIPS {
             isa.square_table(&mut self.square[f], subtree.step[0][f], subtree.step[1][f]);
-            most = most.max(subtree.voxel_range(f));
+            most = most.max(subtree.voxel_range(f)).max(2 * subtree.bound[f]);
         }
         self.fits_square = most < 1 << 16;
     }

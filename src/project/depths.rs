@@ -167,8 +167,8 @@ pub(super) fn strip_guard(tolerance_px: f64) -> u32 {
 
 /// By how much outlines in screen space are drawn wider, so that nothing
 /// falls between neighbours that changed apart: `2^-slack` of what a step of
-/// a sample along both axes adds, an eighth of the tolerance or more. `None`:
-/// not at all.
+/// a sample along both axes adds: an eighth of the tolerance, rounded up to a
+/// power of two, and no more than a sample. `None`: not at all.
 pub(super) fn strip_slack(tolerance_px: f64) -> Option<u32> {
     let is_approximate = tolerance_px > 0.0 && tolerance_px.is_finite();
     is_approximate.then(|| {

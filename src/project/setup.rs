@@ -357,6 +357,14 @@ fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
     if options.tolerance_px.is_nan() || options.tolerance_px < 0.0 {
         return bad("tolerance", "0 pixels or more", options.tolerance_px);
     }
+    // Beyond any picture, and within any word: more is what `inf` is for.
+    if options.tolerance_px.is_finite() && options.tolerance_px > 4096.0 {
+        return bad(
+            "tolerance",
+            "0 to 4096 pixels, or inf",
+            options.tolerance_px,
+        );
+    }
     if !(0.0..=4096.0).contains(&options.lod_px) {
         return bad("level of detail", "0 to 4096 pixels", options.lod_px);
     }

@@ -116,6 +116,9 @@ fn any_settings() -> impl Strategy<Value = SetupOptions> {
         3 => Just(1.0 / 8.0),
         2 => Just(0.4),
         2 => Just(1.5),
+        // Slack that is rounded up, and the most that this engine draws itself.
+        1 => Just(0.24),
+        1 => Just(4.0),
         1 => Just(f64::INFINITY),
     ];
     let coverage = prop_oneof![

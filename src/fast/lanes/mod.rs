@@ -148,12 +148,12 @@ pub(super) trait Isa: Copy + Send + Sync + 'static {
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32);
 
     /// The samples `i` of a square for which `start + table[i]` is within
-    /// twice the half width for all three strips, modulo 2^16.
+    /// twice the bound for all three strips, modulo 2^16.
     fn square_within(
         self,
         tables: &[[i16; 64]; STRIPS],
         start: Self::Eight,
-        half_width: &[i32; LANES],
+        bound: &[i32; LANES],
     ) -> u64;
 
     /// The children `i` with `value - table[i] <= width`, modulo 2^32, without

@@ -209,11 +209,11 @@ impl Isa for Scalar {
         self,
         tables: &[[i16; 64]; STRIPS],
         start: [i32; LANES],
-        half_width: &[i32; LANES],
+        bound: &[i32; LANES],
     ) -> u64 {
         let mut samples = u64::MAX;
         for f in 0..STRIPS {
-            let (start, width) = (start[f] as i16, (2 * half_width[f]) as u16);
+            let (start, width) = (start[f] as i16, (2 * bound[f]) as u16);
             for (i, &entry) in tables[f].iter().enumerate() {
                 if start.wrapping_add(entry) as u16 > width {
                     samples &= !(1 << i);

@@ -218,7 +218,7 @@ fn half_beyond(table: &[u8; 64], half: usize, start: __m256i, width: __m256i) ->
 /// 64 lanes as bits.
 #[inline(always)]
 fn bits_of(low: __m256i, high: __m256i) -> u64 {
-    // SAFETY: as in `half_within`; no memory is touched.
+    // SAFETY: as in `half_beyond`; no memory is touched.
     unsafe {
         u64::from(_mm256_movemask_epi8(low) as u32)
             | u64::from(_mm256_movemask_epi8(high) as u32) << 32
@@ -260,20 +260,20 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
         // SAFETY: `self` is only made where these features were found; what is
-        // stored to is in the slice.
+        // stored to are eight entries from `at` on, which the slice has.
         unsafe {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let (mut left, mut at) = (samples, first);
             while left != 0 {
-                if at + 8 > rows.len() {
+                if rows.len().saturating_sub(at) < 8 {
                     return Scalar.put(rows, at, width, left, value);
                 }
                 let row = _mm256_and_si256(_mm256_set1_epi32(left as i32), bits);
                 let mask = _mm256_cmpeq_epi32(row, bits);
                 _mm256_maskstore_epi32(rows.as_mut_ptr().add(at).cast(), mask, value_lanes);
                 left >>= 8;
-                at += width;
+                at = at.wrapping_add(width);
             }
         }
     }
@@ -283,7 +283,7 @@ impl Isa for Avx2 {
         self,
         tables: &[[i16; 64]; STRIPS],
         start: __m256i,
-        half_width: &[i32; LANES],
+        bound: &[i32; LANES],
     ) -> u64 {
         // SAFETY: `self` is only made where these features were found; the
         // loads are of four times 16 entries, all that a table has.
@@ -293,7 +293,7 @@ impl Isa for Avx2 {
             let mut samples = [_mm256_set1_epi8(-1); 4];
             for f in 0..STRIPS {
                 let start = _mm256_broadcastw_epi16(starts[f]);
-                let width = _mm256_set1_epi16((2 * half_width[f]) as i16);
+                let width = _mm256_set1_epi16((2 * bound[f]) as i16);
                 for part in 0..4 {
                     let entries = _mm256_loadu_si256(tables[f].as_ptr().add(16 * part).cast());
                     let value = _mm256_add_epi16(start, entries);
@@ -422,18 +422,18 @@ impl Isa for Avx512 {
     #[inline(always)]
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
         // SAFETY: `self` is only made where these features were found; what is
-        // stored to is in the slice.
+        // stored to are eight entries from `at` on, which the slice has.
         unsafe {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let (mut left, mut at) = (samples, first);
             while left != 0 {
-                if at + 8 > rows.len() {
+                if rows.len().saturating_sub(at) < 8 {
                     return Scalar.put(rows, at, width, left, value);
                 }
                 let row = rows.as_mut_ptr().add(at).cast();
                 _mm256_mask_storeu_epi32(row, left as u8, value_lanes);
                 left >>= 8;
-                at += width;
+                at = at.wrapping_add(width);
             }
         }
     }
@@ -443,7 +443,7 @@ impl Isa for Avx512 {
         self,
         tables: &[[i16; 64]; STRIPS],
         start: __m256i,
-        half_width: &[i32; LANES],
+        bound: &[i32; LANES],
     ) -> u64 {
         // SAFETY: `self` is only made where these features were found; the
         // loads are of twice 32 entries, all that a table has.
@@ -453,7 +453,7 @@ impl Isa for Avx512 {
             let (mut upper, mut lower) = (u32::MAX, u32::MAX);
             for f in 0..STRIPS {
                 let start = _mm512_broadcastw_epi16(starts[f]);
-                let width = _mm512_set1_epi16((2 * half_width[f]) as i16);
+                let width = _mm512_set1_epi16((2 * bound[f]) as i16);
                 let table = tables[f].as_ptr();
                 let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.cast()));
                 upper = _mm512_mask_cmple_epu16_mask(upper, value, width);
