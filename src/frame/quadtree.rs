@@ -54,9 +54,24 @@ pub struct FillVectors {
     empty_picture: Vec<u8>,
 }
 
-/// Place of a level's first node among all nodes: `(4^level - 1) / 3`.
+/// Levels that a picture can have, and one more, for the number of its nodes.
+const LEVELS: usize = 32;
+
+/// Place of each level's first node among all nodes: `(4^level - 1) / 3`.
+const LEVEL_STARTS: [usize; LEVELS] = {
+    let mut starts = [0; LEVELS];
+    let mut level = 1;
+    while level < LEVELS {
+        starts[level] = 4 * starts[level - 1] + 1;
+        level += 1;
+    }
+    starts
+};
+
+/// Place of a level's first node among all nodes.
+#[inline(always)]
 const fn level_start(level: u32) -> usize {
-    ((1 << (2 * level)) - 1) / 3
+    LEVEL_STARTS[level as usize % LEVELS]
 }
 
 /// Nodes of the image quadtree from its root to the samples, at level `levels`.
@@ -124,7 +139,14 @@ impl FillVectors {
     #[inline]
     #[must_use]
     pub fn vector(&self, node: QuadNode) -> u8 {
-        self.vectors[self.address(node)]
+        self.at(self.address(node))
+    }
+
+    /// The fill vector at an address.
+    #[inline]
+    #[must_use]
+    pub fn at(&self, address: usize) -> u8 {
+        self.vectors[address]
     }
 
     /// Sets bits of a node's vector and returns the vector.

@@ -40,6 +40,9 @@ pub(super) struct Constants {
     pub(super) level_bound: u32,
     /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
+    /// Places to the left, then to the right, by which a number of half
+    /// samples becomes a screen position: one less than `screen_frac`.
+    pub(super) half_sample_places: [u32; 2],
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
     /// Like `margin`, for tests that never leave gaps (edges of the picture).
@@ -141,6 +144,7 @@ impl Constants {
             sub_levels: setup.sub_levels,
             level_bound: setup.level_bound(),
             screen_frac,
+            half_sample_places: [screen_frac.saturating_sub(1), u32::from(screen_frac == 0)],
             finite_tolerance: options.tolerance_px.is_finite(),
             margin: match setup.grow_shift {
                 _ if gap => Margin::Gap(setup.size_limit.clone()),

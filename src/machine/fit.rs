@@ -9,7 +9,7 @@ use hwmodel::{Datapath, Memory, Probe, Short, Stage, WideWord, Word};
 
 use super::constants::{Constants, Margin};
 use super::lattice::Lattice;
-use super::record::{Clip, Planes, Screen};
+use super::record::{Clip, Planes, Spans};
 use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use super::taps::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
 use crate::frame::quadtree::FULL;
@@ -22,12 +22,21 @@ struct Halves {
     high: bool,
 }
 
+impl Halves {
+    /// The low half in bit 0, the high one in bit 1.
+    #[inline(always)]
+    fn bits(self) -> usize {
+        usize::from(self.low) | usize::from(self.high) << 1
+    }
+}
+
 /// The four quadrants (`y << 1 | x`) that halves along x and y leave. Four
 /// gates on the comparators' outputs, a part of the 4-bit and that follows.
+#[inline]
 fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
-    let across = (u8::from(x.low) * 0b0101) | (u8::from(x.high) * 0b1010);
-    let down = (u8::from(y.low) * 0b0011) | (u8::from(y.high) * 0b1100);
-    let both = across & down;
+    const ACROSS: [u8; 4] = [0, 0b0101, 0b1010, FULL];
+    const DOWN: [u8; 4] = [0, 0b0011, 0b1100, FULL];
+    let both = ACROSS[x.bits()] & DOWN[y.bits()];
     dp.tap(
         Block::Quadrants,
         &(x.low, x.high, y.low, y.high),
@@ -50,8 +59,9 @@ impl Fill<'_> {
         if !self.reject {
             return quadrants == 0;
         }
-        dp.read(Memory::FillVector, self.vectors.address(quad) as u64);
-        let vector = self.vectors.vector(quad);
+        let address = self.vectors.address(quad);
+        dp.read(Memory::FillVector, address as u64);
+        let vector = self.vectors.at(address);
         let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
         let choice = only(quadrants);
         dp.tap(
@@ -416,36 +426,37 @@ pub(super) fn clip_in_quadrant<P: Probe, L: Lattice>(
 }
 
 /// The quadrants of a node that a screen-space box overlaps.
-pub(super) fn screen_quadrants<P: Probe, L: Lattice>(
+#[inline(always)]
+pub(super) fn screen_quadrants<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,
-    pose: &Screen<L>,
+    spans: &Spans,
 ) -> u8 {
     let below = constants.levels - quad.level;
-    let x = screen_halves(dp, constants, below, quad.x, pose.x_span);
-    let y = screen_halves(dp, constants, below, quad.y, pose.y_span);
+    let x = screen_halves(dp, constants, below, quad.x, spans[0]);
+    let y = screen_halves(dp, constants, below, quad.y, spans[1]);
     quadrants(dp, x, y)
 }
 
 /// Fits a screen-space voxel. `None`: rejected.
-pub(super) fn screen<P: Probe, L: Lattice>(
+pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &Fill<'_>,
     place: &Place,
-    pose: &Screen<L>,
+    spans: &Spans,
 ) -> Option<Place> {
     dp.stage(Stage::QuadtreeFit);
     let mut quad = place.quad;
     let inside = place.inside
-        || match screen_border(dp, constants, quad, pose) {
+        || match screen_border(dp, constants, quad, spans) {
             Border::Outside => return None,
             Border::Across => false,
             Border::Inside => true,
         };
     loop {
-        let overlapped = screen_quadrants(dp, constants, quad, pose);
+        let overlapped = screen_quadrants(dp, constants, quad, spans);
         if fill.rejects(dp, quad, overlapped) {
             return None;
         }
@@ -570,14 +581,11 @@ fn strips_border<P: Probe>(
 
 /// A position on the picture in half samples, as a screen-space word: wires.
 fn at_half_samples(constants: &Constants, half_samples: i64) -> Word {
-    let shifted = if constants.screen_frac > 0 {
-        half_samples << (constants.screen_frac - 1)
-    } else {
-        half_samples >> 1
-    };
-    Word::from_host(shifted)
+    let [left, right] = constants.half_sample_places;
+    Word::from_host(half_samples << left >> right)
 }
 
+#[inline(always)]
 fn screen_halves<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -623,15 +631,15 @@ fn screen_halves<P: Probe>(
     halves
 }
 
-fn screen_border<P: Probe, L: Lattice>(
+fn screen_border<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,
-    pose: &Screen<L>,
+    &[x, y]: &Spans,
 ) -> Border {
     let below = constants.levels - quad.level;
     let mut inside = true;
-    for (column, (low, high)) in [(quad.x, pose.x_span), (quad.y, pose.y_span)] {
+    for (column, (low, high)) in [(quad.x, x), (quad.y, y)] {
         let left = at_half_samples(constants, i64::from(column) << (below + 1));
         let right = at_half_samples(constants, i64::from(column + 1) << (below + 1));
         let outside = dp.lt(high, left) || dp.lt(right, low);

@@ -13,9 +13,25 @@ pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
-    /// The eight children's lattices, in Morton order; their vertices lie
-    /// between this lattice's.
-    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8];
+    /// The children's vertices, as [`Self::pool`] has made them.
+    type Pool: Copy;
+
+    /// All numbers of the children's lattices; their vertices lie between this
+    /// lattice's.
+    fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
+
+    /// The lattice of one child: wires.
+    fn child(pool: &Self::Pool, octant: usize) -> Self;
+
+    /// The children's lattices, in Morton order: wires.
+    fn all(pool: &Self::Pool) -> [Self; 8] {
+        std::array::from_fn(|octant| Self::child(pool, octant))
+    }
+
+    /// The eight children's lattices, in Morton order.
+    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+        Self::all(&self.pool(dp))
+    }
 
     /// The least and the greatest vertex.
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word);
@@ -78,6 +94,8 @@ impl Corners {
 }
 
 impl Lattice for Corners {
+    type Pool = [Word; 27];
+
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
         Self(parallelepiped(dp, corner, edges))
     }
@@ -86,7 +104,7 @@ impl Lattice for Corners {
     /// axis by axis, 4 midpoints along x, 6 along y, 9 along z. The order is
     /// normative: rounding makes others differ in the last bit.
     #[inline]
-    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+    fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
         let mut pool = [Word::ZERO; 27];
         for (corner, &value) in self.0.iter().enumerate() {
@@ -111,13 +129,18 @@ impl Lattice for Corners {
                 pool[at + 1] = dp.midpoint(pool[at], pool[at + 2]);
             }
         }
-        std::array::from_fn(|child| {
-            let (i, j, k) = (child >> 2, child >> 1 & 1, child & 1);
-            Self(std::array::from_fn(|corner| {
-                let (a, b, c) = (corner >> 2, corner >> 1 & 1, corner & 1);
-                pool[9 * (i + a) + 3 * (j + b) + k + c]
-            }))
-        })
+        pool
+    }
+
+    #[inline]
+    fn child(pool: &[Word; 27], octant: usize) -> Self {
+        // Where the child's lowest corner is; the limit saves the checks.
+        const LOWEST: [u8; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
+        let low = usize::from(LOWEST[octant & 7]);
+        Self(std::array::from_fn(|corner| {
+            let (a, b, c) = (corner >> 2, corner >> 1 & 1, corner & 1);
+            pool[low + 9 * a + 3 * b + c]
+        }))
     }
 
     #[inline]
@@ -184,6 +207,9 @@ impl Wires for Frame {
 }
 
 impl Lattice for Frame {
+    /// The children's corners, and the edges that they share.
+    type Pool = ([Word; 8], [Word; 3]);
+
     fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
         Self { corner, edges }
     }
@@ -192,12 +218,20 @@ impl Lattice for Frame {
     /// shift), so that children never leave their parent; seven adds make the
     /// eight corners.
     #[inline]
-    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+    fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
         let edges = self.edges.map(|edge| {
             let sign = Word::from_host(i64::from(dp.bit(edge, 63)));
             dp.midpoint(edge, sign)
         });
-        parallelepiped(dp, self.corner, edges).map(|corner| Self { corner, edges })
+        (parallelepiped(dp, self.corner, edges), edges)
+    }
+
+    #[inline]
+    fn child(&(corners, edges): &Self::Pool, octant: usize) -> Self {
+        Self {
+            corner: corners[octant & 7],
+            edges,
+        }
     }
 
     #[inline]

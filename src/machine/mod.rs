@@ -21,6 +21,7 @@ mod fit;
 mod lattice;
 #[cfg(test)]
 mod mutants;
+mod open;
 mod planes;
 mod positions;
 mod record;

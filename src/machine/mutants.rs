@@ -49,11 +49,13 @@ impl<L: Wires, const INJURY: u8> Wires for Hurt<L, INJURY> {
 }
 
 impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
+    type Pool = [L; 8];
+
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
         Self(L::from_frame(dp, corner, edges))
     }
 
-    fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
+    fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
         let one = Word::from_host(1);
         let mut children = self.0.children(dp);
         match INJURY {
@@ -74,7 +76,11 @@ impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
             }
             _ => {}
         }
-        children.map(Self)
+        children
+    }
+
+    fn child(pool: &[L; 8], octant: usize) -> Self {
+        Self(pool[octant])
     }
 
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {

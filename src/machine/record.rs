@@ -11,7 +11,8 @@ use crate::frame::QuadNode;
 pub(super) enum Pose<L> {
     /// In clip space, exact; `x` and `y` are relative to the record's
     /// quadtree node: 0 is its left (upper) edge, `w` its right (lower) one.
-    Clip(Clip<L>),
+    /// The planes are in use under the exact rule.
+    Clip(Clip<L>, Planes),
     /// In screen space, an approximation; whole-picture samples with the
     /// format's fraction bits.
     Screen(Screen<L>),
@@ -35,10 +36,11 @@ pub(super) struct Clip<L> {
 pub(super) struct Screen<L> {
     pub(super) x: L,
     pub(super) y: L,
-    /// Least and greatest x, least and greatest y.
-    pub(super) x_span: (Word, Word),
-    pub(super) y_span: (Word, Word),
+    pub(super) spans: Spans,
 }
+
+/// Least and greatest x, least and greatest y, in screen space.
+pub(super) type Spans = [(Word, Word); 2];
 
 /// Silhouette planes of a clip-space voxel under the exact rule
 /// (`SPEC.md`, "Exact coverage"); relative to the quadtree node: a function
@@ -76,8 +78,6 @@ pub(super) struct Record<L> {
     pub(super) inside: bool,
     /// Projected vertices.
     pub(super) pose: Pose<L>,
-    /// Silhouette planes, in use under the exact rule in clip space.
-    pub(super) planes: Planes,
 }
 
 impl<L> Record<L> {

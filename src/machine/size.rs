@@ -51,19 +51,19 @@ fn magnitude<P: Probe>(dp: &mut Datapath<P>, a: Word) -> Word {
 }
 
 /// Whether a screen-space voxel's box is at most `limit` wide and high.
+#[inline]
 pub(super) fn screen_at_most<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
     screen: &Screen<L>,
     limit: Word,
 ) -> bool {
-    [screen.x_span, screen.y_span]
-        .into_iter()
-        .all(|(low, high)| {
-            let size = dp.sub(high, low);
-            let fits = dp.le(size, limit);
-            dp.tap(Block::SizeScreen, &(low, high, limit), &fits);
-            fits
-        })
+    let mut fits = |(low, high): (Word, Word)| {
+        let size = dp.sub(high, low);
+        let fits = dp.le(size, limit);
+        dp.tap(Block::SizeScreen, &(low, high, limit), &fits);
+        fits
+    };
+    fits(screen.spans[0]) && fits(screen.spans[1])
 }
 
 /// The sample that holds a clip-space voxel's centre, by bisection from its

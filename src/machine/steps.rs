@@ -246,7 +246,7 @@ impl<L: Lattice> cycles::Workload for Steps<'_, L> {
         } = self.waiting[item as usize];
         self.free.push(item);
         self.lattices.take_up(lattice, &mut self.walk.subtree);
-        let in_clip_space = matches!(record.pose, Pose::Clip(_));
+        let in_clip_space = matches!(record.pose, Pose::Clip(..));
         let min = record.min;
         self.walk.turn(record);
         self.trap()?;

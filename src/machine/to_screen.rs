@@ -55,8 +55,7 @@ pub(super) fn change<P: Probe, L: Lattice>(
     Screen {
         x,
         y,
-        x_span,
-        y_span,
+        spans: [x_span, y_span],
     }
 }
 

@@ -59,14 +59,12 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             && record.quad.level < self.constants.levels
             && !self.crosses_near(record)
             && self.is_at_most_a_sample(record)
-            && self
-                .first_open(record.quad, record.level, &record.pose)
-                .is_none()
+            && self.first_open(record).is_none()
     }
 
     /// Whether a record lies across the near plane and hardly beyond it.
     fn is_sliver_at_near(&mut self, record: &Record<L>) -> bool {
-        let Pose::Clip(clip) = &record.pose else {
+        let Pose::Clip(clip, _) = &record.pose else {
             return false;
         };
         if !self.dp.lt(clip.w_min, self.constants.near) {
@@ -80,7 +78,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// Whether screen positions cannot part a record's vertices any more.
     fn is_least(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
-            Pose::Clip(_) | Pose::Strips(_) => false,
+            Pose::Clip(..) | Pose::Strips(_) => false,
             Pose::Screen(screen) => {
                 size::screen_at_most(&mut self.dp, screen, self.constants.least_size_screen)
             }
@@ -134,7 +132,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
         let c = &self.constants;
         record.solid = match &record.pose {
-            Pose::Clip(clip) => c
+            Pose::Clip(clip, _) => c
                 .lod_depth
                 .get(record.level as usize)
                 .copied()
@@ -155,7 +153,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 
     fn crosses_near(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
-            Pose::Clip(clip) => self.dp.lt(clip.w_min, self.constants.near),
+            Pose::Clip(clip, _) => self.dp.lt(clip.w_min, self.constants.near),
             Pose::Screen(_) | Pose::Strips(_) => false,
         }
     }
@@ -164,7 +162,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     fn is_at_most_a_sample(&mut self, record: &Record<L>) -> bool {
         let c = &self.constants;
         match &record.pose {
-            Pose::Clip(clip) => {
+            Pose::Clip(clip, _) => {
                 let below = c.levels - record.quad.level;
                 size::clip_at_most(&mut self.dp, clip, &c.size_limit, below)
             }

@@ -7,10 +7,11 @@ use super::constants::Constants;
 use super::draw::Canvas;
 use super::fit::{self, Place};
 use super::lattice::Lattice;
+use super::open::{self, InSubtree};
 use super::planes::{self, Cube, PlaneSilhouette};
 use super::record::{Clip, Planes, Pose, Record, Screen};
 use super::size;
-use super::strips::{ACROSS, DOWN, StripSilhouette, Strips, Subtree};
+use super::strips::{StripSilhouette, Strips, Subtree};
 use super::taps::Block;
 use super::to_screen;
 use super::verdict::Verdict;
@@ -151,11 +152,13 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             solid: false,
             quad: QuadNode::ROOT,
             inside: false,
-            pose: Pose::Clip(Clip { x, y, w, w_min }),
-            planes: Planes {
-                edge: c.edge_planes,
-                axis_c: c.axis_c,
-            },
+            pose: Pose::Clip(
+                Clip { x, y, w, w_min },
+                Planes {
+                    edge: c.edge_planes,
+                    axis_c: c.axis_c,
+                },
+            ),
         };
         self.push_if_seen(record, w_max);
     }
@@ -183,18 +186,11 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             return;
         }
         let place = record.place();
-        let Pose::Clip(clip) = &mut record.pose else {
+        let Pose::Clip(clip, planes) = &mut record.pose else {
             return;
         };
         let fill = self.canvas.seen_by_fit(self.options.reject_filled);
-        let found = fit::clip(
-            &mut self.dp,
-            &self.constants,
-            &fill,
-            &place,
-            clip,
-            &mut record.planes,
-        );
+        let found = fit::clip(&mut self.dp, &self.constants, &fill, &place, clip, planes);
         self.push_at(record, found);
     }
 
@@ -235,7 +231,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             }
         }
 
-        if let Pose::Clip(clip) = &record.pose {
+        if let Pose::Clip(clip, _) = &record.pose {
             let place = record.place();
             if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
@@ -274,70 +270,26 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// Draws a record at every sample that its box overlaps.
     fn draw_box(&mut self, record: &Record<L>) {
         let seen = self.seen(record);
-        while let Some(sample) = self.first_open(record.quad, record.level, &record.pose) {
+        while let Some(sample) = self.first_open(record) {
             self.canvas.draw(&mut self.dp, sample, record.node, seen);
         }
     }
 
-    /// The first sample of a node that a box overlaps and that is not drawn
-    /// yet. Unlike the fit it goes on where a box lies across a bisector.
-    pub(super) fn first_open(
-        &mut self,
-        quad: QuadNode,
-        level: u32,
-        pose: &Pose<L>,
-    ) -> Option<QuadNode> {
-        self.dp.stage(Stage::QuadtreeFit);
-        let fill = &self.canvas.fill;
-        self.dp.read(Memory::FillVector, fill.address(quad) as u64);
-        let open = !fill.vector(quad) & FULL;
-        if quad.level == self.constants.levels {
-            return (open != 0).then_some(quad);
-        }
-        let below = self.constants.levels - quad.level;
-        let (overlapped, far) = match pose {
-            Pose::Clip(clip) => {
-                let (overlapped, far) =
-                    fit::clip_quadrants(&mut self.dp, &self.constants, quad, clip);
-                (overlapped, Some(far))
-            }
-            Pose::Screen(screen) => {
-                let overlapped = fit::screen_quadrants(&mut self.dp, &self.constants, quad, screen);
-                (overlapped, None)
-            }
+    /// The first sample of a record's box that is not drawn yet.
+    pub(super) fn first_open(&mut self, record: &Record<L>) -> Option<QuadNode> {
+        let fill = self.canvas.seen_by_fit(true);
+        let (dp, constants, quad) = (&mut self.dp, &self.constants, record.quad);
+        match &record.pose {
+            Pose::Clip(clip, _) => open::first(dp, constants, &fill, quad, clip),
+            Pose::Screen(screen) => open::first(dp, constants, &fill, quad, &screen.spans),
             Pose::Strips(strips) => {
-                let subtree = self.subtree.as_ref()?;
-                let widths = [ACROSS, DOWN].map(|f| subtree.half_width(&mut self.dp, f, level));
-                let overlapped =
-                    fit::strips_quadrants(&mut self.dp, subtree, widths, below, strips);
-                (overlapped, None)
+                let in_subtree = InSubtree {
+                    subtree: self.subtree.as_ref()?,
+                    level: record.level,
+                    strips: *strips,
+                };
+                open::first(dp, constants, &fill, quad, &in_subtree)
             }
-        };
-        let candidates = self.dp.and_bits(4, overlapped, open);
-        (0..4)
-            .filter(|quadrant| candidates >> quadrant & 1 != 0)
-            .find_map(|quadrant| {
-                let inner = self.in_quadrant(pose, quadrant, below, far);
-                self.first_open(quad.quadrant(quadrant), level, &inner)
-            })
-    }
-
-    /// A pose relative to a quadrant of its node; `far`: as [`fit::clip_quadrants`] has it.
-    fn in_quadrant(
-        &mut self,
-        pose: &Pose<L>,
-        quadrant: u8,
-        below: u32,
-        far: Option<[L; 2]>,
-    ) -> Pose<L> {
-        match (pose, far, &self.subtree) {
-            (Pose::Clip(clip), Some(far), _) => {
-                Pose::Clip(fit::clip_in_quadrant(&mut self.dp, clip, quadrant, far))
-            }
-            (Pose::Strips(strips), _, Some(subtree)) => {
-                Pose::Strips(subtree.in_quadrant(&mut self.dp, strips, quadrant, below))
-            }
-            _ => *pose,
         }
     }
 
@@ -346,7 +298,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     fn draw_centre(&mut self, record: &Record<L>) {
         self.dp.stage(Stage::Draw);
         let sample = match &record.pose {
-            Pose::Clip(clip) => {
+            Pose::Clip(clip, _) => {
                 let w = clip.w.centre(&mut self.dp);
                 self.dp.tap(Block::CageCentre, &clip.w, &w);
                 if self.dp.lt(w, self.constants.near) {
@@ -371,9 +323,9 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.dp.stage(Stage::Draw);
         let seen = self.seen(record);
         match &record.pose {
-            Pose::Clip(clip) => {
+            Pose::Clip(clip, planes) => {
                 let cube = Cube {
-                    planes: &record.planes,
+                    planes,
                     level: record.level,
                     min: record.min,
                     max: record.max,
@@ -433,15 +385,16 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         );
 
         self.dp.stage(Stage::VertexPool);
-        let poses: Poses<L> = match &record.pose {
-            Pose::Clip(clip) => Poses::Clip {
-                x: clip.x.children(&mut self.dp),
-                y: clip.y.children(&mut self.dp),
-                w: clip.w.children(&mut self.dp),
+        let poses: Poses<'_, L> = match &record.pose {
+            Pose::Clip(clip, planes) => Poses::Clip {
+                x: clip.x.pool(&mut self.dp),
+                y: clip.y.pool(&mut self.dp),
+                w: clip.w.pool(&mut self.dp),
+                planes,
             },
             Pose::Screen(screen) => Poses::Screen {
-                x: screen.x.children(&mut self.dp),
-                y: screen.y.children(&mut self.dp),
+                x: screen.x.pool(&mut self.dp),
+                y: screen.y.pool(&mut self.dp),
             },
             Pose::Strips(strips) => {
                 let Some(subtree) = &self.subtree else { return };
@@ -464,16 +417,19 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 
     /// Shows the children's cages as they come from the vertex pool.
     #[inline(always)]
-    fn tap_vertices(&mut self, parent: &Pose<L>, children: &Poses<L>) {
+    fn tap_vertices(&mut self, parent: &Pose<L>, children: &Poses<'_, L>) {
+        if !P::TAPS {
+            return;
+        }
         match (parent, children) {
-            (Pose::Clip(clip), Poses::Clip { x, y, w }) => {
-                self.dp.tap(Block::VertexPool, &clip.x, x);
-                self.dp.tap(Block::VertexPool, &clip.y, y);
-                self.dp.tap(Block::VertexPool, &clip.w, w);
+            (Pose::Clip(clip, _), Poses::Clip { x, y, w, .. }) => {
+                self.dp.tap(Block::VertexPool, &clip.x, &L::all(x));
+                self.dp.tap(Block::VertexPool, &clip.y, &L::all(y));
+                self.dp.tap(Block::VertexPool, &clip.w, &L::all(w));
             }
             (Pose::Screen(screen), Poses::Screen { x, y }) => {
-                self.dp.tap(Block::VertexPool, &screen.x, x);
-                self.dp.tap(Block::VertexPool, &screen.y, y);
+                self.dp.tap(Block::VertexPool, &screen.x, &L::all(x));
+                self.dp.tap(Block::VertexPool, &screen.y, &L::all(y));
             }
             // A lattice's children are shown function by function.
             _ => {}
@@ -486,7 +442,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         octant: u8,
         node: u32,
         centre: &[Word; 3],
-        poses: &Poses<L>,
+        poses: &Poses<'_, L>,
     ) {
         self.dp.stage(Stage::ChildBox);
         let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
@@ -499,7 +455,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         );
         let level = parent.level + 1;
         let child = octant as usize;
-        let record = |pose, planes| Record {
+        let record = |pose| Record {
             min,
             max,
             node,
@@ -513,45 +469,36 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             quad: parent.quad,
             inside: parent.inside,
             pose,
-            planes,
         };
         match poses {
-            Poses::Clip { x, y, w } => {
-                let (w_min, w_max) = w[child].span(&mut self.dp);
+            Poses::Clip { x, y, w, planes } => {
+                let w = L::child(w, child);
+                let (w_min, w_max) = w.span(&mut self.dp);
                 let clip = Clip {
-                    x: x[child],
-                    y: y[child],
-                    w: w[child],
+                    x: L::child(x, child),
+                    y: L::child(y, child),
+                    w,
                     w_min,
                 };
                 self.dp.tap(Block::ChildSpan, &clip.w, &(w_min, w_max));
                 let planes = if self.constants.coverage == Coverage::Exact {
                     self.dp.stage(Stage::VertexPool);
-                    planes::of_child(
-                        &mut self.dp,
-                        &self.constants,
-                        &parent.planes,
-                        parent.level,
-                        octant,
-                    )
+                    planes::of_child(&mut self.dp, &self.constants, planes, parent.level, octant)
                 } else {
-                    parent.planes
+                    **planes
                 };
-                self.push_if_seen(record(Pose::Clip(clip), planes), w_max);
+                self.push_if_seen(record(Pose::Clip(clip, planes)), w_max);
             }
             Poses::Screen { x, y } => {
-                let screen = Screen {
-                    x: x[child],
-                    y: y[child],
-                    x_span: x[child].span(&mut self.dp),
-                    y_span: y[child].span(&mut self.dp),
-                };
-                self.dp.tap(Block::ChildSpan, &screen.x, &screen.x_span);
-                self.dp.tap(Block::ChildSpan, &screen.y, &screen.y_span);
+                let (x, y) = (L::child(x, child), L::child(y, child));
+                let spans = [x, y].map(|lattice| lattice.span(&mut self.dp));
+                self.dp.tap(Block::ChildSpan, &x, &spans[0]);
+                self.dp.tap(Block::ChildSpan, &y, &spans[1]);
                 let fill = self.canvas.seen_by_fit(self.options.reject_filled);
                 let place = parent.place();
-                let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &screen);
-                self.push_at(record(Pose::Screen(screen), parent.planes), found);
+                let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &spans);
+                let pose = Pose::Screen(Screen { x, y, spans });
+                self.push_at(record(pose), found);
             }
             Poses::Strips(strips) => {
                 let Some(subtree) = &self.subtree else { return };
@@ -566,7 +513,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                     (subtree, level),
                     &mut strips,
                 );
-                self.push_at(record(Pose::Strips(strips), parent.planes), found);
+                self.push_at(record(Pose::Strips(strips)), found);
             }
         }
     }
@@ -577,8 +524,16 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     clippy::large_enum_variant,
     reason = "lives for one subdivision, on the stack"
 )]
-enum Poses<L> {
-    Clip { x: [L; 8], y: [L; 8], w: [L; 8] },
-    Screen { x: [L; 8], y: [L; 8] },
+enum Poses<'p, L: Lattice> {
+    Clip {
+        x: L::Pool,
+        y: L::Pool,
+        w: L::Pool,
+        planes: &'p Planes,
+    },
+    Screen {
+        x: L::Pool,
+        y: L::Pool,
+    },
     Strips([Strips; 8]),
 }

@@ -89,7 +89,7 @@ const SHOWN: [Allowed; 8] = [
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
-const PRODUCTS: [Allowed; 16] = [
+const PRODUCTS: [Allowed; 14] = [
     allowed(
         "constants.rs",
         "i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])",
@@ -122,16 +122,6 @@ const PRODUCTS: [Allowed; 16] = [
     ),
     allowed(
         "fit.rs",
-        "let across = (u8::from(x.low) * 0b0101) | (u8::from(x.high) * 0b1010);",
-        "one bit led to two places: wires",
-    ),
-    allowed(
-        "fit.rs",
-        "let down = (u8::from(y.low) * 0b0011) | (u8::from(y.high) * 0b1100);",
-        "one bit led to two places: wires",
-    ),
-    allowed(
-        "fit.rs",
         "let bisector = i64::from(2 * column + 1) << below;",
         HALF_SAMPLES,
     ),
@@ -139,11 +129,7 @@ const PRODUCTS: [Allowed; 16] = [
     allowed("lattice.rs", "let at = 3 * j + k;", INDEX),
     allowed("lattice.rs", "let at = 9 * i + k;", INDEX),
     allowed("lattice.rs", "let at = 9 * i + 3 * j;", INDEX),
-    allowed(
-        "lattice.rs",
-        "pool[9 * (i + a) + 3 * (j + b) + k + c]",
-        INDEX,
-    ),
+    allowed("lattice.rs", "pool[low + 9 * a + 3 * b + c]", INDEX),
     allowed(
         "planes.rs",
         "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",

@@ -1,0 +1,143 @@
+//! The first sample of a box that is not drawn yet.
+//!
+//! Unlike the fit this goes on where a box lies across a bisector.
+
+use hwmodel::{Datapath, Memory, Probe, Stage};
+
+use super::constants::Constants;
+use super::fit::{self, Fill};
+use super::lattice::Lattice;
+use super::record::{Clip, Spans};
+use super::strips::{ACROSS, DOWN, Strips, Subtree};
+use crate::frame::QuadNode;
+use crate::frame::quadtree::FULL;
+
+/// A voxel's box in the image, relative to a quadtree node.
+pub(super) trait ImageBox: Sized {
+    /// What the test of a node leaves for its quadrants.
+    type Tested: Copy;
+
+    /// The quadrants of `quad` that the box overlaps.
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, Self::Tested);
+
+    /// The box relative to a quadrant of a node `below` levels above the samples.
+    fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quadrant: u8,
+        below: u32,
+        tested: Self::Tested,
+    ) -> Self;
+}
+
+/// The first sample of `quad` that a box overlaps and that is not drawn yet.
+pub(super) fn first<P: Probe, B: ImageBox>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &Fill<'_>,
+    quad: QuadNode,
+    of: &B,
+) -> Option<QuadNode> {
+    dp.stage(Stage::QuadtreeFit);
+    let address = fill.vectors.address(quad);
+    dp.read(Memory::FillVector, address as u64);
+    let open = !fill.vectors.at(address) & FULL;
+    if quad.level == constants.levels {
+        return (open != 0).then_some(quad);
+    }
+    let (overlapped, tested) = of.quadrants(dp, constants, quad);
+    let mut candidates = dp.and_bits(4, overlapped, open);
+    while candidates != 0 {
+        let quadrant = candidates.trailing_zeros() as u8;
+        candidates &= candidates - 1;
+        let inner = of.in_quadrant(dp, quadrant, constants.levels - quad.level, tested);
+        let found = first(dp, constants, fill, quad.quadrant(quadrant), &inner);
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}
+
+impl<L: Lattice> ImageBox for Clip<L> {
+    type Tested = [L; 2];
+
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, [L; 2]) {
+        fit::clip_quadrants(dp, constants, quad, self)
+    }
+
+    fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quadrant: u8,
+        _: u32,
+        far: [L; 2],
+    ) -> Self {
+        fit::clip_in_quadrant(dp, self, quadrant, far)
+    }
+}
+
+/// Positions in the picture, which are the same in every node.
+impl ImageBox for Spans {
+    type Tested = ();
+
+    #[inline]
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, ()) {
+        (fit::screen_quadrants(dp, constants, quad, self), ())
+    }
+
+    #[inline]
+    fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, _: u32, (): ()) -> Self {
+        *self
+    }
+}
+
+/// A place in a lattice of screen space.
+pub(super) struct InSubtree<'s> {
+    pub(super) subtree: &'s Subtree,
+    /// Octree level of the record.
+    pub(super) level: u32,
+    pub(super) strips: Strips,
+}
+
+impl ImageBox for InSubtree<'_> {
+    type Tested = ();
+
+    fn quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        constants: &Constants,
+        quad: QuadNode,
+    ) -> (u8, ()) {
+        let below = constants.levels - quad.level;
+        let widths = [ACROSS, DOWN].map(|f| self.subtree.half_width(dp, f, self.level));
+        let overlapped = fit::strips_quadrants(dp, self.subtree, widths, below, &self.strips);
+        (overlapped, ())
+    }
+
+    fn in_quadrant<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quadrant: u8,
+        below: u32,
+        (): (),
+    ) -> Self {
+        let strips = self.subtree.in_quadrant(dp, &self.strips, quadrant, below);
+        Self { strips, ..*self }
+    }
+}
