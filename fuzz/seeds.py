@@ -1,5 +1,7 @@
-"""Writes small seed files for the three input targets into corpus/; run in fuzz/."""
+"""Writes small seed files for the targets vox, ply, npy, gltf and mesh into corpus/; run in fuzz/."""
 
+import base64
+import json
 import pathlib
 import struct
 
@@ -53,7 +55,72 @@ NPY = {
     "color": npy(3, b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 7), }", bytes(14)),
 }
 
-for target, seeds in {"vox": VOX, "ply": PLY, "npy": NPY}.items():
+# A triangle and a square of two: positions, normals, indices.
+BUFFER = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 2) + struct.pack("<12f", *(0, 0, 1) * 4) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
+
+
+def gltf(**more):
+    """The same mesh, with a node that scales and one that turns it."""
+    document = {
+        "asset": {"version": "2.0"},
+        "buffers": [{"byteLength": len(BUFFER)}],
+        "bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 48}, {"buffer": 0, "byteOffset": 96, "byteLength": 12}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 1, "componentType": 5126, "count": 4, "type": "VEC3"},
+            {"bufferView": 2, "componentType": 5123, "count": 6, "type": "SCALAR"},
+        ],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 0}]}],
+        "nodes": [{"mesh": 0, "scale": [2, 1, 1], "children": [1]}, {"mesh": 0, "rotation": [0, 0, 0.7071068, 0.7071068], "translation": [3, 0, 0]}],
+        "scenes": [{"nodes": [0]}],
+        "scene": 0,
+    }
+    document.update(more)
+    return document
+
+
+def text(document):
+    return json.dumps(document, separators=(",", ":")).encode()
+
+
+def glb(document):
+    """The target's own way: two bytes, of which the second, times 16, says where the buffer begins, itself counted."""
+    body = text(document)
+    cut = (len(body) + 1 + 15) // 16
+    return bytes([1, cut]) + body.ljust(16 * cut - 1) + BUFFER
+
+
+INSIDE = {"byteLength": len(BUFFER), "uri": "data:application/octet-stream;base64," + base64.b64encode(BUFFER).decode()}
+STRIP = [{"primitives": [{"attributes": {"POSITION": 0}, "mode": 5}]}]
+COLORS = [{"primitives": [{"attributes": {"POSITION": 0, "COLOR_0": 1}, "mode": 6}]}]
+SMALL = {"materials": [{}], "nodes": [{"mesh": 0, "matrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]}
+GLTF = {
+    "inside": b"\0" + text(gltf(buffers=[INSIDE])),
+    "strip": b"\0" + text(gltf(buffers=[INSIDE], meshes=STRIP)),
+    "none": b"\0" + text({"asset": {"version": "2.0"}}),
+    "binary": glb(gltf()),
+    "fan": glb(gltf(meshes=COLORS)),
+    "matrix": glb(gltf(**SMALL)),
+}
+
+MTL = b"newmtl a\nKd 1 0.5 0\nd 0.5\nnewmtl b\nKd 0.1\nTr 0.2\nKa 1 1 1\nmap_Kd a.png\n"
+OBJ = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 2\nvn 0 0 1\nvt 0 0\no a\ng b c\nusemtl a\nf 1//1 2//1 3//1\nusemtl b\nf -1/1 1/1 2/1 3/1\nl 1 2\n"
+CORNERS = b"element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+FACES = b"element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+SQUARE = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 1, 1, 0)
+STL = b"a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\nendsolid a\n"
+COLORED = b"".join(b"v %d %d %d 0.5 %d 0\n" % (k, k & 1, k * k, k & 1) for k in range(4)) + b"f 1 2 3\nf 2 3 4\n"
+MESH = {
+    "obj": b"\0" + OBJ + b"\n%\n" + MTL,
+    "obj_colored": b"\0" + COLORED,
+    "ply": b"\1format ascii 1.0\n" + CORNERS + FACES + b"0 0 0\n1 0 0\n1 1 0\n3 0 1 2\n",
+    "ply_little": b"\1format binary_little_endian 1.0\n" + CORNERS + FACES + SQUARE + b"\3" + numbers(0, 1, 2),
+    "stl": b"\2" + STL,
+    "stl_binary": b"\3" + bytes(80) + numbers(1) + struct.pack("<3f", 0, 0, 1) + SQUARE + bytes(2),
+}
+
+for target, seeds in {"vox": VOX, "ply": PLY, "npy": NPY, "gltf": GLTF, "mesh": MESH}.items():
     folder = pathlib.Path("corpus") / target
     folder.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():

@@ -1,50 +1,61 @@
-//! Any bytes as a `.far` file: refused, or read and drawn. Checksums are made
-//! right first, so that the fields behind them are reached.
+//! Any bytes as a `.far` file: refused, or read, checked and drawn. The first byte chooses whether lengths and
+//! checksums are made right first, so that the fields and the data behind them are reached.
 
 #![no_main]
 
+mod sealed;
+
 use libfuzzer_sys::fuzz_target;
 use shiftvox::far::FarFile;
-use shiftvox::far::view::{FarViewer, ViewOptions};
+use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox::mesh::raster::View;
-use xxhash_rust::xxh3::xxh3_64;
-
-/// Bytes of the header, and of a node.
-const RECORD: usize = 128;
 
 fuzz_target!(|bytes: &[u8]| {
-    let mut bytes = bytes.to_vec();
-    let _ = FarFile::from_bytes(&bytes);
-    if bytes.len() < 2 * RECORD {
-        return;
-    }
-    let most = bytes.len() / RECORD - 1;
-    let nodes = u64::from_le_bytes(std::array::from_fn(|i| bytes[24 + i])) as usize;
-    let end = RECORD * (1 + nodes.min(most));
-    let sum = xxh3_64(&bytes[RECORD..end]).to_le_bytes();
-    bytes[96..104].copy_from_slice(&sum);
-    let sum = xxh3_64(&bytes[..120]).to_le_bytes();
-    bytes[120..128].copy_from_slice(&sum);
-    let Ok(file) = FarFile::from_bytes(&bytes) else {
+    let Some((&choice, rest)) = bytes.split_first() else {
         return;
     };
+    let file = match choice & 3 {
+        0 => FarFile::from_bytes(rest),
+        way => match sealed::far(rest.to_vec(), way > 1) {
+            Some(bytes) => FarFile::from_bytes(&bytes),
+            None => return,
+        },
+    };
+    let Ok(file) = file else {
+        return;
+    };
+    let is_sound = file.verify().is_ok();
     let (low, high) = file.bounds();
     let size = (high - low).length();
     let forward = glam::DVec3::Z;
-    let view = View {
-        eye: (low + high) / 2.0 - forward * 2.0 * size,
-        right: glam::DVec3::X,
-        up: glam::DVec3::Y,
-        forward,
-        focal_px: 16.0,
-        width: 16,
-        height: 16,
-        near: 1e-6 * size,
-    };
-    let options = ViewOptions {
-        voxel_px: 16.0,
-        ..ViewOptions::default()
-    };
-    // Whatever is in it: a picture or a refusal.
-    let _ = FarViewer::new(&file).draw(&view, &options);
+    let opacities = [Opacity::None, Opacity::Scalar, Opacity::Six];
+    let mut viewer = FarViewer::new(&file);
+    // From far, where voxels show, and from near, where triangles do.
+    for (distance, voxel_px) in [(300.0, 16.0), (0.6, 1.0)] {
+        let view = View {
+            eye: (low + high) / 2.0 - forward * distance * size,
+            right: glam::DVec3::X,
+            up: glam::DVec3::Y,
+            forward,
+            focal_px: 16.0 * distance,
+            width: 16,
+            height: 16,
+            near: 1e-6 * size,
+        };
+        let options = ViewOptions {
+            voxel_px,
+            opacity: opacities[usize::from(choice >> 2) % 3],
+            culling: choice & 64 == 0,
+            ..ViewOptions::default()
+        };
+        // Whatever is in it: a picture or a refusal; of what is not damaged, the same with and without culling.
+        let drawn = viewer.draw(&view, &options);
+        let other = ViewOptions {
+            culling: !options.culling,
+            ..options
+        };
+        if let (Ok((picture, _)), Ok((again, _)), true) = (&drawn, FarViewer::new(&file).draw(&view, &other), is_sound) {
+            assert_eq!(picture.rgba, again.rgba);
+        }
+    }
 });

@@ -1,0 +1,146 @@
+//! Files of sections behind checksums, `.far` and `.tvx`, put right after any damage: length, zeros between
+//! sections, checksums. What is then wrong is wrong in the fields. Follows `spec/far.md` and `spec/textured.md`
+//! and shares no code with the program.
+
+use std::ops::Range;
+
+use xxhash_rust::xxh3::xxh3_64;
+
+/// Bytes of both formats' headers, and of a node of a `.far` file.
+pub const RECORD: usize = 128;
+/// Bytes of what a `.tvx` file says of a grid.
+const GRID: usize = 80;
+/// Longer files are not made.
+const LONGEST: u64 = 1 << 16;
+
+fn number(bytes: &[u8], at: usize, width: usize) -> u64 {
+    let bytes = &bytes[at..at + width];
+    bytes.iter().rev().fold(0, |n, &b| n << 8 | u64::from(b))
+}
+
+fn put(bytes: &mut [u8], at: usize, number: u64) {
+    bytes[at..at + 8].copy_from_slice(&number.to_le_bytes());
+}
+
+/// The next section: so many items of so many bytes, from the next multiple of 64 on.
+fn section(end: &mut u64, count: u64, item: u64) -> Range<u64> {
+    let begin = end.saturating_add(63) & !63;
+    *end = begin.saturating_add(count.saturating_mul(item));
+    begin..*end
+}
+
+/// Gives the file the length that its sections have and zeros between them; nothing of a file that would be too long.
+fn lay_out(bytes: &mut Vec<u8>, sections: &[Range<u64>]) -> Option<()> {
+    let end = sections.last()?.end;
+    if end > LONGEST {
+        return None;
+    }
+    bytes.resize(end as usize, 0);
+    let mut before = RECORD;
+    for section in sections {
+        bytes[before..section.start as usize].fill(0);
+        before = section.end as usize;
+    }
+    put(bytes, 16, end);
+    Some(())
+}
+
+fn slot(section: &Range<u64>) -> Range<usize> {
+    section.start as usize..section.end as usize
+}
+
+/// A checksum of some of the bytes.
+fn sum(bytes: &[u8], of: Range<usize>, at: usize) -> Option<(usize, u64)> {
+    Some((at, xxh3_64(bytes.get(of)?)))
+}
+
+fn seal_header(bytes: &mut [u8]) {
+    let sum = xxh3_64(&bytes[..120]);
+    put(bytes, 120, sum);
+}
+
+/// A `.far` file put right; nothing where its header says too much. With `place` nodes' voxels follow each other.
+pub fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
+    if bytes.len() < 2 * RECORD {
+        return None;
+    }
+    let [nodes, voxels, triangles] = [24, 32, 40].map(|at| number(&bytes, at, 8));
+    let mut end = RECORD as u64;
+    let nodes = section(&mut end, nodes, RECORD as u64);
+    let voxels = section(&mut end, voxels, 1);
+    let triangles = section(&mut end, triangles, 52);
+    lay_out(&mut bytes, &[nodes.clone(), voxels.clone(), triangles.clone()])?;
+    let mut next = 0;
+    for node in slot(&nodes).step_by(RECORD) {
+        let mut length = 0;
+        for (list, record) in [11, 12, 15, 33, 34, 37].into_iter().enumerate() {
+            length += record * number(&bytes, node + 72 + 4 * list, 4) as usize;
+        }
+        if place {
+            put(&mut bytes, node + 64, next as u64);
+        }
+        let begin = voxels.start as usize + number(&bytes, node + 64, 8).min(LONGEST) as usize;
+        next += length;
+        let own = if bytes[node + 43] == 0 {
+            begin..begin + length
+        } else {
+            let first = triangles.start as usize + 52 * number(&bytes, node + 56, 4) as usize;
+            first..first + 52 * number(&bytes, node + 60, 4) as usize
+        };
+        // Data beyond the file has no checksum.
+        if let Some((at, sum)) = sum(&bytes, own, node + 120) {
+            put(&mut bytes, at, sum);
+        }
+    }
+    let (at, sum) = sum(&bytes, slot(&nodes), 96)?;
+    put(&mut bytes, at, sum);
+    seal_header(&mut bytes);
+    Some(bytes)
+}
+
+/// A `.tvx` file put right; nothing where its header says too much. With `fit` its box is the one around its primitives.
+pub fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
+    if bytes.len() < RECORD {
+        return None;
+    }
+    let grids = number(&bytes, 80, 4).clamp(1, 16) as usize;
+    bytes[80..84].copy_from_slice(&(grids as u32).to_le_bytes());
+    if bytes.len() < RECORD + grids * GRID {
+        return None;
+    }
+    let mut end = RECORD as u64;
+    let entries = section(&mut end, grids as u64, GRID as u64);
+    let primitives = section(&mut end, number(&bytes, 24, 8), 52);
+    let mut sections = vec![entries.clone(), primitives.clone()];
+    for entry in slot(&entries).step_by(GRID) {
+        let texels = number(&bytes, entry + 4, 4);
+        let face = texels.saturating_mul(texels).saturating_mul(6);
+        for (at, item) in [(16, 24), (24, 4), (32, face)] {
+            sections.push(section(&mut end, number(&bytes, entry + at, 8), item));
+        }
+    }
+    lay_out(&mut bytes, &sections)?;
+    for (grid, entry) in slot(&entries).step_by(GRID).enumerate() {
+        for part in 0..3 {
+            let own = slot(&sections[2 + 3 * grid + part]);
+            let (at, sum) = sum(&bytes, own, entry + 56 + 8 * part)?;
+            put(&mut bytes, at, sum);
+        }
+    }
+    if fit {
+        for k in 0..3 {
+            let of_corner = |at: usize| f64::from(f32::from_bits(number(&bytes, at, 4) as u32));
+            let corners = slot(&primitives).step_by(52);
+            let values = corners.flat_map(|p| [0, 12, 24].map(|corner| of_corner(p + corner + 4 * k)));
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            put(&mut bytes, 32 + 8 * k, low.to_bits());
+            put(&mut bytes, 56 + 8 * k, high.to_bits());
+        }
+    }
+    for (of, at) in [(&primitives, 104), (&entries, 112)] {
+        let (at, sum) = sum(&bytes, slot(of), at)?;
+        put(&mut bytes, at, sum);
+    }
+    seal_header(&mut bytes);
+    Some(bytes)
+}
