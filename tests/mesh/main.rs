@@ -8,3 +8,4 @@ mod models;
 mod raster;
 mod shapes;
 mod voxels;
+mod watertight;
