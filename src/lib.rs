@@ -16,6 +16,7 @@ pub mod rays;
 pub mod report;
 pub mod scene;
 pub mod textured;
+pub mod whole;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -24,6 +24,7 @@ pub mod render;
 mod report;
 mod reproduce;
 mod scenes;
+mod signals;
 mod stress;
 mod textured;
 pub mod triangles;
@@ -45,7 +46,9 @@ use error::{CliError, Kind};
 /// .ply with faces, .stl, .gltf, .glb), which are voxelised at --depth.
 ///
 /// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
-/// comparison or an expectation failed, 4 bad input, 5 a limit is exceeded.
+/// comparison or an expectation failed, 4 bad input, 5 a limit is exceeded. Stopped by a
+/// signal (Ctrl-C), it removes what it has not written to the end and ends by that signal,
+/// which shells show as 130.
 #[derive(Debug, Parser)]
 #[command(name = "shiftvox", version, max_term_width = 100)]
 pub struct Cli {
@@ -135,6 +138,7 @@ impl Cli {
 /// Runs the program on the process's arguments.
 #[must_use]
 pub fn main() -> ExitCode {
+    signals::tidy_up_when_stopped();
     let result = run(std::env::args_os().collect());
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,4 +5,5 @@ mod build;
 mod city;
 mod command;
 mod file;
+mod stopped;
 mod view;

@@ -12,6 +12,7 @@ use super::format::{
     HEADER_BYTES, KINDS, MAGIC, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION, at, layout,
 };
 use crate::graph::{Graph, PackedNormal};
+use crate::whole::{self, WholeError};
 
 /// Writes a graph to a file.
 ///
@@ -43,45 +44,14 @@ fn replace(
     overwrite: bool,
     fill: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), VxgError> {
-    let refused = |doing: &'static str| {
-        move |source: io::Error| VxgError::Io {
-            file: path.to_owned(),
-            doing,
+    whole::write_with(path, overwrite, fill).map_err(|error| match error {
+        WholeError::Exists(path) => VxgError::Exists(path),
+        WholeError::Io { path, source } => VxgError::Io {
+            file: path,
+            doing: "write it",
             source,
-        }
-    };
-    // Asked before the work; `persist_noclobber` is what makes sure.
-    check_free(path, overwrite)?;
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    let mut options = tempfile::Builder::new();
-    options.prefix(".").suffix(".vxg.tmp");
-    #[cfg(unix)]
-    let readable = {
-        use std::os::unix::fs::PermissionsExt;
-        // As any new file: the user's umask takes its bits away.
-        std::fs::Permissions::from_mode(0o666)
-    };
-    #[cfg(unix)]
-    options.permissions(readable);
-    let mut temporary = options
-        .tempfile_in(folder)
-        .map_err(refused("create a temporary file beside it"))?;
-    fill(temporary.as_file_mut()).map_err(refused("write it"))?;
-    let stored = if overwrite {
-        temporary.persist(path)
-    } else {
-        temporary.persist_noclobber(path)
-    };
-    match stored {
-        Ok(_) => Ok(()),
-        Err(failure) if failure.error.kind() == io::ErrorKind::AlreadyExists => {
-            Err(VxgError::Exists(path.to_owned()))
-        }
-        Err(failure) => Err(refused("rename the temporary file")(failure.error)),
-    }
+        },
+    })
 }
 
 /// Writes a file whose arrays are handed over piece by piece, because they are

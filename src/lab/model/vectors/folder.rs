@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use tempfile::Builder;
 
 use crate::picture::store::StoreError;
+use crate::whole::Noted;
 
 /// The file by which a folder of vectors is known.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -118,6 +119,7 @@ pub(super) fn write<T, E: From<FolderError>>(
         .suffix(".tmp")
         .tempdir_in(parent)
         .map_err(|e| failed(parent, e))?;
+    let _noted = Noted::new(shelter.path());
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;

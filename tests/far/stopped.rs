@@ -1,0 +1,135 @@
+//! A build that is stopped leaves no broken file, and nothing that is in the way.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::cargo_bin;
+use shiftvox::far::FarFile;
+
+/// As `kill` names it, and its number.
+const TERMINATE: (&str, i32) = ("TERM", 15);
+const KILL: (&str, i32) = ("KILL", 9);
+
+/// A binary STL: a sheet of 20,000 triangles.
+fn stl() -> Vec<u8> {
+    let mut bytes = vec![0; 80];
+    bytes.extend(20_000u32.to_le_bytes());
+    for i in 0..20_000 {
+        let (x, y) = ((i % 100) as f32, (i / 100) as f32);
+        let corners = [[x, y, 0.0], [x + 1.0, y, 0.0], [x, y + 1.0, 0.0]];
+        let numbers = [[0.0, 0.0, 1.0]].into_iter().chain(corners).flatten();
+        bytes.extend(numbers.flat_map(|n: f32| n.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Triangles alone, as one leaf: built at once, 100 MB to write.
+fn start(folder: &Path) -> Child {
+    let arguments = [
+        "convert",
+        "sheet.stl",
+        "sheet.far",
+        "--leaf-triangles",
+        "4000000",
+        "--instances",
+        "100",
+        "--force",
+    ];
+    Command::new(cargo_bin("shiftvox"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+fn send(child: &Child, signal: (&str, i32)) {
+    let process = child.id().to_string();
+    let status = Command::new("kill")
+        .args(["-s", signal.0, &process])
+        .status();
+    assert!(status.unwrap().success());
+}
+
+/// Files that are not finished.
+fn unfinished(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".tmp")).collect()
+}
+
+/// Starts builds until one is caught by the signal while it writes.
+fn stop_while_writing(folder: &Path, signal: (&str, i32)) {
+    for _ in 0..20 {
+        let mut child = start(folder);
+        let started = Instant::now();
+        while unfinished(folder).is_empty() && child.try_wait().unwrap().is_none() {
+            assert!(
+                started.elapsed() < Duration::from_secs(120),
+                "nothing is written"
+            );
+        }
+        send(&child, signal);
+        let status = child.wait().unwrap();
+        let is_old = fs::read(folder.join("sheet.far")).unwrap() == b"old";
+        if status.signal() == Some(signal.1) && is_old {
+            return;
+        }
+        // It had written all before the signal came.
+        assert!(!is_old, "{status}");
+        let whole = FarFile::open(&folder.join("sheet.far")).unwrap();
+        whole.verify().unwrap();
+        fs::write(folder.join("sheet.far"), b"old").unwrap();
+    }
+    panic!("no build was caught while it wrote");
+}
+
+#[test]
+fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    fs::write(at.join("sheet.far"), b"old").unwrap();
+    // Long before anything is written.
+    let mut child = start(at);
+    std::thread::sleep(Duration::from_millis(50));
+    send(&child, TERMINATE);
+    assert_eq!(child.wait().unwrap().signal(), Some(TERMINATE.1));
+    assert!(unfinished(at).is_empty());
+    // While it is written.
+    stop_while_writing(at, TERMINATE);
+    assert_eq!(unfinished(at), [""; 0]);
+    // Killed, it can tidy nothing up: what is left is named, and the next build removes it.
+    stop_while_writing(at, KILL);
+    let left = unfinished(at);
+    assert_eq!(left.len(), 1);
+    assert!(left[0].starts_with(".shiftvox-sheet.far-"), "{left:?}");
+    assert!(start(at).wait().unwrap().success());
+    assert_eq!(unfinished(at), [""; 0]);
+    assert!(fs::metadata(at.join("sheet.far")).unwrap().len() > 100_000_000);
+}
+
+#[test]
+fn a_signal_that_is_ignored_stays_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sheet.stl"), stl()).unwrap();
+    // As `nohup` does it.
+    let mut child = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", "trap '' HUP; exec \"$0\" convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 20"])
+        .arg(cargo_bin("shiftvox"))
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    send(&child, ("HUP", 1));
+    assert!(child.wait().unwrap().success());
+    assert!(folder.path().join("sheet.far").exists());
+}
