@@ -25,6 +25,19 @@ pub(super) struct Drawn {
 /// Most samples of a picture: about nine gigabytes with all that is made of them.
 const MAX_SAMPLES: u64 = 1 << 27;
 
+/// Refuses a picture that would take too much memory.
+pub(super) fn check_samples((width, height): (u32, u32), aa_log2: u32) -> Result<(), CliError> {
+    let samples = (u64::from(width) * u64::from(height)) << (2 * aa_log2);
+    if samples <= MAX_SAMPLES {
+        return Ok(());
+    }
+    Err(CliError::new(
+        Kind::Limit,
+        format!("a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"),
+    )
+    .advise("ask for a smaller --size, or fewer samples with --aa"))
+}
+
 /// A scene that is drawn, once or from many cameras: what is made for a frame
 /// and can stay (engine, frame, and a picture that does not change) does.
 pub(super) struct Drawing<'s> {
@@ -97,14 +110,7 @@ impl<'s> Drawing<'s> {
 
     fn setup(&self, camera: &Camera) -> Result<FrameSetup, CliError> {
         let aa_log2 = self.picture_args.aa_log2();
-        let samples = (u64::from(camera.width) * u64::from(camera.height)) << (2 * aa_log2);
-        if samples > MAX_SAMPLES {
-            return Err(CliError::new(
-                Kind::Limit,
-                format!("a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"),
-            )
-            .advise("ask for a smaller --size, or fewer samples with --aa"));
-        }
+        check_samples((camera.width, camera.height), aa_log2)?;
         let graph = &self.scene.graph;
         let options = self.engine_args.options(aa_log2);
         let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;

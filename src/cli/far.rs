@@ -12,9 +12,7 @@ use super::convert::ConvertArgs;
 use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
-use super::mesh_view::{self, FileEngine, MeshDrawn, background, repeated, view};
-use super::outputs;
-use super::render::RenderArgs;
+use super::mesh_view::{self, Counted, DrawArgs, FileEngine, MeshFile, Use, background, view};
 use super::report::{self, grouped};
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::{is_far, write_to};
@@ -41,7 +39,9 @@ impl From<ViewError> for CliError {
     fn from(error: ViewError) -> Self {
         match error {
             ViewError::File(error) => error.into(),
-            ViewError::Raster(_) | ViewError::VoxelSize(_) => Self::usage(error),
+            ViewError::Raster(_) | ViewError::VoxelSize(_) | ViewError::Samples(_) => {
+                Self::usage(error)
+            }
         }
     }
 }
@@ -346,67 +346,55 @@ impl Facts {
     }
 }
 
-/// Draws a picture of a `.far` file.
-pub(super) fn render_one(
-    args: &RenderArgs,
-    name: &str,
-    of: usize,
-    output: Option<&Path>,
-    console: &Console,
-) -> Result<(Camera, Value), CliError> {
-    check(args, name)?;
-    if let Some(path) = output {
-        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
-    }
-    let started = Instant::now();
-    let path = Path::new(name);
-    let file = match args.memory {
-        Some(memory) => FarFile::open_within(path, memory.bytes)?,
-        None => FarFile::open(path)?,
-    };
-    let load_ms = milliseconds_since(started);
-    let (low, high) = file.bounds();
-    let up = if file.y_up() { Up::Y } else { Up::Z };
-    let up = args.scene.up_or(up);
-    let camera = args
-        .camera
-        .camera(&Bounds::of_box(low, high), up, args.picture.size(), 0.0);
-    let view = view(&camera, file.bounds())?;
-    let options = options(args, &view);
-    let mut viewer = FarViewer::new(&file);
-    let ((drawn, counts), times_ms) = repeated(args.repeat, || Ok(viewer.draw(&view, &options)?))?;
-    let picture = picture_of_far(drawn);
-    let drawn = MeshDrawn {
-        name,
-        engine: "far",
-        camera: &camera,
-        picture: &picture,
-        load_ms,
-        times_ms: &times_ms,
-        counters: counters(&counts),
-        memory: Some(json!(resident(&file))),
-    };
-    let result = drawn.finish(args, of, output, console)?;
-    Ok((camera, result))
-}
-
-const ENGINE: FileEngine = FileEngine {
+pub(super) const ENGINE: FileEngine = FileEngine {
     engine: EngineName::Far,
     name: "far",
     ending: ".far",
     buffers: &[Aov::Depth, Aov::Node, Aov::Color],
+    is_file: is_far_file,
+    with_file,
 };
 
-/// Refuses what the engine does not do, and files that it does not draw.
-fn check(args: &RenderArgs, name: &str) -> Result<(), CliError> {
-    let open = |path: &Path| FarFile::open(path).map(|_| ());
-    ENGINE.check(args, name, is_far_file(name), open)?;
-    if args.picture.aa_log2() > 0 {
-        return Err(CliError::usage(
-            "--engine far has no --aa above 1: its voxels have opacities",
-        ));
+fn with_file(path: &Path, args: DrawArgs<'_>, then: Use<'_>) -> Result<(), CliError> {
+    let file = match args.memory {
+        Some(memory) => FarFile::open_within(path, memory.bytes)?,
+        None => FarFile::open(path)?,
+    };
+    let viewer = FarViewer::new(&file);
+    then(&mut Open {
+        file: &file,
+        viewer,
+        args,
+    })
+}
+
+/// An open `.far` file.
+struct Open<'f> {
+    file: &'f FarFile,
+    viewer: FarViewer<'f>,
+    args: DrawArgs<'f>,
+}
+
+impl MeshFile for Open<'_> {
+    fn bounds(&self) -> Bounds {
+        let (low, high) = self.file.bounds();
+        Bounds::of_box(low, high)
     }
-    Ok(())
+
+    fn up(&self) -> Up {
+        if self.file.y_up() { Up::Y } else { Up::Z }
+    }
+
+    fn draw(&mut self, camera: &Camera) -> Result<Counted, CliError> {
+        let view = view(camera, self.file.bounds())?;
+        let options = options(&self.args, &view);
+        let (drawn, counts) = self.viewer.draw(&view, &options)?;
+        Ok((picture_of_far(drawn), counters(&counts)))
+    }
+
+    fn memory(&self) -> Option<Value> {
+        Some(json!(resident(self.file)))
+    }
 }
 
 /// What a budget of memory came to.
@@ -428,9 +416,10 @@ pub(super) fn opacity(name: FarOpacityName) -> Opacity {
     }
 }
 
-fn options(args: &RenderArgs, view: &View) -> ViewOptions {
+fn options(args: &DrawArgs<'_>, view: &View) -> ViewOptions {
     ViewOptions {
         voxel_px: args.engine.lod.unwrap_or(1.0),
+        samples_across: 1 << args.picture.aa_log2(),
         opacity: opacity(args.engine.far_opacity),
         light: light_of(view, args.picture.shading()),
         background: background(args.picture.background),

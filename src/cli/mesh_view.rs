@@ -9,14 +9,14 @@ use std::time::Instant;
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::args::{Aov, EngineName, SceneArgs, camera_line};
+use super::args::{Aov, DataBudget, EngineArgs, EngineName, PictureArgs, SceneArgs, camera_line};
 use super::console::Console;
-use super::drawing::{milliseconds_since, min_median_max};
+use super::drawing::{check_samples, milliseconds_since, min_median_max};
 use super::error::{CliError, Kind};
-use super::fit::Up;
+use super::fit::{Bounds, Up};
 use super::render::RenderArgs;
 use super::report::{self, grouped};
-use super::{outputs, scenes};
+use super::{far, outputs, scenes, textured};
 use crate::graph::file::FileError;
 use crate::lab::mesh_view::view_of;
 use crate::mesh::Mesh;
@@ -63,6 +63,36 @@ pub(super) fn begins(name: &str, is_right: impl Fn(&[u8]) -> bool) -> bool {
     read.is_ok() && is_right(&beginning)
 }
 
+/// What a mesh's file is drawn with.
+#[derive(Clone, Copy)]
+pub(super) struct DrawArgs<'a> {
+    pub(super) engine: &'a EngineArgs,
+    pub(super) picture: &'a PictureArgs,
+    /// Of far voxels: how much of the nodes' data may be in memory.
+    pub(super) memory: Option<DataBudget>,
+}
+
+/// A picture of a file, and what was counted for it.
+pub(super) type Counted = (Picture, Vec<(&'static str, Value)>);
+
+/// An open file that an engine of its own draws.
+pub(super) trait MeshFile {
+    /// The box and what is in it, for a fitted camera.
+    fn bounds(&self) -> Bounds;
+
+    /// Which axis is up, as the file says.
+    fn up(&self) -> Up;
+
+    /// Draws a frame.
+    fn draw(&mut self, camera: &Camera) -> Result<Counted, CliError>;
+
+    /// What a budget of memory came to, null without one; `None` of what has no budgets.
+    fn memory(&self) -> Option<Value>;
+}
+
+/// What is done with an open file.
+pub(super) type Use<'u> = &'u mut dyn FnMut(&mut dyn MeshFile) -> Result<(), CliError>;
+
 /// An engine that draws one kind of file and nothing else draws.
 pub(super) struct FileEngine {
     pub(super) engine: EngineName,
@@ -72,43 +102,101 @@ pub(super) struct FileEngine {
     pub(super) ending: &'static str,
     /// Buffers that it has beside the picture, two or more.
     pub(super) buffers: &'static [Aov],
+    /// Whether a name is that of such a file, told by its content.
+    pub(super) is_file: fn(&str) -> bool,
+    /// Opens a file and hands it on.
+    pub(super) with_file: fn(&Path, DrawArgs<'_>, Use<'_>) -> Result<(), CliError>,
+}
+
+/// The engine of a scene, where that is a file of a mesh method or such an engine is asked for.
+pub(super) fn engine_of(name: &str, asked: EngineName) -> Option<&'static FileEngine> {
+    let engines = [&far::ENGINE, &textured::ENGINE];
+    let named = engines.into_iter().find(|engine| engine.engine == asked);
+    let is_its = |engine: &&FileEngine| (engine.is_file)(name);
+    named.or_else(|| engines.into_iter().find(is_its))
 }
 
 impl FileEngine {
-    /// Refuses files of another kind, of which `open` says why, and what the engine does not do.
-    pub(super) fn check(
+    /// Opens a scene that it draws: after asking whether it does, and does all that is wanted.
+    pub(super) fn open(
         &self,
-        args: &RenderArgs,
         scene: &str,
-        is_right: bool,
-        open: impl FnOnce(&Path) -> Result<(), FileError>,
+        args: DrawArgs<'_>,
+        then: Use<'_>,
     ) -> Result<(), CliError> {
         let Self { name, ending, .. } = self;
-        if !is_right {
-            // A file that is not there is told as such.
-            open(Path::new(scene)).map_err(|error| {
-                CliError::from(error).advise(format!(
-                    "--engine {name} draws {ending} files: shiftvox convert MESH OUT{ending}"
-                ))
-            })?;
-        }
         if args.engine.engine != self.engine {
             let message = format!("{scene}: this is a {ending} file");
             return Err(CliError::usage(message).advise(format!("draw it with --engine {name}")));
         }
+        if !(self.is_file)(scene) {
+            // A file that is not there, or is something else, is told as such.
+            let refused = (self.with_file)(Path::new(scene), args, &mut |_| Ok(()));
+            return refused.map_err(|error| {
+                error.advise(format!(
+                    "--engine {name} draws {ending} files: shiftvox convert MESH OUT{ending}"
+                ))
+            });
+        }
         let unknown = |aov: &&Aov| !self.buffers.contains(aov);
-        let Some(unknown) = args.picture.aov.iter().find(unknown) else {
-            return Ok(());
+        if let Some(unknown) = args.picture.aov.iter().find(unknown) {
+            let mut known: Vec<&str> = self.buffers.iter().map(|aov| aov.name()).collect();
+            let last = known.pop().unwrap_or_default();
+            let message = format!("--engine {name} has no --aov {}", unknown.name());
+            return Err(
+                CliError::usage(message).advise(format!("it has {} and {last}", known.join(", ")))
+            );
+        }
+        check_samples(args.picture.size(), args.picture.aa_log2())?;
+        (self.with_file)(Path::new(scene), args, then)
+    }
+
+    /// Draws a picture of a scene, as `render` does: `of` is the number of scenes.
+    pub(super) fn render_one(
+        &self,
+        args: &RenderArgs,
+        name: &str,
+        of: usize,
+        output: Option<&Path>,
+        console: &Console,
+    ) -> Result<(Camera, Value), CliError> {
+        let draw_args = DrawArgs {
+            engine: &args.engine,
+            picture: &args.picture,
+            memory: args.memory,
         };
-        let mut known: Vec<&str> = self.buffers.iter().map(|aov| aov.name()).collect();
-        let last = known.pop().unwrap_or_default();
-        let message = format!("--engine {name} has no --aov {}", unknown.name());
-        Err(CliError::usage(message).advise(format!("it has {} and {last}", known.join(", "))))
+        let started = Instant::now();
+        let mut result = Err(CliError::new(Kind::Run, "nothing was drawn"));
+        self.open(name, draw_args, &mut |file| {
+            let load_ms = milliseconds_since(started);
+            if let Some(path) = output {
+                outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
+            }
+            let up = args.scene.up_or(file.up());
+            let size = args.picture.size();
+            let camera = args.camera.camera(&file.bounds(), up, size, 0.0);
+            let ((picture, counters), times_ms) = repeated(args.repeat, || file.draw(&camera))?;
+            let drawn = MeshDrawn {
+                name,
+                engine: self.name,
+                camera: &camera,
+                picture: &picture,
+                load_ms,
+                times_ms: &times_ms,
+                counters,
+                memory: file.memory(),
+            };
+            result = drawn
+                .finish(args, of, output, console)
+                .map(|told| (camera, told));
+            Ok(())
+        })?;
+        result
     }
 }
 
 /// Draws a frame so many times; the last one, and how long each took, milliseconds.
-pub(super) fn repeated<T>(
+fn repeated<T>(
     times: u32,
     mut draw: impl FnMut() -> Result<T, CliError>,
 ) -> Result<(T, Vec<f64>), CliError> {
@@ -184,6 +272,15 @@ impl MeshDrawn<'_> {
                 format!("{name}: the picture's hash is {hash}, expected {expected}"),
             ));
         }
+        let mut result = self.describe(Some(&hash));
+        result["output"] = json!(output);
+        Ok(result)
+    }
+
+    /// What was drawn, as JSON.
+    pub(super) fn describe(&self, hash: Option<&str>) -> Value {
+        let Self { name, picture, .. } = self;
+        let (min, median, max) = min_median_max(self.times_ms);
         let counters = self.counters.iter();
         let counters: serde_json::Map<String, Value> = counters
             .map(|(name, count)| ((*name).to_owned(), count.clone()))
@@ -199,12 +296,11 @@ impl MeshDrawn<'_> {
             "render_ms": { "runs": self.times_ms.len(), "min": min, "median": median, "max": max },
             "counters": counters,
             "hash": hash,
-            "output": output,
         });
         if let Some(memory) = &self.memory {
             result["memory"] = memory.clone();
         }
-        Ok(result)
+        result
     }
 }
 

@@ -6,15 +6,15 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{
-    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
-    camera_line, camera_settings,
+    CameraArgs, DataBudget, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting, camera_line,
+    camera_settings,
 };
 use super::console::Console;
 use super::drawing::{Drawn, draw, min_median_max};
 use super::error::{CliError, Kind};
 use super::fit::Bounds;
 use super::scenes::Scene;
-use super::{far, outputs, report, scenes, textured};
+use super::{mesh_view, outputs, report, scenes};
 use crate::picture;
 use crate::project::Camera;
 
@@ -193,13 +193,9 @@ fn render_one(
     of: usize,
     console: &Console,
 ) -> Result<(Camera, Value), CliError> {
-    if args.engine.engine == EngineName::Far || far::is_far_file(name) {
+    if let Some(engine) = mesh_view::engine_of(name, args.engine.engine) {
         let output = output_path(args, &scenes::stem(name));
-        return far::render_one(args, name, of, output.as_deref(), console);
-    }
-    if args.engine.engine == EngineName::Textured || textured::is_textured_file(name) {
-        let output = output_path(args, &scenes::stem(name));
-        return textured::render_one(args, name, of, output.as_deref(), console);
+        return engine.render_one(args, name, of, output.as_deref(), console);
     }
     if args.memory.is_some() {
         return Err(CliError::usage("--memory is for .far files"));

@@ -11,9 +11,7 @@ use super::convert::ConvertArgs;
 use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
 use super::fit::{Bounds, Up};
-use super::mesh_view::{self, FileEngine, MeshDrawn, background, repeated, view};
-use super::outputs;
-use super::render::RenderArgs;
+use super::mesh_view::{self, Counted, DrawArgs, FileEngine, MeshFile, Use, background, view};
 use super::report::{self, grouped};
 use crate::lab::mesh_view::{light_of, picture_of_triangles};
 use crate::mesh::raster::{Pattern, Samples, View};
@@ -224,63 +222,58 @@ fn level_table(grid: &Grid<'_>) -> String {
     report::table(head.map(String::from).to_vec(), rows.collect())
 }
 
-/// Draws a picture of a `.tvx` file.
-pub(super) fn render_one(
-    args: &RenderArgs,
-    name: &str,
-    of: usize,
-    output: Option<&Path>,
-    console: &Console,
-) -> Result<(Camera, Value), CliError> {
-    let open = |path: &Path| TexturedFile::open(path).map(|_| ());
-    ENGINE.check(args, name, is_textured_file(name), open)?;
-    if let Some(path) = output {
-        outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
-    }
-    let started = Instant::now();
-    let file = TexturedFile::open(Path::new(name))?;
-    let load_ms = milliseconds_since(started);
-    let up = args.scene.up_or(if file.y_up() { Up::Y } else { Up::Z });
-    let size = args.picture.size();
-    let camera = args.camera.camera(&bounds(&file), up, size, 0.0);
-    let view = view(&camera, file.bounds())?;
-    let options = options(args, &file, &view)?;
-    let ((drawn, counts), times_ms) = repeated(args.repeat, || Ok(draw(&file, &view, &options)?))?;
-    let picture = picture_of_triangles(drawn);
-    let drawn = MeshDrawn {
-        name,
-        engine: "textured",
-        camera: &camera,
-        picture: &picture,
-        load_ms,
-        times_ms: &times_ms,
-        counters: counters(&file, &counts),
-        memory: None,
-    };
-    let result = drawn.finish(args, of, output, console)?;
-    Ok((camera, result))
-}
-
-/// The box and the corners of all primitives, for a fitted camera: the one that
-/// the mesh's triangles get.
-fn bounds(file: &TexturedFile) -> Bounds {
-    let (low, high) = file.bounds();
-    let hull = file.primitives().iter().flat_map(Primitive::positions);
-    Bounds {
-        low,
-        high,
-        hull: hull.collect(),
-    }
-}
-
-const ENGINE: FileEngine = FileEngine {
+pub(super) const ENGINE: FileEngine = FileEngine {
     engine: EngineName::Textured,
     name: "textured",
     ending: ".tvx",
     buffers: &[Aov::Depth, Aov::Color],
+    is_file: is_textured_file,
+    with_file,
 };
 
-fn options(args: &RenderArgs, file: &TexturedFile, view: &View) -> Result<ViewOptions, CliError> {
+fn with_file(path: &Path, args: DrawArgs<'_>, then: Use<'_>) -> Result<(), CliError> {
+    if args.memory.is_some() {
+        return Err(CliError::usage("--memory is for .far files"));
+    }
+    let file = TexturedFile::open(path)?;
+    then(&mut Open { file: &file, args })
+}
+
+/// An open `.tvx` file.
+struct Open<'f> {
+    file: &'f TexturedFile,
+    args: DrawArgs<'f>,
+}
+
+impl MeshFile for Open<'_> {
+    /// The box and the corners of all primitives: the camera is the one that the mesh's triangles get.
+    fn bounds(&self) -> Bounds {
+        let (low, high) = self.file.bounds();
+        let hull = self.file.primitives().iter().flat_map(Primitive::positions);
+        Bounds {
+            low,
+            high,
+            hull: hull.collect(),
+        }
+    }
+
+    fn up(&self) -> Up {
+        if self.file.y_up() { Up::Y } else { Up::Z }
+    }
+
+    fn draw(&mut self, camera: &Camera) -> Result<Counted, CliError> {
+        let view = view(camera, self.file.bounds())?;
+        let options = options(&self.args, self.file, &view)?;
+        let (drawn, counts) = draw(self.file, &view, &options)?;
+        Ok((picture_of_triangles(drawn), counters(self.file, &counts)))
+    }
+
+    fn memory(&self) -> Option<Value> {
+        None
+    }
+}
+
+fn options(args: &DrawArgs<'_>, file: &TexturedFile, view: &View) -> Result<ViewOptions, CliError> {
     let number_of = |cells: u32| {
         let found = (0..file.grids()).find(|&g| file.grid(g).lattice().cells() == cells);
         found.ok_or_else(|| {

@@ -1,23 +1,26 @@
 //! `turntable`: many frames around a scene in one process.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::args::{CameraArgs, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting};
 use super::console::Console;
-use super::drawing::{Drawing, min_median_max};
+use super::drawing::{Drawing, milliseconds_since, min_median_max};
 use super::error::CliError;
-use super::fit::Bounds;
+use super::fit::{Bounds, Up};
+use super::mesh_view::{self, DrawArgs, FileEngine, MeshDrawn};
 use super::render::{choose_scenes, open};
 use super::{outputs, report};
-use crate::picture;
+use crate::picture::{self, Picture};
+use crate::project::Camera;
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
 pub struct TurntableArgs {
-    /// Scene: a file, or a generator such as gen:terrain,depth=10,seed=1
+    /// Scene: a file (also .far and .tvx, with their --engine), or a generator such as gen:terrain,depth=10,seed=1
     #[arg(value_name = "SCENE")]
     pub scene_name: Option<String>,
     /// Pictures to write; #### stands for the frame's number, from 0
@@ -77,37 +80,21 @@ pub(super) fn run(
     if let Some(outdir) = &args.out.outdir {
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
     }
-    let scene = open(name, &args.scene, console)?;
-    // One distance for all frames, so that the object does not breathe.
-    let bounds = Bounds::of(&scene.graph).revolved(scene.up);
-    let mut drawing = Drawing::new(&scene, &args.engine, &args.picture).map_err(|e| e.at(name))?;
-    let mut times = Vec::new();
-    let mut results = Vec::new();
-    console.progress().begin("drawing", u64::from(args.frames));
-    for (frame, path) in paths.iter().enumerate() {
-        let turn = 360.0 * frame as f64 / f64::from(args.frames);
-        let camera = args
-            .camera
-            .camera(&bounds, scene.up, args.picture.size(), turn);
-        let drawn = drawing
-            .draw(&camera)
-            .map_err(|e| e.at(format!("{name}, frame {frame}")))?;
-        outputs::write(&drawn.picture, path, &args.picture.aov, args.out.force)?;
-        let hash = (args.hash || console.json).then(|| picture::hash(&drawn.picture));
-        if let (true, false, Some(hash)) = (args.hash, console.json, &hash) {
-            console.data(format!("{hash}  {}", path.display()))?;
-        }
-        times.extend(&drawn.times_ms);
-        let mut result = report::drawn(&scene, &camera, drawn, hash.as_deref());
-        result["output"] = json!(path);
-        results.push(result);
-        console.progress().advance(1);
+    let mut turn = Turn {
+        args,
+        name,
+        paths: &paths,
+        times_ms: Vec::new(),
+        results: Vec::new(),
+    };
+    match mesh_view::engine_of(name, args.engine.engine) {
+        Some(engine) => turn.file(engine, console)?,
+        None => turn.scene(console)?,
     }
-    console.progress().end();
-    let (min, median, max) = min_median_max(&times);
+    let (min, median, max) = min_median_max(&turn.times_ms);
     let document = report::document(
         "turntable",
-        json!({ "frames": results, "render_ms": { "min": min, "median": median, "max": max } }),
+        json!({ "frames": turn.results, "render_ms": { "min": min, "median": median, "max": max } }),
     );
     if console.json {
         console.document(&document)?;
@@ -121,6 +108,108 @@ pub(super) fn run(
     }
     Ok(())
 }
+
+/// The frames of a turn, as they are drawn.
+struct Turn<'t> {
+    args: &'t TurntableArgs,
+    name: &'t str,
+    paths: &'t [PathBuf],
+    times_ms: Vec<f64>,
+    results: Vec<Value>,
+}
+
+impl Turn<'_> {
+    /// Draws a voxel scene.
+    fn scene(&mut self, console: &Console) -> Result<(), CliError> {
+        let args = self.args;
+        let scene = open(self.name, &args.scene, console)?;
+        let mut drawing =
+            Drawing::new(&scene, &args.engine, &args.picture).map_err(|e| e.at(self.name))?;
+        let bounds = Bounds::of(&scene.graph);
+        self.frames(&bounds, scene.up, console, |camera, keep| {
+            let drawn = drawing.draw(camera)?;
+            let hash = keep(&drawn.picture)?;
+            let times_ms = drawn.times_ms.clone();
+            Ok((
+                times_ms,
+                report::drawn(&scene, camera, drawn, hash.as_deref()),
+            ))
+        })
+    }
+
+    /// Draws a file that an engine of its own draws.
+    fn file(&mut self, engine: &FileEngine, console: &Console) -> Result<(), CliError> {
+        let args = self.args;
+        let draw_args = DrawArgs {
+            engine: &args.engine,
+            picture: &args.picture,
+            memory: None,
+        };
+        let started = Instant::now();
+        let name = self.name;
+        engine.open(name, draw_args, &mut |file| {
+            let load_ms = milliseconds_since(started);
+            let up = args.scene.up_or(file.up());
+            self.frames(&file.bounds(), up, console, |camera, keep| {
+                let started = Instant::now();
+                let (picture, counters) = file.draw(camera)?;
+                let times_ms = vec![milliseconds_since(started)];
+                let hash = keep(&picture)?;
+                let drawn = MeshDrawn {
+                    name,
+                    engine: engine.name,
+                    camera,
+                    picture: &picture,
+                    load_ms,
+                    times_ms: &times_ms,
+                    counters,
+                    memory: file.memory(),
+                };
+                let result = drawn.describe(hash.as_deref());
+                Ok((times_ms, result))
+            })
+        })
+    }
+
+    /// Has all frames drawn by `draw`, which is handed a camera and what keeps a picture: writes it, and
+    /// gives its hash where that is wanted. It gives times and what to say of the frame.
+    fn frames(
+        &mut self,
+        bounds: &Bounds,
+        up: Up,
+        console: &Console,
+        mut draw: impl FnMut(&Camera, Keep<'_>) -> Result<(Vec<f64>, Value), CliError>,
+    ) -> Result<(), CliError> {
+        let args = self.args;
+        // One distance for all frames, so that the object does not breathe.
+        let bounds = bounds.revolved(up);
+        console.progress().begin("drawing", u64::from(args.frames));
+        for (frame, path) in self.paths.iter().enumerate() {
+            let turn = 360.0 * frame as f64 / f64::from(args.frames);
+            let size = args.picture.size();
+            let camera = args.camera.camera(&bounds, up, size, turn);
+            let keep = |picture: &Picture| {
+                outputs::write(picture, path, &args.picture.aov, args.out.force)?;
+                let hash = (args.hash || console.json).then(|| picture::hash(picture));
+                if let (true, false, Some(hash)) = (args.hash, console.json, &hash) {
+                    console.data(format!("{hash}  {}", path.display()))?;
+                }
+                Ok(hash)
+            };
+            let (times_ms, mut result) =
+                draw(&camera, &keep).map_err(|e| e.at(format!("{}, frame {frame}", self.name)))?;
+            self.times_ms.extend(times_ms);
+            result["output"] = json!(path);
+            self.results.push(result);
+            console.progress().advance(1);
+        }
+        console.progress().end();
+        Ok(())
+    }
+}
+
+/// Keeps a picture; gives its hash where that is wanted.
+type Keep<'k> = &'k dyn Fn(&Picture) -> Result<Option<String>, CliError>;
 
 fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
     let output = args.output.to_string_lossy().into_owned();

@@ -13,16 +13,21 @@ fn shiftvox(folder: &Path) -> Command {
 
 /// A sheet of small triangles, as a Wavefront file.
 fn sheet() -> String {
+    sheet_of(12)
+}
+
+/// A sheet of so many vertices along each side.
+fn sheet_of(side: usize) -> String {
     let mut text = String::new();
-    for z in 0..12 {
-        for x in 0..12 {
+    for z in 0..side {
+        for x in 0..side {
             text += &format!("v {x} {} {z}\n", (x * z) % 3);
         }
     }
-    for z in 0..11 {
-        for x in 1..12 {
-            let a = z * 12 + x;
-            text += &format!("f {a} {} {} {}\n", a + 1, a + 13, a + 12);
+    for z in 0..side - 1 {
+        for x in 1..side {
+            let a = z * side + x;
+            text += &format!("f {a} {} {} {}\n", a + 1, a + side + 1, a + side);
         }
     }
     text
@@ -91,6 +96,48 @@ fn convert_info_render() {
     }
     assert!(hashes[0] != hashes[2]);
     assert!(at.join("a.png").exists());
+}
+
+#[test]
+fn turntables_and_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    let convert = ["convert", "sheet.obj", "a.far", "--rays", "20000", "-q"];
+    let settings = ["--leaf-triangles", "50", "--grid", "16"];
+    shiftvox(at).args(convert).args(settings).assert().success();
+    let hashes = |arguments: &[&str]| -> Vec<String> {
+        let output = shiftvox(at).args(arguments).assert().success();
+        let text = String::from_utf8(output.get_output().stdout.clone()).unwrap();
+        let first = |line: &str| line.split(' ').next().unwrap().to_owned();
+        text.lines().map(first).collect()
+    };
+    let turn = ["turntable", "a.far", "--engine", "far", "--frames", "4"];
+    let more = ["-o", "f#.png", "--size", "48", "--hash", "--aov", "depth"];
+    let frames = hashes(&[&turn[..], &more].concat());
+    assert_eq!(frames.len(), 4);
+    assert!((0..4).all(|i| at.join(format!("f{i}.png")).exists()));
+    assert!(at.join("f3.depth.npy").exists());
+    // The sheet is not the same from all sides.
+    assert!(frames[1] != frames[0] && frames[2] != frames[0]);
+    let again = hashes(&[&turn[..], &more, &["--force", "--threads", "1"]].concat());
+    assert_eq!(frames, again);
+    shiftvox(at)
+        .args(["turntable", "a.far", "-o", "g#.png"])
+        .assert()
+        .code(2);
+    // One sample is what there is without the flag; more are another picture.
+    let render = [
+        "render", "a.far", "--engine", "far", "--size", "48", "--hash",
+    ];
+    let by_samples = ["1", "2", "4"].map(|n| hashes(&[&render[..], &["--aa", n]].concat()));
+    assert_eq!(hashes(&render), by_samples[0]);
+    assert!(by_samples[0] != by_samples[1] && by_samples[1] != by_samples[2]);
+    shiftvox(at)
+        .args(["render", "a.far", "--engine", "far", "--hash"])
+        .args(["--size", "8000", "--aa", "4"])
+        .assert()
+        .code(5);
 }
 
 #[test]
@@ -237,6 +284,59 @@ fn meshes_are_measured_against_their_triangles() {
 }
 
 #[test]
+fn a_dolly_shows_where_levels_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet_of(48)).unwrap();
+    // From one percent nearer to the next, to half the distance.
+    let film = [
+        "bench",
+        "flicker",
+        "sheet.obj",
+        "--families",
+        "far",
+        "--motions",
+        "dolly",
+        "--depth",
+        "3",
+    ];
+    let settings = [
+        "--frames",
+        "70",
+        "--size",
+        "24",
+        "--zoom",
+        "0.3",
+        "--reference-samples",
+        "2",
+        "--far-rays",
+        "30000",
+        "--far-lods",
+        "1",
+        "--json",
+    ];
+    let output = shiftvox(at).args(film).args(settings).assert().success();
+    let document: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    let films = document["films"][0]["films"].as_array().unwrap();
+    assert_eq!(films.len(), 3);
+    for film in films {
+        let seen = &film["seen"]["Ok"];
+        let pops = seen["pop_by_step"].as_array().unwrap();
+        let popped = pops
+            .iter()
+            .filter(|pop| pop.as_f64().unwrap() > 0.0)
+            .count();
+        // Nodes change one after the other; between, the other cut is the same.
+        assert!(
+            (1..pops.len() / 2).contains(&popped),
+            "{popped} of {}",
+            pops.len()
+        );
+        assert!(seen["pop"].as_f64().unwrap() > 1e-4, "{seen}");
+    }
+}
+
+#[test]
 fn what_is_wrong_is_said_with_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
@@ -272,23 +372,10 @@ fn what_is_wrong_is_said_with_an_exit_code() {
             assert!(!at.join("x.png").exists());
         }
     }
-    let usage: [&[&str]; 8] = [
+    let usage: [&[&str]; 6] = [
         &["render", "a.far", "-o", "x.png"],
         &[
-            "render", "a.far", "--engine", "far", "--aa", "2", "-o", "x.png",
-        ],
-        &[
             "render", "a.far", "--engine", "far", "--lod", "0", "-o", "x.png",
-        ],
-        &[
-            "turntable",
-            "sheet.obj",
-            "--engine",
-            "far",
-            "-o",
-            "##.png",
-            "--frames",
-            "2",
         ],
         &["convert", "sheet.obj", "b.vxg", "--rays", "7"],
         &["convert", "sheet.obj", "b.far", "--memory", "1G"],
@@ -300,6 +387,10 @@ fn what_is_wrong_is_said_with_an_exit_code() {
     }
     shiftvox(at)
         .args(["render", "sheet.obj", "--engine", "far", "-o", "x.png"])
+        .assert()
+        .code(4);
+    shiftvox(at)
+        .args(["turntable", "sheet.obj", "--engine", "far", "-o", "#.png"])
         .assert()
         .code(4);
     shiftvox(at)

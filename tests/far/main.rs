@@ -5,5 +5,6 @@ mod build;
 mod city;
 mod command;
 mod file;
+mod samples;
 mod stopped;
 mod view;

@@ -88,6 +88,21 @@ fn convert_info_render() {
     let all = render(&["--erosion", "99", "--repeat", "2"]);
     assert_eq!(all["counters"]["primitives"], 242);
     assert_ne!(zero["hash"], all["hash"]);
+    let turn = [
+        "turntable",
+        "a.tvx",
+        "--engine",
+        "textured",
+        "--frames",
+        "3",
+    ];
+    let more = ["-o", "f#.png", "--size", "48", "--json", "-q", "--aa", "2"];
+    let turned = json(at, &[&turn[..], &more].concat());
+    let frames = turned["frames"].as_array().unwrap();
+    assert_eq!(frames.len(), 3);
+    assert_ne!(frames[0]["hash"], frames[1]["hash"]);
+    assert!(frames[2]["counters"]["texel_px"].as_f64().unwrap() <= 1.0);
+    assert!(at.join("f2.png").exists());
     // What was resolved draws the same picture.
     let record = ["--outdir", "run", "--erosion", "1", "--erosion-grid", "4"];
     let first = render(&record);

@@ -7,10 +7,12 @@
 //! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
 //!    hierarchy that are behind it are left out, with all below.
 //! 4. The winners' colours, then transparent voxels over them, back to front.
+//! 5. With more than one sample a pixel all that is done at samples; `samples` averages them.
 
 mod cut;
 mod fill;
 mod opaque;
+mod samples;
 mod splat;
 mod transparent;
 mod visible;
@@ -31,6 +33,9 @@ use visible::{Memory, Walked};
 pub struct ViewOptions {
     /// Largest projected side of a voxel, pixels, above 0.
     pub voxel_px: f64,
+    /// Samples of a pixel along each axis, 1 to 16: the picture is drawn so many
+    /// times as large, with the same nodes, and averaged.
+    pub samples_across: u32,
     /// What opacities are used for.
     pub opacity: Opacity,
     /// The light; `None`: colours as they are.
@@ -47,6 +52,7 @@ impl Default for ViewOptions {
     fn default() -> Self {
         Self {
             voxel_px: 1.0,
+            samples_across: 1,
             opacity: Opacity::Six,
             light: None,
             background: None,
@@ -55,6 +61,9 @@ impl Default for ViewOptions {
         }
     }
 }
+
+/// Most samples of a pixel along each axis.
+pub const MOST_SAMPLES_ACROSS: u32 = 16;
 
 /// Why nothing was drawn.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +77,9 @@ pub enum ViewError {
     /// The size of voxels.
     #[error("voxels are drawn at a size above 0 pixels, not {0}")]
     VoxelSize(f64),
+    /// The number of samples.
+    #[error("a pixel has 1 to {MOST_SAMPLES_ACROSS} samples along each axis, not {0}")]
+    Samples(u32),
 }
 
 /// A finished picture, row by row from the top left.
@@ -81,9 +93,10 @@ pub struct FarPicture {
     pub rgba: Vec<[u8; 4]>,
     /// Share of each pixel that is covered.
     pub coverage: Vec<f32>,
-    /// View-axis depth of what is opaque, world units; infinite where nothing is.
+    /// View-axis depth of what is opaque, world units, at the sample right of and
+    /// below the pixel's middle (with one sample: at the middle); infinite where nothing is.
     pub depth: Vec<f32>,
-    /// Node of what is opaque; -1 where nothing is.
+    /// Node of what is opaque at that sample; -1 where nothing is.
     pub node: Vec<i32>,
 }
 
@@ -162,12 +175,18 @@ impl<'f> FarViewer<'f> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
             return Err(ViewError::VoxelSize(options.voxel_px));
         }
+        let across = options.samples_across;
+        if !(1..=MOST_SAMPLES_ACROSS).contains(&across) {
+            return Err(ViewError::Samples(across));
+        }
+        let (pixels, view) = (view, &samples::finer(view, across));
         let mut counts = Counts::default();
         let cut = Cut {
             file: self.file,
             view: *view,
-            cut_of: *cut_of,
-            voxel_px: options.voxel_px,
+            cut_of: samples::finer(cut_of, across),
+            // From here on a pixel is a sample.
+            voxel_px: options.voxel_px * f64::from(across),
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
         let walked = if options.culling {
@@ -198,25 +217,23 @@ impl<'f> FarViewer<'f> {
             let visible = transparent.iter().map(|node| node.number);
             self.memory.end_frame(visible, &walked.branches, &cut);
         }
-        let mut pixels = opaque.resolve();
+        let mut drawn = opaque.resolve();
         if options.opacity != Opacity::None {
-            let drawn = transparent::draw(self.file, view, options, &transparent, &mut pixels)?;
-            counts.transparent_voxels = drawn;
+            let splats = transparent::draw(self.file, view, options, &transparent, &mut drawn)?;
+            counts.transparent_voxels = splats;
         }
-        let depth: Vec<f32> = opaque.depths();
         self.file
             .settle(walked.drawn.iter().map(|node| node.number));
+        let size = [pixels.width, pixels.height].map(|side| side as usize);
+        let drawn = samples::averaged(drawn, size, across as usize);
         Ok((
             FarPicture {
-                width: view.width,
-                height: view.height,
-                rgba: pixels
-                    .iter()
-                    .map(|p| p.encode(options.background))
-                    .collect(),
-                coverage: pixels.iter().map(|p| p.coverage).collect(),
-                node: opaque.nodes(),
-                depth,
+                width: pixels.width,
+                height: pixels.height,
+                rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
+                coverage: drawn.iter().map(|p| p.coverage).collect(),
+                node: samples::middles(opaque.nodes(), size, across as usize),
+                depth: samples::middles(opaque.depths(), size, across as usize),
             },
             counts,
         ))

@@ -60,6 +60,15 @@ pub struct Restless {
     pub error: f64,
 }
 
+impl Restless {
+    /// Steps in which another cut makes another picture. A film without any says nothing of
+    /// how much a change of level shows.
+    #[must_use]
+    pub fn popped(&self) -> u64 {
+        self.pop_by_step.iter().filter(|&&pop| pop > 0.0).count() as u64
+    }
+}
+
 /// The films of a scene, by one motion.
 #[derive(Debug, Clone, Serialize)]
 pub struct Films {
@@ -224,6 +233,7 @@ pub fn table(films: &[Films]) -> Table {
         "flicker_worst",
         "pop",
         "pop_worst",
+        "popped",
         "error",
         "remark",
     ];
@@ -244,6 +254,7 @@ pub fn table(films: &[Films]) -> Table {
                     seen.pop.map_or(Cell::None, thousandths),
                     seen.pop
                         .map_or(Cell::None, |_| thousandths(most(&seen.pop_by_step))),
+                    seen.pop.map_or(Cell::None, |_| Cell::Count(seen.popped())),
                     thousandths(seen.error),
                     Cell::None,
                 ]),
