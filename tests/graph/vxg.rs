@@ -128,7 +128,8 @@ fn nothing_is_overwritten_unasked_or_left_behind() {
     assert!(matches!(refused, VxgError::Graph(_)), "{refused}");
     assert_eq!(fs::read(&path).unwrap(), b"precious");
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    let nowhere = folder.path().join("no/such/folder.vxg");
+    // Its folder is made, but not where a file stands.
+    let nowhere = path.join("folder.vxg");
     let refused = vxg::write(&small_graphs()[0], &nowhere, false).unwrap_err();
     assert!(matches!(refused, VxgError::Io { .. }), "{refused}");
 }

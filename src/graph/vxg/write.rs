@@ -17,7 +17,8 @@ use crate::whole::{self, WholeError};
 /// Writes a graph to a file.
 ///
 /// It is written under a temporary name beside `path` and renamed when
-/// complete, so a failed run leaves nothing half-written.
+/// complete, so a failed run leaves nothing half-written. Its folder is made
+/// if there is none.
 ///
 /// # Errors
 /// When the graph breaks an invariant, when `path` exists and `overwrite` is
