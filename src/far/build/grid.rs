@@ -58,6 +58,26 @@ impl Grid {
         [number % nx, number / nx % ny, number / nx / ny].map(|c| c as u8)
     }
 
+    /// Numbers of the voxels at a voxel's faces, edges and corners, 26 of them within the grid.
+    pub(super) fn neighbours(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
+        let place = self.place(number);
+        let grid = *self;
+        (0..27u16).filter_map(move |step| {
+            let steps = [step % 3, step / 3 % 3, step / 9];
+            let mut at = place;
+            for k in 0..3 {
+                // One back, here, one on.
+                let next = (u16::from(place[k]) + steps[k]).checked_sub(1)?;
+                if next >= u16::from(grid.cells[k]) {
+                    return None;
+                }
+                // Below the number of cells.
+                at[k] = next as u8;
+            }
+            (at != place).then(|| grid.number(at))
+        })
+    }
+
     /// In voxels from the origin.
     pub(super) fn local(&self, point: DVec3) -> DVec3 {
         (point - self.origin) / self.voxel
@@ -165,6 +185,24 @@ mod tests {
         assert_eq!(grid.origin, DVec3::splat(-0.5));
         for number in 0..grid.len() {
             assert_eq!(grid.number(grid.place(number)), number);
+        }
+    }
+
+    #[test]
+    fn neighbours_are_all_within_one_voxel() {
+        let grid = Grid {
+            origin: DVec3::ZERO,
+            voxel: 1.0,
+            cells: [255, 2, 3],
+        };
+        for number in 0..grid.len() {
+            let here = grid.place(number).map(i32::from);
+            let is_near = |&other: &usize| {
+                let there = grid.place(other).map(i32::from);
+                other != number && (0..3).all(|k| (here[k] - there[k]).abs() <= 1)
+            };
+            let expected: Vec<usize> = (0..grid.len()).filter(is_near).collect();
+            assert_eq!(grid.neighbours(number).collect::<Vec<usize>>(), expected);
         }
     }
 

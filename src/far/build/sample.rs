@@ -1,12 +1,14 @@
 //! Rays at a node: which of its voxels are seen, and what of them.
 //!
 //! First *looks* are aimed at points of what is in each voxel, from random
-//! directions, until one gets there: a voxel that none reaches is dropped.
+//! directions and from those from which a neighbour was seen, until one gets
+//! there: a voxel that none reaches is dropped.
 //! Then *probes* are aimed at random points of the outlines of the voxels that
 //! were seen, from random directions: what share of them ends in a voxel is
 //! its opacity, which `count` finds. Rays begin on the surface S, all points
 //! of which are `distance` voxels from the grid; everything from there on hides.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use glam::DVec3;
@@ -19,8 +21,11 @@ use crate::far::blend::Blend;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 3;
-/// Most looks at a voxel that none reached yet.
+/// Most looks from random directions at a voxel that none reached yet.
 pub(super) const MOST_LOOKS: u32 = 24;
+/// Most looks at it from where neighbours were seen: what one window lets a ray
+/// through to lies side by side, and a random direction seldom finds the window.
+pub(super) const MOST_FOLLOWED: u8 = 24;
 
 /// What a ray saw at its end.
 #[derive(Debug, Clone, Copy)]
@@ -179,25 +184,47 @@ impl Target<'_> {
         chance: &mut Chance,
         is_seen: &mut [bool],
     ) -> Vec<Shot> {
-        let mut shots = Vec::new();
         let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
+        let mut looks = Looks {
+            shots: Vec::new(),
+            most: most as usize,
+            is_seen,
+            slot: vec![u32::MAX; self.grid.len()],
+            followed: vec![0; touched.len()],
+            fresh: VecDeque::new(),
+        };
+        for (slot, voxel) in touched.iter().enumerate() {
+            // Fewer than 2^24 voxels in a grid.
+            looks.slot[voxel.number as usize] = slot as u32;
+        }
         for turn in 0..MOST_LOOKS {
             for (voxel, directions) in touched.iter().zip(&starts) {
-                if is_seen[voxel.number as usize] {
+                if !looks.is_seen[voxel.number as usize] {
+                    let point = voxel.points[turn as usize % POINTS];
+                    looks.shoot(self, point, directions.at(turn));
+                }
+            }
+            self.follow(touched, &mut looks);
+        }
+        looks.shots
+    }
+
+    /// Looks at neighbours of voxels that were just seen, from where these were, until that finds no more.
+    fn follow(&self, touched: &[Touched], looks: &mut Looks<'_>) {
+        while let Some((number, direction)) = looks.fresh.pop_front() {
+            for neighbour in self.grid.neighbours(number as usize) {
+                let slot = looks.slot[neighbour];
+                if slot == u32::MAX || looks.is_seen[neighbour] {
                     continue;
                 }
-                if shots.len() as u32 >= most {
-                    return shots;
+                let followed = &mut looks.followed[slot as usize];
+                if *followed < MOST_FOLLOWED {
+                    let point = touched[slot as usize].points[usize::from(*followed) % POINTS];
+                    *followed += 1;
+                    looks.shoot(self, point, direction);
                 }
-                let point = voxel.points[turn as usize % POINTS];
-                let shot = self.shoot(point, directions.at(turn));
-                if let Some(place) = self.end_of(&shot) {
-                    is_seen[self.grid.number(place)] = true;
-                }
-                shots.push(shot);
             }
         }
-        shots
     }
 
     /// Probes voxels, in turn.
@@ -256,6 +283,38 @@ impl Target<'_> {
             back -= (distance - self.distance) / slope;
         }
         back
+    }
+}
+
+/// Looks at a node, as they are taken.
+struct Looks<'l> {
+    shots: Vec<Shot>,
+    /// How many there may be.
+    most: usize,
+    /// Of each voxel of the grid, whether one reached it.
+    is_seen: &'l mut [bool],
+    /// Of each voxel of the grid, its number among those touched.
+    slot: Vec<u32>,
+    /// Of each voxel that is touched, how often it was looked at from where a neighbour was seen.
+    followed: Vec<u8>,
+    /// Voxels that were just seen, and along which direction.
+    fresh: VecDeque<(u32, DVec3)>,
+}
+
+impl Looks<'_> {
+    /// Looks at a point along a direction, unless there were enough looks.
+    fn shoot(&mut self, target: &Target<'_>, point: DVec3, direction: DVec3) {
+        if self.shots.len() >= self.most {
+            return;
+        }
+        let shot = target.shoot(point, direction);
+        if let Some(place) = target.end_of(&shot) {
+            let number = target.grid.number(place);
+            if !std::mem::replace(&mut self.is_seen[number], true) {
+                self.fresh.push_back((number as u32, direction));
+            }
+        }
+        self.shots.push(shot);
     }
 }
 
