@@ -177,6 +177,7 @@ impl Builder {
             links: Vec::new().into(),
             color: tree.color.into(),
             normal: tree.normal.into(),
+            opacity: Vec::new().into(),
             level_start: tree.level_start,
             voxels,
             placement,

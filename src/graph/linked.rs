@@ -166,6 +166,7 @@ impl LinkedGraph {
                 .map(|n| n.normal)
                 .collect::<Vec<_>>()
                 .into(),
+            opacity: Vec::new().into(),
             level_start: Vec::new(),
             voxels: 0,
             placement: self.placement,

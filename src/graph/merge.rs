@@ -1,7 +1,7 @@
 //! Merging equal subtrees: a tree becomes a directed acyclic graph.
 //!
 //! Two nodes are equal if their children are, octant by octant, and their
-//! colours and normals. In a graph stored level by level, levels are merged
+//! colours, normals and opacities. In a graph stored level by level, levels are merged
 //! from the finest up, so each node is looked at once; two equal nodes of different levels stay
 //! apart. In any other graph, cyclic ones included, nodes start out equal and
 //! are told apart by their children's differences until no more are found.
@@ -21,7 +21,7 @@ use super::{Graph, Progress};
 /// When two nodes are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum MergeBy {
-    /// Same shape, colours and normals: the merged graph looks the same.
+    /// Same shape, colours, normals and opacities: the merged graph looks the same.
     #[default]
     ShapeAndAttributes,
     /// Same shape; of the attributes, some one's are kept. Tells what a
@@ -76,14 +76,15 @@ pub fn merge(graph: &Graph, by: MergeBy, progress: &dyn Progress) -> (Graph, Mer
     (merged, report)
 }
 
-/// Colour and normal in one number, or nothing.
+/// Colour, normal and opacity in one number, or nothing.
 fn attributes(graph: &Graph, node: u32, by: MergeBy) -> u64 {
     if by == MergeBy::Shape {
         return 0;
     }
     let [red, green, blue] = graph.color_of(node);
     let normal = graph.normal_of(node).0.to_le_bytes();
-    u64::from_le_bytes([red, green, blue, normal[0], normal[1], 0, 0, 0])
+    let [x, y, z] = graph.view().opacity_of(node).0;
+    u64::from_le_bytes([red, green, blue, normal[0], normal[1], x, y, z])
 }
 
 /// The classes of a node's children.
@@ -221,6 +222,14 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
             .map(|&n| graph.normal_of(n))
             .collect::<Vec<_>>()
             .into(),
+        opacity: match graph.opacity.is_empty() {
+            true => Vec::new().into(),
+            false => chosen
+                .iter()
+                .map(|&n| graph.view().opacity_of(n))
+                .collect::<Vec<_>>()
+                .into(),
+        },
         level_start: Vec::new(),
         voxels: graph.voxels,
         placement: graph.placement,

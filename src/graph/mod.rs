@@ -9,6 +9,7 @@ pub mod merge;
 mod morton;
 mod normal;
 mod normals;
+mod opacity;
 mod progress;
 mod records;
 mod store;
@@ -21,6 +22,7 @@ pub use build::{BuildError, BuildOptions, Builder, Normals};
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
+pub use opacity::{MOST_OPACITY, Opacity, sixteenths};
 pub use progress::{Progress, Silent};
 pub use store::Store;
 pub use validate::Invalid;
@@ -83,6 +85,8 @@ pub struct Graph {
     pub color: Store<[u8; 3]>,
     /// Average normal of each node.
     pub normal: Store<PackedNormal>,
+    /// Opacity of each node; empty where all are opaque.
+    pub opacity: Store<Opacity>,
     /// In a graph stored level by level: the first node of each level and the end, `depth + 2` entries; else empty.
     pub level_start: Vec<u32>,
     /// Voxels of the finest level that the object consists of, counted with repetition; saturates.
@@ -138,6 +142,7 @@ impl Graph {
             size_of_val::<[u32]>(&self.links),
             size_of_val::<[[u8; 3]]>(&self.color),
             size_of_val::<[PackedNormal]>(&self.normal),
+            size_of_val::<[Opacity]>(&self.opacity),
             size_of_val::<[u32]>(&self.level_start),
         ];
         sizes.iter().map(|&size| size as u64).sum()
@@ -152,11 +157,13 @@ impl Graph {
             mask: &self.mask,
             first: &self.first,
             links: &self.links,
+            opacity: &self.opacity,
+            light: &[],
         }
     }
 }
 
-/// Borrowed shape of a graph, without attributes.
+/// Borrowed shape of a graph, with what a rule needs that blends: opacities, and light.
 #[derive(Debug, Clone, Copy)]
 pub struct GraphView<'g> {
     /// Levels below the root.
@@ -169,6 +176,11 @@ pub struct GraphView<'g> {
     pub first: &'g [u32],
     /// Child lists of a linked graph, or empty.
     pub links: &'g [u32],
+    /// Opacities by node; empty: all are opaque.
+    pub opacity: &'g [Opacity],
+    /// Linear light by node, 0 to 65535 a channel, for rules that blend (`SPEC.md`,
+    /// section 12); empty: white.
+    pub light: &'g [[u16; 3]],
 }
 
 impl GraphView<'_> {
@@ -177,6 +189,21 @@ impl GraphView<'_> {
     #[must_use]
     pub fn mask(&self, node: u32) -> u8 {
         self.mask.get(node as usize).copied().unwrap_or(0)
+    }
+
+    /// Opacity of a node.
+    #[inline]
+    #[must_use]
+    pub fn opacity_of(&self, node: u32) -> Opacity {
+        self.opacity.get(node as usize).copied().unwrap_or_default()
+    }
+
+    /// Light of a node.
+    #[inline]
+    #[must_use]
+    pub fn light_of(&self, node: u32) -> [u16; 3] {
+        let light = self.light.get(node as usize);
+        light.copied().unwrap_or([u16::MAX; 3])
     }
 
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.

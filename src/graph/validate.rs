@@ -37,7 +37,7 @@ impl Graph {
     /// Checks every invariant, reading every entry.
     ///
     /// - `depth` at most [`MAX_DEPTH`]; placement finite, voxel size above 0;
-    /// - as many normals as colours, at least one, fewer than `u32::MAX`; no
+    /// - as many normals as colours, and as many opacities or none, at least one, fewer than `u32::MAX`; no
     ///   more masks than nodes; an entry of `first` for each mask; the root among the nodes;
     /// - child lists within `links`, or within the nodes where there are no
     ///   links; links within the nodes;
@@ -73,6 +73,10 @@ impl Graph {
         })?;
         check(self.normal.len() == nodes, "normal", 0, || {
             format!("{nodes} normals, one a node, not {}", self.normal.len())
+        })?;
+        let opacities = self.opacity.len();
+        check(opacities == nodes || opacities == 0, "opacity", 0, || {
+            format!("{nodes} opacities, one a node, or none, not {opacities}")
         })?;
         let masks = self.mask.len();
         check(masks <= nodes, "mask", 0, || {

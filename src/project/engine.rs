@@ -138,6 +138,8 @@ mod tests {
             mask: &[],
             first: &[],
             links: &[],
+            opacity: &[],
+            light: &[],
         };
         let camera = Camera {
             eye: glam::DVec3::splat(3.0),

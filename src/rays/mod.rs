@@ -161,6 +161,8 @@ mod tests {
             mask: &[0b0110_1001],
             first: &[0],
             links: &[0; 4],
+            opacity: &[],
+            light: &[],
         };
         for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]] {
             let setup = set_up(eye, 4);

@@ -15,6 +15,7 @@ fn graph(placement: Placement) -> Graph {
         first: Vec::new().into(),
         links: Vec::new().into(),
         color: vec![[255, 0, 0], [0, 255, 0], [0, 0, 255]].into(),
+        opacity: Vec::new().into(),
         normal: vec![
             PackedNormal(0),
             PackedNormal(0),

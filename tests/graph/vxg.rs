@@ -7,7 +7,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use shiftvox::graph::vxg::{self, VxgError};
 use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Silent, Store, Voxel, merge,
+    BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Opacity, Silent, Store, Voxel, merge,
 };
 
 fn build(indices: &[[i32; 3]]) -> Graph {
@@ -40,7 +40,13 @@ fn small_graphs() -> Vec<Graph> {
         [Some(2), None, None, Some(1), None, Some(0), Some(2), None],
     );
     cyclic.add_node([9, 9, 9], [None; 8]);
-    vec![tree, dag, cyclic.build().unwrap(), build(&[[-3, 4, 5]])]
+    let mut airy = tree.clone();
+    airy.opacity = (0..tree.len() as u8)
+        .map(|i| Opacity([i, 3 * i, 0xff - i]))
+        .collect::<Vec<_>>()
+        .into();
+    let cyclic = cyclic.build().unwrap();
+    vec![tree, dag, cyclic, build(&[[-3, 4, 5]]), airy]
 }
 
 fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
@@ -51,7 +57,11 @@ fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {
             graph.first.to_vec(),
             graph.links.to_vec(),
         ),
-        (graph.color.to_vec(), graph.normal.to_vec()),
+        (
+            graph.color.to_vec(),
+            graph.normal.to_vec(),
+            graph.opacity.to_vec(),
+        ),
         graph.level_start.clone(),
     )
 }
@@ -299,14 +309,46 @@ fn messages_say_where_what_and_what_to_do() {
     );
     assert!(message.contains("copy it again"), "{message}");
     // Another version, otherwise sound.
-    bytes[8] = 2;
+    bytes[8] = 3;
     seal(&mut bytes);
     fs::write(folder.path().join("new.vxg"), &bytes).unwrap();
     let message = vxg::open(&folder.path().join("new.vxg"))
         .unwrap_err()
         .to_string();
-    assert!(message.contains("version 1, not 2"), "{message}");
+    assert!(message.contains("version 1 or 2, not 3"), "{message}");
     let missing = vxg::open(&folder.path().join("none.vxg")).unwrap_err();
     assert!(matches!(missing, VxgError::Io { .. }));
     assert!(vxg::open(folder.path()).is_err());
+}
+
+/// The version of the layout says whether there are opacities, so that a
+/// program that knows none does not draw the voxels opaque.
+#[test]
+fn opacities_make_another_version_and_others_stay_as_they_were() {
+    let graphs = small_graphs();
+    let version = |graph: &Graph| bytes_of(graph)[8..12].to_vec();
+    assert_eq!(version(&graphs[0]), [1, 0, 0, 0]);
+    let airy = &graphs[4];
+    assert_eq!(version(airy), [2, 0, 0, 0]);
+    // A file of version 2 whose opacities are none, sealed again.
+    let mut bytes = bytes_of(airy);
+    let start = u64::from_le_bytes(bytes[424..432].try_into().unwrap()) as usize;
+    bytes.truncate(start);
+    bytes[16..24].copy_from_slice(&(start as u64).to_le_bytes());
+    bytes[432..440].copy_from_slice(&0u64.to_le_bytes());
+    seal(&mut bytes);
+    let error = vxg::from_bytes(&bytes).unwrap_err().to_string();
+    assert!(error.contains("expected opacities, not none"), "{error}");
+    // One opacity too few.
+    let mut short = airy.clone();
+    short.opacity = airy.opacity[1..].to_vec().into();
+    assert!(short.validate().is_err());
+    // Nodes that differ in opacity alone are not merged.
+    let mut two = build(&[[0, 0, 0], [1, 1, 1]]);
+    two.color = vec![[5; 3]; two.len()].into();
+    two.normal = vec![Default::default(); two.len()].into();
+    let merged = |graph: &Graph| merge(graph, MergeBy::ShapeAndAttributes, &Silent).0.len();
+    assert_eq!(merged(&two), 2);
+    two.opacity = vec![Opacity::OPAQUE, Opacity([1; 3]), Opacity([2; 3])].into();
+    assert_eq!(merged(&two), 3);
 }

@@ -32,6 +32,7 @@ fn linked(depth: u32, children: &[Vec<(u8, u32)>]) -> Graph {
         links: links.into(),
         color: vec![[0; 3]; nodes].into(),
         normal: vec![Default::default(); nodes].into(),
+        opacity: Vec::new().into(),
         level_start: Vec::new(),
         voxels: 0,
         placement: Placement::default(),

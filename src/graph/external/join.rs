@@ -43,6 +43,7 @@ impl Built {
             links: Vec::new().into(),
             color: Vec::new().into(),
             normal: Vec::new().into(),
+            opacity: Vec::new().into(),
             level_start,
             voxels: self.counts[self.depth as usize],
             placement,

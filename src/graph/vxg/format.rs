@@ -1,20 +1,24 @@
 //! The layout of a `.vxg` file: `spec/graph.md`, "The .vxg file".
 //!
-//! A header of 512 bytes, then five sections, each aligned to 64 bytes with
+//! A header of 512 bytes, then five sections, or six where voxels have opacities, each aligned to 64 bytes with
 //! zeros between. All numbers are little-endian.
 
 use crate::graph::MAX_DEPTH;
 
 /// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
 pub(super) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
-/// Version of the layout.
+/// Version of the layout with five sections.
 pub(super) const VERSION: u32 = 1;
+/// Version of the layout with opacities as a sixth section.
+pub(super) const VERSION_WITH_OPACITY: u32 = 2;
 /// Bytes of the header.
 pub(super) const HEADER_BYTES: usize = 512;
 /// Sections begin at multiples of this.
 pub(super) const ALIGNMENT: u64 = 64;
-/// Sections of a file.
+/// Sections that every file has.
 pub(super) const SECTIONS: usize = 5;
+/// Sections of a file with opacities.
+pub(super) const MOST_SECTIONS: usize = SECTIONS + 1;
 
 /// Where things are in the header.
 pub(super) mod at {
@@ -31,6 +35,8 @@ pub(super) mod at {
     pub(in super::super) const SECTION_COUNT: usize = 100;
     pub(in super::super) const SECTIONS: usize = 128;
     pub(in super::super) const LEVEL_START: usize = 288;
+    /// Entry of the sixth section, beyond the level table.
+    pub(in super::super) const OPACITY_SECTION: usize = 416;
     pub(in super::super) const CHECKSUM: usize = 504;
 }
 
@@ -52,8 +58,8 @@ pub(super) struct Kind {
     pub(super) item_bytes: u32,
 }
 
-/// The sections, in the order in which they are stored.
-pub(super) const KINDS: [Kind; SECTIONS] = [
+/// The sections, in the order in which they are stored; the last may be missing.
+pub(super) const KINDS: [Kind; MOST_SECTIONS] = [
     Kind {
         tag: *b"MASK",
         name: "MASK",
@@ -84,7 +90,22 @@ pub(super) const KINDS: [Kind; SECTIONS] = [
         array: "normal",
         item_bytes: 2,
     },
+    Kind {
+        tag: *b"OPAC",
+        name: "OPAC",
+        array: "opacity",
+        item_bytes: 3,
+    },
 ];
+
+/// Where the header has the entry of section `i` of [`KINDS`].
+pub(super) const fn entry_at(i: usize) -> usize {
+    if i < SECTIONS {
+        at::SECTIONS + i * SECTION_ENTRY_BYTES
+    } else {
+        at::OPACITY_SECTION
+    }
+}
 
 /// Where a section lies, and its checksum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -104,12 +125,15 @@ pub(super) fn align(offset: u64) -> u64 {
 
 /// Where sections of these lengths lie, and the length of the file. There is
 /// only one layout, so that a file has no room for anything unexplained.
-pub(super) fn layout(bytes: [u64; SECTIONS]) -> ([u64; SECTIONS], u64) {
+pub(super) fn layout(bytes: impl IntoIterator<Item = u64>) -> (Vec<u64>, u64) {
     let mut end = HEADER_BYTES as u64;
-    let offsets = bytes.map(|bytes| {
-        let offset = align(end);
-        end = offset.saturating_add(bytes);
-        offset
-    });
+    let offsets = bytes
+        .into_iter()
+        .map(|bytes| {
+            let offset = align(end);
+            end = offset.saturating_add(bytes);
+            offset
+        })
+        .collect();
     (offsets, end)
 }

@@ -8,12 +8,12 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::error::{DAMAGED, NEWER, NOT_OURS, VxgError};
 use super::format::{
-    HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION,
-    at, layout,
+    HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, MOST_SECTIONS, SECTIONS, Section, VERSION,
+    VERSION_WITH_OPACITY, at, entry_at, layout,
 };
 use super::map::{Access, advise};
 use crate::graph::file::{self, Refused};
-use crate::graph::{Graph, Invalid, PackedNormal, Placement, Store};
+use crate::graph::{Graph, Invalid, Opacity, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).
 #[must_use]
@@ -110,7 +110,8 @@ struct Header {
     voxels: u64,
     placement: Placement,
     level_start: Vec<u32>,
-    sections: [Section; SECTIONS],
+    /// All that there are: with or without opacities.
+    sections: Vec<Section>,
     file_bytes: u64,
 }
 
@@ -177,8 +178,9 @@ impl Header {
         let actual = xxh3_64(&header[..at::CHECKSUM]);
         let sound = stored == actual;
         // A sound header of another version is no damage.
-        report.check(version == VERSION || !sound, at::VERSION, NEWER, || {
-            format!("version {VERSION}, not {version}")
+        let known = version == VERSION || version == VERSION_WITH_OPACITY;
+        report.check(known || !sound, at::VERSION, NEWER, || {
+            format!("version {VERSION} or {VERSION_WITH_OPACITY}, not {version}")
         })?;
         report.check(sound, at::CHECKSUM, DAMAGED, || {
             format!("header checksum {stored:016x}, but the header has {actual:016x}")
@@ -197,7 +199,11 @@ impl Header {
             DAMAGED,
             || format!("a file of {expected_bytes} bytes, not {file_bytes}"),
         )?;
-        let sections = read_sections(header, file_bytes, &report)?;
+        let expected = match version {
+            VERSION => SECTIONS,
+            _ => MOST_SECTIONS,
+        };
+        let sections = read_sections(header, expected, file_bytes, &report)?;
         let levels = u32_at(header, at::LEVELS) as usize;
         report.check(levels <= MAX_LEVEL_STARTS, at::LEVELS, DAMAGED, || {
             format!("at most {MAX_LEVEL_STARTS} level entries, not {levels}")
@@ -238,6 +244,10 @@ impl Header {
             Store::Mapped(Arc::clone(map), range(2)),
             Store::Mapped(Arc::clone(map), range(3)),
             Store::Mapped(Arc::clone(map), range(4)),
+            match self.sections.len() {
+                SECTIONS => Vec::new().into(),
+                _ => Store::Mapped(Arc::clone(map), range(SECTIONS)),
+            },
             path,
         )
     }
@@ -259,6 +269,16 @@ impl Header {
             numbers(2),
             section(3).as_chunks().0.to_vec().into(),
             normal.collect::<Vec<_>>().into(),
+            match self.sections.get(SECTIONS) {
+                None => Vec::new().into(),
+                Some(_) => {
+                    let items = section(SECTIONS).as_chunks().0.iter();
+                    items
+                        .map(|&sides| Opacity(sides))
+                        .collect::<Vec<_>>()
+                        .into()
+                }
+            },
             path,
         )
     }
@@ -270,6 +290,7 @@ impl Header {
         links: Store<u32>,
         color: Store<[u8; 3]>,
         normal: Store<PackedNormal>,
+        opacity: Store<Opacity>,
         path: &Path,
     ) -> Result<Graph, VxgError> {
         let graph = Graph {
@@ -280,6 +301,7 @@ impl Header {
             links,
             color,
             normal,
+            opacity,
             level_start: self.level_start.clone(),
             voxels: self.voxels,
             placement: self.placement,
@@ -293,7 +315,8 @@ impl Header {
 
     /// Says at which byte of the file an invariant is broken.
     fn locate(&self, invalid: Invalid, path: &Path) -> VxgError {
-        let kind = KINDS.iter().position(|kind| kind.array == invalid.array);
+        let kinds = KINDS.iter().take(self.sections.len());
+        let kind = { kinds }.position(|kind| kind.array == invalid.array);
         let place = match (kind, invalid.array) {
             (Some(i), _) => {
                 let within = invalid.index as u64 * u64::from(KINDS[i].item_bytes);
@@ -320,19 +343,20 @@ impl Section {
 /// The section table: kinds, and the one layout that lengths allow.
 fn read_sections(
     header: &[u8; HEADER_BYTES],
+    expected: usize,
     file_bytes: u64,
     report: &Reporter<'_>,
-) -> Result<[Section; SECTIONS], VxgError> {
+) -> Result<Vec<Section>, VxgError> {
     let count = u32_at(header, at::SECTION_COUNT);
     report.check(
-        count as usize == SECTIONS,
+        count as usize == expected,
         at::SECTION_COUNT,
         DAMAGED,
-        || format!("{SECTIONS} sections, not {count}"),
+        || format!("{expected} sections, not {count}"),
     )?;
-    let mut sections = [Section::default(); SECTIONS];
+    let mut sections = vec![Section::default(); expected];
     for (i, (kind, section)) in KINDS.iter().zip(&mut sections).enumerate() {
-        let entry = at::SECTIONS + i * SECTION_ENTRY_BYTES;
+        let entry = entry_at(i);
         let tag = field::<4>(header, entry);
         report.check(tag == kind.tag, entry, DAMAGED, || {
             format!(
@@ -358,9 +382,15 @@ fn read_sections(
             )
         })?;
     }
-    let (offsets, end) = layout(sections.map(|section| section.bytes));
+    if let Some(opacity) = sections.get(SECTIONS) {
+        // Without opacities a file is of the other version.
+        report.check(opacity.bytes > 0, entry_at(SECTIONS) + 16, DAMAGED, || {
+            "opacities, not none".to_owned()
+        })?;
+    }
+    let (offsets, end) = layout(sections.iter().map(|section| section.bytes));
     for (i, section) in sections.iter().enumerate() {
-        let entry = at::SECTIONS + i * SECTION_ENTRY_BYTES;
+        let entry = entry_at(i);
         report.check(section.offset == offsets[i], entry + 8, DAMAGED, || {
             format!("the section at byte {}, not {}", offsets[i], section.offset)
         })?;

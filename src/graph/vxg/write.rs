@@ -9,7 +9,8 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::error::VxgError;
 use super::format::{
-    HEADER_BYTES, KINDS, MAGIC, SECTION_ENTRY_BYTES, SECTIONS, Section, VERSION, at, layout,
+    HEADER_BYTES, KINDS, MAGIC, SECTIONS, Section, VERSION, VERSION_WITH_OPACITY, at, entry_at,
+    layout,
 };
 use crate::graph::{Graph, PackedNormal};
 use crate::whole::{self, WholeError};
@@ -115,13 +116,18 @@ pub fn write_to(graph: &Graph, out: &mut impl Write) -> Result<(), VxgError> {
 }
 
 fn write_unchecked(graph: &Graph, out: &mut impl Write) -> io::Result<()> {
-    let contents = sections(graph);
-    let (offsets, file_bytes) = layout(std::array::from_fn(|i| contents[i].len() as u64));
-    let table: [Section; SECTIONS] = std::array::from_fn(|i| Section {
-        offset: offsets[i],
-        bytes: contents[i].len() as u64,
-        checksum: xxh3_64(&contents[i]),
-    });
+    let mut contents = sections(graph).to_vec();
+    if !graph.opacity.is_empty() {
+        // Three bytes each, whatever the machine's byte order.
+        contents.push(Cow::Borrowed(bytemuck::cast_slice(&graph.opacity)));
+    }
+    let (offsets, file_bytes) = layout(contents.iter().map(|section| section.len() as u64));
+    let section = |(bytes, offset): (&Cow<'_, [u8]>, u64)| Section {
+        offset,
+        bytes: bytes.len() as u64,
+        checksum: xxh3_64(bytes),
+    };
+    let table: Vec<Section> = contents.iter().zip(offsets).map(section).collect();
     out.write_all(&header(graph, &table, file_bytes))?;
     let mut written = HEADER_BYTES as u64;
     for (section, bytes) in table.iter().zip(&contents) {
@@ -161,13 +167,17 @@ fn sections(graph: &Graph) -> [Cow<'_, [u8]>; SECTIONS] {
     ]
 }
 
-fn header(graph: &Graph, table: &[Section; SECTIONS], file_bytes: u64) -> [u8; HEADER_BYTES] {
+fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTES] {
     let mut header = [0u8; HEADER_BYTES];
     let mut put = |offset: usize, bytes: &[u8]| {
         header[offset..offset + bytes.len()].copy_from_slice(bytes);
     };
     put(0, &MAGIC);
-    put(at::VERSION, &VERSION.to_le_bytes());
+    let version = match table.len() {
+        SECTIONS => VERSION,
+        _ => VERSION_WITH_OPACITY,
+    };
+    put(at::VERSION, &version.to_le_bytes());
     put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
     put(at::FILE_BYTES, &file_bytes.to_le_bytes());
     put(at::DEPTH, &graph.depth.to_le_bytes());
@@ -181,9 +191,9 @@ fn header(graph: &Graph, table: &[Section; SECTIONS], file_bytes: u64) -> [u8; H
     }
     put(at::VOXEL_SIZE, &graph.placement.voxel_size.to_le_bytes());
     put(at::LEVELS, &(graph.level_start.len() as u32).to_le_bytes());
-    put(at::SECTION_COUNT, &(SECTIONS as u32).to_le_bytes());
+    put(at::SECTION_COUNT, &(table.len() as u32).to_le_bytes());
     for (i, (kind, section)) in KINDS.iter().zip(table).enumerate() {
-        let entry = at::SECTIONS + i * SECTION_ENTRY_BYTES;
+        let entry = entry_at(i);
         put(entry, &kind.tag);
         put(entry + 4, &kind.item_bytes.to_le_bytes());
         put(entry + 8, &section.offset.to_le_bytes());

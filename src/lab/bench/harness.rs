@@ -335,6 +335,7 @@ mod tests {
             links: Store::from(vec![]),
             color: Store::from(vec![[1, 2, 3]]),
             normal: Store::from(vec![]),
+            opacity: Store::from(vec![]),
             level_start: vec![],
             voxels: 1,
             placement: Placement::default(),

@@ -87,6 +87,15 @@ pub fn cut_at(graph: &Graph, setup: &FrameSetup) -> Graph {
                 .map(|c| graph.normal_of(c.node))
                 .collect::<Vec<_>>(),
         ),
+        opacity: match graph.opacity.is_empty() {
+            true => Store::from(Vec::new()),
+            false => Store::from(
+                cells
+                    .iter()
+                    .map(|c| graph.view().opacity_of(c.node))
+                    .collect::<Vec<_>>(),
+            ),
+        },
         level_start: Vec::new(),
         voxels: voxels as u64,
         placement: graph.placement,
@@ -113,6 +122,7 @@ mod tests {
             links: Store::from(vec![0; 4]),
             color: Store::from(vec![[9, 8, 7]]),
             normal: Store::from(vec![]),
+            opacity: Store::from(vec![]),
             level_start: vec![],
             voxels: 4u64.pow(depth),
             placement: Placement::default(),

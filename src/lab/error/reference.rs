@@ -201,6 +201,7 @@ mod tests {
             links: Store::from(vec![]),
             color: Store::from(vec![[200, 40, 90]]),
             normal: Store::from(vec![]),
+            opacity: Store::from(vec![]),
             level_start: vec![],
             voxels: 1,
             placement: Placement::default(),

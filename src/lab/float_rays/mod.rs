@@ -256,6 +256,8 @@ mod tests {
             mask: &[],
             first: &[],
             links: &[],
+            opacity: &[],
+            light: &[],
         };
         let setup = FrameSetup::new(&camera, &graph.placement, 0, &options).unwrap();
         FloatRays.render(&leaf, &setup, &mut frame).unwrap();

@@ -17,6 +17,7 @@ pub(super) fn graph(settings: &Settings) -> Graph {
         links: vec![0; OCTANTS.len()].into(),
         color: vec![COLOR].into(),
         normal: vec![PackedNormal::default()].into(),
+        opacity: Vec::new().into(),
         level_start: Vec::new(),
         voxels: 4u64.saturating_pow(settings.depth),
         placement: Placement::default(),

@@ -37,6 +37,7 @@ pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
             .collect::<Vec<_>>()
             .into(),
         normal: vec![PackedNormal(0); nodes.len()].into(),
+        opacity: Vec::new().into(),
         mask: masks.into(),
         first: firsts.into(),
         links: links.into(),

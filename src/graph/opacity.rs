@@ -1,0 +1,65 @@
+//! How opaque a voxel is, seen from each of six sides (`spec/graph.md`, "Opacities").
+
+/// Opacity of a voxel along the six main directions, four bits each: 0 lets all
+/// through, 15 nothing.
+///
+/// Byte `k` is for axis `k`: its low half for who looks from the side of low
+/// coordinates, its high half for who looks from the side of high ones.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(transparent)]
+pub struct Opacity(pub [u8; 3]);
+
+/// The opacity of what lets nothing through.
+pub const MOST_OPACITY: u8 = 15;
+
+impl Opacity {
+    /// Lets nothing through, from any side.
+    pub const OPAQUE: Self = Self([0xff; 3]);
+
+    /// From opacities by axis, seen from the side of low and of high
+    /// coordinates; more than 15 is 15.
+    #[must_use]
+    pub fn new(sides: [[u8; 2]; 3]) -> Self {
+        Self(sides.map(|[low, high]| low.min(MOST_OPACITY) | high.min(MOST_OPACITY) << 4))
+    }
+
+    /// Seen along axis `k`, from the side of high coordinates or from the other.
+    #[inline(always)]
+    #[must_use]
+    pub fn from_side(self, k: usize, high: bool) -> u8 {
+        self.0[k] >> if high { 4 } else { 0 } & MOST_OPACITY
+    }
+}
+
+impl Default for Opacity {
+    fn default() -> Self {
+        Self::OPAQUE
+    }
+}
+
+/// Sixteenths of its outline that a voxel of this opacity covers: so that 15
+/// is all of it.
+#[inline(always)]
+#[must_use]
+pub const fn sixteenths(opacity: u8) -> u8 {
+    opacity + (opacity >> 3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn six_sides_are_kept_apart() {
+        let opacity = Opacity::new([[1, 2], [3, 4], [5, 200]]);
+        let sides = [0, 1, 2].map(|k| [false, true].map(|high| opacity.from_side(k, high)));
+        assert_eq!(sides, [[1, 2], [3, 4], [5, 15]]);
+        assert_eq!(Opacity::default().from_side(1, true), MOST_OPACITY);
+    }
+
+    #[test]
+    fn the_most_is_all_and_nothing_is_none() {
+        let all: Vec<u8> = (0..=MOST_OPACITY).map(sixteenths).collect();
+        assert_eq!(all, [0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 11, 12, 13, 14, 15, 16]);
+    }
+}
