@@ -121,6 +121,11 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         ));
     }
     if let Some(memory) = args.memory {
+        if args.scene.opacities {
+            return Err(CliError::usage(
+                "--opacities are found in memory: leave --memory out, or ask for fewer levels with --depth",
+            ));
+        }
         return build_outside_memory(args, memory, console);
     }
     let scene = open(&args.input, &args.scene, console)?;

@@ -11,7 +11,7 @@ use super::render::{choose_scenes, open};
 use super::report::{self, grouped};
 use super::scenes::{self, Scene};
 use super::{far, textured};
-use crate::graph::Graph;
+use crate::graph::{Graph, Opacity, sixteenths};
 
 /// Arguments of `info`.
 #[derive(Debug, Args)]
@@ -134,6 +134,7 @@ fn describe(scene: &Scene) -> Value {
         "format": scene.format,
         "index_low": facts.low,
         "index_high": facts.high,
+        "opacities": opacities(&scene.graph),
         "size": facts.size(),
         "voxel_size_world": graph.placement.voxel_size,
         "depth": graph.depth,
@@ -197,6 +198,7 @@ fn tell(scene: &Scene, several: bool) -> String {
             ),
         ),
         ("palette", palette),
+        ("opacities", opacities(graph)),
         (
             "colours",
             format!("{} different", grouped(facts.colors as u64)),
@@ -227,6 +229,29 @@ fn tell(scene: &Scene, several: bool) -> String {
         .collect();
     let gap = if several { "\n" } else { "" };
     format!("{}\n\n{levels}{gap}", text.join("\n"))
+}
+
+/// How many of the nodes without children let light through, and how much
+/// they cover of their faces on the average.
+fn opacities(graph: &Graph) -> String {
+    if graph.opacity.is_empty() {
+        return "none: all voxels are opaque".to_owned();
+    }
+    let view = graph.view();
+    let leaves = (0..graph.len() as u32).filter(|&node| view.mask(node) == 0);
+    let (mut all, mut airy, mut covered) = (0u64, 0u64, 0u64);
+    for opacity in leaves.map(|node| view.opacity_of(node)) {
+        all += 1;
+        airy += u64::from(opacity != Opacity::OPAQUE);
+        for side in 0..6 {
+            covered += u64::from(sixteenths(opacity.from_side(side / 2, side % 2 == 1)));
+        }
+    }
+    format!(
+        "six a voxel; {:.1} % of the voxels are not opaque from all sides; mean {:.1} %",
+        100.0 * airy as f64 / all.max(1) as f64,
+        100.0 * covered as f64 / (96 * all.max(1)) as f64
+    )
 }
 
 /// Different colours of the nodes without children.

@@ -133,6 +133,7 @@ fn options(args: &SceneArgs) -> OpenOptions {
         mesh: MeshOptions {
             depth: args.mesh_depth(),
             load: load_options(args),
+            opacities: args.opacities,
         },
     }
 }

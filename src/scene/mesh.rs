@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::error::printable;
 use super::open::OpenError;
 use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_with_length};
-use crate::graph::{Progress, Voxel};
+use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
 use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshError, MeshFormat, SameFolder};
 
@@ -19,6 +19,9 @@ pub struct MeshOptions {
     pub depth: u32,
     /// How the file is read.
     pub load: LoadOptions,
+    /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
+    /// scene that is built in memory has room for them.
+    pub opacities: bool,
 }
 
 impl Default for MeshOptions {
@@ -26,6 +29,7 @@ impl Default for MeshOptions {
         Self {
             depth: DEFAULT_DEPTH,
             load: LoadOptions::default(),
+            opacities: false,
         }
     }
 }
@@ -174,9 +178,15 @@ impl Ready {
         self.grid.placement()
     }
 
+    /// Gives the nodes of the graph that was built of the voxels opacities.
+    pub(super) fn add_opacities(&self, graph: &mut Graph, progress: &dyn Progress) {
+        let opacities = voxelize::opacities(&self.mesh, &self.grid, graph, progress);
+        graph.opacity = opacities.into();
+    }
+
     /// Hands on the voxels and says what there was.
     pub(super) fn voxels(
-        self,
+        &self,
         sink: &mut dyn FnMut(Voxel),
         progress: &dyn Progress,
     ) -> (SceneInfo, MeshSummary) {

@@ -171,7 +171,7 @@ pub fn open(
         Err(error) => {
             let file = MeshFrom::File(path);
             let ready = Ready::after(error, &file, source, &options.mesh, progress)?;
-            open_mesh(ready, source, progress)
+            open_mesh(&ready, options.mesh.opacities, source, progress)
         }
     }
 }
@@ -180,12 +180,21 @@ pub fn open(
 const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
 
 /// Voxelises a mesh that was read.
-fn open_mesh(ready: Ready, source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {
+fn open_mesh(
+    ready: &Ready,
+    opacities: bool,
+    source: &str,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
     let placement = ready.placement();
     let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
+    let mut graph = gathered.finish(source, placement, progress)?;
+    if opacities {
+        ready.add_opacities(&mut graph, progress);
+    }
     Ok(Opened {
-        graph: gathered.finish(source, placement, progress)?,
+        graph,
         format: format!("{} mesh", info.kind),
         info: Some(info),
         mesh: Some(summary),
@@ -220,7 +229,7 @@ pub fn open_bytes(
         Err(error) => {
             let memory = MeshFrom::Memory(bytes, &Nothing);
             let ready = Ready::after(error, &memory, name, &options.mesh, progress)?;
-            open_mesh(ready, name, progress)
+            open_mesh(&ready, options.mesh.opacities, name, progress)
         }
     }
 }

@@ -50,6 +50,9 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub depth: Option<u32>,
+    /// Give the voxels of a mesh six opacities, for --coverage alpha; of a mesh that is drawn with that they are found anyway
+    #[arg(long)]
+    pub opacities: bool,
     /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else z]
     #[arg(long, value_enum)]
     pub mesh_up: Option<UpName>,
@@ -81,6 +84,7 @@ impl SceneArgs {
         let mut settings = vec![
             ("oob", word(&self.oob)),
             ("mesh-colors", word(&self.mesh_colors)),
+            ("opacities", self.opacities.into()),
         ];
         settings.extend(self.depth.map(|depth| ("depth", i64::from(depth).into())));
         settings.extend(self.mesh_up.map(|up| ("mesh-up", word(&up))));

@@ -11,11 +11,13 @@
 mod block;
 mod grid;
 mod mix;
+mod opacity;
 mod touch;
 
 use rayon::prelude::*;
 
 pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH};
+pub use opacity::opacities;
 
 use super::Surface;
 use crate::graph::{Progress, Voxel};

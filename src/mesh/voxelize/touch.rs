@@ -49,7 +49,7 @@ pub(crate) struct Prepared {
     pub(super) corners: [[i64; 3]; 3],
     low: [i64; 3],
     high: [i64; 3],
-    normal: [i64; 3],
+    pub(super) normal: [i64; 3],
     /// The normal dotted with any corner.
     offset: i128,
     /// For each axis the directions of the three edges in the plane of the others.
@@ -57,7 +57,7 @@ pub(crate) struct Prepared {
 }
 
 /// The other two axes.
-const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
+pub(super) const OTHERS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 impl Prepared {
     pub(crate) fn new(corners: [[i64; 3]; 3]) -> Self {

@@ -1,0 +1,375 @@
+//! How opaque the voxels of a mesh are, from six sides (`spec/mesh.md`, "Opacities").
+//!
+//! A voxel's face is looked at through 64 points; a point is covered where a
+//! triangle within the voxel meets the line through it. What is covered is
+//! kept, not only counted, so that what lies before and behind is put together
+//! as it lies: two halves of a slanted wall, one in the front voxel and one in
+//! the back, are a whole wall and not three quarters of one. A coarser voxel's
+//! face has the points of four columns of two voxels, of which four become one;
+//! what is lost is dithered, so that a thin wire stays as wide as it was on
+//! the average, at every level.
+//!
+//! Triangles have two sides, so what the mesh covers along an axis it covers
+//! from both ends of it.
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
+use super::touch::{OTHERS, Prepared, child};
+use super::{BLOCK_LEVELS, Grid};
+use crate::graph::{Graph, GraphView, Opacity, Progress};
+use crate::mesh::Surface;
+
+/// Points along a side of a face.
+const POINTS: usize = 8;
+/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u`
+/// and `v` the axes after it.
+type Masks = [u64; 3];
+
+/// The opacities of a graph's nodes, one each. The graph is the tree of the
+/// voxels that [`voxelize`](super::voxelize()) made of the same surface on the same grid.
+///
+/// The same on any number of threads.
+pub fn opacities<S: Surface + ?Sized>(
+    surface: &S,
+    grid: &Grid,
+    graph: &Graph,
+    progress: &dyn Progress,
+) -> Vec<Opacity> {
+    let side = grid.side(grid.depth());
+    let origin = graph.placement.origin_index.map(|index| index * side);
+    let found: Vec<AtomicU32> = (0..graph.len()).map(|_| AtomicU32::new(0)).collect();
+    let walk = Walk {
+        surface,
+        grid,
+        graph: graph.view(),
+        found: &found,
+        progress,
+    };
+    let voxels = graph.len() as u64;
+    progress.begin("find opacities", voxels);
+    let all: Vec<u32> = (0..surface.len() as u32).collect();
+    walk.node(graph.root, &all, origin, 0);
+    progress.end();
+    let opacity = |bits: AtomicU32| {
+        let [x, y, z, _] = bits.into_inner().to_le_bytes();
+        Opacity([x, y, z])
+    };
+    found.into_iter().map(opacity).collect()
+}
+
+struct Walk<'w, S: ?Sized> {
+    surface: &'w S,
+    grid: &'w Grid,
+    graph: GraphView<'w>,
+    found: &'w [AtomicU32],
+    progress: &'w dyn Progress,
+}
+
+impl<S: Surface + ?Sized> Walk<'_, S> {
+    /// Side on the lattice of a node of a level of the graph, which may have
+    /// fewer levels than the grid.
+    fn side(&self, level: u32) -> i64 {
+        self.grid.side(self.grid.depth()) << (self.graph.depth - level)
+    }
+
+    /// A node, of which these triangles may be a part. Deep down, threads are
+    /// of no use and triangles are few enough to be prepared.
+    fn node(&self, node: u32, triangles: &[u32], corner: [i64; 3], level: u32) -> Masks {
+        if self.graph.depth - level <= BLOCK_LEVELS {
+            let prepared: Vec<Prepared> = triangles
+                .iter()
+                .map(|&number| Prepared::new(self.grid.corners(self.surface, number)))
+                .collect();
+            let mut list: Vec<u32> = (0..triangles.len() as u32).collect();
+            let before = self.below(node, level);
+            let masks = self.descend(node, &prepared, &mut list, 0, corner, level);
+            self.progress.advance(before);
+            return masks;
+        }
+        let half = self.side(level + 1);
+        let masks: Vec<Masks> = (0..8u8)
+            .into_par_iter()
+            .map(|octant| {
+                let Some(inner) = self.graph.child(node, octant) else {
+                    return Masks::default();
+                };
+                let at = child(corner, half, octant);
+                let touching: Vec<u32> = triangles
+                    .iter()
+                    .copied()
+                    .filter(|&number| {
+                        let corners = self.grid.corners(self.surface, number);
+                        Prepared::new(corners).touches(at, half)
+                    })
+                    .collect();
+                self.node(inner, &touching, at, level + 1)
+            })
+            .collect();
+        self.store(node, joined(&masks))
+    }
+
+    /// Nodes of a subtree, for the progress: those of its two upper levels.
+    fn below(&self, node: u32, level: u32) -> u64 {
+        if level == self.graph.depth {
+            return 1;
+        }
+        1 + u64::from(self.graph.mask(node).count_ones())
+    }
+
+    /// A node whose triangles are those from `begin` to the list's end.
+    fn descend(
+        &self,
+        node: u32,
+        prepared: &[Prepared],
+        list: &mut Vec<u32>,
+        begin: usize,
+        corner: [i64; 3],
+        level: u32,
+    ) -> Masks {
+        if level == self.graph.depth {
+            let side = self.side(level);
+            let mut masks = Masks::default();
+            for &triangle in &list[begin..] {
+                cover(&prepared[triangle as usize], corner, side, &mut masks);
+            }
+            return self.store(node, masks);
+        }
+        let half = self.side(level + 1);
+        let end = list.len();
+        let mut masks = [Masks::default(); 8];
+        for octant in 0..8u8 {
+            let Some(inner) = self.graph.child(node, octant) else {
+                continue;
+            };
+            let at = child(corner, half, octant);
+            for i in begin..end {
+                let triangle = list[i];
+                if prepared[triangle as usize].touches(at, half) {
+                    list.push(triangle);
+                }
+            }
+            masks[usize::from(octant)] = self.descend(inner, prepared, list, end, at, level + 1);
+            list.truncate(end);
+        }
+        self.store(node, joined(&masks))
+    }
+
+    fn store(&self, node: u32, masks: Masks) -> Masks {
+        let dither = dither(&masks);
+        let [x, y, z] = masks.map(|mask| {
+            let opacity = opacity_of(mask.count_ones(), dither);
+            opacity | opacity << 4
+        });
+        let bits = u32::from_le_bytes([x, y, z, 0]);
+        self.found[node as usize].store(bits, Ordering::Relaxed);
+        masks
+    }
+}
+
+/// A number that looks like chance and follows from what a node covers.
+fn dither(masks: &Masks) -> u32 {
+    let mixed = masks.iter().fold(0u64, |hash, &mask| {
+        (hash ^ mask)
+            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            .rotate_left(29)
+    });
+    (mixed.wrapping_mul(0xd6e8_feb8_6659_fd93) >> 32) as u32
+}
+
+/// The opacity of a face of which so many of the 64 points are covered: in
+/// sixteenths, rounded up or down as the dither has it, all and nothing apart.
+fn opacity_of(points: u32, dither: u32) -> u8 {
+    let sixteenths = ((points * 16 + (dither & 63)) / 64) as u8;
+    match sixteenths {
+        // Eight sixteenths are between two opacities.
+        8 => 7 + (dither >> 6 & 1) as u8,
+        0..8 => sixteenths,
+        _ => sixteenths - 1,
+    }
+}
+
+/// Where in the eighths of a cell point (u, v) lies: over a row, or a column,
+/// every eighth once, so that a line along an axis is measured to a 64th.
+fn offsets(u: usize, v: usize) -> [i64; 2] {
+    const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
+    [SPREAD[(v + 3 * u) & 7], SPREAD[(u + 5 * v) & 7]]
+}
+
+/// Adds the points that a triangle covers within a voxel.
+///
+/// Bits: corners and points stay below 2^31, so an edge times a distance is
+/// below 2^62; the normal is below 2^61, and its products are `i128`.
+fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
+    let cell = side / POINTS as i64;
+    for (k, [u, v]) in OTHERS.into_iter().enumerate() {
+        let normal = triangle.normal;
+        if normal[k] == 0 || masks[k] == u64::MAX {
+            continue;
+        }
+        let turn = normal[k].signum();
+        let flat = triangle
+            .corners
+            .map(|p| [p[u] - corner[u], p[v] - corner[v]]);
+        let cells = |axis: usize| {
+            let low = flat.iter().map(|p| p[axis]).min().unwrap_or(0);
+            let high = flat.iter().map(|p| p[axis]).max().unwrap_or(0);
+            low.max(0) / cell..=high.min(side - 1) / cell
+        };
+        // By corner, the normal's other parts times the way from there, and
+        // what the voxel's two ends along the axis come to.
+        let [first, ..] = flat;
+        let at = i128::from(triangle.corners[0][k] - corner[k]);
+        let along = i128::from(normal[k]) * i128::from(turn);
+        let (low, high) = (-along * at, along * (i128::from(side) - at));
+        for j in cells(1) {
+            for i in cells(0) {
+                let bit = 1u64 << (j * POINTS as i64 + i);
+                if masks[k] & bit != 0 {
+                    continue;
+                }
+                let [du, dv] = offsets(i as usize, j as usize);
+                let point = [
+                    i * cell + (2 * du + 1) * cell / 16,
+                    j * cell + (2 * dv + 1) * cell / 16,
+                ];
+                let inside = (0..3).all(|e| {
+                    let (a, b) = (flat[e], flat[(e + 1) % 3]);
+                    let turned =
+                        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+                    turned * turn >= 0
+                });
+                if !inside {
+                    continue;
+                }
+                let slope = i128::from(normal[u]) * i128::from(point[0] - first[0])
+                    + i128::from(normal[v]) * i128::from(point[1] - first[1]);
+                let depth = -slope * i128::from(turn);
+                if (low..=high).contains(&depth) {
+                    masks[k] |= bit;
+                }
+            }
+        }
+    }
+}
+
+/// What a node's eight children cover together, by octant.
+fn joined(children: &[Masks]) -> Masks {
+    // Of four points, how many must be covered for one: each number once in a square of cells.
+    const LEAST: [[u32; 2]; 2] = [[1, 3], [4, 2]];
+    let mut masks = Masks::default();
+    for (k, [u, v]) in OTHERS.into_iter().enumerate() {
+        for column in 0..4usize {
+            let (cu, cv) = (column & 1, column >> 1);
+            let octant = cu << (2 - u) | cv << (2 - v);
+            let both = children[octant][k] | children[octant | 1 << (2 - k)][k];
+            let turn = both.count_ones() as usize;
+            for j in 0..4usize {
+                for i in 0..4usize {
+                    let points = both >> (16 * j + 2 * i);
+                    let covered = (points & 0b11 | points >> 6 & 0b1100).count_ones();
+                    if covered >= LEAST[(i + turn) & 1][(j + (turn >> 1)) & 1] {
+                        masks[k] |= 1 << ((4 * cv + j) * POINTS + 4 * cu + i);
+                    }
+                }
+            }
+        }
+    }
+    masks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Lattice units of a voxel's side in these tests.
+    const SIDE: i64 = 1 << 10;
+
+    fn covered(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> [u32; 3] {
+        let mut masks = Masks::default();
+        for &triangle in triangles {
+            cover(&Prepared::new(triangle), corner, SIDE, &mut masks);
+        }
+        masks.map(u64::count_ones)
+    }
+
+    #[test]
+    fn a_wall_covers_its_face_and_no_other() {
+        let wall = |low: i64, high: i64| {
+            [
+                [[500, low, -100], [500, high, -100], [500, high, 3000]],
+                [[500, low, -100], [500, high, 3000], [500, low, 3000]],
+            ]
+        };
+        assert_eq!(covered(&wall(-9, 3000), [0; 3]), [64, 0, 0]);
+        assert_eq!(covered(&wall(-9, 512), [0; 3]), [32, 0, 0]);
+        // A strip of an eighth of the side, anywhere: an eighth of the points, to a 64th of the side.
+        for low in (0..896).step_by(37) {
+            let [points, ..] = covered(&wall(low, low + 128), [0; 3]);
+            assert!((7..=9).contains(&points), "{low}: {points}");
+        }
+        // Not in this voxel, but in the next.
+        assert_eq!(covered(&wall(-9, 3000), [-SIDE, 0, 0]), [0; 3]);
+    }
+
+    #[test]
+    fn two_halves_of_a_slanted_wall_make_a_whole_one() {
+        // The plane x + y = 1.3 sides, in the voxel (0, 0) and the next along x.
+        let (far, reach) = (4000, 1331);
+        let slant = [
+            [
+                [-far, reach + far, -far],
+                [far, reach - far, -far],
+                [far, reach - far, far],
+            ],
+            [
+                [-far, reach + far, -far],
+                [far, reach - far, far],
+                [-far, reach + far, far],
+            ],
+        ];
+        let near = covered(&slant, [0; 3])[0];
+        let mut masks = [Masks::default(); 8];
+        for octant in 0..8u8 {
+            for triangle in slant {
+                let at = child([0; 3], SIDE, octant);
+                cover(
+                    &Prepared::new(triangle),
+                    at,
+                    SIDE,
+                    &mut masks[octant as usize],
+                );
+            }
+        }
+        assert!((40..=50).contains(&near), "{near}");
+        // One voxel alone has seven tenths; both, one before the other, are whole.
+        let lower_half = 0x0f0f_0f0f_0f0f_0f0f;
+        assert_eq!(joined(&masks)[0] & lower_half, lower_half);
+    }
+
+    #[test]
+    fn opacities_are_shares_without_bias() {
+        for points in 0..=64u32 {
+            let opacity = |dither| f64::from(crate::graph::sixteenths(opacity_of(points, dither)));
+            let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
+            assert!(
+                (mean - f64::from(points) / 4.0).abs() < 0.13,
+                "{points}: {mean}"
+            );
+        }
+        assert!((0..256).all(|dither| opacity_of(64, dither) == 15));
+        assert!((0..256).all(|dither| opacity_of(0, dither) == 0));
+    }
+
+    #[test]
+    fn four_points_become_one_without_bias() {
+        for covered in 0..=4u32 {
+            let points = (1u64 << covered) - 1;
+            let block = points & 3 | (points >> 2) << 8;
+            let all = (0..16).fold(0u64, |all, at| all | block << (at / 4 * 16 + at % 4 * 2));
+            let joined = joined(&[[all, all, all]; 8]);
+            assert_eq!(joined[0].count_ones(), 16 * covered, "{covered}");
+        }
+    }
+}
