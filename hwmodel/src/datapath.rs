@@ -91,6 +91,12 @@ impl<P: Probe> Datapath<P> {
         self.format
     }
 
+    /// Where it is at work.
+    #[inline(always)]
+    pub(crate) fn place(&self) -> Place {
+        self.place
+    }
+
     /// The first overflow so far, if the policy is to trap.
     #[inline]
     #[must_use]

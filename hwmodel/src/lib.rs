@@ -47,6 +47,7 @@ pub mod cycles;
 mod datapath;
 mod format;
 pub mod memory;
+mod narrow;
 pub mod probe;
 pub mod statistics;
 pub mod tap;
@@ -54,6 +55,7 @@ mod word;
 
 pub use datapath::{Datapath, Trap, TrapOp};
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
+pub use narrow::Narrow;
 pub use probe::{Memory, NoProbe, OpClass, Operand, Place, Probe, Stage};
 pub use tap::{Short, Signal, SignalKind, Wires};
 pub use word::{Number, WideWord, Word};

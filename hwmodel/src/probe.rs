@@ -86,11 +86,13 @@ pub enum Stage {
     FillUpdate,
     /// A cage changes from clip space to screen space.
     ToScreen,
+    /// A voxel that is not opaque is added to what a pixel has so far.
+    Blend,
 }
 
 impl Stage {
     /// All stages, in the order of their discriminants.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Pop,
         Self::Filled,
         Self::OnePixel,
@@ -103,6 +105,7 @@ impl Stage {
         Self::Draw,
         Self::FillUpdate,
         Self::ToScreen,
+        Self::Blend,
     ];
 
     /// The stage in words.
@@ -121,6 +124,7 @@ impl Stage {
             Self::Draw => "draw",
             Self::FillUpdate => "fill update",
             Self::ToScreen => "to screen",
+            Self::Blend => "blend",
         }
     }
 }
@@ -140,16 +144,19 @@ pub enum Memory {
     FillVector,
     /// Pixels; the address is `y * width + x`.
     Pixel,
+    /// What pixels have so far, where voxels are blended; addresses as of pixels.
+    Accumulator,
 }
 
 impl Memory {
     /// All memories, in the order of their discriminants.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Stack,
         Self::Node,
         Self::Attribute,
         Self::FillVector,
         Self::Pixel,
+        Self::Accumulator,
     ];
 
     /// The memory in words.
@@ -161,6 +168,7 @@ impl Memory {
             Self::Attribute => "attribute",
             Self::FillVector => "fill vector",
             Self::Pixel => "pixel",
+            Self::Accumulator => "accumulator",
         }
     }
 }

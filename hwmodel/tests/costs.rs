@@ -501,6 +501,7 @@ fn energy_of_accesses_and_of_a_rival() {
         attribute: Store::Dram,
         fill_vector: sram,
         pixel: Store::Dram,
+        accumulator: sram,
     };
     let accesses = counter.accesses_by(|cell| cell.memory);
     let sum = memory_energy_of(&accesses, &widths, &stores, &table).unwrap();

@@ -7,7 +7,8 @@ use super::engines;
 use super::error::{CliError, Kind};
 use super::scenes::Scene;
 use crate::frame::{Colors, Frame};
-use crate::picture::{Picture, resolve};
+use crate::graph::GraphView;
+use crate::picture::{Picture, Shading, lights, resolve};
 use crate::project::{Camera, Contents, Engine, FrameSetup, Stats, Viewer};
 
 /// A drawn picture and what it took.
@@ -75,7 +76,9 @@ impl<'s> Drawing<'s> {
         let setup = self.setup(camera)?;
         let started = Instant::now();
         let is_shown = self.viewer.shows(&setup);
-        let stats = self.viewer.render(&setup)?;
+        let graph = &self.scene.graph;
+        let light = lights(graph, &setup, self.picture_args.shading());
+        let stats = self.viewer.render_lit(&setup, &light)?;
         let times_ms = vec![milliseconds_since(started)];
         let started = Instant::now();
         let picture = match self.last.take().filter(|_| is_shown) {
@@ -98,10 +101,15 @@ impl<'s> Drawing<'s> {
         let graph = &self.scene.graph;
         let mut engine = engines::engine(self.engine_args)?;
         let mut colors = Colors::new(setup.width, setup.height);
+        let light = lights(graph, &setup, Shading::Flat);
+        let view = GraphView {
+            light: &light,
+            ..graph.view()
+        };
         let mut times_ms = Vec::new();
         for _ in 0..repeat {
             let started = Instant::now();
-            engine.draw_colors(&graph.view(), &graph.color, &setup, &mut colors)?;
+            engine.draw_colors(&view, &graph.color, &setup, &mut colors)?;
             std::hint::black_box(&colors);
             times_ms.push(milliseconds_since(started));
         }

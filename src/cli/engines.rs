@@ -11,7 +11,7 @@ use crate::graph::GraphView;
 use crate::lab::bench::{Candidate, Family, Frames, Variant};
 use crate::lab::float_rays::FloatRays;
 use crate::machine::{Machine, MachineOptions};
-use crate::project::{Engine, EngineError, FrameSetup};
+use crate::project::{Coverage, Engine, EngineError, FrameSetup};
 use crate::rays::Rays;
 
 /// The engine of a name.
@@ -45,6 +45,10 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
             Ok(Box::new(Fast::new(options, Box::new(machine(args)))))
         }
         EngineName::Machine => Ok(Box::new(machine(args))),
+        EngineName::Rays if args.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
+            "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
+        )
+        .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
         EngineName::Rays => Ok(Box::new(Rays)),
         EngineName::Far => Err(CliError::usage(
             "--engine far draws a .far file, and only render does",

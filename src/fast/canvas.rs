@@ -6,7 +6,7 @@
 //! as in the image quadtree. A square is what is no larger than a tile, anywhere.
 
 use super::lanes::Isa;
-use crate::frame::{NO_NODE, color_word};
+use crate::frame::{Blend, NO_NODE, color_word};
 
 /// Samples along a tile's side, as a power of two.
 pub(super) const TILE_LOG2: u32 = 3;
@@ -437,6 +437,8 @@ pub(super) struct Pixels<'f> {
     pub(super) color: &'f [[u8; 3]],
     /// Empty where voxels are not asked for.
     pub(super) voxel: &'f mut [[i32; 4]],
+    /// What was blended so far; empty under rules that do not blend.
+    pub(super) blend: &'f mut [Blend],
 }
 
 impl Pixels<'_> {

@@ -118,7 +118,8 @@ pub(super) fn change<I: Isa>(walk: &mut Walk<'_, I>, record: &ClipRecord) -> boo
     walk.counters.changes += 1;
     walk.counters.skipped_detail += u64::from(subtree.finest < view.depth);
     walk.tables.forget();
-    if subtree.is_coarse {
+    walk.aim_at(record.min, record.level);
+    if subtree.is_coarse && view.search.is_none() {
         walk.tables.make_square(isa, &subtree);
     }
     screen::start(walk, &subtree, record, lattice.place);

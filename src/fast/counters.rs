@@ -19,6 +19,8 @@ pub(super) struct Counters {
     pub(super) solids: u64,
     /// Samples drawn.
     pub(super) samples_drawn: u64,
+    /// Voxels that samples took, under the rule that blends.
+    pub(super) samples_blended: u64,
     /// Samples decided by exact planes.
     pub(super) exact_samples: u64,
     /// Children that do not exist.
@@ -55,7 +57,7 @@ impl Counters {
         stats
     }
 
-    fn fields(&self) -> [(&'static str, u64); 15] {
+    fn fields(&self) -> [(&'static str, u64); 16] {
         [
             ("clip_records", self.clip_records),
             ("screen_records", self.screen_records),
@@ -64,6 +66,7 @@ impl Counters {
             ("brick_samples", self.brick_samples),
             ("solids_drawn", self.solids),
             ("samples_drawn", self.samples_drawn),
+            ("samples_blended", self.samples_blended),
             ("samples_decided_exactly", self.exact_samples),
             ("skipped_absent_children", self.skipped_absent),
             ("skipped_behind_eye", self.skipped_behind),
@@ -75,7 +78,7 @@ impl Counters {
         ]
     }
 
-    fn fields_mut(&mut self) -> [&mut u64; 15] {
+    fn fields_mut(&mut self) -> [&mut u64; 16] {
         [
             &mut self.clip_records,
             &mut self.screen_records,
@@ -84,6 +87,7 @@ impl Counters {
             &mut self.brick_samples,
             &mut self.solids,
             &mut self.samples_drawn,
+            &mut self.samples_blended,
             &mut self.exact_samples,
             &mut self.skipped_absent,
             &mut self.skipped_behind,

@@ -21,9 +21,10 @@
 //! ```
 //!
 //! Frames with settings that this engine has no exact numbers for (rules other
-//! than `exact`, an infinite tolerance, records asked for, formats without
+//! than `exact` and `alpha`, an infinite tolerance, records asked for, formats without
 //! headroom) are handed to the engine it is made with.
 
+mod alpha;
 mod brick;
 mod canvas;
 mod clip;
@@ -41,7 +42,7 @@ mod walk;
 
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
-use crate::project::{Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
 use canvas::{BLOCK_LOG2, Fill, FillMemory, FillPart, Grid, Pixels, Window};
 use counters::Counters;
 use lanes::{Isa, Scalar};
@@ -173,6 +174,7 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
+        frame.set_blending(setup.options.coverage == Coverage::Alpha);
         if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
             return Ok(());
         }
@@ -186,12 +188,19 @@ impl Engine for Fast {
         setup: &FrameSetup,
         colors: &mut Colors,
     ) -> Result<(), EngineError> {
+        if setup.options.coverage == Coverage::Alpha {
+            // Nodes first: what is blended has no colour before the last voxel.
+            self.draw(graph, setup, colors.nodes())?;
+            colors.take_nodes(of_node);
+            return Ok(());
+        }
         let pixels = Pixels {
             width: colors.width as usize,
             top: 0,
             shown: &mut colors.words,
             color: of_node,
             voxel: &mut [],
+            blend: &mut [],
         };
         // Without colours there is nothing to look up.
         if !of_node.is_empty() && self.draw_fast(graph, setup, pixels) {
@@ -206,6 +215,7 @@ impl Engine for Fast {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
+        frame.set_blending(setup.options.coverage == Coverage::Alpha);
         if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
             return Ok(self.counters.stats());
         }
@@ -223,6 +233,7 @@ fn pixels_of(frame: &mut Frame) -> Pixels<'_> {
         shown: &mut frame.node,
         color: &[],
         voxel: &mut frame.voxel,
+        blend: frame.blend.as_deref_mut().unwrap_or_default(),
     }
 }
 
@@ -303,11 +314,13 @@ impl Piece<'_> {
         let top = self.bounds.top + ((rows << BLOCK_LOG2) as i32);
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
         let voxels = samples.min(self.pixels.voxel.len());
+        let blends = samples.min(self.pixels.blend.len());
         let (fill, fill_rest) = self.fill.split(&self.grid, rows);
         let (shown, shown_rest) = self.pixels.shown.split_at_mut(samples);
         let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
+        let (blend, blend_rest) = self.pixels.blend.split_at_mut(blends);
         let (width, color) = (self.pixels.width, self.pixels.color);
-        let piece = |bounds: Window, fill, shown, voxel| Self {
+        let piece = |bounds: Window, fill, shown, voxel, blend| Self {
             grid: self.grid,
             bounds,
             fill,
@@ -317,6 +330,7 @@ impl Piece<'_> {
                 shown,
                 color,
                 voxel,
+                blend,
             },
         };
         let upper = Window {
@@ -325,8 +339,8 @@ impl Piece<'_> {
         };
         let lower = Window { top, ..self.bounds };
         (
-            piece(upper, fill, shown, voxel),
-            piece(lower, fill_rest, shown_rest, voxel_rest),
+            piece(upper, fill, shown, voxel, blend),
+            piece(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
         )
     }
 
@@ -369,6 +383,7 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         pixels: piece.pixels,
         counters: Counters::default(),
         tables: tables::Tables::default(),
+        aim: [0; 3],
         found: [(0, 0); 64],
         is_lost: false,
     };

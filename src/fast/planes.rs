@@ -320,6 +320,7 @@ impl Outline {
         voxel: [i32; 4],
     ) {
         walk.counters.solids += 1;
+        walk.aim_at([voxel[0], voxel[1], voxel[2]], voxel[3] as u32);
         let side = 1 << BLOCK_LOG2;
         for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
             for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
@@ -395,10 +396,9 @@ impl Outline {
                 };
                 if samples != 0 {
                     walk.counters.tiles_filled += u64::from(samples == u64::MAX);
-                    walk.counters.samples_drawn += u64::from(samples.count_ones());
-                    walk.pixels
-                        .show(walk.isa, [left, top], samples, node, voxel);
-                    walk.fill.mark_tile(x, y, samples);
+                    let drawn = walk.show([left, top], samples, node, voxel);
+                    walk.counters.samples_drawn += u64::from(drawn.count_ones());
+                    walk.fill.mark_tile(x, y, drawn);
                 }
             }
         }

@@ -243,11 +243,10 @@ fn draw_family<I: Isa>(
         let start = isa.sub(first, isa.load(&subtree.child[child]));
         let samples = inside & isa.square_within(&walk.tables.square, start, &subtree.bound);
         if samples != 0 {
-            open ^= samples;
             let node = parts.node(walk.graph, 1, octant, lane);
             let min = corner_of(record.min, 1, subtree.finest_side, octant, lane);
             let voxel = voxel_at(min, subtree.finest);
-            walk.pixels.show(isa, corner, samples, node, voxel);
+            open ^= walk.show(corner, samples, node, voxel);
         }
     }
     let drawn = open ^ record.open;
@@ -325,10 +324,10 @@ fn draw_square<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, record: &Scree
     let samples = record.open & isa.square_within(&walk.tables.square, start, &subtree.bound);
     if samples != 0 {
         let voxel = voxel_at(record.min, subtree.finest);
-        walk.counters.samples_drawn += u64::from(samples.count_ones());
         let corner = [window.left, window.top];
-        walk.pixels.show(isa, corner, samples, record.node, voxel);
-        walk.fill.mark_square(window, samples);
+        let drawn = walk.show(corner, samples, record.node, voxel);
+        walk.counters.samples_drawn += u64::from(drawn.count_ones());
+        walk.fill.mark_square(window, drawn);
     }
     true
 }
@@ -360,10 +359,9 @@ pub(super) fn draw_tiles<I: Isa>(walk: &mut Walk<'_, I>, subtree: &Subtree, reco
             }
             if samples != 0 {
                 walk.counters.tiles_filled += u64::from(samples == u64::MAX);
-                walk.counters.samples_drawn += u64::from(samples.count_ones());
-                walk.pixels
-                    .show(walk.isa, [left, top], samples, record.node, voxel);
-                walk.fill.mark_tile(x, y, samples);
+                let drawn = walk.show([left, top], samples, record.node, voxel);
+                walk.counters.samples_drawn += u64::from(drawn.count_ones());
+                walk.fill.mark_tile(x, y, drawn);
             }
         }
     }

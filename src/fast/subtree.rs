@@ -95,8 +95,9 @@ impl Subtree {
             }
         }
         let box_width = half_width[ACROSS].max(half_width[ACROSS + 1]);
-        let is_coarse =
-            view.search.is_none() && 2 * i64::from(box_width) >= COARSE_SAMPLES << lattice.box_bits;
+        let is_coarse = view.opacity_eye.is_some()
+            || view.search.is_none()
+                && 2 * i64::from(box_width) >= COARSE_SAMPLES << lattice.box_bits;
         let [left, top] = lattice.origin;
         let [x, y, z] = lattice.half_edge;
         let (y_and_z, y_less_z) = (isa.add(y, z), isa.sub(y, z));

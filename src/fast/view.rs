@@ -5,7 +5,7 @@
 //! the machine's thresholds have the machine's outcome, and the same lanes can
 //! divide.
 
-use crate::project::{Coverage, FrameSetup};
+use crate::project::{Coverage, FrameSetup, OpacityEye};
 
 /// Positions, times sixteen, stay below this: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
@@ -91,6 +91,8 @@ pub(super) struct View {
     pub(super) strip_slack: Option<u32>,
     /// The eye, finest voxels, rounded down.
     pub(super) eye_floor: [i64; 3],
+    /// Under the rule that blends.
+    pub(super) opacity_eye: Option<OpacityEye>,
     /// What windows of clip-space boxes are widened by, samples.
     pub(super) margin: f64,
     /// In a frame without tolerance: how far lattices are from the truth. What
@@ -107,7 +109,7 @@ impl View {
         let tolerance = options.tolerance_px;
         let reach = setup.position_reach()?;
         let frac = setup.format.frac();
-        if options.coverage != Coverage::Exact
+        if !options.coverage.draws_outlines()
             || !tolerance.is_finite()
             || !setup.has_headroom
             || reach * 16 >= EXACT_LIMIT
@@ -140,6 +142,7 @@ impl View {
             strip_guard: setup.strip_guard,
             strip_slack: setup.strip_slack,
             eye_floor: setup.eye_floor.map(|c| c.clamp(-1, far + 1)),
+            opacity_eye: (options.coverage == Coverage::Alpha).then(|| setup.opacity_eye()),
             margin: tolerance + QUOTIENT_MARGIN,
             search,
         })

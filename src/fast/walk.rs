@@ -24,6 +24,8 @@ pub(super) struct Walk<'w, I> {
     pub(super) counters: Counters,
     /// Tables of the subtree that is worked on.
     pub(super) tables: Tables,
+    /// The shares of the sides of what is drawn, under the rule that blends.
+    pub(super) aim: [u32; 3],
     /// Samples of a square, and the lanes that were found there.
     pub(super) found: [(u32, u64); 64],
     /// Set where a subtree has numbers that do not fit the lanes; the frame is

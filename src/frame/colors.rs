@@ -1,6 +1,8 @@
 //! The quickest picture: each sample's own colour, unlit, as a window wants it.
 
-use super::{Frame, NO_NODE};
+use std::sync::LazyLock;
+
+use super::{Blend, Frame, NO_NODE};
 
 /// Samples that are looked at together: where none shows anything, none is looked up.
 const TOGETHER: usize = 16;
@@ -58,10 +60,46 @@ impl Colors {
     /// Takes the colours of the nodes that a frame of this size shows, on the
     /// threads of the current pool.
     pub fn take(&mut self, of_node: &[[u8; 3]], frame: &Frame) {
+        if let Some(blend) = &frame.blend {
+            self.take_blended(blend);
+            return;
+        }
         let threads = rayon::current_num_threads();
         write(of_node, &frame.node, &mut self.words, threads);
     }
 }
+
+impl Colors {
+    /// Takes what was blended, over black: linear light by a table to sRGB.
+    fn take_blended(&mut self, blend: &[Blend]) {
+        let encoded = &*ENCODED;
+        for (word, sample) in self.words.iter_mut().zip(blend) {
+            // 24 bits a channel, of which the table has as many as it takes.
+            let byte = |c: u32| encoded[(c >> (24 - ENCODED_BITS)) as usize & (ENCODED_SIZE - 1)];
+            *word = match sample.left {
+                256 => 0,
+                _ => color_word(sample.light.map(byte)),
+            };
+        }
+    }
+}
+
+/// Bits of linear light that a preview's colours are made from.
+const ENCODED_BITS: u32 = 12;
+const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
+
+/// The sRGB value of linear light.
+static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
+    std::array::from_fn(|light| {
+        let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
+        let encoded = if light <= 0.003_130_8 {
+            12.92 * light
+        } else {
+            1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+        };
+        libm::round(255.0 * encoded) as u8
+    })
+});
 
 /// Halves the samples until each thread has a few shares.
 fn write(of_node: &[[u8; 3]], nodes: &[u32], words: &mut [u32], threads: usize) {

@@ -30,6 +30,27 @@ pub struct Frame {
     /// Share of the records worked on for this sample, if it was asked for:
     /// a record counts 1, spread evenly over its quadtree node's samples.
     pub records: Option<Vec<f32>>,
+    /// What the samples took of the voxels before them, where those were
+    /// blended; `node` and `voxel` are then the first that a sample took.
+    pub blend: Option<Vec<Blend>>,
+}
+
+/// What a sample has taken of the voxels before it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Blend {
+    /// How much it still lets through: 256 all, 0 nothing.
+    pub left: u16,
+    /// Linear light, 0 to 65535 a channel, times the share that it was given of 256.
+    pub light: [u32; 3],
+}
+
+impl Default for Blend {
+    fn default() -> Self {
+        Self {
+            left: 256,
+            light: [0; 3],
+        }
+    }
 }
 
 impl Frame {
@@ -43,6 +64,7 @@ impl Frame {
             node: vec![NO_NODE; samples],
             voxel: vec![NO_VOXEL; samples],
             records: with_records.then(|| vec![0.0; samples]),
+            blend: None,
         }
     }
 
@@ -56,6 +78,7 @@ impl Frame {
             node: vec![NO_NODE; width as usize * height as usize],
             voxel: Vec::new(),
             records: None,
+            blend: None,
         }
     }
 
@@ -65,6 +88,15 @@ impl Frame {
         self.voxel.fill(NO_VOXEL);
         if let Some(records) = &mut self.records {
             records.fill(0.0);
+        }
+    }
+
+    /// Has room for what is blended, and nothing in it, or has none.
+    pub fn set_blending(&mut self, blends: bool) {
+        let samples = self.node.len();
+        match &mut self.blend {
+            Some(blend) if blends => blend.fill(Blend::default()),
+            blend => *blend = blends.then(|| vec![Blend::default(); samples]),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use hwmodel::{Datapath, Probe, WideWord, Word};
 
+use super::alpha::BlendEye;
 use crate::project::setup::ShiftSum;
 use crate::project::{Coverage, FrameSetup};
 
@@ -30,7 +31,10 @@ const NEAR_CROSSING_SHIFT: u32 = 6;
 /// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
+    /// Which samples a voxel draws; whether it is blended is `blend_eye`'s to say.
     pub(super) coverage: Coverage,
+    /// Under the rule that blends.
+    pub(super) blend_eye: Option<BlendEye>,
     /// Level of the samples in the image quadtree.
     pub(super) levels: u32,
     /// Octree level of the finest voxels.
@@ -98,7 +102,7 @@ impl Constants {
     /// no probe sees it; the loads check that everything fits its word.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         let options = &setup.options;
-        let exact = options.coverage == Coverage::Exact;
+        let exact = options.coverage.draws_outlines();
         let scale = setup.sub_levels;
         let mut word = |value: i64, shift: u32| dp.load(clamp(i128::from(value) << shift));
         let origin = setup.origin_clip.map(|c| word(c, scale));
@@ -138,7 +142,12 @@ impl Constants {
         }
         let gap = exact && (setup.grow_shift.is_none() || options.tolerance_px <= 0.4375);
         Self {
-            coverage: options.coverage,
+            coverage: if exact {
+                Coverage::Exact
+            } else {
+                options.coverage
+            },
+            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup)),
             levels: setup.levels,
             depth: setup.depth,
             sub_levels: setup.sub_levels,

@@ -2,6 +2,7 @@
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
+use super::alpha::Ink;
 use super::fit::Fill;
 use super::silhouette::{Cover, Silhouette};
 use super::taps::Block;
@@ -13,10 +14,14 @@ use crate::frame::{FillVectors, Frame, QuadNode};
 pub(super) struct Canvas<'f> {
     pub(super) fill: &'f mut FillVectors,
     frame: &'f mut Frame,
+    /// What the voxel that is drawn adds to samples, under the rule that blends.
+    pub(super) ink: Option<Ink>,
     /// Records by quadtree node, if asked for.
     heat: Option<Vec<u32>>,
     /// Samples drawn.
     pub(super) drawn: u64,
+    /// Voxels that samples took, under the rule that blends.
+    pub(super) blended: u64,
     /// Samples that were drawn before.
     pub(super) occluded: u64,
 }
@@ -30,6 +35,8 @@ impl<'f> Canvas<'f> {
         Self {
             fill,
             frame,
+            ink: None,
+            blended: 0,
             heat,
             drawn: 0,
             occluded: 0,
@@ -71,14 +78,14 @@ impl<'f> Canvas<'f> {
             return;
         }
         let at = sample.y as usize * self.frame.width as usize + sample.x as usize;
-        dp.read(Memory::Attribute, u64::from(node));
-        dp.write(Memory::Pixel, at as u64);
-        self.frame.node[at] = node;
-        // None where the frame is of nodes alone.
-        if let Some(to) = self.frame.voxel.get_mut(at) {
-            *to = voxel;
+        if self.ink.is_some() {
+            if !self.blend(dp, at, node, voxel) {
+                return;
+            }
+        } else {
+            dp.read(Memory::Attribute, u64::from(node));
+            self.put(dp, at, node, voxel);
         }
-        self.drawn += 1;
 
         dp.stage(Stage::FillUpdate);
         let mut quad = sample;
@@ -104,6 +111,39 @@ impl<'f> Canvas<'f> {
             dp.read(Memory::FillVector, self.fill.address(quad) as u64);
             dp.or_bits(4, self.fill.vector(quad), bits);
         }
+    }
+
+    /// Shows a voxel at a sample.
+    #[inline(always)]
+    fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, node: u32, voxel: [i32; 4]) {
+        dp.write(Memory::Pixel, at as u64);
+        self.frame.node[at] = node;
+        // None where the frame is of nodes alone.
+        if let Some(to) = self.frame.voxel.get_mut(at) {
+            *to = voxel;
+        }
+        self.drawn += 1;
+    }
+
+    /// Blends a voxel into a sample, which shows the first that it takes.
+    /// Whether it is opaque enough by now.
+    fn blend<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        at: usize,
+        node: u32,
+        voxel: [i32; 4],
+    ) -> bool {
+        let (Some(ink), Some(blend)) = (&self.ink, &mut self.frame.blend) else {
+            return true;
+        };
+        let taken = ink.take(dp, at as u64, &mut blend[at]);
+        self.blended += 1;
+        if taken.is_first {
+            dp.stage(Stage::Draw);
+            self.put(dp, at, node, voxel);
+        }
+        taken.is_full
     }
 
     /// Draws all samples of `quad` that a silhouette covers.

@@ -15,6 +15,7 @@
 //! path must draw. Every arithmetic step is a call on a
 //! [`Datapath`](hwmodel::Datapath), so that a probe sees all of it.
 
+mod alpha;
 mod constants;
 mod draw;
 mod fit;
@@ -42,7 +43,7 @@ use crate::frame::{FillVectors, Frame};
 use crate::graph::GraphView;
 use walk::Walk;
 
-use crate::project::{CageKind, Engine, EngineError, FrameSetup, Stats};
+use crate::project::{CageKind, Coverage, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
 pub use positions::{Positions, Space, visit_positions};
@@ -142,6 +143,7 @@ impl Machine {
         most_records: u64,
     ) -> Result<Option<(Stats, P)>, EngineError> {
         frame.clear();
+        frame.set_blending(setup.options.coverage == Coverage::Alpha);
         let fill = Self::emptied(&mut self.fill, setup);
         walk::run::<P, L>(
             &self.options,
@@ -181,6 +183,7 @@ impl Machine {
     ) -> Result<Simulated, SimulateError> {
         hardware.check()?;
         frame.clear();
+        frame.set_blending(setup.options.coverage == Coverage::Alpha);
         let fill = Self::emptied(&mut self.fill, setup);
         let log = TurnLog::new(hardware);
         let options = &self.options;

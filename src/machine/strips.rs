@@ -13,6 +13,7 @@
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
+use super::alpha::Aim;
 use super::constants::Constants;
 use super::silhouette::{Cover, Silhouette};
 use super::taps::{Block, LEVEL_BITS};
@@ -76,6 +77,8 @@ pub(super) struct Subtree {
     slack: Option<[WideWord; FUNCTIONS]>,
     /// Octree level of the finest voxels: solids, by nature or by level of detail.
     finest: u32,
+    /// The shares of its sides, under the rule that blends.
+    pub(super) aim: Option<Aim>,
 }
 
 /// A record's place in its lattice.
@@ -152,6 +155,7 @@ impl Subtree {
             half_width,
             slack,
             finest: level + levels,
+            aim: None,
         };
         (subtree, Strips { value })
     }

@@ -89,8 +89,8 @@ pub(super) struct Walk<'a, P: Probe, L> {
     pub(super) dp: Datapath<P>,
     pub(super) constants: Constants,
     pub(super) options: &'a MachineOptions,
-    graph: &'a GraphView<'a>,
-    canvas: Canvas<'a>,
+    pub(super) graph: &'a GraphView<'a>,
+    pub(super) canvas: Canvas<'a>,
     pub(super) stack: Vec<Record<L>>,
     /// The lattice of the record that changed to screen space last, under the
     /// exact rule. Depth first, so its records are done before the next change.
@@ -127,7 +127,10 @@ impl<'a, P: Probe, L: Lattice> Walk<'a, P, L> {
     /// After the last turn: what it came to.
     pub(super) fn finish(self) -> (Stats, P) {
         let overflows = self.dp.overflows();
-        let stats = self.counts.stats(&self.canvas, overflows);
+        let mut stats = self.counts.stats(&self.canvas, overflows);
+        if self.constants.blend_eye.is_some() {
+            stats.push(("samples_blended", self.canvas.blended));
+        }
         self.canvas.finish();
         (stats, self.dp.into_probe())
     }
@@ -236,6 +239,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
                 record.pose = self.changed(record.level, &place, clip);
+                self.aim_lattice(&record);
             }
         }
 
@@ -321,6 +325,9 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     fn draw_solid(&mut self, record: &Record<L>) {
         self.counts.solids += 1;
         self.dp.stage(Stage::Draw);
+        if !self.take_up_ink(record) {
+            return;
+        }
         let seen = self.seen(record);
         match &record.pose {
             Pose::Clip(clip, planes) => {

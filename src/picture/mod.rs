@@ -6,6 +6,7 @@
 
 mod color;
 mod hash;
+mod lights;
 pub mod npy;
 #[cfg(feature = "png")]
 pub mod png;
@@ -17,6 +18,7 @@ pub mod store;
 pub(crate) use color::Linear;
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
 pub use hash::hash;
+pub use lights::lights;
 pub use resolve::{ResolveError, resolve};
 pub use shade::Shader;
 

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::shade::Shader;
 use super::{Background, NO_DEPTH, Picture, Shading};
-use crate::frame::{Frame, NO_NODE, NO_VOXEL};
+use crate::frame::{Blend, Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
 use crate::project::FrameSetup;
 
@@ -105,6 +105,7 @@ impl<'f> Resolver<'f> {
         let side = 1u32 << self.aa;
         let mut sum = [0u32; 3];
         let mut seen = 0u32;
+        let mut blended = Blended::default();
         let mut records = 0.0;
         let mut pixel = Pixel {
             rgba: [0; 4],
@@ -121,6 +122,9 @@ impl<'f> Resolver<'f> {
                 if let Some(all) = &self.frame.records {
                     records += all[at];
                 }
+                if let Some(blend) = &self.frame.blend {
+                    blended.add(&blend[at], self.shader.background());
+                }
                 let light = if self.frame.node[at] == NO_NODE {
                     self.shader.background().unwrap_or([0; 3])
                 } else {
@@ -133,7 +137,10 @@ impl<'f> Resolver<'f> {
                 }
             }
         }
-        pixel.rgba = self.mix(sum, seen);
+        pixel.rgba = match self.frame.blend {
+            Some(_) => blended.mix(&self.shader, 2 * self.aa),
+            None => self.mix(sum, seen),
+        };
         pixel.records = records;
         Ok(pixel)
     }
@@ -178,6 +185,43 @@ impl<'f> Resolver<'f> {
         // PNG stores colours that are not premultiplied: the host divides.
         let mean = sum.map(|channel| (channel + seen / 2) / seen);
         let [r, g, b] = self.shader.encode(mean);
+        [r, g, b, alpha as u8]
+    }
+}
+
+/// What the samples of a pixel took, of 256 each.
+#[derive(Default)]
+struct Blended {
+    light: [u64; 3],
+    covered: u32,
+}
+
+impl Blended {
+    fn add(&mut self, sample: &Blend, background: Option<[u32; 3]>) {
+        self.covered += 256 - u32::from(sample.left);
+        let behind = background.unwrap_or([0; 3]);
+        for c in 0..3 {
+            let through = u32::from(sample.left) * behind[c];
+            self.light[c] += u64::from(sample.light[c] + through);
+        }
+    }
+
+    /// The mean of `2^samples_log2` samples.
+    fn mix(&self, shader: &Shader<'_>, samples_log2: u32) -> [u8; 4] {
+        let places = 8 + samples_log2;
+        let half = 1u32 << (places - 1);
+        if shader.background().is_some() {
+            let mean = self.light.map(|c| ((c + u64::from(half)) >> places) as u32);
+            let [r, g, b] = shader.encode(mean);
+            return [r, g, b, 255];
+        }
+        if self.covered == 0 {
+            return [0; 4];
+        }
+        let covered = u64::from(self.covered);
+        let mean = self.light.map(|c| ((c + covered / 2) / covered) as u32);
+        let [r, g, b] = shader.encode(mean);
+        let alpha = ((self.covered << 8) - self.covered + half) >> places;
         [r, g, b, alpha as u8]
     }
 }

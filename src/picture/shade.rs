@@ -96,7 +96,7 @@ const AWAY: f64 = 0.25;
 /// A normal turned to the side from which it is seen. A thin wall has two
 /// sides and one normal; the rounded corners of a solid, whose normals lean
 /// away by a little, keep theirs.
-fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
+pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
     if normal.dot(ray) > AWAY {
         -normal
     } else {

@@ -72,7 +72,7 @@ impl Edges {
     /// Least depth, in voxels, at which a voxel of side 1 may change to
     /// screen space with a deviation of at most `allowed` samples.
     pub(super) fn screen_depth(&self, coverage: Coverage, allowed: f64) -> f64 {
-        if coverage == Coverage::Exact {
+        if coverage.draws_outlines() {
             return self.central_depth(allowed);
         }
         libm::sqrt(self.total_speed() * self.depth_span() / allowed)
@@ -146,7 +146,7 @@ const STRIP_ROUNDING_UNITS: f64 = 7.0;
 pub(super) fn rounding(coverage: Coverage, screen_frac: u32, guard: u32) -> f64 {
     // Quotients are rounded down: a corner and three edges, one unit each.
     let quotients = 4.0 * libm::ldexp(1.0, -(screen_frac as i32));
-    if coverage != Coverage::Exact {
+    if !coverage.draws_outlines() {
         return quotients;
     }
     // A normal is at least half of 2^bits long.

@@ -60,6 +60,17 @@ pub enum Coverage {
     /// Every pixel whose centre lies inside its silhouette.
     #[default]
     Exact,
+    /// As `Exact`, each voxel with its opacity, blended front to back.
+    Alpha,
+}
+
+impl Coverage {
+    /// Whether voxels are drawn by their silhouettes.
+    #[inline]
+    #[must_use]
+    pub const fn draws_outlines(self) -> bool {
+        matches!(self, Self::Exact | Self::Alpha)
+    }
 }
 
 /// What a frame is drawn with.
@@ -330,7 +341,7 @@ impl FrameSetup {
 /// view (at most `most`) and exact halving below the finest voxels, which
 /// only the rules that subdivide solids have a use for.
 fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
-    if coverage == Coverage::Exact {
+    if coverage.draws_outlines() {
         return (total.min(most), 0);
     }
     let clip_frac = most.min(total - total / 3);
@@ -345,7 +356,7 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
 
 /// Bits of a word beyond a screen position's, with which no sum of positions overflows.
 fn screen_headroom_bits(options: &SetupOptions) -> u32 {
-    if options.tolerance_px.is_infinite() && options.coverage == Coverage::Exact {
+    if options.tolerance_px.is_infinite() && options.coverage.draws_outlines() {
         FAR_SCREEN_HEADROOM_BITS
     } else {
         SCREEN_HEADROOM_BITS
@@ -433,7 +444,7 @@ fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
 /// Under `exact`, where a solid is drawn at every sample of its silhouette and
 /// not at one, it needs no share for pinholes.
 fn detail_limit(options: &SetupOptions) -> Option<ShiftSum> {
-    if options.coverage == Coverage::Exact {
+    if options.coverage.draws_outlines() {
         return (options.lod_px > 0.0).then(|| ShiftSum::floor(options.lod_px));
     }
     size_limit(options, options.lod_px)
@@ -558,9 +569,7 @@ impl View {
         // The slack takes its part of the tolerance: all that is drawn lies
         // within that of the voxels.
         let slack = match depths::strip_slack(options.tolerance_px) {
-            Some(places) if options.coverage == Coverage::Exact => {
-                libm::ldexp(1.0, -(places as i32))
-            }
+            Some(places) if options.coverage.draws_outlines() => libm::ldexp(1.0, -(places as i32)),
             _ => 0.0,
         };
         let allowed = (options.tolerance_px - rounding - slack) * (1.0 - 1e-6);

@@ -108,6 +108,19 @@ impl<'g, E: Engine> Viewer<'g, E> {
     /// # Errors
     /// As [`Engine::render`]; nothing is shown then.
     pub fn render(&mut self, setup: &FrameSetup) -> Result<Stats, EngineError> {
+        self.render_lit(setup, &[])
+    }
+
+    /// [`Viewer::render`] with the light of the nodes, for rules that blend:
+    /// the same for the same set-up.
+    ///
+    /// # Errors
+    /// As [`Engine::render`]; nothing is shown then.
+    pub fn render_lit(
+        &mut self,
+        setup: &FrameSetup,
+        light: &[[u16; 3]],
+    ) -> Result<Stats, EngineError> {
         if self.shows(setup) {
             let last = self.stats.iter().flatten();
             let mut stats: Stats = last.map(|&(name, _)| (name, 0)).collect();
@@ -115,7 +128,11 @@ impl<'g, E: Engine> Viewer<'g, E> {
             return Ok(stats);
         }
         self.make_room(setup);
-        let mut stats = self.engine.render(&self.graph, setup, &mut self.frame)?;
+        let graph = GraphView {
+            light,
+            ..self.graph
+        };
+        let mut stats = self.engine.render(&graph, setup, &mut self.frame)?;
         self.shown = Some(setup.clone());
         self.stats = Some(stats.clone());
         stats.push((FRAMES_UNCHANGED, 0));

@@ -10,7 +10,7 @@ use crate::scenes;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
 use shiftvox::frame::{Colors, Frame, color_word};
-use shiftvox::graph::{Graph, GraphView};
+use shiftvox::graph::{Graph, GraphView, Opacity};
 use shiftvox::machine::Machine;
 use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
@@ -41,8 +41,13 @@ fn draw_fast(
     let fallback = Noted(Machine::default(), Arc::clone(&asked));
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut fast = Fast::new(options, Box::new(fallback));
-    let drawn = fast.render(&graph.view(), setup, &mut frame);
-    if drawn.is_ok() {
+    let light = lights(graph);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let drawn = fast.render(&view, setup, &mut frame);
+    if drawn.is_ok() && setup.options.coverage != Coverage::Alpha {
         colors_are_the_nodes(&mut fast, graph, setup, &frame);
     }
     (drawn.map(|_| frame), !asked.load(Ordering::Relaxed))
@@ -68,8 +73,13 @@ fn colors_are_the_nodes(fast: &mut Fast, graph: &Graph, setup: &FrameSetup, fram
 
 fn draw_machine(graph: &Graph, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
+    let light = lights(graph);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
     Machine::default()
-        .render(&graph.view(), setup, &mut frame)
+        .render(&view, setup, &mut frame)
         .map(|_| frame)
 }
 
@@ -122,7 +132,8 @@ fn any_settings() -> impl Strategy<Value = SetupOptions> {
         1 => Just(f64::INFINITY),
     ];
     let coverage = prop_oneof![
-        30 => Just(Coverage::Exact),
+        24 => Just(Coverage::Exact),
+        12 => Just(Coverage::Alpha),
         1 => Just(Coverage::Center),
         1 => Just(Coverage::Any),
     ];
@@ -146,6 +157,31 @@ fn any_settings() -> impl Strategy<Value = SetupOptions> {
     )
 }
 
+/// Opacities by node: some nothing, some all, some unlike from their sides.
+fn with_opacities(graph: &Graph) -> Graph {
+    let opacity = (0..graph.len() as u32).map(|node| {
+        let [kind, x, y, z] = (node + 7).wrapping_mul(0x9e37_79b1).to_be_bytes();
+        Opacity(match kind & 7 {
+            0 => [0; 3],
+            1 => [255; 3],
+            2 => [0x0f, 0, 0],
+            3 => [0x11; 3],
+            _ => [x, y, z],
+        })
+    });
+    Graph {
+        opacity: opacity.collect::<Vec<_>>().into(),
+        ..graph.clone()
+    }
+}
+
+/// Light by node.
+fn lights(graph: &Graph) -> Vec<[u16; 3]> {
+    (0..graph.len() as u16)
+        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
+        .collect()
+}
+
 /// Compares the two engines on one frame.
 fn agree(
     graph: &Graph,
@@ -153,6 +189,8 @@ fn agree(
     settings: &SetupOptions,
     options: FastOptions,
 ) -> Result<(), TestCaseError> {
+    let airy = (settings.coverage == Coverage::Alpha).then(|| with_opacities(graph));
+    let graph = airy.as_ref().unwrap_or(graph);
     let Ok(setup) = FrameSetup::new(camera, &graph.placement, graph.depth, settings) else {
         return Ok(());
     };
@@ -173,7 +211,7 @@ fn agree(
         _ => prop_assert!(false, "only one of them drew: {:?}", right.err()),
     }
     let usual = settings.bits == 64 && settings.frac.is_none();
-    if usual && settings.coverage == Coverage::Exact && settings.tolerance_px.is_finite() {
+    if usual && settings.coverage.draws_outlines() && settings.tolerance_px.is_finite() {
         // Deep graphs far away may be beyond its lanes; these are not.
         prop_assert!(by_itself || graph.depth > 12, "left to the machine");
     }
@@ -193,7 +231,7 @@ proptest! {
         options in any_options(),
     ) {
         // Under the other rules a cyclic graph is subdivided to the last bit.
-        prop_assume!(settings.coverage == Coverage::Exact || graph.depth < 5);
+        prop_assume!(settings.coverage.draws_outlines() || graph.depth < 5);
         agree(&graph, &camera, &settings, options)?;
     }
 
@@ -216,7 +254,7 @@ proptest! {
         lod_px in prop_oneof![Just(0.0), Just(0.2)],
         options in any_options(),
     ) {
-        prop_assume!(settings.coverage == Coverage::Exact);
+        prop_assume!(settings.coverage.draws_outlines());
         let settings = SetupOptions { lod_px, aa_log2: 0, ..settings };
         agree(&graph, &camera, &settings, options)?;
     }
@@ -242,7 +280,7 @@ proptest! {
         settings in any_settings(),
         options in any_options(),
     ) {
-        prop_assume!(settings.coverage == Coverage::Exact);
+        prop_assume!(settings.coverage.draws_outlines());
         let graph = scenes::graph_of_spec(SPECS[which]);
         let side = f64::from(1u32 << graph.depth);
         let camera = Camera {

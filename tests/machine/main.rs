@@ -1,6 +1,7 @@
 //! The machine and the oracle: order, exactness, rules, counts, golden pictures.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+mod alpha;
 mod bounds;
 mod common;
 mod counts;

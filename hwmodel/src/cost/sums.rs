@@ -236,6 +236,8 @@ pub struct Stores {
     pub fill_vector: Store,
     /// Pixels.
     pub pixel: Store,
+    /// What pixels have so far, where voxels are blended.
+    pub accumulator: Store,
 }
 
 impl Stores {
@@ -248,6 +250,7 @@ impl Stores {
             Memory::Attribute => self.attribute,
             Memory::FillVector => self.fill_vector,
             Memory::Pixel => self.pixel,
+            Memory::Accumulator => self.accumulator,
         }
     }
 }

@@ -339,6 +339,13 @@ impl Memories {
             Memory::Attribute => self.attributes.access(access.address, at),
             Memory::FillVector => self.fill.access(access, at),
             Memory::Pixel => self.pixels.write(at),
+            // Beside the blending block, as wide as an accumulator, with a port
+            // to read and one to write: an access a cycle each, never waited for.
+            Memory::Accumulator => Served {
+                issued: at,
+                done: at + 1,
+                cause: Cause::MemoryPort,
+            },
         }
     }
 }

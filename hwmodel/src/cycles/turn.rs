@@ -116,6 +116,7 @@ const ROUND: [Stage; STAGES] = [
     Stage::QuadtreeFit,
     Stage::Push,
     Stage::Draw,
+    Stage::Blend,
     Stage::FillUpdate,
 ];
 

@@ -8,7 +8,7 @@ mod traffic;
 
 pub use cache::{Cache, CacheError};
 pub use curve::{MissCurve, MissPoint};
-pub use traffic::{MemoryProbe, Widths};
+pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, Widths};
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};

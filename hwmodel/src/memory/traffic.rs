@@ -8,6 +8,10 @@ use crate::{Memory, OpClass, Operand, Place, Probe};
 
 const MEMORIES: usize = Memory::ALL.len();
 
+/// Bits of what a pixel has so far where voxels are blended: nine of how much
+/// it still lets through, 24 of each colour. The rule says how many, no format.
+pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
+
 /// Bits that one access of each memory moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Widths {
@@ -33,6 +37,7 @@ impl Widths {
             Memory::Attribute => self.attribute_bits,
             Memory::FillVector => self.fill_vector_bits,
             Memory::Pixel => self.pixel_bits,
+            Memory::Accumulator => ACCUMULATOR_BITS,
         }
     }
 }

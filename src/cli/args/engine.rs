@@ -6,7 +6,7 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use hwmodel::Overflow;
 
-use super::{Setting, Tolerance, word};
+use super::{SceneArgs, Setting, Tolerance, word};
 use crate::project::{CageKind, Coverage, SetupOptions};
 
 /// Which engine draws.
@@ -43,6 +43,8 @@ pub enum CoverageName {
     Center,
     /// Every pixel whose centre lies inside its outline.
     Exact,
+    /// As exact, each voxel with its six opacities (--opacities), blended front to back.
+    Alpha,
 }
 
 /// What a result that does not fit a word becomes.
@@ -190,9 +192,20 @@ impl EngineArgs {
                 CoverageName::Any => Coverage::Any,
                 CoverageName::Center => Coverage::Center,
                 CoverageName::Exact => Coverage::Exact,
+                CoverageName::Alpha => Coverage::Alpha,
             }),
             lod_px: self.lod.unwrap_or(base.lod_px),
             aa_log2,
+        }
+    }
+
+    /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
+    #[must_use]
+    pub fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
+        let blends = self.coverage == Some(CoverageName::Alpha);
+        SceneArgs {
+            opacities: scene.opacities || blends,
+            ..scene.clone()
         }
     }
 
@@ -218,6 +231,7 @@ impl EngineArgs {
             Coverage::Any => CoverageName::Any,
             Coverage::Center => CoverageName::Center,
             Coverage::Exact => CoverageName::Exact,
+            Coverage::Alpha => CoverageName::Alpha,
         };
         let mut settings = vec![
             ("engine", word(&self.engine)),

@@ -259,6 +259,10 @@ pub(super) fn run(
     console: &Console,
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
+    let scene_args = SceneArgs {
+        opacities: args.scene.opacities || args.select.coverages.contains(&CoverageName::Alpha),
+        ..args.scene.clone()
+    };
     export::check(&args.export)?;
     pictures::check(&args.page, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
@@ -276,7 +280,7 @@ pub(super) fn run(
     let options = args.select.options();
     let mut scenes = Vec::new();
     for name in &names {
-        let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
+        let subject = subjects::open(name, &args.camera, &scene_args, size, console)?;
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods = if args.meshes.has_voxels(mesh.is_some()) {
             methods(&args.select, &options, &subject, plan.look)

@@ -80,8 +80,8 @@ impl FlickerArgs {
 }
 
 /// Drawing rules with one and four samples a pixel, `exact` with sixteen; the
-/// paper; and the default without level of detail.
-fn options() -> Vec<SetupOptions> {
+/// paper; the default without level of detail; and `alpha` where `blends`.
+fn options(blends: bool) -> Vec<SetupOptions> {
     let rules = [Coverage::Exact, Coverage::Center, Coverage::Any];
     let one = rules.map(|coverage| (coverage, 0));
     let four = rules.map(|coverage| (coverage, 1));
@@ -103,6 +103,16 @@ fn options() -> Vec<SetupOptions> {
         tolerance_px: f64::INFINITY,
         ..SetupOptions::default()
     });
+    if blends {
+        for (lod_px, aa_log2) in [(1.0, 0), (2.0, 0), (1.0, 1)] {
+            all.push(SetupOptions {
+                coverage: Coverage::Alpha,
+                lod_px,
+                aa_log2,
+                ..SetupOptions::default()
+            });
+        }
+    }
     all
 }
 
@@ -131,7 +141,8 @@ pub(super) fn run(
         };
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
-            options().into_iter().map(method).collect()
+            let blends = !subject.graph.opacity.is_empty();
+            options(blends).into_iter().map(method).collect()
         } else {
             Vec::new()
         };

@@ -133,7 +133,8 @@ impl MethodsArgs {
 
 /// What is made of a mesh for the methods, and how many milliseconds that took.
 struct Made {
-    voxels: Option<(Graph, f64)>,
+    /// Without opacities, and with.
+    voxels: Vec<(Graph, f64)>,
     far: Option<(FarFile, f64)>,
     /// The paper's grid, and those that a level is chosen from by distance.
     textured: Option<[(TexturedFile, f64); 2]>,
@@ -147,14 +148,21 @@ impl Made {
         console: &Console,
     ) -> Result<Self, CliError> {
         let mut made = Self {
-            voxels: None,
+            voxels: Vec::new(),
             far: None,
             textured: None,
         };
         if args.takes(Family::Voxels) {
-            let scene = render::open(name, &args.scene, console)?;
-            let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
-            made.voxels = Some((scene.graph, scene.load_ms - read_ms));
+            // Opaque, as the other rules want them, and with opacities.
+            for opacities in [false, true] {
+                let scene_args = SceneArgs {
+                    opacities,
+                    ..args.scene.clone()
+                };
+                let scene = render::open(name, &scene_args, console)?;
+                let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
+                made.voxels.push((scene.graph, scene.load_ms - read_ms));
+            }
         }
         if args.takes(Family::Far) {
             made.far = Some(far_of(mesh, &BuildOptions::default(), console)?);
@@ -218,17 +226,25 @@ fn methods<'m>(
             all.push(candidate(label, mesh.bytes(), 0.0, method));
         }
     }
-    if let Some((graph, ms)) = &made.voxels {
+    if let [opaque, airy] = made.voxels.as_slice() {
         let rules = [
-            ("voxels center", Coverage::Center, 0),
-            ("voxels exact", Coverage::Exact, 0),
-            ("voxels exact, 16", Coverage::Exact, 2),
+            ("voxels center", Coverage::Center, 1.0, 0),
+            ("voxels exact", Coverage::Exact, 1.0, 0),
+            ("voxels exact, 16", Coverage::Exact, 1.0, 2),
+            ("voxels alpha", Coverage::Alpha, 1.0, 0),
+            ("voxels alpha, lod 2", Coverage::Alpha, 2.0, 0),
+            ("voxels alpha, 4", Coverage::Alpha, 1.0, 1),
         ];
-        for (label, coverage, aa_log2) in rules {
+        for (label, coverage, lod_px, aa_log2) in rules {
             let options = SetupOptions {
                 coverage,
+                lod_px,
                 aa_log2,
                 ..SetupOptions::default()
+            };
+            let (graph, ms) = match coverage {
+                Coverage::Alpha => airy,
+                _ => opaque,
             };
             let engine = (engines::FAST.name, engines::FAST.make);
             let method = VoxelMethod::new(graph, engine, options, look);

@@ -93,7 +93,13 @@ fn find(
     console: &Console,
 ) -> Result<Findings, CliError> {
     let size = (args.size.width, args.size.height);
-    let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
+    let subject = subjects::open(
+        name,
+        &args.camera,
+        &args.engine.scene_args(&args.scene),
+        size,
+        console,
+    )?;
     let options = SetupOptions {
         bits: args.engine.bits.unwrap_or(BITS),
         ..args.engine.options(0)

@@ -223,6 +223,13 @@ pub(super) fn summary(found: &Findings) -> Table {
             grouped(cost::fill_vector_bits(&found.setup) / 1024)
         ),
     );
+    let accumulators = cost::accumulator_bits(&found.setup);
+    if accumulators > 0 {
+        row(
+            "accumulators",
+            format!("{} kbit", grouped(accumulators / 1024)),
+        );
+    }
     row(
         "node cache",
         format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
@@ -390,6 +397,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "record": record,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
             "fill_vector_bits": cost::fill_vector_bits(&found.setup),
+            "accumulator_bits": cost::accumulator_bits(&found.setup),
             "operations": cells,
             "miss_curves": curve,
             "simulated": found.simulated,

@@ -7,11 +7,11 @@ use super::cut::cut_at;
 use super::method::{Method, Refused, Samples, Shown};
 use super::vertices::vertex_levels;
 use crate::frame::{Colors, Frame, NO_NODE};
-use crate::graph::Graph;
+use crate::graph::{Graph, GraphView};
 use crate::lab::bench::MakeEngine;
 use crate::lab::model::record::{record_bits, record_fields};
 use crate::machine::Machine;
-use crate::picture::{Background, Picture, Shading, resolve};
+use crate::picture::{Background, Picture, Shading, lights, resolve};
 use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
 
 /// How samples become colours.
@@ -54,6 +54,8 @@ struct Ready {
     camera: Camera,
     setup: FrameSetup,
     colors: Colors,
+    /// Light of the nodes without a lamp, under the rule that blends.
+    light: Vec<[u16; 3]>,
 }
 
 /// Bytes that an access moves: child mask and list of a node, its colour
@@ -62,6 +64,7 @@ const NODE_BYTES: u64 = 5;
 const ATTRIBUTE_BYTES: u64 = 5;
 const FILL_VECTOR_BYTES: u64 = 1;
 const PIXEL_BYTES: u64 = 4;
+const ACCUMULATOR_BYTES: u64 = (hwmodel::memory::ACCUMULATOR_BITS as u64).div_ceil(8);
 
 impl<'g> VoxelMethod<'g> {
     /// An engine on one thread.
@@ -115,6 +118,7 @@ impl<'g> VoxelMethod<'g> {
             (Memory::Attribute, ATTRIBUTE_BYTES),
             (Memory::FillVector, FILL_VECTOR_BYTES),
             (Memory::Pixel, PIXEL_BYTES),
+            (Memory::Accumulator, ACCUMULATOR_BYTES),
         ];
         let touched = bytes
             .iter()
@@ -158,6 +162,7 @@ fn coverage_name(coverage: Coverage) -> &'static str {
         Coverage::Any => "any",
         Coverage::Center => "center",
         Coverage::Exact => "exact",
+        Coverage::Alpha => "alpha",
     }
 }
 
@@ -222,6 +227,7 @@ impl Method for VoxelMethod<'_> {
         colors.words.fill(1);
         self.ready = Some(Ready {
             camera: *camera,
+            light: lights(graph, &setup, Shading::Flat),
             setup,
             colors,
         });
@@ -229,12 +235,22 @@ impl Method for VoxelMethod<'_> {
     }
 
     fn draw(&mut self) -> Result<(), Refused> {
-        let Some(Ready { setup, colors, .. }) = &mut self.ready else {
+        let Some(Ready {
+            setup,
+            colors,
+            light,
+            ..
+        }) = &mut self.ready
+        else {
             return Err(Refused::because("no camera yet"));
         };
         let graph = self.graph;
+        let view = GraphView {
+            light,
+            ..graph.view()
+        };
         self.engine
-            .draw_colors(&graph.view(), &graph.color, setup, colors)
+            .draw_colors(&view, &graph.color, setup, colors)
             .map_err(Refused::because)
     }
 
@@ -243,7 +259,12 @@ impl Method for VoxelMethod<'_> {
             return Err(Refused::because("no camera yet"));
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let drawn = self.engine.render(&self.graph.view(), setup, &mut frame);
+        let light = lights(self.graph, setup, self.look.shading);
+        let view = GraphView {
+            light: &light,
+            ..self.graph.view()
+        };
+        let drawn = self.engine.render(&view, setup, &mut frame);
         let stats = drawn.map_err(Refused::because)?;
         let handed = stats.iter().any(|(name, _)| *name == "handed_to_machine");
         let background = Background::Color(self.look.background);
@@ -268,8 +289,13 @@ impl Method for VoxelMethod<'_> {
             return Err(Refused::because("no camera yet"));
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
+        let light = lights(self.graph, setup, self.look.shading);
+        let view = GraphView {
+            light: &light,
+            ..self.graph.view()
+        };
         self.engine
-            .draw(&self.graph.view(), setup, &mut frame)
+            .draw(&view, setup, &mut frame)
             .map_err(Refused::because)?;
         let background = Background::Color(self.look.background);
         resolve(&frame, self.graph, setup, self.look.shading, background).map_err(Refused::because)
@@ -309,8 +335,13 @@ fn shares(frame: &Frame, aa_log2: u32) -> Vec<f32> {
     let (width, height) = (across >> aa_log2, frame.height as usize >> aa_log2);
     let pixel = |x: usize, y: usize| {
         let rows = (0..side).map(|j| (y * side + j) * across + x * side);
+        let samples = (side * side) as f32;
+        if let Some(blend) = &frame.blend {
+            let taken = rows.flat_map(|at| &blend[at..at + side]);
+            return taken.map(|b| 1.0 - f32::from(b.left) / 256.0).sum::<f32>() / samples;
+        }
         let seen = rows.flat_map(|at| &frame.node[at..at + side]);
-        seen.filter(|&&node| node != NO_NODE).count() as f32 / (side * side) as f32
+        seen.filter(|&&node| node != NO_NODE).count() as f32 / samples
     };
     (0..height)
         .flat_map(|y| (0..width).map(move |x| (x, y)))

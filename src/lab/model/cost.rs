@@ -8,12 +8,12 @@ use hwmodel::cost::{
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CacheReport, CycleReport, Hardware};
-use hwmodel::memory::Widths;
+use hwmodel::memory::{ACCUMULATOR_BITS, Widths};
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
 
 use crate::frame::quadtree::nodes_to;
-use crate::project::FrameSetup;
+use crate::project::{Coverage, FrameSetup};
 
 /// The tables, and the choices that counts leave open.
 #[derive(Debug, Clone)]
@@ -60,6 +60,15 @@ pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
     u64::from(hardware.lanes) * u64::from(hardware.stack.entries) * u64::from(record_bits)
 }
 
+/// Bits of the accumulators of a frame: none where no voxel is blended.
+#[must_use]
+pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
+    if setup.options.coverage != Coverage::Alpha {
+        return 0;
+    }
+    u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)
+}
+
 /// Energy of a frame on a hardware. Accesses to nodes and attributes go to
 /// the hardware's caches, their misses to outer memory, line by line; pixels go to outer memory.
 ///
@@ -84,6 +93,8 @@ pub fn frame_cost(
         attribute: bytes(8 * u64::from(hardware.attribute_cache.bytes)),
         fill_vector: bytes(fill_vector_bits(setup) / u64::from(hardware.fill_vectors.banks)),
         pixel: Store::Dram,
+        // As many as samples, on the chip: neighbours come again and again.
+        accumulator: bytes(accumulator_bits(setup)),
     };
     let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();

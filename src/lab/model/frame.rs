@@ -12,6 +12,7 @@ use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
 use crate::machine::{Machine, MachineOptions, Simulated};
 use crate::measure::CoverageError;
+use crate::picture::{Shading, lights};
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use crate::rays::Rays;
 
@@ -89,12 +90,13 @@ pub fn count(
     let line = hardware.node_cache.line_bytes;
     let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
     let mut frame = Frame::new(setup.width, setup.height, true);
-    let (stats, (counter, memory)) = machine(overflow).render_probed(
-        &graph.view(),
-        setup,
-        &mut frame,
-        (Counter::new(), memory),
-    )?;
+    let light = lights(graph, setup, Shading::Lambert);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let (stats, (counter, memory)) =
+        machine(overflow).render_probed(&view, setup, &mut frame, (Counter::new(), memory))?;
     Ok(Counted {
         frame,
         counter,

@@ -4,7 +4,7 @@
 //! Numbers have as many bits as their greatest value needs, coordinates those
 //! of the frame's format. Poses share their bits: a record has one at a time.
 
-use crate::project::{CageKind, Coverage, FrameSetup};
+use crate::project::{CageKind, FrameSetup};
 
 /// A field of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,7 +48,7 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
         CageKind::Corners => 8,
         CageKind::Frame => 4,
     };
-    let exact = setup.options.coverage == Coverage::Exact;
+    let exact = setup.options.coverage.draws_outlines();
     let position = bits_to(1 << setup.level_bound());
     let field = |name, bits, held| RecordField { name, bits, held };
     let mut fields = vec![

@@ -79,6 +79,7 @@ pub fn coverage_name(coverage: Coverage) -> &'static str {
         Coverage::Any => "any",
         Coverage::Center => "center",
         Coverage::Exact => "exact",
+        Coverage::Alpha => "alpha",
     }
 }
 
@@ -146,6 +147,7 @@ impl FromStr for Case {
                         "any" => Coverage::Any,
                         "center" => Coverage::Center,
                         "exact" => Coverage::Exact,
+                        "alpha" => Coverage::Alpha,
                         _ => return Err(wrong("any, center or exact")),
                     }
                 }

@@ -497,7 +497,9 @@ impl Seen<'_> {
         // Where words are too narrow to part a voxel, `center` draws it at one
         // sample however large it is; `any` and an infinite tolerance are the paper's.
         let is_promised = match self.setup.options.coverage {
-            Coverage::Exact | Coverage::Any => self.tolerance() <= STRICT_TOLERANCE,
+            Coverage::Exact | Coverage::Any | Coverage::Alpha => {
+                self.tolerance() <= STRICT_TOLERANCE
+            }
             Coverage::Center => self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound,
         };
         if let Some(sample) = first.filter(|_| is_promised) {

@@ -1,0 +1,104 @@
+//! Blending, under the rule `alpha` (`SPEC.md`, section 12): what the machine
+//! has in sums of shifts, in products.
+//!
+//! Which samples a voxel draws is found as under `exact`; only voxels come one
+//! by one (no bricks, which look for the first of many), and a sample stays
+//! open until it is opaque enough.
+
+use super::lanes::Isa;
+use super::walk::Walk;
+use crate::graph::sixteenths;
+use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
+
+/// The sixteenths that each axis's side has in the outline of a voxel with
+/// this lowest corner and side.
+fn shares(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
+    let along: [i64; 3] = std::array::from_fn(|k| {
+        let centre = i64::from(min[k]) + i64::from(side / 2);
+        ((centre >> eye.shift) - eye.at[k]).abs()
+    });
+    let all = along.iter().sum::<i64>().max(1);
+    let share = |along: i64| (2 * SHARES * along / all + 1) >> 1;
+    let x = share(along[0]);
+    let y = share(along[1]).min(SHARES - x);
+    [x, y, SHARES - x - y].map(|share| share as u32)
+}
+
+impl<I: Isa> Walk<'_, I> {
+    /// Takes the shares of a voxel's sides for those that are drawn next.
+    #[inline(always)]
+    pub(super) fn aim_at(&mut self, min: [i32; 3], level: u32) {
+        if let Some(eye) = &self.view.opacity_eye {
+            self.aim = shares(eye, min, self.view.levels[level as usize].side);
+        }
+    }
+
+    /// Shows a voxel at open samples of the square whose first sample is given,
+    /// eight bits a row. Those that are drawn by that: all, unless voxels are blended.
+    #[inline(always)]
+    pub(super) fn show(
+        &mut self,
+        corner: [i32; 2],
+        samples: u64,
+        node: u32,
+        voxel: [i32; 4],
+    ) -> u64 {
+        if self.view.opacity_eye.is_none() {
+            self.pixels.show(self.isa, corner, samples, node, voxel);
+            return samples;
+        }
+        self.blend(corner, samples, node, voxel)
+    }
+
+    #[inline(never)]
+    fn blend(&mut self, [x, y]: [i32; 2], samples: u64, node: u32, voxel: [i32; 4]) -> u64 {
+        let weight = self.weight(node, voxel);
+        if weight == 0 {
+            return 0;
+        }
+        let light = self.graph.light_of(node).map(u32::from);
+        let first = self.pixels.at(x, y);
+        let (mut left, mut full) = (samples, 0);
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize;
+            left &= left - 1;
+            let at = first + (bit >> 3) * self.pixels.width + (bit & 7);
+            let Some(sample) = self.pixels.blend.get_mut(at) else {
+                continue;
+            };
+            let before = u32::from(sample.left);
+            let share = (before * weight + (ALL_LEFT >> 1)) >> 8;
+            let is_full = before - share <= OPAQUE_ENOUGH;
+            let share = if is_full { before } else { share };
+            sample.left = (before - share) as u16;
+            for (sum, light) in sample.light.iter_mut().zip(light) {
+                *sum += share * light;
+            }
+            if before == ALL_LEFT {
+                self.pixels.shown[at] = node;
+                if let Some(to) = self.pixels.voxel.get_mut(at) {
+                    *to = voxel;
+                }
+            }
+            full |= u64::from(is_full) << bit;
+        }
+        self.counters.samples_blended += u64::from(samples.count_ones());
+        full
+    }
+
+    /// A voxel's weight, 0 to 256.
+    fn weight(&self, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
+        let opacity = self.graph.opacity_of(node);
+        let half = i64::from(self.view.levels[level as usize].side / 2);
+        let mut weight = 0;
+        for (k, min) in [x, y, z].into_iter().enumerate() {
+            let is_high = self.view.eye_floor[k] >= i64::from(min) + half;
+            let covered = u32::from(sixteenths(opacity.from_side(k, is_high)));
+            if covered == SHARES as u32 && self.aim[k] >= SEEN_SHARE as u32 {
+                return ALL_LEFT;
+            }
+            weight += covered * self.aim[k];
+        }
+        weight
+    }
+}

@@ -1,0 +1,46 @@
+//! What a frame that blends starts from, beyond what every frame does
+//! (`SPEC.md`, section 12).
+
+use super::FrameSetup;
+
+/// Most bits of a coordinate that directions are taken from.
+const MOST_BITS: u32 = 24;
+/// Bits of a word beyond such a coordinate: sign, the eye's distance, the sum
+/// of three, and its double in a divide.
+const HEADROOM_BITS: u32 = 5;
+
+/// Shares of a direction are sixteenths.
+pub const SHARES: i64 = 16;
+/// From this share on, a side that is covered in full makes a voxel opaque.
+pub const SEEN_SHARE: i64 = 4;
+/// What a sample lets through before anything is drawn: all.
+pub const ALL_LEFT: u32 = 256;
+/// A sample that lets no more than this through is opaque enough: what it
+/// would still take is the last voxel's.
+pub const OPAQUE_ENOUGH: u32 = 64;
+
+/// The eye, as directions to voxels are taken from it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct OpacityEye {
+    /// By how many bits coordinates are shifted to the right first.
+    pub shift: u32,
+    /// The eye in object coordinates, rounded down, shifted.
+    pub at: [i64; 3],
+}
+
+impl FrameSetup {
+    /// The eye, with as many bits as leave a word room for directions.
+    #[must_use]
+    pub fn opacity_eye(&self) -> OpacityEye {
+        let room = (self.format.bits() - HEADROOM_BITS).min(MOST_BITS);
+        let sizes = self
+            .eye_floor
+            .map(|c| c.unsigned_abs().max(1 << self.depth));
+        let longest = sizes.into_iter().max().unwrap_or(1);
+        let shift = (u64::BITS - longest.leading_zeros()).saturating_sub(room);
+        OpacityEye {
+            shift,
+            at: self.eye_floor.map(|c| c >> shift),
+        }
+    }
+}

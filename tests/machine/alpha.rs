@@ -1,0 +1,318 @@
+//! The rule that blends: against a plain reference, by hand, by property, and
+//! what it costs.
+
+use crate::common::*;
+use hwmodel::count::Counter;
+use hwmodel::{Memory, OpClass, Stage};
+use proptest::prelude::*;
+use shiftvox::frame::{Blend, Frame, NO_NODE};
+use shiftvox::graph::{Graph, GraphView, Opacity};
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions};
+
+fn alpha(tolerance_px: f64, lod_px: f64) -> SetupOptions {
+    SetupOptions {
+        coverage: Coverage::Alpha,
+        tolerance_px,
+        lod_px,
+        ..SetupOptions::default()
+    }
+}
+
+/// A colour for each node.
+fn lights(graph: &Graph) -> Vec<[u16; 3]> {
+    (0..graph.len() as u16)
+        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
+        .collect()
+}
+
+fn draw_lit(graph: &Graph, light: &[[u16; 3]], setup: &FrameSetup) -> Frame {
+    let view = GraphView {
+        light,
+        ..graph.view()
+    };
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    Machine::default()
+        .render(&view, setup, &mut frame)
+        .expect("no overflow");
+    frame
+}
+
+/// The cells of a graph's finest level, by node and lowest corner.
+fn cells(graph: &Graph) -> Vec<(u32, [i64; 3])> {
+    let cell = |cell: shiftvox::graph::Cell| (cell.node, cell.corner.map(i64::from));
+    graph.voxels().map(cell).collect()
+}
+
+/// Where a ray enters and leaves the cube of side 1 at a corner.
+fn slabs(eye: [f64; 3], ray: [f64; 3], corner: [i64; 3]) -> (f64, f64) {
+    let (mut enter, mut leave) = (f64::MIN, f64::MAX);
+    for k in 0..3 {
+        let low = (corner[k] as f64 - eye[k]) / ray[k];
+        let high = (corner[k] as f64 + 1.0 - eye[k]) / ray[k];
+        enter = enter.max(low.min(high));
+        leave = leave.min(low.max(high));
+    }
+    (enter, leave)
+}
+
+/// What a ray takes of the voxels that it meets, nearest first: `SPEC.md`,
+/// section 12, in products and quotients. `None`: it grazes one.
+fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -> Option<Blend> {
+    let axes = camera.axes().expect("a camera");
+    let across = at[0] - f64::from(camera.width) / 2.0;
+    let down = at[1] - f64::from(camera.height) / 2.0;
+    let ray = (axes.forward * axes.focal_px + axes.right * across - axes.up * down).to_array();
+    let eye = camera.eye.to_array();
+    let mut met = Vec::new();
+    for (node, corner) in cells(graph) {
+        let (enter, leave) = slabs(eye, ray, corner);
+        if (enter - leave).abs() < 1e-5 * leave.abs() {
+            return None;
+        }
+        if enter < leave && leave > 0.0 {
+            met.push((enter, node, corner));
+        }
+    }
+    met.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut sample = Blend::default();
+    for (_, node, corner) in met {
+        if sample.left == 0 {
+            break;
+        }
+        let eye = eye.map(|c| c.floor() as i64);
+        let way = [0, 1, 2].map(|k| (corner[k] - eye[k]).abs());
+        let all = way.iter().sum::<i64>().max(1);
+        let nearest = |k: usize| (32 * way[k] / all + 1) / 2;
+        let x = nearest(0);
+        let y = nearest(1).min(16 - x);
+        let shares = [x, y, 16 - x - y];
+        let sides = graph.opacity[node as usize].0;
+        let mut weight = 0;
+        let mut is_whole = false;
+        for k in 0..3 {
+            let nibble = if corner[k] <= eye[k] {
+                sides[k] >> 4
+            } else {
+                sides[k] & 15
+            };
+            weight += i64::from(nibble + nibble / 8) * shares[k];
+            is_whole |= nibble == 15 && shares[k] >= 4;
+        }
+        let weight = if is_whole { 256 } else { weight };
+        let left = i64::from(sample.left);
+        let mut taken = (left * weight + 128) / 256;
+        if left - taken <= 64 && weight > 0 {
+            taken = left;
+        }
+        sample.left -= taken as u16;
+        for c in 0..3 {
+            sample.light[c] += taken as u32 * u32::from(light[node as usize][c]);
+        }
+    }
+    Some(sample)
+}
+
+fn any_opacities() -> impl Strategy<Value = Vec<[u8; 3]>> {
+    let nibble = prop_oneof![2 => Just(0u8), 1 => Just(15), 4 => 0..16u8];
+    let byte = (nibble.clone(), nibble).prop_map(|(low, high)| low | high << 4);
+    proptest::collection::vec(proptest::array::uniform3(byte), 700)
+}
+
+fn with_opacities(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
+    let nodes = 0..graph.len();
+    let opacity = nodes.map(|i| Opacity(opacities[i % opacities.len()]));
+    graph.opacity = opacity.collect::<Vec<_>>().into();
+    graph
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    #[test]
+    fn each_sample_is_what_its_ray_takes(
+        graph in any_octree(3, 0.4),
+        opacities in any_opacities(),
+        camera in any_camera(8.0, 5..25),
+    ) {
+        // Leaves of the finest level alone, and outside: rays in f64 know no more.
+        prop_assume!(camera.eye.to_array().iter().any(|&c| !(-0.5..=8.5).contains(&c)));
+        // Where it is not on a lattice point the rounded eye is on its side.
+        prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
+        let graph = with_opacities(graph, &opacities);
+        let light = lights(&graph);
+        let setup = setup(&graph, &camera, &alpha(0.0, 0.0));
+        let frame = draw_lit(&graph, &light, &setup);
+        let blend = frame.blend.as_ref().expect("blended");
+        let (mut compared, mut covered) = (0, 0);
+        for y in 0..camera.height {
+            for x in 0..camera.width {
+                let at = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+                let Some(right) = reference(&graph, &light, &camera, at) else { continue };
+                let drawn = blend[(y * camera.width + x) as usize];
+                prop_assert_eq!(drawn, right, "at {}, {}", x, y);
+                compared += 1;
+                covered += u32::from(right.left < 256);
+            }
+        }
+        prop_assert!(compared > 0 || covered == 0);
+    }
+
+    #[test]
+    fn opaque_voxels_are_drawn_as_under_exact(
+        graph in any_mixed_octree(4),
+        camera in any_camera(16.0, 5..60),
+        tolerance_px in prop_oneof![Just(0.0), Just(0.125), Just(f64::INFINITY)],
+        lod_px in prop_oneof![Just(0.0), Just(1.0)],
+        stored in any::<bool>(),
+    ) {
+        let options = alpha(tolerance_px, lod_px);
+        let exact = SetupOptions { coverage: Coverage::Exact, ..options };
+        let right = draw(&graph, &setup(&graph, &camera, &exact));
+        let graph = if stored { with_opacities(graph, &[[255; 3]]) } else { graph };
+        let light = lights(&graph);
+        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &options));
+        prop_assert_eq!(&right.node, &frame.node);
+        prop_assert_eq!(&right.voxel, &frame.voxel);
+        let blend = frame.blend.as_ref().expect("blended");
+        for (&node, sample) in frame.node.iter().zip(blend) {
+            let right = match node {
+                NO_NODE => Blend::default(),
+                node => Blend {
+                    left: 0,
+                    light: light[node as usize].map(|c| 256 * u32::from(c)),
+                },
+            };
+            prop_assert_eq!(*sample, right);
+        }
+    }
+
+    #[test]
+    fn more_opacity_never_lets_more_through(
+        graph in any_octree(3, 0.4),
+        low in any_opacities(),
+        more in any_opacities(),
+        camera in any_camera(8.0, 5..40),
+        tolerance_px in prop_oneof![Just(0.0), Just(0.125)],
+    ) {
+        let higher = |(a, b): (&[u8; 3], &[u8; 3])| {
+            std::array::from_fn(|k| (a[k] & 15).max(b[k] & 15) | (a[k] >> 4).max(b[k] >> 4) << 4)
+        };
+        let high: Vec<[u8; 3]> = low.iter().zip(&more).map(higher).collect();
+        let setup = setup(&graph, &camera, &alpha(tolerance_px, 1.0));
+        let left = |opacities: &[[u8; 3]]| -> Vec<u16> {
+            let graph = with_opacities(graph.clone(), opacities);
+            let frame = draw_lit(&graph, &[], &setup);
+            frame.blend.expect("blended").iter().map(|b| b.left).collect()
+        };
+        for (low, high) in left(&low).into_iter().zip(left(&high)) {
+            prop_assert!(high <= low);
+        }
+    }
+}
+
+/// Two voxels in a column, looked at along it: what each adds, by hand.
+#[test]
+fn two_voxels_by_hand() {
+    let graph = octree(3, &|[x, y, z]| x == 0 && y == 0 && (z == 0 || z == 7));
+    // The eye is above both; the upper one's number is higher.
+    let camera = camera([0.5, 0.5, 20.0], [0.5, 0.5, 0.0], 9);
+    let blended = |upper: u8, lower: u8| {
+        let mut graph = with_opacities(graph.clone(), &[[0; 3]]);
+        let mut opacity = graph.opacity.to_vec();
+        let top = cells(&graph)
+            .iter()
+            .find(|c| c.1[2] == 7)
+            .expect("a voxel")
+            .0;
+        let bottom = cells(&graph)
+            .iter()
+            .find(|c| c.1[2] == 0)
+            .expect("a voxel")
+            .0;
+        // Seen from above: the high side of z. Other sides must not count.
+        opacity[top as usize] = Opacity([255, 255, upper << 4 | 15]);
+        opacity[bottom as usize] = Opacity([255, 255, lower << 4 | 15]);
+        graph.opacity = opacity.into();
+        let mut light = vec![[0; 3]; graph.len()];
+        light[top as usize] = [1000, 0, 7];
+        light[bottom as usize] = [0, 1, 7];
+        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &alpha(0.0, 0.0)));
+        let at = 4 * 9 + 4;
+        let first = frame.node[at];
+        let blend = frame.blend.expect("blended")[at];
+        (blend.left, blend.light, first == top, first == bottom)
+    };
+    // Nothing; all of the upper; all of the lower.
+    assert_eq!(blended(0, 0), (256, [0; 3], false, false));
+    assert_eq!(blended(15, 3), (0, [256_000, 0, 7 * 256], true, false));
+    assert_eq!(blended(0, 15), (0, [0, 256, 7 * 256], false, true));
+    // 4 is 64 of 256: 192 are left, of which the lower takes 48.
+    assert_eq!(blended(4, 4), (144, [64_000, 48, 7 * 112], true, false));
+    // 8 is nine sixteenths, 144; 112 are left, of which 63 would be taken; 49
+    // are too few to go on for, so the lower takes them too.
+    assert_eq!(blended(8, 8), (0, [144_000, 112, 7 * 256], true, false));
+    // 1 is 16; of 240 it takes 15.
+    assert_eq!(blended(1, 1), (225, [16_000, 15, 7 * 31], true, false));
+}
+
+/// Operations of the stage `blend`: so many for a voxel, so many for a sample.
+#[test]
+fn what_blending_costs() {
+    for (size, tolerance) in [(1, 0.0), (7, 0.0), (7, 0.125), (41, 0.125)] {
+        let graph = with_opacities(octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
+        let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
+        let setup = setup(&graph, &camera, &alpha(tolerance, 0.0));
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let (stats, counter) = Machine::default()
+            .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
+            .expect("no overflow");
+        let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
+        assert_eq!(solids, 1, "{size}, {tolerance}: {stats:?}");
+        assert!(blended > 0);
+        let count = |class| counter.ops_at(Stage::Blend, class);
+        // Shares of the sides: made once, for the lattice or for the voxel.
+        let [add, sub, shift] = [3 + 2 + 2, 3 + 3 + 2, 3 + 3 + 2];
+        // The voxel's weight: which sides, a product of five bits for each.
+        let voxel = [3 + 3 * (1 + 5), 3 + 3 * (1 + 5), 3 * (1 + 5) + 1, 3 + 3 + 1];
+        // A sample: four products of nine bits.
+        let product = 4 * 9;
+        assert_eq!(count(OpClass::Add), add + voxel[0] + product * blended);
+        assert_eq!(
+            count(OpClass::Shift),
+            shift + voxel[1] + (product + 1) * blended
+        );
+        assert_eq!(count(OpClass::Select), voxel[2] + (product + 2) * blended);
+        assert_eq!(count(OpClass::Compare), voxel[3] + blended);
+        assert_eq!(count(OpClass::Sub), sub + blended);
+        assert_eq!(count(OpClass::MinMax), 3 + 1 + 1);
+        assert_eq!(count(OpClass::DivideStep), 2 * 6);
+        assert_eq!(count(OpClass::Logic), 0);
+        assert_eq!(counter.reads(Memory::Accumulator), blended);
+        assert_eq!(counter.writes(Memory::Accumulator), blended);
+        // Each sample shows its first voxel, and this is the only one.
+        assert_eq!(counter.writes(Memory::Pixel), blended);
+        assert_eq!(counter.reads(Memory::Attribute), 1);
+    }
+}
+
+/// Other rules know nothing of it.
+#[test]
+fn other_rules_blend_nothing() {
+    let graph = with_opacities(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);
+    let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
+    for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+        let options = SetupOptions {
+            coverage,
+            ..SetupOptions::default()
+        };
+        let setup = setup(&graph, &camera, &options);
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let (_, counter) = Machine::default()
+            .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
+            .expect("no overflow");
+        assert_eq!(counter.sum(|cell| cell.stage == Stage::Blend), 0);
+        assert_eq!(counter.writes(Memory::Accumulator), 0);
+        assert!(frame.blend.is_none());
+    }
+}
