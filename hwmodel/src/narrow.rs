@@ -47,6 +47,13 @@ impl<P: Probe> Datapath<P> {
         Narrow(a.0 as u32 & ((1 << bits) - 1))
     }
 
+    /// A narrow number as a word: wires.
+    #[inline(always)]
+    #[must_use]
+    pub fn widened(&self, a: Narrow) -> Word {
+        Word(i64::from(a.0))
+    }
+
     /// `a + b`, which must fit `bits` bits.
     #[inline(always)]
     pub fn add_narrow(&mut self, bits: u32, a: Narrow, b: Narrow) -> Narrow {

@@ -10,9 +10,17 @@ use super::walk::Walk;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 
-/// The sixteenths that each axis's side has in the outline of a voxel with
-/// this lowest corner and side.
-fn shares(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
+/// What the sides of what is drawn count for, by axis.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Aim {
+    /// In sixteenths of an outline.
+    counts: [u32; 3],
+    /// Whether a side's share is large enough for a full one to hide all.
+    is_seen: [bool; 3],
+}
+
+/// What the sides of a voxel with this lowest corner and side count for.
+fn aim(eye: &OpacityEye, min: [i32; 3], side: i32) -> Aim {
     let along: [i64; 3] = std::array::from_fn(|k| {
         let centre = i64::from(min[k]) + i64::from(side / 2);
         ((centre >> eye.shift) - eye.at[k]).abs()
@@ -21,7 +29,14 @@ fn shares(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
     let share = |along: i64| (2 * SHARES * along / all + 1) >> 1;
     let x = share(along[0]);
     let y = share(along[1]).min(SHARES - x);
-    [x, y, SHARES - x - y].map(|share| share as u32)
+    let shares = [x, y, SHARES - x - y];
+    let squared = shares.iter().map(|share| share * share).sum::<i64>();
+    // The root, to the nearest: 9 to 16.
+    let length = (9..16).find(|n| squared <= n * (n + 1)).unwrap_or(16);
+    Aim {
+        counts: shares.map(|share| ((2 * share * share / length + 1) >> 1) as u32),
+        is_seen: shares.map(|share| share >= SEEN_SHARE),
+    }
 }
 
 impl<I: Isa> Walk<'_, I> {
@@ -29,7 +44,7 @@ impl<I: Isa> Walk<'_, I> {
     #[inline(always)]
     pub(super) fn aim_at(&mut self, min: [i32; 3], level: u32) {
         if let Some(eye) = &self.view.opacity_eye {
-            self.aim = shares(eye, min, self.view.levels[level as usize].side);
+            self.aim = aim(eye, min, self.view.levels[level as usize].side);
         }
     }
 
@@ -94,10 +109,10 @@ impl<I: Isa> Walk<'_, I> {
         for (k, min) in [x, y, z].into_iter().enumerate() {
             let is_high = self.view.eye_floor[k] >= i64::from(min) + half;
             let covered = u32::from(sixteenths(opacity.from_side(k, is_high)));
-            if covered == SHARES as u32 && self.aim[k] >= SEEN_SHARE as u32 {
+            if covered == SHARES as u32 && self.aim.is_seen[k] {
                 return ALL_LEFT;
             }
-            weight += covered * self.aim[k];
+            weight += covered * self.aim.counts[k];
         }
         weight
     }

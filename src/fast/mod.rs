@@ -383,7 +383,7 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         pixels: piece.pixels,
         counters: Counters::default(),
         tables: tables::Tables::default(),
-        aim: [0; 3],
+        aim: alpha::Aim::default(),
         found: [(0, 0); 64],
         is_lost: false,
     };

@@ -1,6 +1,7 @@
 //! What the turns of a walk share: the frame's constants, the graph, the
 //! picture in the making.
 
+use super::alpha::Aim;
 use super::canvas::{Fill, Pixels};
 use super::counters::Counters;
 use super::planes::Exact;
@@ -25,7 +26,7 @@ pub(super) struct Walk<'w, I> {
     /// Tables of the subtree that is worked on.
     pub(super) tables: Tables,
     /// The shares of the sides of what is drawn, under the rule that blends.
-    pub(super) aim: [u32; 3],
+    pub(super) aim: Aim,
     /// Samples of a square, and the lanes that were found there.
     pub(super) found: [(u32, u64); 64],
     /// Set where a subtree has numbers that do not fit the lanes; the frame is

@@ -2,8 +2,9 @@
 //! outline a voxel covers, and what that adds to a sample.
 //!
 //! A voxel is seen from three sides at most, and the share that each has in
-//! its outline is that of the way to it along that axis: three quotients of
-//! five bits, made for a lattice or for a voxel that is drawn in clip space.
+//! its outline is that of the way to it along that axis; it counts by the
+//! square of the cosine, for that is without bias over all directions. Quotients
+//! of few bits, made for a lattice or for a voxel that is drawn in clip space.
 //! With the opacities of the three sides they make the voxel's weight; a
 //! sample takes of each voxel that weight times what it still lets through.
 //! Products are sums of shifts over the bits of a number of nine.
@@ -48,9 +49,13 @@ impl BlendEye {
     }
 }
 
-/// How much of an outline each axis's side has, in sixteenths, 16 together.
+/// By axis, what a side counts for, in sixteenths of an outline, and whether
+/// its share of the outline is large enough for a full side to hide all.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Aim([Narrow; 3]);
+pub(super) struct Aim {
+    counts: [Narrow; 3],
+    is_seen: [bool; 3],
+}
 
 impl Aim {
     /// Seen from the eye, of a voxel between two corners.
@@ -77,7 +82,15 @@ impl Aim {
         let left = dp.sub(sixteen, x);
         let y = dp.min(y, left);
         let z = dp.sub(left, y);
-        Self([x, y, z].map(|share| dp.narrowed(share, SHARE_BITS)))
+        let shares = [x, y, z].map(|share| dp.narrowed(share, SHARE_BITS));
+        let is_seen = shares.map(|share| dp.le_narrow(SHARE_BITS, SEEN, share));
+        let squares = shares
+            .map(|share| plus_product(dp, WEIGHT_BITS, Narrow::ZERO, share, share, SHARE_BITS));
+        let length = length_of(dp, squares);
+        Self {
+            counts: squares.map(|square| quotient_of(dp, square, length)),
+            is_seen,
+        }
     }
 
     /// A voxel's weight, 0 to 256, of its opacities from the three sides that
@@ -85,16 +98,15 @@ impl Aim {
     fn weight<P: Probe>(&self, dp: &mut Datapath<P>, opacity: Opacity, high: [bool; 3]) -> Narrow {
         let mut weight = Narrow::ZERO;
         let mut is_whole = false;
-        for (k, share) in self.0.into_iter().enumerate() {
+        for (k, count) in self.counts.into_iter().enumerate() {
             let sides = [false, true].map(|high| u32::from(opacity.from_side(k, high)));
             let [low_side, high_side] = sides.map(Narrow::from_host);
             let opacity = dp.select_narrow(OPACITY_BITS, high[k], high_side, low_side);
             let eighth = dp.shr_narrow(OPACITY_BITS, opacity, 3);
             let covered = dp.add_narrow(SHARE_BITS, opacity, eighth);
-            weight = plus_product(dp, WEIGHT_BITS, weight, covered, share, SHARE_BITS);
+            weight = plus_product(dp, WEIGHT_BITS, weight, covered, count, SHARE_BITS);
             // Sixteen sixteenths: one bit.
-            let is_seen = dp.le_narrow(SHARE_BITS, SEEN, share);
-            is_whole |= is_seen && dp.bit_narrow(covered, OPACITY_BITS);
+            is_whole |= self.is_seen[k] && dp.bit_narrow(covered, OPACITY_BITS);
         }
         dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight)
     }
@@ -114,6 +126,41 @@ fn sixteenths_of<P: Probe>(dp: &mut Datapath<P>, a: Word, all: Word) -> Word {
     }
     let up = dp.add(quotient, Word::from_host(1));
     dp.shr(up, 1)
+}
+
+/// The square root of the sum of three squares, to the nearest whole number:
+/// 9 to 16, for numbers that are 16 together.
+fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
+    let two = dp.add_narrow(WEIGHT_BITS, x, y);
+    let all = dp.add_narrow(WEIGHT_BITS, two, z);
+    // Half way between a number and the next, squared, less a quarter.
+    let mut length = Narrow::from_host(LEAST_LENGTH);
+    for (longer, half_way) in (LEAST_LENGTH + 1..).zip(HALF_WAYS) {
+        let is_less = dp.le_narrow(WEIGHT_BITS, all, Narrow::from_host(half_way));
+        length = dp.select_narrow(SHARE_BITS, is_less, length, Narrow::from_host(longer));
+    }
+    length
+}
+
+const LEAST_LENGTH: u32 = 9;
+/// `n (n + 1)` of 9 to 15: a sum above has a root above `n + 1/2`.
+const HALF_WAYS: [u32; 7] = [90, 110, 132, 156, 182, 210, 240];
+
+/// A square of at most 256 over a length that is no less than its root, to the
+/// nearest, halves up.
+fn quotient_of<P: Probe>(dp: &mut Datapath<P>, square: Narrow, length: Narrow) -> Narrow {
+    let doubled = dp.shl_narrow(WEIGHT_BITS + 1, square, 1);
+    let length = dp.widened(length);
+    let mut remainder = dp.widened(doubled);
+    let mut quotient = Word::ZERO;
+    for place in (0..=SHARE_BITS).rev() {
+        let (rest, bit) = dp.divide_integer_step(remainder, length, place);
+        remainder = rest;
+        quotient = dp.shift_in(quotient, bit);
+    }
+    let up = dp.add(quotient, Word::from_host(1));
+    let rounded = dp.shr(up, 1);
+    dp.narrowed(rounded, SHARE_BITS)
 }
 
 /// `sum + a times b`, over the `of` bits of `b`.

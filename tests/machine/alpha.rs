@@ -87,6 +87,14 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
         let x = nearest(0);
         let y = nearest(1).min(16 - x);
         let shares = [x, y, 16 - x - y];
+        let length = shares
+            .map(|s| (s * s) as f64)
+            .iter()
+            .sum::<f64>()
+            .sqrt()
+            .round();
+        // Halves up: no square over a length ends in a quarter of a half.
+        let counts = shares.map(|s| ((s * s) as f64 / length + 0.5).floor() as i64);
         let sides = graph.opacity[node as usize].0;
         let mut weight = 0;
         let mut is_whole = false;
@@ -96,7 +104,7 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
             } else {
                 sides[k] & 15
             };
-            weight += i64::from(nibble + nibble / 8) * shares[k];
+            weight += i64::from(nibble + nibble / 8) * counts[k];
             is_whole |= nibble == 15 && shares[k] >= 4;
         }
         let weight = if is_whole { 256 } else { weight };
@@ -271,10 +279,19 @@ fn what_blending_costs() {
         assert_eq!(solids, 1, "{size}, {tolerance}: {stats:?}");
         assert!(blended > 0);
         let count = |class| counter.ops_at(Stage::Blend, class);
-        // Shares of the sides: made once, for the lattice or for the voxel.
-        let [add, sub, shift] = [3 + 2 + 2, 3 + 3 + 2, 3 + 3 + 2];
+        // What the sides count for, made once, for the lattice or for the
+        // voxel: the way, its shares, their squares, a root, three quotients.
+        let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
+        let sub = 3 + 3 + 2;
+        let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;
+        let [select, compare] = [3 * 5 + 7, 3 + 7];
         // The voxel's weight: which sides, a product of five bits for each.
-        let voxel = [3 + 3 * (1 + 5), 3 + 3 * (1 + 5), 3 * (1 + 5) + 1, 3 + 3 + 1];
+        let voxel = [
+            3 + 3 * (1 + 5),
+            3 + 3 * (1 + 5),
+            select + 3 * (1 + 5) + 1,
+            compare + 3 + 1,
+        ];
         // A sample: four products of nine bits.
         let product = 4 * 9;
         assert_eq!(count(OpClass::Add), add + voxel[0] + product * blended);
@@ -286,7 +303,7 @@ fn what_blending_costs() {
         assert_eq!(count(OpClass::Compare), voxel[3] + blended);
         assert_eq!(count(OpClass::Sub), sub + blended);
         assert_eq!(count(OpClass::MinMax), 3 + 1 + 1);
-        assert_eq!(count(OpClass::DivideStep), 2 * 6);
+        assert_eq!(count(OpClass::DivideStep), 2 * 6 + 3 * 6);
         assert_eq!(count(OpClass::Logic), 0);
         assert_eq!(counter.reads(Memory::Accumulator), blended);
         assert_eq!(counter.writes(Memory::Accumulator), blended);
