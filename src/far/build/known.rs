@@ -210,15 +210,10 @@ fn what_a_window_shows_is_found_from_what_is_beside_it() {
         wall([6.0, 0.0, 14.9], [10.0, 6.0, 15.0]),
         wall([6.0, 10.0, 14.9], [10.0, 16.0, 15.0]),
     ];
-    let sampled = sampled(
-        &boxes(&room),
-        12,
-        unit([16, 16, 3]),
-        1_000_000,
-        Blend::Cosines,
-    );
+    // So few rays that probes, which find something too, do not find all.
+    let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000, Blend::Cosines);
     // The window is a hundred and fiftieth of what is around a voxel, or less: 24 random looks
-    // would find one voxel in seven. All 144 can be seen.
+    // would find one voxel in seven, and with probes one in five. All 144 can be seen.
     assert_eq!(sampled.touched, 144);
     assert!(sampled.seen.len() > 72, "{}", sampled.seen.len());
 }
