@@ -5,6 +5,7 @@ mod bad_files;
 mod command;
 mod files;
 mod models;
+mod opacities;
 mod raster;
 mod shapes;
 mod voxels;

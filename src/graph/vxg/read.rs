@@ -238,16 +238,16 @@ impl Header {
             let Section { offset, bytes, .. } = self.sections[i];
             offset as usize..(offset + bytes) as usize
         };
+        let opacity = match self.sections.len() {
+            SECTIONS => Vec::new().into(),
+            _ => Store::Mapped(Arc::clone(map), range(SECTIONS)),
+        };
         self.graph(
             Store::Mapped(Arc::clone(map), range(0)),
             Store::Mapped(Arc::clone(map), range(1)),
             Store::Mapped(Arc::clone(map), range(2)),
             Store::Mapped(Arc::clone(map), range(3)),
-            Store::Mapped(Arc::clone(map), range(4)),
-            match self.sections.len() {
-                SECTIONS => Vec::new().into(),
-                _ => Store::Mapped(Arc::clone(map), range(SECTIONS)),
-            },
+            (Store::Mapped(Arc::clone(map), range(4)), opacity),
             path,
         )
     }
@@ -263,22 +263,20 @@ impl Header {
         };
         let normal = section(4).as_chunks().0.iter();
         let normal = normal.map(|&n| PackedNormal(u16::from_le_bytes(n)));
+        let opacity = match self.sections.len() {
+            SECTIONS => Vec::new(),
+            _ => {
+                let items = section(SECTIONS).as_chunks().0.iter();
+                items.map(|&sides| Opacity(sides)).collect()
+            }
+        };
+        let opacity: Store<Opacity> = opacity.into();
         self.graph(
             section(0).to_vec().into(),
             numbers(1),
             numbers(2),
             section(3).as_chunks().0.to_vec().into(),
-            normal.collect::<Vec<_>>().into(),
-            match self.sections.get(SECTIONS) {
-                None => Vec::new().into(),
-                Some(_) => {
-                    let items = section(SECTIONS).as_chunks().0.iter();
-                    items
-                        .map(|&sides| Opacity(sides))
-                        .collect::<Vec<_>>()
-                        .into()
-                }
-            },
+            (normal.collect::<Vec<_>>().into(), opacity),
             path,
         )
     }
@@ -289,8 +287,7 @@ impl Header {
         first: Store<u32>,
         links: Store<u32>,
         color: Store<[u8; 3]>,
-        normal: Store<PackedNormal>,
-        opacity: Store<Opacity>,
+        (normal, opacity): (Store<PackedNormal>, Store<Opacity>),
         path: &Path,
     ) -> Result<Graph, VxgError> {
         let graph = Graph {

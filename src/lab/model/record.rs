@@ -117,6 +117,7 @@ mod tests {
 
     use super::*;
     use crate::graph::Placement;
+    use crate::project::Coverage;
     use crate::project::{Camera, SetupOptions};
 
     fn bits(options: SetupOptions, nodes: usize) -> u32 {

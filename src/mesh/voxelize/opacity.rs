@@ -6,8 +6,8 @@
 //! as it lies: two halves of a slanted wall, one in the front voxel and one in
 //! the back, are a whole wall and not three quarters of one. A coarser voxel's
 //! face has the points of four columns of two voxels, of which four become one;
-//! what is lost is dithered, so that a thin wire stays as wide as it was on
-//! the average, at every level.
+//! what is lost of one is handed on to the next, so that a thin wire stays as
+//! wide as it was, at every level.
 //!
 //! Triangles have two sides, so what the mesh covers along an axis it covers
 //! from both ends of it.
@@ -255,23 +255,29 @@ fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
 }
 
 /// What a node's eight children cover together, by octant.
+///
+/// Of four points one is left. What a block of four has more or less than all
+/// is handed on to the next block of which something is covered, so that a
+/// face covers as many points as it should, to one of 64.
 fn joined(children: &[Masks]) -> Masks {
-    // Of four points, how many must be covered for one: each number once in a square of cells.
-    const LEAST: [[u32; 2]; 2] = [[1, 3], [4, 2]];
     let mut masks = Masks::default();
     for (k, [u, v]) in OTHERS.into_iter().enumerate() {
-        for column in 0..4usize {
+        let columns: [u64; 4] = std::array::from_fn(|column| {
+            let octant = (column & 1) << (2 - u) | (column >> 1) << (2 - v);
+            children[octant][k] | children[octant | 1 << (2 - k)][k]
+        });
+        // What is rounded up or down in the end: by chance, from the contents.
+        let mut points = dither(&[columns[0] ^ columns[3], columns[1], columns[2]]) & 3;
+        for (column, covered) in columns.into_iter().enumerate() {
             let (cu, cv) = (column & 1, column >> 1);
-            let octant = cu << (2 - u) | cv << (2 - v);
-            let both = children[octant][k] | children[octant | 1 << (2 - k)][k];
-            let turn = both.count_ones() as usize;
-            for j in 0..4usize {
-                for i in 0..4usize {
-                    let points = both >> (16 * j + 2 * i);
-                    let covered = (points & 0b11 | points >> 6 & 0b1100).count_ones();
-                    if covered >= LEAST[(i + turn) & 1][(j + (turn >> 1)) & 1] {
-                        masks[k] |= 1 << ((4 * cv + j) * POINTS + 4 * cu + i);
-                    }
+            for block in 0..16usize {
+                let (i, j) = (block & 3, block >> 2);
+                let bits = covered >> (16 * j + 2 * i);
+                let block = (bits & 0b11 | bits >> 6 & 0b1100).count_ones();
+                points += block;
+                if block > 0 && points >= 4 {
+                    points -= 4;
+                    masks[k] |= 1 << ((4 * cv + j) * POINTS + 4 * cu + i);
                 }
             }
         }
