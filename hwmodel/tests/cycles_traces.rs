@@ -141,7 +141,7 @@ fn the_dump_says_what_the_visits_say() {
     let mut text = Vec::new();
     recorder.write_vcd(&hardware, &mut text).unwrap();
     let dump = Dump::read(&String::from_utf8(text).unwrap());
-    assert_eq!(dump.wires.len(), 2 * (2 + 12 + 3 * 3));
+    assert_eq!(dump.wires.len(), 2 * (2 + Stage::ALL.len() + 3 * 3));
     assert!(recorder.visits().len() == 4 * 73);
     let mut waits = 0;
     for visit in recorder.visits() {
