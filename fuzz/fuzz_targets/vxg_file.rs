@@ -126,6 +126,7 @@ pub fn graph_of(bytes: &[u8]) -> Graph {
         links: links.into(),
         color: color.collect::<Vec<_>>().into(),
         normal: normal.collect::<Vec<_>>().into(),
+        opacity: Vec::new().into(),
         level_start,
         voxels: 0,
         placement: Placement::default(),
