@@ -106,6 +106,24 @@ fn tables_of_rules_formats_lanes_and_growth() {
 }
 
 #[test]
+fn threads_change_no_table() {
+    let tables = ["rules", "formats", "pictures", "objects", "lanes"];
+    let [one, three] = ["1", "3"].map(|threads| {
+        document(&with(&[
+            "--rules",
+            "--sweep",
+            "bits=16..32+8",
+            "--threads",
+            threads,
+        ]))
+    });
+    for table in tables {
+        assert_eq!(one[table], three[table], "{table}");
+    }
+    assert_eq!(one["rules"].as_array().map(Vec::len), Some(2 * 3 * 6));
+}
+
+#[test]
 fn files_are_written_once() {
     let folder = TempDir::new().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();

@@ -2,6 +2,7 @@
 //! object: the same object in growing pictures, growing objects in one picture.
 
 use hwmodel::{OpClass, Overflow};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{ModelError, frame};
@@ -77,7 +78,7 @@ pub fn pictures(
 ) -> Result<Vec<GrowthRow>, ModelError> {
     progress.begin("growing pictures", sides.len() as u64);
     let rows = sides
-        .iter()
+        .par_iter()
         .map(|&side| {
             let row = row(object, graph, camera, side, options);
             progress.advance(1);

@@ -3,6 +3,7 @@
 
 use hwmodel::cycles::{Hardware, NoObserver};
 use hwmodel::{OpClass, Overflow};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ModelError;
@@ -150,33 +151,34 @@ pub fn table(
     let exact = frame::reference(&graph.view(), &true_setup(graph, camera, base)?)?;
     let cages = [CageKind::Corners, CageKind::Frame];
     let rules = [Coverage::Any, Coverage::Center, Coverage::Exact];
-    let count = cages.len() * rules.len() * TOLERANCES.len();
-    progress.begin("cages, rules and tolerances", count as u64);
-    let mut rows = Vec::with_capacity(count);
+    let mut ways = Vec::with_capacity(cages.len() * rules.len() * TOLERANCES.len());
     for cage in cages {
         for coverage in rules {
-            for tolerance_px in TOLERANCES {
-                let options = SetupOptions {
-                    cage,
-                    coverage,
-                    tolerance_px,
-                    ..*base
-                };
-                let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options);
-                let (record_bits, outcome) = measure(graph, setup, hardware, prices, &exact)?;
-                rows.push(RuleRow {
-                    cage,
-                    coverage,
-                    tolerance_px,
-                    record_bits,
-                    outcome,
-                });
-                progress.advance(1);
-            }
+            ways.extend(TOLERANCES.map(|tolerance_px| (cage, coverage, tolerance_px)));
         }
     }
+    progress.begin("cages, rules and tolerances", ways.len() as u64);
+    let row = |(cage, coverage, tolerance_px)| {
+        let options = SetupOptions {
+            cage,
+            coverage,
+            tolerance_px,
+            ..*base
+        };
+        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options);
+        let (record_bits, outcome) = measure(graph, setup, hardware, prices, &exact)?;
+        progress.advance(1);
+        Ok(RuleRow {
+            cage,
+            coverage,
+            tolerance_px,
+            record_bits,
+            outcome,
+        })
+    };
+    let rows = ways.into_par_iter().map(row).collect();
     progress.end();
-    Ok(rows)
+    rows
 }
 
 /// The view that errors are measured against: 64 bits, the exact rule.

@@ -2,6 +2,7 @@
 //! within a given error is what an architect looks for.
 
 use hwmodel::cycles::Hardware;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ModelError;
@@ -56,8 +57,7 @@ pub fn table(
 ) -> Result<Vec<FormatRow>, ModelError> {
     let exact = frame::reference(&graph.view(), &rules::true_setup(graph, camera, base)?)?;
     progress.begin("word formats", widths.len() as u64);
-    let mut rows = Vec::with_capacity(widths.len());
-    for &bits in widths {
+    let row = |&bits: &u32| {
         let options = SetupOptions {
             bits,
             frac: None,
@@ -72,7 +72,8 @@ pub fn table(
             });
         let hardware = with_width(hardware, bits);
         let (record_bits, outcome) = rules::measure(graph, setup, &hardware, prices, &exact)?;
-        rows.push(FormatRow {
+        progress.advance(1);
+        Ok(FormatRow {
             bits,
             fraction_bits,
             has_headroom,
@@ -80,11 +81,11 @@ pub fn table(
             record_bits,
             safe: safe::of(graph, camera, &options),
             outcome,
-        });
-        progress.advance(1);
-    }
+        })
+    };
+    let rows = widths.par_iter().map(row).collect();
     progress.end();
-    Ok(rows)
+    rows
 }
 
 /// Words for which the shipped hardware is built.
