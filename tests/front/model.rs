@@ -233,6 +233,10 @@ fn hardware_and_costs_of_one_s_own() {
     for (name, text) in [
         ("a.toml", "lanes = 0"),
         ("b.toml", "row = [{ operation = \"add\" }]"),
+        (
+            "c.toml",
+            "row = [{ operation = \"ad\", width = 32, energy_pj = 1.0, source = \"mine\" }]",
+        ),
     ] {
         std::fs::write(path(name), text).expect("written");
         let flag = if name == "a.toml" { "--hw" } else { "--costs" };

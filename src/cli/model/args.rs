@@ -191,7 +191,19 @@ impl HardwareArgs {
         let mut table = CostTable::load_shipped().map_err(wrong)?;
         if let Some(path) = &self.costs {
             let name = path.display().to_string();
-            table = table.with_overrides(&name, &read(path)?).map_err(wrong)?;
+            let text = read(path)?;
+            let own = CostTable::empty()
+                .with_overrides(&name, &text)
+                .map_err(wrong)?;
+            // What nothing is priced by is a slip of the pen.
+            let known = table.operations();
+            let own = own.operations();
+            if let Some(stranger) = own.iter().find(|name| !known.contains(name)) {
+                let known = known.join(", ");
+                let told = format!("there is no operation `{stranger}`; there are {known}");
+                return Err(CliError::new(Kind::Input, told).at(name));
+            }
+            table = table.with_overrides(&name, &text).map_err(wrong)?;
         }
         Ok(Prices {
             table,

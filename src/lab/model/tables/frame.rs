@@ -35,7 +35,8 @@ pub fn stages(counted: &Counted, cycles: &CycleReport) -> Table {
         ],
     );
     let counts = counted.counter.sum_by(|cell| (cell.stage, cell.class));
-    for stage in &cycles.stages {
+    // A stage of another drawing rule has nothing to say.
+    for stage in cycles.stages.iter().filter(|stage| stage.visits > 0) {
         let mut row = vec![Cell::from(stage.stage.name()), Cell::from(stage.visits)];
         row.extend(
             OpClass::ALL
@@ -146,7 +147,8 @@ pub fn memories(counted: &Counted, widths: &Widths, cycles: &CycleReport) -> Tab
     );
     let probe = &counted.memory;
     let kilobytes = |bits: u64| number(bits as f64 / 8192.0, 1);
-    for memory in Memory::ALL {
+    let used = |memory: &Memory| probe.reads(*memory) + probe.writes(*memory) > 0;
+    for memory in Memory::ALL.into_iter().filter(used) {
         let cache = match memory {
             Memory::Node => Some(&cycles.node_cache),
             Memory::Attribute => Some(&cycles.attribute_cache),
@@ -201,7 +203,7 @@ pub fn bounds(cycles: &CycleReport) -> Table {
         "What limits: cycles below which each resource does not go",
         &["resource", "cycles", "percent_of_the_frame"],
     );
-    for bound in &cycles.bounds {
+    for bound in cycles.bounds.iter().filter(|bound| bound.cycles > 0) {
         table.rows.push(vec![
             Cell::Text(bound.resource.clone()),
             Cell::from(bound.cycles),
