@@ -72,7 +72,9 @@ fn all_methods_in_all_forms() {
         .iter()
         .map(|f| f["label"].as_str().unwrap())
         .collect();
-    assert_eq!(labels.len(), 13);
+    assert_eq!(labels.len(), 16);
+    let blended = labels.iter().filter(|label| label.contains("alpha"));
+    assert_eq!(blended.count(), 3, "{labels:?}");
     let distances = mesh["distances"].as_array().unwrap();
     let sizes: Vec<u64> = distances
         .iter()
