@@ -179,5 +179,38 @@ fn probes(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, by_size, probes);
+/// Records a second under the paper's rule at 512 x 512, alone and counted.
+fn records(criterion: &mut Criterion) {
+    for subject in &subjects()[..2] {
+        let setup = set_up(subject, 512, &paper());
+        let mut frame = Frame::new(512, 512, false);
+        let mut machine = Machine::default();
+        let counted = draw(&mut machine, subject, &setup, &mut frame, Counter::new());
+        let mut group = criterion.benchmark_group(format!("records/{}", subject.name));
+        group
+            .sample_size(10)
+            .sampling_mode(SamplingMode::Flat)
+            .throughput(Throughput::Elements(counted.records()))
+            .warm_up_time(Duration::from_millis(300))
+            .measurement_time(Duration::from_secs(2));
+        group.bench_function("alone", |bencher| {
+            bencher.iter_custom(|frames| {
+                time(frames, || {
+                    draw(&mut machine, subject, &setup, &mut frame, NoProbe);
+                })
+            });
+        });
+        group.bench_function("counted", |bencher| {
+            bencher.iter_custom(|frames| {
+                time(frames, || {
+                    let counter = draw(&mut machine, subject, &setup, &mut frame, Counter::new());
+                    black_box(counter.ops());
+                })
+            });
+        });
+        group.finish();
+    }
+}
+
+criterion_group!(benches, by_size, probes, records);
 criterion_main!(benches);
