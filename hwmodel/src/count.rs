@@ -1,10 +1,12 @@
 //! A probe that counts: operations by class, width, stage and octree level,
 //! accesses by memory, stage and level, records by level.
 //!
-//! An operation is counted by one addition to a place in memory that is known
-//! when the program is compiled, so that the compiler adds up what stands in a
-//! row. That place is good for one level; when a record of another level has
-//! its turn, what was touched since is added to the tables.
+//! An operation is counted by one addition to a place in memory that is all but
+//! known when the program is compiled, so that the compiler adds up what stands
+//! in a row. What is not known is the level: there are a few sets of places,
+//! each good for one level at a time, and neighbouring levels, between which a
+//! walk goes to and fro, have sets of their own. Only where a set passes to
+//! another level are its counts added to the tables.
 
 mod sums;
 
@@ -35,7 +37,11 @@ const READS: usize = 5 * STAGES;
 const WRITES: usize = 6 * STAGES;
 const ROWS: usize = 7 * STAGES;
 
-const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8 && SHORT <= 64 && ROWS <= 128);
+/// Sets of fresh counts: level `l` counts in set `l % SETS`. More sets are
+/// settled less often and take more of the first-level cache, 6 KB each.
+const SETS: usize = 16;
+
+const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
 /// Counts of operations of a width that is met now and then.
 #[derive(Debug, Clone)]
@@ -70,12 +76,12 @@ struct Table {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// Counts since the level last changed.
-    fresh: [Row; ROWS],
-    /// Which of the fresh rows may differ from zero, a bit each.
-    touched: [u64; 2],
-    /// Level at which `fresh` counts, 0..LEVELS.
-    level: usize,
+    /// Counts of each set since it passed to its level.
+    fresh: [[Row; ROWS]; SETS],
+    /// Level at which each set counts, 0..LEVELS.
+    levels: [usize; SETS],
+    /// The set that counts now, 0..SETS.
+    set: usize,
     /// Widths of the operands of `SIZED`.
     widths: [u32; 4],
     /// By level.
@@ -88,9 +94,9 @@ pub struct Counter {
 impl Default for Counter {
     fn default() -> Self {
         Self {
-            fresh: [Row::default(); ROWS],
-            touched: [0; 2],
-            level: 0,
+            fresh: [[Row::default(); ROWS]; SETS],
+            levels: std::array::from_fn(|set| set),
+            set: 0,
             widths: [0; 4],
             settled: vec![[Row::default(); ROWS]; LEVELS],
             tables: Vec::new(),
@@ -120,26 +126,23 @@ impl Counter {
         })
     }
 
-    /// Adds the fresh counts to those of their level.
+    /// Adds a set's counts to those of its level.
     #[cold]
     #[inline(never)]
-    fn settle(&mut self) {
-        let settled = &mut self.settled[self.level];
-        for (half, touched) in self.touched.iter_mut().enumerate() {
-            let mut touched = std::mem::take(touched);
-            while touched != 0 {
-                let row = half * 64 + touched.trailing_zeros() as usize;
-                touched &= touched - 1;
-                // Bits are set for rows that exist; the limit saves two checks.
-                let row = row.min(ROWS - 1);
-                add_and_clear(&mut settled[row], &mut self.fresh[row]);
+    fn settle(&mut self, set: usize) {
+        let settled = &mut self.settled[self.levels[set]];
+        for (sums, row) in settled.iter_mut().zip(&mut self.fresh[set]) {
+            if row.iter().fold(0, |bits, count| bits | count) != 0 {
+                add_and_clear(sums, row);
             }
         }
     }
 
     /// Moves counts of a format's operands into tables, which last longer.
     fn keep_widths(&mut self) {
-        self.settle();
+        for set in 0..SETS {
+            self.settle(set);
+        }
         for (first, bits) in SIZED.into_iter().zip(self.widths) {
             for level in 0..LEVELS {
                 for stage in 0..STAGES {
@@ -155,8 +158,9 @@ impl Counter {
 
     #[inline(always)]
     fn count_fresh(&mut self, row: usize, column: usize) {
-        self.fresh[row][column] += 1;
-        self.touched[row / 64] |= 1 << (row % 64);
+        // The remainder changes nothing; it tells the compiler how far the
+        // place can be, so that no counting can touch anything else.
+        self.fresh[self.set % SETS][row][column] += 1;
     }
 
     /// Counts operations whose kind of operand is not known beforehand.
@@ -220,9 +224,10 @@ impl Probe for Counter {
     #[inline(always)]
     fn record(&mut self, _index: u64, level: u32) {
         let level = clamped(level);
-        if level != self.level {
-            self.settle();
-            self.level = level;
+        self.set = level % SETS;
+        if level != self.levels[self.set] {
+            self.settle(self.set);
+            self.levels[self.set] = level;
         }
         self.records[level] += 1;
     }

@@ -35,6 +35,13 @@ impl QuadNode {
         }
     }
 
+    /// Address of the node's fill vector: level by level, row by row.
+    #[inline]
+    #[must_use]
+    pub const fn address(self) -> usize {
+        level_start(self.level) + ((self.y as usize) << self.level) + self.x as usize
+    }
+
     /// Which quadrant of its parent this node is.
     #[inline]
     #[must_use]
@@ -102,7 +109,7 @@ impl FillVectors {
                             bits | u8::from(full) << quadrant
                         })
                     };
-                    let at = fill.address(node);
+                    let at = node.address();
                     fill.vectors[at] = vector;
                 }
             }
@@ -128,31 +135,24 @@ impl FillVectors {
         self.vectors.len()
     }
 
-    /// Address of a node's vector.
-    #[inline]
-    #[must_use]
-    pub fn address(&self, node: QuadNode) -> usize {
-        level_start(node.level) + ((node.y as usize) << node.level) + node.x as usize
-    }
-
     /// The fill vector of a node.
     #[inline]
     #[must_use]
     pub fn vector(&self, node: QuadNode) -> u8 {
-        self.at(self.address(node))
+        self.vectors[node.address()]
     }
 
-    /// The fill vector at an address.
+    /// All fill vectors, by address.
     #[inline]
     #[must_use]
-    pub fn at(&self, address: usize) -> u8 {
-        self.vectors[address]
+    pub fn cells(&self) -> &[u8] {
+        &self.vectors
     }
 
     /// Sets bits of a node's vector and returns the vector.
     #[inline]
     pub fn set(&mut self, node: QuadNode, bits: u8) -> u8 {
-        let at = self.address(node);
+        let at = node.address();
         self.vectors[at] |= bits;
         self.vectors[at]
     }

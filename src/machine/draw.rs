@@ -47,7 +47,7 @@ impl<'f> Canvas<'f> {
     #[inline]
     pub(super) fn seen_by_fit(&self, reject: bool) -> Fill<'_> {
         Fill {
-            vectors: self.fill,
+            vectors: self.fill.cells(),
             reject,
         }
     }
@@ -56,7 +56,7 @@ impl<'f> Canvas<'f> {
     #[inline]
     pub(super) fn warm(&mut self, quad: QuadNode) {
         if let Some(heat) = &mut self.heat {
-            heat[self.fill.address(quad)] += 1;
+            heat[quad.address()] += 1;
         }
     }
 
@@ -70,7 +70,7 @@ impl<'f> Canvas<'f> {
         voxel: [i32; 4],
     ) {
         dp.stage(Stage::Draw);
-        let address = self.fill.address(sample);
+        let address = sample.address();
         dp.read(Memory::FillVector, address as u64);
         let vector = self.fill.vector(sample);
         if dp.and_bits(4, vector, FULL) == FULL {
@@ -91,7 +91,7 @@ impl<'f> Canvas<'f> {
         let mut quad = sample;
         let mut bits = FULL;
         loop {
-            dp.write(Memory::FillVector, self.fill.address(quad) as u64);
+            dp.write(Memory::FillVector, quad.address() as u64);
             let before = self.fill.vector(quad);
             let vector = self.fill.set(quad, bits);
             dp.tap(
@@ -108,7 +108,7 @@ impl<'f> Canvas<'f> {
                 x: quad.x >> 1,
                 y: quad.y >> 1,
             };
-            dp.read(Memory::FillVector, self.fill.address(quad) as u64);
+            dp.read(Memory::FillVector, quad.address() as u64);
             dp.or_bits(4, self.fill.vector(quad), bits);
         }
     }
@@ -191,7 +191,7 @@ impl<'f> Canvas<'f> {
         dp: &mut Datapath<P>,
         quad: QuadNode,
     ) -> impl Iterator<Item = u8> + use<P> {
-        dp.read(Memory::FillVector, self.fill.address(quad) as u64);
+        dp.read(Memory::FillVector, quad.address() as u64);
         let open = dp.xor_bits(4, self.fill.vector(quad), FULL);
         (0..4).filter(move |quadrant| open >> quadrant & 1 != 0)
     }
@@ -214,7 +214,7 @@ impl<'f> Canvas<'f> {
                         y: y >> below,
                     };
                     let samples = f64::from(1u32 << below) * f64::from(1u32 << below);
-                    f64::from(heat[self.fill.address(quad)]) / samples
+                    f64::from(heat[quad.address()]) / samples
                 })
                 .sum::<f64>() as f32;
         }

@@ -12,8 +12,8 @@ use super::lattice::Lattice;
 use super::record::{Clip, Planes, Spans};
 use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use super::taps::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
+use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
-use crate::frame::{FillVectors, QuadNode};
 
 /// Which halves a box overlaps along one axis.
 #[derive(Clone, Copy)]
@@ -22,21 +22,24 @@ struct Halves {
     high: bool,
 }
 
-impl Halves {
-    /// The low half in bit 0, the high one in bit 1.
-    #[inline(always)]
-    fn bits(self) -> usize {
-        usize::from(self.low) | usize::from(self.high) << 1
-    }
-}
-
 /// The four quadrants (`y << 1 | x`) that halves along x and y leave. Four
 /// gates on the comparators' outputs, a part of the 4-bit and that follows.
-#[inline]
+#[inline(always)]
 fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
-    const ACROSS: [u8; 4] = [0, 0b0101, 0b1010, FULL];
-    const DOWN: [u8; 4] = [0, 0b0011, 0b1100, FULL];
-    let both = ACROSS[x.bits()] & DOWN[y.bits()];
+    // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
+    const QUADRANTS: [u8; 16] = {
+        let mut of = [0; 16];
+        let mut halves = 0;
+        while halves < 16 {
+            let across = [0, 0b0101, 0b1010, FULL][halves & 3];
+            let down = [0, 0b0011, 0b1100, FULL][halves >> 2];
+            of[halves] = across & down;
+            halves += 1;
+        }
+        of
+    };
+    let bits = [x.low, x.high, y.low, y.high].map(usize::from);
+    let both = QUADRANTS[bits[0] | bits[1] << 1 | bits[2] << 2 | bits[3] << 3];
     dp.tap(
         Block::Quadrants,
         &(x.low, x.high, y.low, y.high),
@@ -47,7 +50,8 @@ fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
 
 /// The fill vectors as the fit sees them.
 pub(super) struct Fill<'f> {
-    pub(super) vectors: &'f FillVectors,
+    /// By address.
+    pub(super) vectors: &'f [u8],
     /// Whether full quadrants reject.
     pub(super) reject: bool,
 }
@@ -59,9 +63,9 @@ impl Fill<'_> {
         if !self.reject {
             return quadrants == 0;
         }
-        let address = self.vectors.address(quad);
+        let address = quad.address();
         dp.read(Memory::FillVector, address as u64);
-        let vector = self.vectors.at(address);
+        let vector = self.vectors[address];
         let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
         let choice = only(quadrants);
         dp.tap(
@@ -593,31 +597,14 @@ fn screen_halves<P: Probe>(
     column: u32,
     (low, high): (Word, Word),
 ) -> Halves {
-    let bisector = i64::from(2 * column + 1) << below;
-    let halves = match &constants.margin {
-        Margin::Gap(_) if below == 0 => {
-            let middle = at_half_samples(constants, bisector);
-            let both = dp.le(low, middle) && dp.le(middle, high);
-            Halves {
-                low: both,
-                high: both,
-            }
-        }
-        Margin::Gap(_) => {
-            // The sample points on either side of the bisector.
-            let before = at_half_samples(constants, bisector - 1);
-            let after = at_half_samples(constants, bisector + 1);
-            Halves {
-                low: dp.le(low, before),
-                high: dp.le(after, high),
-            }
-        }
-        Margin::Plain | Margin::Grow(_) => {
-            let middle = at_half_samples(constants, bisector);
-            let low = dp.lt(low, middle);
-            let high = dp.lt(middle, high) || !low;
-            Halves { low, high }
-        }
+    let [left, right] = constants.half_sample_places;
+    // As in `at_half_samples`.
+    let middle = Word::from_host(i64::from(column << 1 | 1) << (below + left) >> right);
+    // Half-open boxes; margins are in the positions.
+    let in_low = dp.lt(low, middle);
+    let halves = Halves {
+        low: in_low,
+        high: dp.lt(middle, high) || !in_low,
     };
     let node = (
         Short::unsigned(column, NODE_BITS),

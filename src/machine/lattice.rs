@@ -143,15 +143,16 @@ impl Lattice for Corners {
         }))
     }
 
+    /// Seven minima and seven maxima, as a tree of three levels.
     #[inline]
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
-        let mut low = self.0[0];
-        let mut high = self.0[0];
-        for &value in &self.0[1..] {
-            low = dp.min(low, value);
-            high = dp.max(high, value);
-        }
-        (low, high)
+        let mut around = |a: (Word, Word), b: (Word, Word)| (dp.min(a.0, b.0), dp.max(a.1, b.1));
+        let corner = |i: usize| (self.0[i], self.0[i]);
+        let edges: [(Word, Word); 4] =
+            std::array::from_fn(|i| around(corner(2 * i), corner(2 * i + 1)));
+        let low = around(edges[0], edges[1]);
+        let high = around(edges[2], edges[3]);
+        around(low, high)
     }
 
     #[inline]

@@ -16,6 +16,7 @@
 //! [`Datapath`](hwmodel::Datapath), so that a probe sees all of it.
 
 mod alpha;
+mod children;
 mod constants;
 mod draw;
 mod fit;

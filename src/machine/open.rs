@@ -13,7 +13,7 @@ use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
 /// A voxel's box in the image, relative to a quadtree node.
-pub(super) trait ImageBox: Sized {
+pub(super) trait ImageBox: Copy {
     /// What the test of a node leaves for its quadrants.
     type Tested: Copy;
 
@@ -40,28 +40,37 @@ pub(super) fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &Fill<'_>,
-    quad: QuadNode,
-    of: &B,
+    mut quad: QuadNode,
+    mut of: B,
 ) -> Option<QuadNode> {
     dp.stage(Stage::QuadtreeFit);
-    let address = fill.vectors.address(quad);
-    dp.read(Memory::FillVector, address as u64);
-    let open = !fill.vectors.at(address) & FULL;
-    if quad.level == constants.levels {
-        return (open != 0).then_some(quad);
-    }
-    let (overlapped, tested) = of.quadrants(dp, constants, quad);
-    let mut candidates = dp.and_bits(4, overlapped, open);
-    while candidates != 0 {
-        let quadrant = candidates.trailing_zeros() as u8;
-        candidates &= candidates - 1;
-        let inner = of.in_quadrant(dp, quadrant, constants.levels - quad.level, tested);
-        let found = first(dp, constants, fill, quad.quadrant(quadrant), &inner);
-        if found.is_some() {
-            return found;
+    loop {
+        let address = quad.address();
+        dp.read(Memory::FillVector, address as u64);
+        let open = !fill.vectors[address] & FULL;
+        if quad.level == constants.levels {
+            return (open != 0).then_some(quad);
         }
+        let (overlapped, tested) = of.quadrants(dp, constants, quad);
+        let mut candidates = dp.and_bits(4, overlapped, open);
+        if candidates == 0 {
+            return None;
+        }
+        let below = constants.levels - quad.level;
+        while !candidates.is_power_of_two() {
+            let quadrant = candidates.trailing_zeros() as u8;
+            candidates &= candidates - 1;
+            let inner = of.in_quadrant(dp, quadrant, below, tested);
+            let found = first(dp, constants, fill, quad.quadrant(quadrant), inner);
+            if found.is_some() {
+                return found;
+            }
+        }
+        // The last one, most often the only one, takes this node's place.
+        let quadrant = candidates.trailing_zeros() as u8;
+        of = of.in_quadrant(dp, quadrant, below, tested);
+        quad = quad.quadrant(quadrant);
     }
-    None
 }
 
 impl<L: Lattice> ImageBox for Clip<L> {
@@ -108,6 +117,7 @@ impl ImageBox for Spans {
 }
 
 /// A place in a lattice of screen space.
+#[derive(Clone, Copy)]
 pub(super) struct InSubtree<'s> {
     pub(super) subtree: &'s Subtree,
     /// Octree level of the record.

@@ -248,7 +248,8 @@ impl<L: Lattice> cycles::Workload for Steps<'_, L> {
         self.lattices.take_up(lattice, &mut self.walk.subtree);
         let in_clip_space = matches!(record.pose, Pose::Clip(..));
         let min = record.min;
-        self.walk.turn(record);
+        self.walk.stack.push(record);
+        self.walk.turn();
         self.trap()?;
         if in_clip_space && self.walk.subtree.is_some() {
             lattice = self.lattices.made();

@@ -126,6 +126,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 
     /// Level of detail: a node with children that is small enough is a solid.
+    #[inline(always)]
     fn take_for_solid(&mut self, record: &mut Record<L>) {
         if record.solid {
             return;
@@ -159,6 +160,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 
     /// Whether a record is no larger than a sample, less twice the tolerance.
+    #[inline(always)]
     fn is_at_most_a_sample(&mut self, record: &Record<L>) -> bool {
         let c = &self.constants;
         match &record.pose {

@@ -8,10 +8,10 @@ use super::draw::Canvas;
 use super::fit::{self, Place};
 use super::lattice::Lattice;
 use super::open::{self, InSubtree};
-use super::planes::{self, Cube, PlaneSilhouette};
-use super::record::{Clip, Planes, Pose, Record, Screen};
+use super::planes::{Cube, PlaneSilhouette};
+use super::record::{Clip, Planes, Pose, Record};
 use super::size;
-use super::strips::{StripSilhouette, Strips, Subtree};
+use super::strips::{StripSilhouette, Subtree};
 use super::taps::Block;
 use super::to_screen;
 use super::verdict::Verdict;
@@ -33,11 +33,11 @@ pub(super) fn run<P: Probe, L: Lattice>(
 ) -> Result<Option<(Stats, P)>, EngineError> {
     let mut walk = Walk::<P, L>::new(options, graph, setup, fill, frame, probe);
     walk.push_object();
-    while let Some(record) = walk.stack.pop() {
+    while !walk.stack.is_empty() {
         if walk.counts.records >= most_records {
             return Ok(None);
         }
-        walk.turn(record);
+        walk.turn();
         if let Some(trap) = walk.dp.trap() {
             return Err(trap.into());
         }
@@ -52,10 +52,10 @@ pub(super) fn run<P: Probe, L: Lattice>(
 #[derive(Debug, Default)]
 pub(super) struct Counts {
     records: u64,
-    subdivided: u64,
+    pub(super) subdivided: u64,
     already_full: u64,
     hidden: u64,
-    absent_children: u64,
+    pub(super) absent_children: u64,
     behind_eye: u64,
     rejected: u64,
     changed_to_screen: u64,
@@ -182,7 +182,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 
     /// Pushes a clip-space record, if it is before the eye and there is an
     /// unfilled quadtree node for it. `w_max` is its greatest depth.
-    fn push_if_seen(&mut self, mut record: Record<L>, w_max: Word) {
+    pub(super) fn push_if_seen(&mut self, mut record: Record<L>, w_max: Word) {
         self.dp.stage(Stage::ChildBox);
         if self.is_behind(w_max) {
             self.counts.behind_eye += 1;
@@ -197,7 +197,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.push_at(record, found);
     }
 
-    fn push_at(&mut self, record: Record<L>, found: Option<Place>) {
+    #[inline(always)]
+    pub(super) fn push_at(&mut self, record: Record<L>, found: Option<Place>) {
         let Some(Place { quad, inside }) = found else {
             self.counts.rejected += 1;
             return;
@@ -212,17 +213,37 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.counts.deepest_stack = self.counts.deepest_stack.max(self.stack.len() as u64);
     }
 
-    /// A record's turn.
-    pub(super) fn turn(&mut self, mut record: Record<L>) {
+    /// The turn of the record on top of the stack, which leaves it.
+    pub(super) fn turn(&mut self) {
+        // Out of the walk, so that a record is looked at where it lies: most
+        // leave nothing, and only a parent is copied.
+        let mut stack = std::mem::take(&mut self.stack);
+        let last = stack.len().saturating_sub(1) as u64;
+        let is_parent = stack
+            .last_mut()
+            .is_some_and(|record| self.is_parent(record, last));
+        if !is_parent {
+            stack.pop();
+            self.stack = stack;
+        } else if let Some(parent) = stack.pop() {
+            self.stack = stack;
+            self.subdivide(&parent);
+        }
+    }
+
+    /// All of a record's turn but its subdivision, and whether that follows.
+    /// `address`: the record's, on the stack.
+    #[inline(always)]
+    fn is_parent(&mut self, record: &mut Record<L>, address: u64) -> bool {
         self.dp.begin_record(self.counts.records, record.level);
         self.counts.records += 1;
         self.canvas.warm(record.quad);
         self.dp.stage(Stage::Pop);
-        self.dp.read(Memory::Stack, self.stack.len() as u64);
+        self.dp.read(Memory::Stack, address);
 
         self.dp.stage(Stage::Filled);
         if self.options.reject_filled {
-            let address = self.canvas.fill.address(record.quad);
+            let address = record.quad.address();
             self.dp.read(Memory::FillVector, address as u64);
             let vector = self.canvas.fill.vector(record.quad);
             let full = self.dp.and_bits(4, vector, FULL) == FULL;
@@ -230,7 +251,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
             if full {
                 self.counts.already_full += 1;
-                return;
+                return false;
             }
         }
 
@@ -239,7 +260,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
                 record.pose = self.changed(record.level, &place, clip);
-                self.aim_lattice(&record);
+                self.aim_lattice(record);
             }
         }
 
@@ -249,14 +270,15 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             record.solid =
                 record.level >= self.constants.depth || self.graph.mask(record.node) == 0;
         }
-        match self.verdict(&mut record) {
-            Verdict::DrawCentre => self.draw_centre(&record),
-            Verdict::DrawBox => self.draw_box(&record),
-            Verdict::DrawSolid => self.draw_solid(&record),
+        match self.verdict(record) {
+            Verdict::DrawCentre => self.draw_centre(record),
+            Verdict::DrawBox => self.draw_box(record),
+            Verdict::DrawSolid => self.draw_solid(record),
             Verdict::Drop => {}
-            Verdict::Subdivide if self.is_hidden(&record) => self.counts.hidden += 1,
-            Verdict::Subdivide => self.subdivide(&record),
+            Verdict::Subdivide if self.is_hidden(record) => self.counts.hidden += 1,
+            Verdict::Subdivide => return true,
         }
+        false
     }
 
     /// A record's vertices after the change to screen space.
@@ -280,19 +302,20 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 
     /// The first sample of a record's box that is not drawn yet.
+    #[inline]
     pub(super) fn first_open(&mut self, record: &Record<L>) -> Option<QuadNode> {
         let fill = self.canvas.seen_by_fit(true);
         let (dp, constants, quad) = (&mut self.dp, &self.constants, record.quad);
         match &record.pose {
-            Pose::Clip(clip, _) => open::first(dp, constants, &fill, quad, clip),
-            Pose::Screen(screen) => open::first(dp, constants, &fill, quad, &screen.spans),
+            Pose::Clip(clip, _) => open::first(dp, constants, &fill, quad, *clip),
+            Pose::Screen(screen) => open::first(dp, constants, &fill, quad, screen.spans),
             Pose::Strips(strips) => {
                 let in_subtree = InSubtree {
                     subtree: self.subtree.as_ref()?,
                     level: record.level,
                     strips: *strips,
                 };
-                open::first(dp, constants, &fill, quad, &in_subtree)
+                open::first(dp, constants, &fill, quad, in_subtree)
             }
         }
     }
@@ -362,185 +385,4 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         });
         [corner[0], corner[1], corner[2], record.voxel_level as i32]
     }
-
-    /// Makes a record's children and pushes those that are seen.
-    fn subdivide(&mut self, record: &Record<L>) {
-        self.counts.subdivided += 1;
-        self.dp.stage(Stage::Centre);
-        let centre: [Word; 3] =
-            std::array::from_fn(|k| self.dp.midpoint(record.min[k], record.max[k]));
-
-        self.dp
-            .tap(Block::Centre, &(record.min, record.max), &centre);
-
-        self.dp.stage(Stage::Order);
-        let octant = (0..3).fold(0u8, |bits, k| {
-            // The centre is on the positive side where the eye is below it.
-            bits << 1 | u8::from(self.dp.lt(self.constants.eye_floor[k], centre[k]))
-        });
-        let order = self
-            .options
-            .order
-            .map(|nearest| self.dp.xor_bits(3, octant, nearest));
-        self.dp.tap(
-            Block::OctantOrder,
-            &(centre, self.constants.eye_floor),
-            &(
-                Short::unsigned(octant, 3),
-                order.map(|child| Short::unsigned(child, 3)),
-            ),
-        );
-
-        self.dp.stage(Stage::VertexPool);
-        let poses: Poses<'_, L> = match &record.pose {
-            Pose::Clip(clip, planes) => Poses::Clip {
-                x: clip.x.pool(&mut self.dp),
-                y: clip.y.pool(&mut self.dp),
-                w: clip.w.pool(&mut self.dp),
-                planes,
-            },
-            Pose::Screen(screen) => Poses::Screen {
-                x: screen.x.pool(&mut self.dp),
-                y: screen.y.pool(&mut self.dp),
-            },
-            Pose::Strips(strips) => {
-                let Some(subtree) = &self.subtree else { return };
-                Poses::Strips(subtree.children(&mut self.dp, record.level + 1, strips))
-            }
-        };
-        self.tap_vertices(&record.pose, &poses);
-        for &child in order.iter().rev() {
-            let node = if record.solid {
-                Some(record.node)
-            } else {
-                self.graph.child(record.node, child)
-            };
-            match node {
-                Some(node) => self.push_child(record, child, node, &centre, &poses),
-                None => self.counts.absent_children += 1,
-            }
-        }
-    }
-
-    /// Shows the children's cages as they come from the vertex pool.
-    #[inline(always)]
-    fn tap_vertices(&mut self, parent: &Pose<L>, children: &Poses<'_, L>) {
-        if !P::TAPS {
-            return;
-        }
-        match (parent, children) {
-            (Pose::Clip(clip, _), Poses::Clip { x, y, w, .. }) => {
-                self.dp.tap(Block::VertexPool, &clip.x, &L::all(x));
-                self.dp.tap(Block::VertexPool, &clip.y, &L::all(y));
-                self.dp.tap(Block::VertexPool, &clip.w, &L::all(w));
-            }
-            (Pose::Screen(screen), Poses::Screen { x, y }) => {
-                self.dp.tap(Block::VertexPool, &screen.x, &L::all(x));
-                self.dp.tap(Block::VertexPool, &screen.y, &L::all(y));
-            }
-            // A lattice's children are shown function by function.
-            _ => {}
-        }
-    }
-
-    fn push_child(
-        &mut self,
-        parent: &Record<L>,
-        octant: u8,
-        node: u32,
-        centre: &[Word; 3],
-        poses: &Poses<'_, L>,
-    ) {
-        self.dp.stage(Stage::ChildBox);
-        let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
-        let min = std::array::from_fn(|k| self.dp.select(upper[k], centre[k], parent.min[k]));
-        let max = std::array::from_fn(|k| self.dp.select(upper[k], parent.max[k], centre[k]));
-        self.dp.tap(
-            Block::ChildCorners,
-            &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
-            &(min, max),
-        );
-        let level = parent.level + 1;
-        let child = octant as usize;
-        let record = |pose| Record {
-            min,
-            max,
-            node,
-            level,
-            voxel_level: if parent.solid {
-                parent.voxel_level
-            } else {
-                level
-            },
-            solid: parent.solid,
-            quad: parent.quad,
-            inside: parent.inside,
-            pose,
-        };
-        match poses {
-            Poses::Clip { x, y, w, planes } => {
-                let w = L::child(w, child);
-                let (w_min, w_max) = w.span(&mut self.dp);
-                let clip = Clip {
-                    x: L::child(x, child),
-                    y: L::child(y, child),
-                    w,
-                    w_min,
-                };
-                self.dp.tap(Block::ChildSpan, &clip.w, &(w_min, w_max));
-                let planes = if self.constants.coverage == Coverage::Exact {
-                    self.dp.stage(Stage::VertexPool);
-                    planes::of_child(&mut self.dp, &self.constants, planes, parent.level, octant)
-                } else {
-                    **planes
-                };
-                self.push_if_seen(record(Pose::Clip(clip, planes)), w_max);
-            }
-            Poses::Screen { x, y } => {
-                let (x, y) = (L::child(x, child), L::child(y, child));
-                let spans = [x, y].map(|lattice| lattice.span(&mut self.dp));
-                self.dp.tap(Block::ChildSpan, &x, &spans[0]);
-                self.dp.tap(Block::ChildSpan, &y, &spans[1]);
-                let fill = self.canvas.seen_by_fit(self.options.reject_filled);
-                let place = parent.place();
-                let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &spans);
-                let pose = Pose::Screen(Screen { x, y, spans });
-                self.push_at(record(pose), found);
-            }
-            Poses::Strips(strips) => {
-                let Some(subtree) = &self.subtree else { return };
-                let mut strips = strips[child];
-                let fill = self.canvas.seen_by_fit(self.options.reject_filled);
-                let place = parent.place();
-                let found = fit::strips(
-                    &mut self.dp,
-                    &self.constants,
-                    &fill,
-                    &place,
-                    (subtree, level),
-                    &mut strips,
-                );
-                self.push_at(record(Pose::Strips(strips)), found);
-            }
-        }
-    }
-}
-
-/// The eight children's cages.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "lives for one subdivision, on the stack"
-)]
-enum Poses<'p, L: Lattice> {
-    Clip {
-        x: L::Pool,
-        y: L::Pool,
-        w: L::Pool,
-        planes: &'p Planes,
-    },
-    Screen {
-        x: L::Pool,
-        y: L::Pool,
-    },
-    Strips([Strips; 8]),
 }

@@ -99,7 +99,7 @@ const SHOWN: [Allowed; 8] = [
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
-const PRODUCTS: [Allowed; 14] = [
+const PRODUCTS: [Allowed; 13] = [
     allowed(
         "constants.rs",
         "i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])",
@@ -125,16 +125,7 @@ const PRODUCTS: [Allowed; 14] = [
         "let samples = f64::from(1u32 << below) * f64::from(1u32 << below);",
         HEAT,
     ),
-    allowed(
-        "draw.rs",
-        "f64::from(heat[self.fill.address(quad)]) / samples",
-        HEAT,
-    ),
-    allowed(
-        "fit.rs",
-        "let bisector = i64::from(2 * column + 1) << below;",
-        HALF_SAMPLES,
-    ),
+    allowed("draw.rs", "f64::from(heat[quad.address()]) / samples", HEAT),
     allowed("lattice.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
     allowed("lattice.rs", "let at = 3 * j + k;", INDEX),
     allowed("lattice.rs", "let at = 9 * i + k;", INDEX),
@@ -156,7 +147,6 @@ const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const FOR_CHECKS: &str = "vertices shown to an experiment; nothing of it goes back";
 const INDEX: &str = "which wire, known when the machine is built";
 const HEAT: &str = "the heat map: measured by the host after the last record";
-const HALF_SAMPLES: &str = "a node's number with a one after it: wires";
 
 /// A window on the machine for experiments, in real numbers. The machine must
 /// not look back through it: see `nobody_computes_with_what_the_window_shows`.

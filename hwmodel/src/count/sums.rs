@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Counter, LEVELS, READS, Row, SHORT, SIZED, WRITES};
+use super::{Counter, LEVELS, READS, Row, SETS, SHORT, SIZED, WRITES};
 use crate::probe::{Memory, OpClass, Stage};
 
 /// How often operations of one kind were executed at one place.
@@ -191,8 +191,9 @@ impl Counter {
     /// One row, with what is not settled yet.
     fn row(&self, level: usize, row: usize) -> Row {
         let mut sum = self.settled[level][row];
-        if level == self.level {
-            add(&mut sum, &self.fresh[row]);
+        let set = level % SETS;
+        if level == self.levels[set] {
+            add(&mut sum, &self.fresh[set][row]);
         }
         sum
     }
