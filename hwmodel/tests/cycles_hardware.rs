@@ -61,7 +61,68 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         (
             "clock_mhz = 50.0",
             "clock_mhz = nan",
-            "clock_mhz is NaN; it must be above 0",
+            "clock_mhz is NaN; it must be 0.001 to 1000000",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = 0.0",
+            "clock_mhz is 0.0; it",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = -50.0",
+            "clock_mhz is -50.0;",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = inf",
+            "clock_mhz is inf; it",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = 1e300",
+            "clock_mhz is 1e300; it must be 0.001 to 1000000",
+        ),
+        (
+            "clock_mhz = 50.0",
+            "clock_mhz = 1e-300",
+            "clock_mhz is 1e-300; it",
+        ),
+        (
+            "name = \"tiny\"",
+            "name = \" \"",
+            "name is \" \"; it must be a line of text",
+        ),
+        (
+            "name = \"tiny\"",
+            "name = \"a\\nb\"",
+            "name is \"a\\nb\"; it must be",
+        ),
+        (
+            "wires = [\"shift\"]",
+            "wires = [\"shift\", \"add\"]",
+            "`add` is among `wires`, which take no units, and has a [units.add]",
+        ),
+        (
+            "line_bytes = 32",
+            "line_bytes = 24",
+            "node_cache.line_bytes is 24; it must be a power of two",
+        ),
+        (
+            "ports = 1 ",
+            "ports = 0 ",
+            "stack.ports is 0; it must be 1 to",
+        ),
+        ("ways = 1", "ways = 0", "node_cache.ways is 0; it must be 1"),
+        (
+            "interval = 1, width",
+            "interval = 0, width",
+            "units.add.interval is 0; it must be 1",
+        ),
+        (
+            "count = 1, latency",
+            "count = 4294967296, latency",
+            "expected u32",
         ),
         (
             "add = { count = 1",

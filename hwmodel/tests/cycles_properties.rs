@@ -124,7 +124,10 @@ fn hardware(seed: u64, independence: Independence) -> Hardware {
     hardware.independence = independence;
     hardware.steal_cycles = dice.below(4) as u32;
     for class in OpClass::ALL {
-        hardware.units.insert(class, unit(dice));
+        let unit = unit(dice);
+        if !hardware.wires.contains(&class) {
+            hardware.units.insert(class, unit);
+        }
     }
     hardware.node_cache = cache(dice);
     hardware.attribute_cache = cache(dice);
@@ -268,7 +271,9 @@ proptest! {
 /// Makes one part of a hardware better.
 fn improve(hardware: &mut Hardware, which: usize) {
     let class = OpClass::ALL[which % 8];
-    let unit = hardware.units.get_mut(&class).unwrap();
+    // Wires have none to improve.
+    let mut none = unit(&mut Dice(0));
+    let unit = hardware.units.get_mut(&class).unwrap_or(&mut none);
     match which {
         0..4 => unit.count += 1,
         4..6 => unit.latency = unit.latency.saturating_sub(1),

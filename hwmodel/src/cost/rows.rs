@@ -127,7 +127,7 @@ pub enum CostError {
     },
     /// Rows, but none near.
     #[error(
-        "no {} of `{operation}` near {width} bits{}: the widest row has {widest}, and nothing is extrapolated beyond four times that; add a row with `{}` to a cost table of your own, or to {}",
+        "no {} of `{operation}` near {width} {unit}{}: the largest row has {widest}, and nothing is extrapolated beyond {times} times that; add a row with `{}` to a cost table of your own, or to {}",
         quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
     )]
     TooWide {
@@ -139,6 +139,10 @@ pub enum CostError {
         width: u64,
         /// Width (or size) of the widest row.
         widest: u64,
+        /// `bits` or `bytes`.
+        unit: &'static str,
+        /// How many times the widest has an answer.
+        times: u64,
         /// Under which goal, if that matters.
         goal: Option<Goal>,
     },
@@ -224,6 +228,13 @@ pub(super) struct Parsed {
     pub(super) rows: BTreeMap<Key, Vec<Row>>,
 }
 
+/// Largest figure: no sum over a frame leaves what a number holds.
+const MAX_FIGURE: f64 = 1e12;
+/// Widest row, bits.
+const MAX_WIDTH: u32 = 1 << 16;
+/// Largest memory, bytes.
+const MAX_BYTES: u64 = 1 << 50;
+
 /// Reads a file of rows.
 pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
     let parsed: File = toml::from_str(text).map_err(|error| CostError::Syntax {
@@ -246,6 +257,12 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
         }
         if row.width == Some(0) {
             return Err(wrong("a width is at least 1 bit; leave it out for any"));
+        }
+        if row.width.is_some_and(|width| width > MAX_WIDTH) {
+            return Err(wrong("a width is at most 65536 bits"));
+        }
+        if row.bytes.is_some_and(|bytes| bytes > MAX_BYTES) {
+            return Err(wrong("a memory has at most 2^50 bytes"));
         }
         if row.bytes.is_some() && (row.bytes == Some(0) || row.width.is_none()) {
             return Err(wrong(
@@ -270,9 +287,9 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
                 Some(Figure::Number(number)) => (number, number),
                 Some(Figure::Range([low, high])) => (low, high),
             };
-            if !(low >= 0.0 && low <= high && high.is_finite()) {
+            if !(low >= 0.0 && low <= high && high <= MAX_FIGURE) {
                 return Err(wrong(
-                    "a figure is a number from 0 up, or a range [low, high] of two",
+                    "a figure is a number from 0 to 1e12, or a range [low, high] of two",
                 ));
             }
             let key = (quantity, row.operation.clone(), row.goal);
@@ -282,6 +299,14 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
                 .any(|other| (other.width, other.bytes) == (row.width, row.bytes))
             {
                 return Err(wrong("there are two such rows"));
+            }
+            if together
+                .iter()
+                .any(|other| other.width.is_none() != row.width.is_none())
+            {
+                return Err(wrong(
+                    "one row is for any width and another for one: which counts?",
+                ));
             }
             let source = parsed.sources.get(&row.source).unwrap_or(&row.source);
             together.push(Row {

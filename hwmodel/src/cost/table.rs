@@ -204,6 +204,8 @@ impl CostTable {
                 operation: operation.to_owned(),
                 width: u64::from(width),
                 widest: u64::from(widest),
+                unit: "bits",
+                times: FARTHEST as u64,
                 goal,
             });
         }
@@ -231,12 +233,16 @@ impl CostTable {
         let Some(largest) = rows.iter().filter_map(|row| row.1.bytes).max() else {
             return Err(missing(quantity, operation, bits, None));
         };
-        if bytes as f64 > FARTHEST * FARTHEST * largest as f64 {
+        // As long and wide: as often in either direction.
+        let times = FARTHEST * FARTHEST;
+        if bytes as f64 > times * largest as f64 {
             return Err(CostError::TooWide {
                 quantity,
                 operation: operation.to_owned(),
                 width: bytes,
                 widest: largest,
+                unit: "bytes",
+                times: times as u64,
                 goal: None,
             });
         }
@@ -267,10 +273,12 @@ impl CostTable {
         Err(missing(quantity, operation, width, goal))
     }
 
-    /// All operations that have rows, in order.
+    /// All operations that have rows or are listed as quadratic, in order.
     #[must_use]
     pub fn operations(&self) -> Vec<&str> {
-        let names: BTreeSet<&str> = self.rows.keys().map(|key| key.1.as_str()).collect();
+        let of_rows = self.rows.keys().map(|key| key.1.as_str());
+        let listed = self.quadratic.iter().map(String::as_str);
+        let names: BTreeSet<&str> = of_rows.chain(listed).collect();
         names.into_iter().collect()
     }
 }

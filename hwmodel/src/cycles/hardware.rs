@@ -13,6 +13,8 @@ use crate::{OpClass, Stage};
 pub const MAX_LANES: u32 = 256;
 /// Most contexts that a lane may have.
 pub const MAX_CONTEXTS: u32 = 64;
+/// Slowest and fastest clock, MHz: a kilohertz and a terahertz.
+const CLOCKS: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
 /// Largest of all other numbers: no sum of a turn's times leaves 64 bits.
 const MAX_NUMBER: u32 = 1 << 24;
 /// Largest number of things that the simulation keeps one by one.
@@ -26,9 +28,9 @@ const MIN_LINE: u32 = 8;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hardware {
-    /// Its name in reports.
+    /// Its name in reports; a line of text.
     pub name: String,
-    /// Clock, MHz; above 0.
+    /// Clock, MHz; 0.001 to 1,000,000.
     pub clock_mhz: f64,
     /// Copies of the record loop's blocks and stack, 1 to [`MAX_LANES`].
     pub lanes: u32,
@@ -126,7 +128,7 @@ pub struct Cache {
     pub bytes: u32,
     /// Lines of a set.
     pub ways: u32,
-    /// Bytes of a line.
+    /// Bytes of a line; a power of two.
     pub line_bytes: u32,
     /// Bytes of one entry (a node, an attribute).
     pub entry_bytes: u32,
@@ -191,6 +193,15 @@ pub enum HardwareError {
         /// The class, as in the file.
         class: String,
     },
+    /// A class of operation that is said to take units and none.
+    #[error(
+        "hardware description: `{class}` is among `wires`, which take no units, \
+         and has a [units.{class}]; take out one"
+    )]
+    WiresAndUnits {
+        /// The class, as in the file.
+        class: String,
+    },
     /// No description of this name ships.
     #[error("no hardware of the name `{0}` ships; there are tiny, paper and wide")]
     NoPreset(String),
@@ -251,15 +262,24 @@ impl Hardware {
     /// # Errors
     /// With the first field that is out of its range.
     pub fn check(&self) -> Result<(), HardwareError> {
-        if !(self.clock_mhz.is_finite() && self.clock_mhz > 0.0) {
-            return Err(out_of_range("clock_mhz", self.clock_mhz, "above 0"));
+        if self.name.trim().is_empty() || self.name.contains(char::is_control) {
+            let name = format!("{:?}", self.name);
+            return Err(out_of_range("name", name, "a line of text"));
+        }
+        if !CLOCKS.contains(&self.clock_mhz) {
+            let clock = format!("{:?}", self.clock_mhz);
+            return Err(out_of_range("clock_mhz", clock, "0.001 to 1000000"));
         }
         within("lanes", self.lanes, 1, MAX_LANES)?;
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
-            if !self.units.contains_key(&class) && !self.wires.contains(&class) {
-                return Err(HardwareError::NoUnit { class: key(&class) });
+            match (self.units.contains_key(&class), self.wires.contains(&class)) {
+                (false, false) => return Err(HardwareError::NoUnit { class: key(&class) }),
+                (true, true) => {
+                    return Err(HardwareError::WiresAndUnits { class: key(&class) });
+                }
+                _ => {}
             }
         }
         for (class, unit) in &self.units {
@@ -320,6 +340,10 @@ impl Cache {
         }
         within(&format!("{at}.entry_bytes"), self.entry_bytes, 1, MAX_ENTRY)?;
         within(&format!("{at}.misses"), self.misses, 1, MAX_KEPT)?;
+        if !self.line_bytes.is_power_of_two() {
+            let field = format!("{at}.line_bytes");
+            return Err(out_of_range(&field, self.line_bytes, "a power of two"));
+        }
         let set = u64::from(self.ways) * u64::from(self.line_bytes);
         if !u64::from(self.bytes).is_multiple_of(set) {
             let range = format!("a multiple of ways * line_bytes, {set}");
