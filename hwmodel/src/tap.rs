@@ -4,7 +4,7 @@
 //! [`Probe`](crate::Probe) whose `TAPS` is set takes rows of [`Signal`]s from there. Nothing
 //! comes back, and where nobody listens nothing is left of the call.
 
-use crate::{Format, WideWord, Word};
+use crate::{Format, Narrow, WideWord, Word};
 
 /// How wide a signal is, and how it is to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -69,6 +69,13 @@ impl Short {
             kind: SignalKind::Signed(bits),
             value: i64::from(value),
         })
+    }
+
+    /// A narrow number, on `bits` wires.
+    #[inline(always)]
+    #[must_use]
+    pub fn narrow(value: Narrow, bits: u32) -> Self {
+        Self::unsigned(value.to_host(), bits)
     }
 }
 

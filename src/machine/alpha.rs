@@ -9,10 +9,11 @@
 //! sample takes of each voxel that weight times what it still lets through.
 //! Products are sums of shifts over the bits of a number of nine.
 
-use hwmodel::{Datapath, Memory, Narrow, Probe, Stage, Word};
+use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
 use super::lattice::Lattice;
 use super::record::Record;
+use super::taps::{Block, LEVEL_BITS};
 use super::walk::Walk;
 use crate::frame::Blend;
 use crate::graph::Opacity;
@@ -26,6 +27,8 @@ const WEIGHT_BITS: u32 = 9;
 const PRODUCT_BITS: u32 = 17;
 /// Bits of a colour in linear light, weighed, and of its sum.
 const LIGHT_BITS: u32 = 24;
+/// Bits of a colour in linear light.
+const COLOR_BITS: u32 = 16;
 /// Bits of an opacity.
 const OPACITY_BITS: u32 = 4;
 /// The weight of a voxel that lets nothing through.
@@ -70,7 +73,10 @@ impl Aim {
             let centre = dp.shr(centre, eye.shift);
             let way = dp.sub(centre, eye.at[k]);
             let back = dp.neg(way);
-            dp.max(way, back)
+            let along = dp.max(way, back);
+            let shift = Short::unsigned(eye.shift, LEVEL_BITS);
+            dp.tap(Block::BlendWay, &(min[k], max[k], eye.at[k], shift), &along);
+            along
         });
         let two = dp.add(along[0], along[1]);
         let all = dp.add(two, along[2]);
@@ -84,13 +90,18 @@ impl Aim {
         let z = dp.sub(left, y);
         let shares = [x, y, z].map(|share| dp.narrowed(share, SHARE_BITS));
         let is_seen = shares.map(|share| dp.le_narrow(SHARE_BITS, SEEN, share));
+        let shares_shown = wires(shares, SHARE_BITS);
+        dp.tap(Block::BlendShares, &along, &(shares_shown, is_seen));
         let squares = shares
             .map(|share| plus_product(dp, WEIGHT_BITS, Narrow::ZERO, share, share, SHARE_BITS));
         let length = length_of(dp, squares);
-        Self {
-            counts: squares.map(|square| quotient_of(dp, square, length)),
-            is_seen,
-        }
+        let counts = squares.map(|square| quotient_of(dp, square, length));
+        dp.tap(
+            Block::BlendCounts,
+            &shares_shown,
+            &wires(counts, SHARE_BITS),
+        );
+        Self { counts, is_seen }
     }
 
     /// A voxel's weight, 0 to 256, of its opacities from the three sides that
@@ -108,8 +119,23 @@ impl Aim {
             // Sixteen sixteenths: one bit.
             is_whole |= self.is_seen[k] && dp.bit_narrow(covered, OPACITY_BITS);
         }
-        dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight)
+        let weight = dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight);
+        let sides: [[Short; 2]; 3] = std::array::from_fn(|k| {
+            [false, true].map(|high| Short::unsigned(opacity.from_side(k, high), OPACITY_BITS))
+        });
+        dp.tap(
+            Block::BlendWeight,
+            &(sides, high, wires(self.counts, SHARE_BITS), self.is_seen),
+            &Short::narrow(weight, WEIGHT_BITS),
+        );
+        weight
     }
+}
+
+/// Narrow numbers on the wires of a block's border.
+#[inline(always)]
+fn wires<const N: usize>(numbers: [Narrow; N], bits: u32) -> [Short; N] {
+    numbers.map(|number| Short::narrow(number, bits))
 }
 
 const SEEN: Narrow = Narrow::from_host(SEEN_SHARE as u32);
@@ -216,11 +242,26 @@ impl Ink {
         let share = dp.select_narrow(WEIGHT_BITS, is_full, left, share);
         let rest = dp.select_narrow(WEIGHT_BITS, is_full, Narrow::ZERO, rest);
         let is_first = sample.left == ALL_LEFT as u16;
+        let sums = sample.light;
         for (sum, light) in sample.light.iter_mut().zip(self.light) {
             let before = Narrow::from_host(*sum);
             *sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host();
         }
         sample.left = rest.to_host() as u16;
+        let lights_shown = |sums: [u32; 3]| sums.map(|sum| Short::unsigned(sum, LIGHT_BITS));
+        dp.tap(
+            Block::BlendSample,
+            &(
+                wires([left, self.weight], WEIGHT_BITS),
+                wires(self.light, COLOR_BITS),
+                lights_shown(sums),
+            ),
+            &(
+                Short::narrow(rest, WEIGHT_BITS),
+                lights_shown(sample.light),
+                [is_first, is_full],
+            ),
+        );
         dp.write(Memory::Accumulator, at);
         Taken { is_first, is_full }
     }

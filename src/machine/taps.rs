@@ -86,11 +86,21 @@ pub enum Block {
     StripCover,
     /// Bits set in a fill vector.
     FillUpdate,
+    /// The way from the eye to a voxel along one axis.
+    BlendWay,
+    /// A voxel's outline shared among the three sides that are seen.
+    BlendShares,
+    /// What the sides count for, of their shares.
+    BlendCounts,
+    /// A voxel's weight, of its opacities.
+    BlendWeight,
+    /// What a sample takes of a voxel.
+    BlendSample,
 }
 
 impl Block {
     /// All blocks, in the order of their numbers.
-    pub const ALL: [Self; 40] = [
+    pub const ALL: [Self; 45] = [
         Self::Filled,
         Self::ChangeDepth,
         Self::ChangeGuard,
@@ -131,6 +141,11 @@ impl Block {
         Self::PlaneCover,
         Self::StripCover,
         Self::FillUpdate,
+        Self::BlendWay,
+        Self::BlendShares,
+        Self::BlendCounts,
+        Self::BlendWeight,
+        Self::BlendSample,
     ];
 }
 

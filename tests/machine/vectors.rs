@@ -8,7 +8,7 @@ use std::path::Path;
 
 use hwmodel::Overflow;
 use serde_json::Value;
-use shiftvox::graph::Graph;
+use shiftvox::graph::{Graph, GraphView, Opacity};
 use shiftvox::lab::model::vectors::{self, Request};
 use shiftvox::project::{CageKind, Camera, Coverage, SetupOptions};
 
@@ -391,6 +391,55 @@ fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128> {
             let after = get("vector") | get("bits");
             vec![after, i128::from(after == 15)]
         }
+        "blend_way" => {
+            let centre = (get("min") + get("max")).div_euclid(2);
+            vec![(scaled(centre, -get("shift")) - get("eye")).abs()]
+        }
+        "blend_shares" => {
+            let way = row.axes("way");
+            let all = way.iter().sum::<i128>().max(1);
+            // To the nearest, halves up.
+            let nearest = |k: usize| (32 * way[k] + all).div_euclid(2 * all);
+            let x = nearest(0);
+            let y = nearest(1).min(16 - x);
+            let shares = [x, y, 16 - x - y];
+            let mut out = shares.to_vec();
+            out.extend(bits(&shares.map(|share| share >= 4)));
+            out
+        }
+        "blend_counts" => {
+            let squares = row.axes("share").map(|share| share * share);
+            let length = (squares.iter().sum::<i128>() as f64).sqrt().round() as i128;
+            let nearest = |square: i128| (2 * square + length).div_euclid(2 * length);
+            squares.map(nearest).to_vec()
+        }
+        "blend_weight" => {
+            let (high, count, seen) = (row.axes("high"), row.axes("count"), row.axes("seen"));
+            let opacity = |k: usize| {
+                let side = ["low", "high"][high[k] as usize];
+                get(&format!("opacity_{}_{side}", AXES[k]))
+            };
+            if (0..3).any(|k| seen[k] == 1 && opacity(k) == 15) {
+                return vec![256];
+            }
+            // 15 covers all sixteen sixteenths.
+            let covered = |k| opacity(k) + i128::from(opacity(k) >= 8);
+            vec![(0..3).map(|k| covered(k) * count[k]).sum()]
+        }
+        "blend_sample" => {
+            let (left, weight) = (get("left"), get("weight"));
+            // To the nearest, halves up.
+            let share = (2 * left * weight + 256).div_euclid(512);
+            let full = left - share <= 64;
+            let taken = if full { left } else { share };
+            let mut out = vec![left - taken];
+            for color in ["red", "green", "blue"] {
+                let (sum, light) = (format!("sum_{color}"), format!("light_{color}"));
+                out.push(get(&sum) + taken * get(&light));
+            }
+            out.extend(bits(&[left == 256, full]));
+            out
+        }
         other => panic!("no rule for block {other}"),
     }
 }
@@ -561,7 +610,7 @@ fn read(folder: &Path, ports: &Value) -> Vec<Row> {
 fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
     let manifest: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(manifest["schema"], 1);
+    assert_eq!(manifest["schema"], 2);
     let number = |name: &str| i128::from(manifest["constants"][name].as_i64().unwrap());
     let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
     let constants = Constants {
@@ -610,13 +659,23 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     (wrong, counts)
 }
 
+/// With opacities: sides of all kinds, and every fourth voxel with solid ones.
+fn with_opacities(mut graph: Graph) -> Graph {
+    let opacity = (0..graph.len()).map(|i| {
+        let side = |k: usize| (i * 37 + k * 101) as u8;
+        Opacity([0, 1, 2].map(|k| if i % 4 == k { 255 } else { side(k) }))
+    });
+    graph.opacity = opacity.collect::<Vec<_>>().into();
+    graph
+}
+
 /// Scenes and cameras: a sponge-like thing from outside, a fractal from near,
 /// a dense cube with the eye within, near its middle.
 fn scenes() -> Vec<(&'static str, Graph, Camera)> {
     let blob = octree(4, &|[x, y, z]| {
         (x * 7 + y * 5 + z * 3) % 4 < 2 && x + y > z / 2
     });
-    vec![
+    let scenes = vec![
         (
             "blob",
             blob,
@@ -637,7 +696,9 @@ fn scenes() -> Vec<(&'static str, Graph, Camera)> {
             solid(3),
             camera([11.0, 10.0, 14.0], [4.0, 4.0, 4.0], 33),
         ),
-    ]
+    ];
+    let with_opacities = |(name, graph, camera)| (name, with_opacities(graph), camera);
+    scenes.into_iter().map(with_opacities).collect()
 }
 
 fn options(coverage: Coverage, cage: CageKind, tolerance_px: f64, bits: u32) -> SetupOptions {
@@ -666,7 +727,15 @@ fn round_trip(
         folder: &folder,
         overwrite: false,
     };
-    let recorded = vectors::write(&graph.view(), &setup(graph, camera, options), &request).unwrap();
+    // A colour for each node.
+    let light: Vec<[u16; 3]> = (0..graph.len() as u16)
+        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c) ^ 0x9e37))
+        .collect();
+    let lit = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let recorded = vectors::write(&lit, &setup(graph, camera, options), &request).unwrap();
     let (wrong, counts) = replay_folder(&folder);
     let rows: usize = counts.values().sum();
     assert_eq!(rows as u64, recorded.rows);
@@ -677,7 +746,12 @@ fn round_trip(
     (wrong, counts)
 }
 
-const COVERAGES: [Coverage; 3] = [Coverage::Any, Coverage::Center, Coverage::Exact];
+const COVERAGES: [Coverage; 4] = [
+    Coverage::Any,
+    Coverage::Center,
+    Coverage::Exact,
+    Coverage::Alpha,
+];
 const CAGES: [CageKind; 2] = [CageKind::Corners, CageKind::Frame];
 const TOLERANCES: [f64; 3] = [0.0, 0.125, f64::INFINITY];
 
@@ -777,6 +851,13 @@ fn blocks_have_rows_where_they_should() {
         "plane_side",
         "plane_cover",
     ];
+    let of_blending = [
+        "blend_way",
+        "blend_shares",
+        "blend_counts",
+        "blend_weight",
+        "blend_sample",
+    ];
     let of_samples = ["size_screen", "border_screen", "bisector_screen"];
     let of_centres = |changes| match changes {
         true => ["cage_centre", "centre_sample"],
@@ -791,7 +872,8 @@ fn blocks_have_rows_where_they_should() {
                     assert_eq!(rows > 0, expected, "{coverage:?} {tolerance} {block}");
                 }
             };
-            let (exact, changes) = (coverage == Coverage::Exact, tolerance > 0.0);
+            let (exact, changes) = (coverage.draws_outlines(), tolerance > 0.0);
+            has(&of_blending, coverage == Coverage::Alpha);
             has(&always, true);
             has(&of_change, changes);
             has(&of_lattices, exact && changes);
@@ -810,6 +892,31 @@ fn blocks_have_rows_where_they_should() {
 /// A file with one bit changed is found out.
 #[test]
 fn a_wrong_bit_is_found() {
+    let files = ["vertex_pool.out", "centre.in", "node_choice.out"];
+    changed_bits_are_found(
+        &options(Coverage::Exact, CageKind::Corners, 0.125, 24),
+        &files,
+    );
+}
+
+/// Of the blocks that blend too.
+#[test]
+fn a_wrong_bit_of_blending_is_found() {
+    let files = [
+        "blend_way.out",
+        "blend_shares.out",
+        "blend_counts.out",
+        "blend_weight.out",
+        "blend_sample.out",
+    ];
+    changed_bits_are_found(
+        &options(Coverage::Alpha, CageKind::Frame, 0.125, 24),
+        &files,
+    );
+}
+
+/// Changes the second lowest bit of the last row of each file, one after the other.
+fn changed_bits_are_found(options: &SetupOptions, files: &[&str]) {
     let (_, graph, camera) = scenes().swap_remove(0);
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("vectors");
@@ -820,15 +927,10 @@ fn a_wrong_bit_is_found() {
         folder: &folder,
         overwrite: false,
     };
-    let options = options(Coverage::Exact, CageKind::Corners, 0.125, 24);
-    vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+    vectors::write(&graph.view(), &setup(&graph, &camera, options), &request).unwrap();
     assert_eq!(replay_folder(&folder).0, None);
-    for file in [
-        "vertex_pool.out.hex",
-        "centre.in.hex",
-        "node_choice.out.hex",
-    ] {
-        let path = folder.join(file);
+    for file in files {
+        let path = folder.join(format!("{file}.hex"));
         let text = fs::read_to_string(&path).unwrap();
         let last = text
             .trim_end()

@@ -5,8 +5,9 @@ use hwmodel::Overflow;
 use super::ModelArgs;
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
-use crate::graph::Graph;
+use crate::graph::{Graph, GraphView};
 use crate::lab::model::vectors::{self, FolderError, Request, VectorsError};
+use crate::picture::{Shading, lights};
 use crate::project::FrameSetup;
 
 /// Fails before the work where something would be replaced.
@@ -36,7 +37,13 @@ pub(super) fn write(
         folder,
         overwrite: args.export.force,
     };
-    let recorded = vectors::write(&graph.view(), setup, &request)?;
+    // The same light as in the frame that is counted.
+    let light = lights(graph, setup, Shading::Lambert);
+    let lit = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let recorded = vectors::write(&lit, setup, &request)?;
     console.note(format!(
         "{}: {} rows of {} blocks written",
         folder.display(),

@@ -28,6 +28,10 @@ const THREE: SignalKind = SignalKind::Unsigned(3);
 const FOUR: SignalKind = SignalKind::Unsigned(4);
 const NODE: SignalKind = SignalKind::Unsigned(20);
 const PLACES: SignalKind = SignalKind::Signed(8);
+const SHARE: SignalKind = SignalKind::Unsigned(5);
+const WEIGHT: SignalKind = SignalKind::Unsigned(9);
+const COLOR: SignalKind = SignalKind::Unsigned(16);
+const SUM: SignalKind = SignalKind::Unsigned(24);
 
 const X: &str = "X (or Y) of the vertices, relative to the quadtree node";
 const W: &str = "W of the vertices";
@@ -42,6 +46,8 @@ const AXIS_C: &str = "c of the plane perpendicular to the axis";
 const VALUE: &str = "the function at the node's first sample, less its value at the centre";
 const HALF_WIDTH: &str = "half the strip's width at the record's level";
 const OBJECT: &str = "object coordinate, units of a finest voxel shifted by the levels below it";
+const COUNT: &str = "v of the axis: what the side counts for, sixteenths";
+const COLORS: [&str; 3] = ["red", "green", "blue"];
 
 const OCTANTS: [&str; 8] = ["000", "001", "010", "011", "100", "101", "110", "111"];
 
@@ -82,10 +88,11 @@ fn lattice(ports: Ports) -> Ports {
 /// Why a frame with these integers has no rows of a block, if that is so.
 #[must_use]
 pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
-    let exact = setup.options.coverage == Coverage::Exact;
+    let exact = setup.options.coverage.draws_outlines();
     let changes = setup.screen_depth.iter().any(|&w| w != i64::MAX);
-    const NOT_EXACT: &str = "only coverage exact has it";
-    const IS_EXACT: &str = "coverage exact does not have it";
+    const NOT_EXACT: &str = "only coverages exact and alpha have it";
+    const IS_EXACT: &str = "coverages exact and alpha do not have it";
+    const NOT_ALPHA: &str = "only coverage alpha has it";
     const NO_CHANGE: &str = "at this tolerance no record changes to screen space";
     let of_strips = || match (exact, changes) {
         (false, _) => Some(NOT_EXACT),
@@ -119,6 +126,11 @@ pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
         | Block::PlaneSide
         | Block::PlaneCover => (!exact).then_some(NOT_EXACT),
         Block::CageCentre | Block::CentreHalf => exact.then_some(IS_EXACT),
+        Block::BlendWay
+        | Block::BlendShares
+        | Block::BlendCounts
+        | Block::BlendWeight
+        | Block::BlendSample => (setup.options.coverage != Coverage::Alpha).then_some(NOT_ALPHA),
         Block::DetailDepth => {
             (setup.lod_limit.is_none()).then_some("level of detail 0 takes no node for a solid")
         }
@@ -590,6 +602,68 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             ports()
                 .one("after", FOUR, "written back")
                 .one("full", BIT, "the parent's bit is to be set"),
+        ),
+        Block::BlendWay => made(
+            "blend_way",
+            &[Stage::Blend],
+            "12",
+            "way = |((min + max) >> 1 >> shift) - eye|, the first sum with its carry",
+            ports()
+                .one("min", WORD, OBJECT)
+                .one("max", WORD, OBJECT)
+                .one("eye", WORD, "the eye, shifted already")
+                .one("shift", LEVEL, "k of the section"),
+            ports().one("way", WORD, "d of the axis"),
+        ),
+        Block::BlendShares => made(
+            "blend_shares",
+            &[Stage::Blend],
+            "12",
+            "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but at most 16 - share_x, share_z = 16 - share_x - share_y; seen = share >= 4",
+            ports().axes("way", WORD, "d of the axis"),
+            ports()
+                .axes("share", SHARE, "u of the axis, sixteenths")
+                .axes("seen", BIT, "a full side hides all"),
+        ),
+        Block::BlendCounts => made(
+            "blend_counts",
+            &[Stage::Blend],
+            "12",
+            "with n = the square root of the sum of the squares, to the nearest: count = share^2 / n to the nearest, halves up",
+            ports().axes("share", SHARE, "u of the axis, sixteenths"),
+            ports().axes("count", SHARE, COUNT),
+        ),
+        Block::BlendWeight => made(
+            "blend_weight",
+            &[Stage::Blend],
+            "12",
+            "with a = opacity_high where high is set, else opacity_low: weight = 256 where an axis that is seen has a = 15, else the sum of (a + (a >> 3)) count",
+            ["x", "y", "z"]
+                .iter()
+                .fold(ports(), |ports, axis| {
+                    let meaning = "the voxel's opacity from that side";
+                    ports.each(&format!("opacity_{axis}"), &["low", "high"], FOUR, meaning)
+                })
+                .axes("high", BIT, "the eye is on the high side")
+                .axes("count", SHARE, COUNT)
+                .axes("seen", BIT, "a full side hides all"),
+            ports().one("weight", WEIGHT, "w: 256 lets nothing through"),
+        ),
+        Block::BlendSample => made(
+            "blend_sample",
+            &[Stage::Blend],
+            "12",
+            "with m = (left weight + 128) >> 8: full = left - m <= 64, and then m = left; rest = left - m; after = sum + m light; first = left is 256",
+            ports()
+                .one("left", WEIGHT, "T: what the sample still lets through")
+                .one("weight", WEIGHT, "w of the voxel")
+                .each("light", &COLORS, COLOR, "linear light of the voxel")
+                .each("sum", &COLORS, SUM, "C: what the sample has so far"),
+            ports()
+                .one("rest", WEIGHT, "T, written back")
+                .each("after", &COLORS, SUM, "C, written back")
+                .one("first", BIT, "the first voxel that the sample takes")
+                .one("full", BIT, "opaque enough: the fill bit is to be set"),
         ),
     }
 }
