@@ -36,6 +36,7 @@ caption{caption-side:top;text-align:left;color:var(--soft);padding:.2rem 0 .4rem
 th,td{padding:.28rem .7rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{position:sticky;top:0;background:var(--page);border-bottom:2px solid var(--line)}
 td.w,th.w{text-align:left}
+td.long{white-space:normal;min-width:26rem}
 tbody tr:nth-child(even){background:var(--band)}
 pre{background:var(--band);padding:.7rem .9rem;overflow-x:auto;font-size:.84rem;border-radius:6px}
 figure{margin:1rem 0}
@@ -49,6 +50,9 @@ figcaption{color:var(--soft);font-size:.88rem;margin-top:.3rem}
 .key b{display:block;font-size:1.25rem}
 .key span{color:var(--soft);font-size:.84rem}
 ";
+
+/// Bytes of text that stand in one line of a cell; more are broken into several.
+const LONG: usize = 60;
 
 /// Text as HTML shows it.
 #[must_use]
@@ -124,12 +128,10 @@ impl Page {
 
     /// A table under its title.
     pub fn table(&mut self, table: &Table) {
-        let class = |column: usize| {
-            if table.is_of_words(column) {
-                " class=\"w\""
-            } else {
-                ""
-            }
+        let class = |column: usize, text: &str| match (table.is_of_words(column), text.len()) {
+            (false, _) => "",
+            (true, ..=LONG) => " class=\"w\"",
+            (true, _) => " class=\"w long\"",
         };
         let mut html = format!(
             "<div class=\"scroll\"><table><caption>{}</caption><thead><tr>",
@@ -137,14 +139,14 @@ impl Page {
         );
         for (column, name) in table.columns.iter().enumerate() {
             let name = escaped(&name.replace('_', " "));
-            let _ = write!(html, "<th{}>{name}</th>", class(column));
+            let _ = write!(html, "<th{}>{name}</th>", class(column, ""));
         }
         html.push_str("</tr></thead><tbody>");
         for row in &table.rows {
             html.push_str("<tr>");
             for (column, cell) in row.iter().enumerate() {
                 let text = escaped(&Cell::for_people(cell));
-                let _ = write!(html, "<td{}>{text}</td>", class(column));
+                let _ = write!(html, "<td{}>{text}</td>", class(column, &text));
             }
             html.push_str("</tr>");
         }
@@ -207,6 +209,9 @@ mod tests {
         table
             .rows
             .push(vec![Cell::from("<script>"), Cell::from(1234)]);
+        let sentence =
+            "what is told in a sentence is broken into lines, or its end is out of sight";
+        table.rows.push(vec![Cell::from(sentence), Cell::from(5)]);
         page.table(&table);
         page.plot("<?xml version=\"1.0\"?>\n<svg width=\"1\"></svg>", "a plot");
         page.pictures(&[(&[1, 2, 3], "three bytes")]);
@@ -216,6 +221,7 @@ mod tests {
         assert!(html.contains("<h2 id=\"c1\">Times &amp; sizes</h2>"));
         assert!(html.contains("<td class=\"w\">&lt;script&gt;</td><td>1,234</td>"));
         assert!(html.contains("<th class=\"w\">scene name</th>"));
+        assert!(html.contains("<td class=\"w long\">what is told"));
         assert!(html.contains("<figure><svg width=\"1\"></svg>"));
         assert!(html.contains("data:image/png;base64,AQID"));
         assert!(!html.contains("<?xml") && !html.contains("<script"));

@@ -51,7 +51,13 @@ pub fn cycles(report: &CycleReport) -> Panel {
         title: "Cycles that records spend in each stage, and what they wait for (millions)"
             .to_owned(),
         parts,
-        stacks: report.stages.iter().map(stack).collect(),
+        // Stages that the frame does not use have no bar, as they have no row.
+        stacks: report
+            .stages
+            .iter()
+            .filter(|stage| stage.visits > 0)
+            .map(stack)
+            .collect(),
     }
 }
 

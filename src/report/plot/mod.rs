@@ -116,7 +116,7 @@ fn words(area: &Area<'_>, text: &str, at: (i32, i32), size: u32) -> Result<(), P
     area.draw(&text).map_err(PlotError::of)
 }
 
-/// A number on an axis: `0.1`, `20`, `1e6`.
+/// A number on an axis: `0.1`, `20`, `1e6`, `1.2e5`.
 fn in_short(number: f64) -> String {
     if number == 0.0 {
         return "0".to_owned();
@@ -126,7 +126,11 @@ fn in_short(number: f64) -> String {
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
-        format!("{number:.0e}")
+        // Three digits, or the ticks of an axis of few would be alike.
+        let text = format!("{number:.2e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let digits = digits.trim_end_matches('0').trim_end_matches('.');
+        format!("{digits}e{power}")
     }
 }
 
@@ -199,5 +203,8 @@ mod tests {
     fn numbers_are_short() {
         let texts = [0.25, 10.0, 1e6, 0.0, -0.5].map(in_short);
         assert_eq!(texts, ["0.25", "10", "1e6", "0", "-0.5"]);
+        // Neighbours on one axis.
+        let texts = [8e4, 1e5, 1.2e5, 0.1 * 12e5 + 2e4].map(in_short);
+        assert_eq!(texts, ["8e4", "1e5", "1.2e5", "1.4e5"]);
     }
 }
