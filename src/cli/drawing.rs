@@ -120,7 +120,7 @@ impl<'s> Drawing<'s> {
         let aa_log2 = self.picture_args.aa_log2();
         check_samples((camera.width, camera.height), aa_log2)?;
         let graph = &self.scene.graph;
-        let options = self.engine_args.options(aa_log2);
+        let options = self.engine_args.rules.options(aa_log2);
         let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options)?;
         Ok(setup)
     }

@@ -45,7 +45,7 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
             Ok(Box::new(Fast::new(options, Box::new(machine(args)))))
         }
         EngineName::Machine => Ok(Box::new(machine(args))),
-        EngineName::Rays if args.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
+        EngineName::Rays if args.rules.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
             "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
         )
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
@@ -63,7 +63,7 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
 
 fn machine(args: &EngineArgs) -> Machine {
     Machine::new(MachineOptions {
-        overflow: args.overflow(),
+        overflow: args.rules.overflow(),
         ..MachineOptions::default()
     })
 }

@@ -200,7 +200,7 @@ fn render_one(
     if args.memory.is_some() {
         return Err(CliError::usage("--memory is for .far files"));
     }
-    let scene = open(name, &args.engine.scene_args(&args.scene), console)?;
+    let scene = open(name, &args.engine.rules.scene_args(&args.scene), console)?;
     let output = output_path(args, &scene.stem);
     if let Some(path) = &output {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;

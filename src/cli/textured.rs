@@ -291,7 +291,7 @@ fn options(args: &DrawArgs<'_>, file: &TexturedFile, view: &View) -> Result<View
             ));
         }
         Erosion::Auto => Detail::Auto {
-            texel_px: args.engine.lod.unwrap_or(1.0),
+            texel_px: args.engine.rules.lod.unwrap_or(1.0),
         },
         Erosion::Level(level) => Detail::Level {
             grid: grid.unwrap_or_else(|| choose_grid(file, view, level)),

@@ -122,7 +122,11 @@ impl Turn<'_> {
     /// Draws a voxel scene.
     fn scene(&mut self, console: &Console) -> Result<(), CliError> {
         let args = self.args;
-        let scene = open(self.name, &args.engine.scene_args(&args.scene), console)?;
+        let scene = open(
+            self.name,
+            &args.engine.rules.scene_args(&args.scene),
+            console,
+        )?;
         let mut drawing =
             Drawing::new(&scene, &args.engine, &args.picture).map_err(|e| e.at(self.name))?;
         let bounds = Bounds::of(&scene.graph);

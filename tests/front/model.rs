@@ -69,6 +69,8 @@ fn the_document_adds_up() {
         }
     }
     assert!(found["ray_caster"]["counts"]["cells"].as_u64() > Some(1000));
+    let differing = number(&found["differing_samples"]);
+    assert_eq!(found["same_picture"], differing == 0);
     let claims = found["claims"].as_array().expect("claims");
     assert!(
         claims.iter().all(|claim| claim["holds"] != false),
@@ -237,6 +239,7 @@ fn hardware_and_costs_of_one_s_own() {
             "c.toml",
             "row = [{ operation = \"ad\", width = 32, energy_pj = 1.0, source = \"mine\" }]",
         ),
+        ("d.toml", "quadratic = [\"ad\"]"),
     ] {
         std::fs::write(path(name), text).expect("written");
         let flag = if name == "a.toml" { "--hw" } else { "--costs" };
@@ -263,6 +266,70 @@ fn hardware_and_costs_of_one_s_own() {
         .args(["--trace", "x.txt"])
         .assert()
         .code(2);
+}
+
+/// It is the machine that is modelled, so what chooses another engine is refused.
+#[test]
+fn engines_are_not_chosen() {
+    for flag in [
+        ["--engine", "fast"],
+        ["--engine", "rays"],
+        ["--isa", "avx2"],
+        ["--erosion", "2"],
+        ["--far-opacity", "none"],
+    ] {
+        let failed = shiftvox().args(SCENE).args(flag).assert().code(2);
+        let told = String::from_utf8_lossy(&failed.get_output().stderr).into_owned();
+        assert!(told.contains(flag[0]), "{told}");
+    }
+}
+
+/// Where boxes claim samples, children that are worked on at once may change
+/// the picture, and it is told at how many samples; rays claim one each.
+#[test]
+fn samples_that_the_order_of_children_changes_are_counted() {
+    let differing = |more: &[&'static str]| {
+        let scene = ["model", "gen:terrain,depth=6", "--size", "64"];
+        let found = document(&[&scene[..], more].concat());
+        let claims = found["claims"].as_array().expect("claims");
+        let told = claims.iter().any(|claim| {
+            claim["evidence"]
+                .as_str()
+                .is_some_and(|text| text.contains("not the same, at "))
+        });
+        let differing = found["differing_samples"].as_u64().expect("a number");
+        assert_eq!(told, differing > 0, "{claims:?}");
+        differing
+    };
+    let samples = 64 * 64;
+    assert!((1..samples).contains(&differing(&["--paper"])));
+    assert_eq!(differing(&["--tolerance", "0"]), 0);
+    // One context works on one record after the other, as the serial machine does.
+    assert_eq!(differing(&["--paper", "--hw", "tiny"]), 0);
+}
+
+/// A claim of growth tells each step, so that no bend is hidden.
+#[test]
+fn growth_is_told_step_by_step() {
+    let found = document(&with(&["--growth", "--tolerance", "inf"]));
+    let claims = found["claims"].as_array().expect("claims");
+    let evidence = |of: &str| {
+        let claim = claims.iter().find(|claim| claim["claim"] == of);
+        let claim = claim.unwrap_or_else(|| panic!("{of}"));
+        claim["evidence"].as_str().expect("text").to_owned()
+    };
+    // One picture of 64 x 64 alone: no growth to tell of.
+    assert_eq!(found["growing_pictures"].as_array().map(Vec::len), Some(1));
+    let told = evidence("cost does not follow the object's voxels");
+    for part in [
+        "gen:terrain: ",
+        "gen:menger: ",
+        "fitted to 6 points",
+        "fitted to 3 points",
+        "; of those with no fewer voxels",
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
 }
 
 #[test]

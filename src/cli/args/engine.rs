@@ -116,13 +116,10 @@ impl fmt::Display for Erosion {
     }
 }
 
-/// The engine and what it computes with.
+/// By which rules a frame is drawn, in which words.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
-pub struct EngineArgs {
-    /// Engine that draws
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineName,
+pub struct RuleArgs {
     /// How a record holds its projected vertices [default: frame]
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub cage: Option<CageName>,
@@ -149,6 +146,18 @@ pub struct EngineArgs {
     /// What a result that does not fit a word becomes
     #[arg(long, value_enum, default_value_t)]
     pub overflow: OverflowName,
+}
+
+/// The engine and what it computes with.
+#[derive(Debug, Clone, Default, Args)]
+#[command(next_help_heading = "Engine")]
+pub struct EngineArgs {
+    /// Engine that draws
+    #[arg(long, value_enum, default_value_t)]
+    pub engine: EngineName,
+    /// By which rules, in which words.
+    #[command(flatten)]
+    pub rules: RuleArgs,
     /// Instructions of the fast engine; never changes a bit of output
     #[arg(long, value_enum, default_value_t)]
     pub isa: Isa,
@@ -165,7 +174,7 @@ pub struct EngineArgs {
     pub erosion_grid: Option<u32>,
 }
 
-impl EngineArgs {
+impl RuleArgs {
     /// The set-up's options, at so many samples per pixel and axis (as a power of two).
     #[must_use]
     pub fn options(&self, aa_log2: u32) -> SetupOptions {
@@ -220,21 +229,19 @@ impl EngineArgs {
     }
 
     /// Every setting, for a configuration file.
-    #[must_use]
-    pub fn settings(&self) -> Vec<Setting> {
+    fn settings(&self) -> Vec<Setting> {
         let options = self.options(0);
-        let (cage, coverage) = match (options.cage, options.coverage) {
-            (CageKind::Corners, c) => (CageName::Corners, c),
-            (CageKind::Frame, c) => (CageName::Frame, c),
+        let cage = match options.cage {
+            CageKind::Corners => CageName::Corners,
+            CageKind::Frame => CageName::Frame,
         };
-        let coverage = match coverage {
+        let coverage = match options.coverage {
             Coverage::Any => CoverageName::Any,
             Coverage::Center => CoverageName::Center,
             Coverage::Exact => CoverageName::Exact,
             Coverage::Alpha => CoverageName::Alpha,
         };
         let mut settings = vec![
-            ("engine", word(&self.engine)),
             ("cage", word(&cage)),
             (
                 "tolerance",
@@ -244,15 +251,27 @@ impl EngineArgs {
             ("lod", options.lod_px.into()),
             ("bits", i64::from(options.bits).into()),
             ("overflow", word(&self.overflow)),
+        ];
+        settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
+        settings
+    }
+}
+
+impl EngineArgs {
+    /// Every setting, for a configuration file.
+    #[must_use]
+    pub fn settings(&self) -> Vec<Setting> {
+        let mut settings = vec![("engine", word(&self.engine))];
+        settings.extend(self.rules.settings());
+        settings.extend([
             ("isa", word(&self.isa)),
             ("far-opacity", word(&self.far_opacity)),
             ("erosion", self.erosion.to_string().into()),
-        ];
+        ]);
         settings.extend(
             self.erosion_grid
                 .map(|g| ("erosion-grid", i64::from(g).into())),
         );
-        settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
         settings
     }
 }

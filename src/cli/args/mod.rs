@@ -10,6 +10,7 @@ mod values;
 pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
 pub use engine::{
     CageName, CoverageName, EngineArgs, EngineName, Erosion, FarOpacityName, Isa, OverflowName,
+    RuleArgs,
 };
 pub use output::OutputArgs;
 pub use picture::{Aov, PictureArgs};

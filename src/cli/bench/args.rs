@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use crate::cli::args::{CameraArgs, CoverageName, EngineArgs, SceneArgs, Size, Tolerance};
+use crate::cli::args::{CameraArgs, CoverageName, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::bench::{Candidate, Scan, Schedule};
@@ -118,12 +118,12 @@ impl MeasureArgs {
 
     /// What frames are drawn with.
     pub(super) fn options(&self) -> SetupOptions {
-        let engine = EngineArgs {
+        let engine = RuleArgs {
             coverage: self.coverage,
             tolerance: self.tolerance,
             lod: self.lod,
             paper: self.paper,
-            ..EngineArgs::default()
+            ..RuleArgs::default()
         };
         engine.options(0)
     }

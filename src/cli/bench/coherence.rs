@@ -6,7 +6,7 @@ use serde_json::json;
 use super::args::{ExportArgs, check_sizes};
 use super::export::{self, Results};
 use super::subjects;
-use crate::cli::args::{CameraArgs, EngineArgs, SceneArgs, Size};
+use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::cli::{engines, report};
@@ -56,9 +56,9 @@ pub(super) fn run(
     let square = (DEFAULT_SIDE, DEFAULT_SIDE);
     let size = args.size.map_or(square, |size| (size.width, size.height));
     check_sizes(&[size])?;
-    let engine = EngineArgs {
+    let engine = RuleArgs {
         lod: args.lod,
-        ..EngineArgs::default()
+        ..RuleArgs::default()
     };
     let options = engine.options(0);
     let mut rows = Vec::new();

@@ -9,9 +9,7 @@ use super::export::{self, Results};
 use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use super::subjects;
-use crate::cli::args::{
-    CageName, CameraArgs, CoverageName, EngineArgs, SceneArgs, Size, Tolerance,
-};
+use crate::cli::args::{CageName, CameraArgs, CoverageName, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::{engines, report};
@@ -163,13 +161,13 @@ impl Choice {
     }
 
     fn options(self) -> SetupOptions {
-        let engine = EngineArgs {
+        let engine = RuleArgs {
             coverage: Some(self.coverage),
             tolerance: Some(Tolerance(self.tolerance)),
             cage: Some(self.cage),
             bits: Some(self.bits),
             lod: Some(self.lod),
-            ..EngineArgs::default()
+            ..RuleArgs::default()
         };
         engine.options(self.aa_log2)
     }

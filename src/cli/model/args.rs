@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
-use crate::cli::args::{CameraArgs, EngineArgs, SceneArgs, Size};
+use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::bench::args::ExportArgs;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::bench::Scan;
@@ -34,7 +34,7 @@ pub(in crate::cli) struct ModelArgs {
     #[command(flatten)]
     pub(super) scene: SceneArgs,
     #[command(flatten)]
-    pub(super) engine: EngineArgs,
+    pub(super) rules: RuleArgs,
 }
 
 /// What gates are chosen for.

@@ -13,7 +13,6 @@ use hwmodel::memory::Widths;
 
 pub(super) use args::ModelArgs;
 
-use super::args::EngineName;
 use super::bench::subjects;
 use super::console::Console;
 use super::error::{CliError, Kind};
@@ -38,8 +37,8 @@ struct Findings {
     widths: Widths,
     counted: Counted,
     simulated: Simulated,
-    /// Whether the hardware's picture is the serial machine's.
-    same_picture: bool,
+    /// Samples that the hardware's picture shows otherwise than the serial machine's.
+    differing: u64,
     cost: FrameCost,
     area: Breakdown,
     rival: Rival,
@@ -63,11 +62,6 @@ pub(super) fn run(
     }
     output::check(args)?;
     vectors::check(args)?;
-    if args.engine.engine == EngineName::Rays {
-        return Err(CliError::usage(
-            "model draws with the machine, not with rays",
-        ));
-    }
     let hardware = args.hardware.hardware()?;
     let prices = args.hardware.prices()?;
     let mut names = args.scenes.clone();
@@ -96,15 +90,15 @@ fn find(
     let subject = subjects::open(
         name,
         &args.camera,
-        &args.engine.scene_args(&args.scene),
+        &args.rules.scene_args(&args.scene),
         size,
         console,
     )?;
     let options = SetupOptions {
-        bits: args.engine.bits.unwrap_or(BITS),
-        ..args.engine.options(0)
+        bits: args.rules.bits.unwrap_or(BITS),
+        ..args.rules.options(0)
     };
-    let overflow = args.engine.overflow();
+    let overflow = args.rules.overflow();
     let setup = subject.setup(size, &options)?;
     let graph = &subject.graph;
     let progress = console.progress();
@@ -121,7 +115,11 @@ fn find(
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
     )?;
-    let same_picture = hardware_frame.voxel == counted.frame.voxel;
+    let serial = counted.frame.voxel.iter();
+    let differing = serial
+        .zip(&hardware_frame.voxel)
+        .filter(|(a, b)| a != b)
+        .count() as u64;
 
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = rules::true_setup(graph, &camera, &options)?;
@@ -173,10 +171,8 @@ fn find(
         (Vec::new(), Vec::new())
     };
     let mut claims = claims::of_frame(&counted);
-    let terrains = objects.iter().filter(|row| row.object.contains("terrain"));
-    let terrains: Vec<GrowthRow> = terrains.cloned().collect();
-    claims.extend(claims::of_growth(&pictures, &terrains));
-    claims.extend(claims::of_hardware(&simulated, same_picture, &setup));
+    claims.extend(claims::of_growth(&pictures, &objects));
+    claims.extend(claims::of_hardware(&simulated, differing, &setup));
     Ok(Findings {
         name: name.to_owned(),
         setup,
@@ -184,7 +180,7 @@ fn find(
         widths,
         counted,
         simulated,
-        same_picture,
+        differing,
         cost,
         area,
         rival,
@@ -244,14 +240,16 @@ fn sides_to(most: u32) -> Vec<u32> {
 /// Width of a word where nothing is said: that for which the shipped hardware is built.
 const BITS: u32 = 32;
 
-/// A terrain and a sponge of growing depth, in one picture size.
-const OBJECTS: [&str; 7] = [
+/// Terrains and sponges of growing depth, in one picture size.
+const OBJECTS: [&str; 9] = [
     "gen:terrain,depth=6",
     "gen:terrain,depth=7",
     "gen:terrain,depth=8",
     "gen:terrain,depth=9",
     "gen:terrain,depth=10",
+    "gen:terrain,depth=11",
     "gen:menger,depth=3",
+    "gen:menger,depth=4",
     "gen:menger,depth=5",
 ];
 

@@ -197,10 +197,12 @@ pub(super) fn summary(found: &Findings) -> Table {
         format!(
             "{} ({}); lattices at once {}",
             cycles.records as i64 - found.counted.counter.records() as i64,
-            if found.same_picture {
-                "the picture is the same"
-            } else {
-                "the picture differs: under a tolerance, children of one class may claim the same sample"
+            match found.differing {
+                0 => "the picture is the same".to_owned(),
+                some => format!(
+                    "the picture differs at {}: under a tolerance, children of one class may claim the same sample",
+                    samples(some)
+                ),
             },
             found.simulated.most_lattices
         ),
@@ -266,6 +268,11 @@ pub(super) fn summary(found: &Findings) -> Table {
         ),
     );
     table
+}
+
+fn samples(count: u64) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{} sample{plural}", grouped(count))
 }
 
 fn grouped(count: u64) -> String {
@@ -401,7 +408,8 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "operations": cells,
             "miss_curves": curve,
             "simulated": found.simulated,
-            "same_picture": found.same_picture,
+            "same_picture": found.differing == 0,
+            "differing_samples": found.differing,
             "coverage_error": found.wrong,
             "cost": found.cost,
             "area": found.area,

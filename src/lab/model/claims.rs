@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::frame::Counted;
 use super::growth::GrowthRow;
+use crate::lab::bench::PowerLaw;
 use crate::machine::Simulated;
 use crate::project::{Coverage, FrameSetup};
 
@@ -65,62 +66,145 @@ pub fn of_frame(counted: &Counted) -> Vec<Claim> {
     ]
 }
 
-/// The claim that cost follows the picture: exponents of operations over
-/// pixels, and over voxels.
+/// The claim that cost follows the picture: how operations grow with pixels,
+/// and with voxels, in each family of objects.
 #[must_use]
 pub fn of_growth(pictures: &[GrowthRow], objects: &[GrowthRow]) -> Vec<Claim> {
-    let exponent = |rows: &[GrowthRow], x: fn(&GrowthRow) -> u64| -> Option<f64> {
-        let (first, last) = (rows.first()?, rows.last()?);
-        let ratio = |a: u64, b: u64| libm::log(b as f64 / a as f64);
-        let across = ratio(x(first), x(last));
-        (across > 0.0).then(|| ratio(first.operations, last.operations) / across)
-    };
     let mut claims = Vec::new();
-    if let Some(e) = exponent(pictures, |row| row.pixels) {
+    if let Some(power) = power(pictures, |row| row.pixels) {
         claims.push(Claim {
             claim: "cost follows the picture's pixels",
             holds: None,
-            evidence: format!(
-                "operations grow as pixels to the power {e:.2}, smallest to largest picture"
-            ),
+            evidence: format!("operations grow as pixels to the power {power}"),
         });
     }
-    // Before that, voxels are larger than pixels and every one costs.
-    let fine = objects.iter().filter(|row| row.voxels >= row.pixels);
-    let fine: Vec<GrowthRow> = fine.cloned().collect();
-    if let Some(e) = exponent(&fine, |row| row.voxels) {
+    let mut families = Vec::new();
+    for rows in objects.chunk_by(|a, b| family(a) == family(b)) {
+        let Some(all) = power(rows, |row| row.voxels) else {
+            continue;
+        };
+        // Before that, voxels are larger than pixels and every one costs.
+        let fine = rows.iter().filter(|row| row.voxels >= row.pixels);
+        let fine: Vec<GrowthRow> = fine.cloned().collect();
+        let fine = power(&fine, |row| row.voxels).map_or_else(String::new, |power| {
+            format!("; of those with no fewer voxels than the picture has pixels: {power}")
+        });
+        families.push(format!("{}: {all}{fine}", family(&rows[0])));
+    }
+    if !families.is_empty() {
         claims.push(Claim {
             claim: "cost does not follow the object's voxels",
             holds: None,
             evidence: format!(
-                "operations grow as voxels to the power {e:.2}, over objects with more voxels than the picture has pixels"
+                "operations grow as voxels to the power. {}",
+                families.join(". ")
             ),
         });
     }
     claims
 }
 
+/// What objects of growing depth have in common: their name up to its settings.
+fn family(row: &GrowthRow) -> &str {
+    row.object.split(',').next().unwrap_or_default()
+}
+
+/// The exponent of operations over `x`, how far it is from the rows, and that
+/// of each step from one row to the next: a single figure would hide a bend.
+fn power(rows: &[GrowthRow], x: fn(&GrowthRow) -> u64) -> Option<String> {
+    let point = |row: &GrowthRow| (x(row) as f64, row.operations as f64);
+    let points: Vec<(f64, f64)> = rows.iter().map(point).collect();
+    let law = PowerLaw::fit(&points)?;
+    let exponent = law.exponent;
+    if points.len() == 2 {
+        return Some(format!("{exponent:.2} (two points)"));
+    }
+    let steps: Vec<String> = points
+        .windows(2)
+        .filter_map(PowerLaw::fit)
+        .map(|step| format!("{:.2}", step.exponent))
+        .collect();
+    Some(format!(
+        "{exponent:.2} (fitted to {} points, at most {:.2} times off; step by step {})",
+        points.len(),
+        law.worst_ratio,
+        steps.join(", ")
+    ))
+}
+
 /// The claim that children of one class of the order are independent.
+/// `differing`: samples that the hardware's picture shows otherwise than the serial machine's.
 #[must_use]
-pub fn of_hardware(simulated: &Simulated, same_picture: bool, setup: &FrameSetup) -> Vec<Claim> {
+pub fn of_hardware(simulated: &Simulated, differing: u64, setup: &FrameSetup) -> Vec<Claim> {
     let report = &simulated.cycles;
     let bound = setup.options.coverage == Coverage::Exact && setup.options.tolerance_px == 0.0;
     vec![Claim {
         claim: "children of one class of the order are independent",
         // Elsewhere two children may claim a sample, and the first draws it.
-        holds: bound.then_some(same_picture),
+        holds: bound.then_some(differing == 0),
         evidence: format!(
             "drawn on {} contexts with independence `{:?}`: the picture is {}; work over span {:.1}. What \
              must hold (exact coverage, tolerance 0) {} this frame's settings",
             u64::from(report.lanes) * u64::from(report.contexts),
             report.independence,
-            if same_picture {
-                "the same as the serial machine's"
-            } else {
-                "not the same"
+            match differing {
+                0 => "the same as the serial machine's".to_owned(),
+                some => format!("not the same, at {some} samples"),
             },
             report.parallelism,
             if bound { "is" } else { "is not" },
         ),
     }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(object: &str, voxels: u64, pixels: u64, operations: u64) -> GrowthRow {
+        GrowthRow {
+            object: object.to_owned(),
+            voxels,
+            pixels,
+            drawn: 1,
+            records: 1,
+            operations,
+            node_reads: 1,
+            order_operations: 11.0,
+        }
+    }
+
+    /// First and last lie on a line of slope 1; between them cost jumps and stays.
+    #[test]
+    fn a_bend_is_told() {
+        let pictures = [(1, 1), (4, 16), (16, 16)].map(|(x, y)| row("a", 9, x, y));
+        let claims = of_growth(&pictures, &[]);
+        assert_eq!(claims.len(), 1);
+        assert_eq!(
+            claims[0].evidence,
+            "operations grow as pixels to the power 1.00 (fitted to 3 points, at most 2.52 times off; \
+             step by step 2.00, 0.00)"
+        );
+    }
+
+    #[test]
+    fn families_of_objects_are_kept_apart() {
+        let objects = [
+            row("gen:a,depth=1", 10, 100, 10),
+            row("gen:a,depth=2", 100, 100, 100),
+            row("gen:a,depth=3", 1000, 100, 100),
+            row("gen:b,depth=1", 10, 100, 7),
+            row("gen:b,depth=2", 1000, 100, 700),
+            row("gen:c,depth=2", 1000, 100, 700),
+        ];
+        let claims = of_growth(&[], &objects);
+        assert_eq!(claims.len(), 1);
+        assert_eq!(
+            claims[0].evidence,
+            "operations grow as voxels to the power. \
+             gen:a: 0.50 (fitted to 3 points, at most 2.15 times off; step by step 1.00, 0.00); \
+             of those with no fewer voxels than the picture has pixels: 0.00 (two points). \
+             gen:b: 1.00 (two points)"
+        );
+    }
 }
