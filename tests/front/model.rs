@@ -71,6 +71,13 @@ fn the_document_adds_up() {
     assert!(found["ray_caster"]["counts"]["cells"].as_u64() > Some(1000));
     let differing = number(&found["differing_samples"]);
     assert_eq!(found["same_picture"], differing == 0);
+    let told = &found["claims"][1]["evidence"];
+    assert!(
+        told.as_str().is_some_and(
+            |text| text.starts_with("11 operations (3 compares, 8 exclusive ors of 3 bits)")
+        ),
+        "{told}"
+    );
     let claims = found["claims"].as_array().expect("claims");
     assert!(
         claims.iter().all(|claim| claim["holds"] != false),
