@@ -36,7 +36,7 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
         )
         .advise("leave --isa out, or take --isa scalar: the picture is the same"));
     }
-    match args.engine {
+    match args.engine.unwrap_or_default() {
         EngineName::Fast => {
             let options = FastOptions {
                 instructions,
@@ -51,13 +51,13 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
         EngineName::Rays => Ok(Box::new(Rays)),
         EngineName::Far => Err(CliError::usage(
-            "--engine far draws a .far file, and only render does",
+            "--engine far draws a .far file, and only render and turntable do",
         )
-        .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far --engine far")),
+        .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far")),
         EngineName::Textured => Err(CliError::usage(
-            "--engine textured draws a .tvx file, and only render does",
+            "--engine textured draws a .tvx file, and only render and turntable do",
         )
-        .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx --engine textured")),
+        .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx")),
     }
 }
 

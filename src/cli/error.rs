@@ -78,10 +78,13 @@ impl CliError {
         self
     }
 
-    /// The same failure, said of a place: a file or a scene.
+    /// The same failure, said of a place: a file or a scene; once, where it is said already.
     #[must_use]
     pub fn at(mut self, place: impl fmt::Display) -> Self {
-        self.message = format!("{place}: {}", self.message);
+        let place = format!("{place}: ");
+        if !self.message.starts_with(&place) {
+            self.message.insert_str(0, &place);
+        }
         self
     }
 

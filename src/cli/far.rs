@@ -351,6 +351,7 @@ pub(super) const ENGINE: FileEngine = FileEngine {
     name: "far",
     ending: ".far",
     buffers: &[Aov::Depth, Aov::Node, Aov::Color],
+    flags: &["far-opacity"],
     is_file: is_far_file,
     with_file,
 };
@@ -420,7 +421,7 @@ fn options(args: &DrawArgs<'_>, view: &View) -> ViewOptions {
     ViewOptions {
         voxel_px: args.engine.rules.lod.unwrap_or(1.0),
         samples_across: 1 << args.picture.aa_log2(),
-        opacity: opacity(args.engine.far_opacity),
+        opacity: opacity(args.engine.far_opacity.unwrap_or_default()),
         light: light_of(view, args.picture.shading()),
         background: background(args.picture.background),
         ..ViewOptions::default()

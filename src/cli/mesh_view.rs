@@ -68,6 +68,7 @@ pub(super) fn begins(name: &str, is_right: impl Fn(&[u8]) -> bool) -> bool {
 pub(super) struct DrawArgs<'a> {
     pub(super) engine: &'a EngineArgs,
     pub(super) picture: &'a PictureArgs,
+    pub(super) scene: &'a SceneArgs,
     /// Of far voxels: how much of the nodes' data may be in memory.
     pub(super) memory: Option<DataBudget>,
 }
@@ -102,18 +103,43 @@ pub(super) struct FileEngine {
     pub(super) ending: &'static str,
     /// Buffers that it has beside the picture, two or more.
     pub(super) buffers: &'static [Aov],
+    /// Flags that it follows of those that not every engine does.
+    pub(super) flags: &'static [&'static str],
     /// Whether a name is that of such a file, told by its content.
     pub(super) is_file: fn(&str) -> bool,
     /// Opens a file and hands it on.
     pub(super) with_file: fn(&Path, DrawArgs<'_>, Use<'_>) -> Result<(), CliError>,
 }
 
+const ENGINES: [&FileEngine; 2] = [&far::ENGINE, &textured::ENGINE];
+
 /// The engine of a scene, where that is a file of a mesh method or such an engine is asked for.
-pub(super) fn engine_of(name: &str, asked: EngineName) -> Option<&'static FileEngine> {
-    let engines = [&far::ENGINE, &textured::ENGINE];
-    let named = engines.into_iter().find(|engine| engine.engine == asked);
+pub(super) fn engine_of(name: &str, asked: Option<EngineName>) -> Option<&'static FileEngine> {
+    let is_named = |engine: &&FileEngine| Some(engine.engine) == asked;
     let is_its = |engine: &&FileEngine| (engine.is_file)(name);
-    named.or_else(|| engines.into_iter().find(is_its))
+    let named = ENGINES.into_iter().find(is_named);
+    named.or_else(|| ENGINES.into_iter().find(is_its))
+}
+
+/// Why a scene could not be opened, unless it is a file that only an engine of its own draws.
+pub(super) fn or_own_file(name: &str, error: CliError) -> CliError {
+    let Some(engine) = ENGINES.into_iter().find(|engine| (engine.is_file)(name)) else {
+        return error;
+    };
+    let FileEngine { ending, .. } = engine;
+    let message =
+        format!("{name}: this is a {ending} file: render and turntable draw it, info tells of it");
+    CliError::input(message).advise("for anything else take the mesh that it was made of")
+}
+
+/// The engine that draws all of these scenes, unless they have different ones.
+pub(super) fn one_engine(names: &[String], asked: Option<EngineName>) -> Option<EngineName> {
+    let mut engines = names.iter().map(|name| {
+        let of_file = engine_of(name, asked).map(|engine| engine.engine);
+        of_file.unwrap_or_else(|| asked.unwrap_or_default())
+    });
+    let first = engines.next()?;
+    engines.all(|engine| engine == first).then_some(first)
 }
 
 impl FileEngine {
@@ -125,9 +151,10 @@ impl FileEngine {
         then: Use<'_>,
     ) -> Result<(), CliError> {
         let Self { name, ending, .. } = self;
-        if args.engine.engine != self.engine {
+        if args.engine.engine.is_some_and(|asked| asked != self.engine) {
             let message = format!("{scene}: this is a {ending} file");
-            return Err(CliError::usage(message).advise(format!("draw it with --engine {name}")));
+            let advice = format!("draw it with --engine {name}, or name no engine");
+            return Err(CliError::usage(message).advise(advice));
         }
         if !(self.is_file)(scene) {
             // A file that is not there, or is something else, is told as such.
@@ -138,11 +165,17 @@ impl FileEngine {
                 ))
             });
         }
+        let mut given = args.engine.given();
+        given.extend(args.scene.of_meshes());
+        if let Some(idle) = given.iter().find(|flag| !self.flags.contains(flag)) {
+            let message = format!("{scene}: --{idle} changes nothing of a {ending} file");
+            return Err(CliError::usage(message).advise("leave it out"));
+        }
         let unknown = |aov: &&Aov| !self.buffers.contains(aov);
         if let Some(unknown) = args.picture.aov.iter().find(unknown) {
             let mut known: Vec<&str> = self.buffers.iter().map(|aov| aov.name()).collect();
             let last = known.pop().unwrap_or_default();
-            let message = format!("--engine {name} has no --aov {}", unknown.name());
+            let message = format!("{scene}: --engine {name} has no --aov {}", unknown.name());
             return Err(
                 CliError::usage(message).advise(format!("it has {} and {last}", known.join(", ")))
             );
@@ -163,6 +196,7 @@ impl FileEngine {
         let draw_args = DrawArgs {
             engine: &args.engine,
             picture: &args.picture,
+            scene: &args.scene,
             memory: args.memory,
         };
         let started = Instant::now();

@@ -200,6 +200,7 @@ fn render_one(
     if args.memory.is_some() {
         return Err(CliError::usage("--memory is for .far files"));
     }
+    args.engine.check_of_voxels().map_err(CliError::usage)?;
     let scene = open(name, &args.engine.rules.scene_args(&args.scene), console)?;
     let output = output_path(args, &scene.stem);
     if let Some(path) = &output {
@@ -304,13 +305,14 @@ fn tell(
 
 /// The resolved settings of a run.
 fn settings(args: &RenderArgs, names: Vec<String>, camera: Option<&Camera>) -> Vec<Setting> {
+    let engine = mesh_view::one_engine(&names, args.engine.engine);
     let mut settings = vec![("scene", names.into())];
     if let Some(output) = &args.output {
         settings.push(("output", output.to_string_lossy().into_owned().into()));
     }
     settings.extend(camera.map_or_else(|| args.camera.settings(), camera_settings));
     settings.extend(args.picture.settings());
-    settings.extend(args.engine.settings());
+    settings.extend(args.engine.settings(engine));
     settings.extend(args.scene.settings());
     if args.repeat > 1 {
         settings.push(("repeat", i64::from(args.repeat).into()));

@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::args::{ColorName, OutOfBoundsName, SceneArgs, UpName};
 use super::error::{CliError, Kind};
 use super::fit::Up;
+use super::mesh_view;
 use crate::graph::{
     ExternalError, ExternalOptions, ExternalReport, Graph, MergeBy, Progress, Silent, Voxel, merge,
     vxg,
@@ -73,7 +74,8 @@ pub(super) fn open(
     progress: &dyn Progress,
 ) -> Result<Scene, CliError> {
     let started = Instant::now();
-    let opened = scene::open(source, &options(args), progress)?;
+    let opened = scene::open(source, &options(args), progress)
+        .map_err(|error| mesh_view::or_own_file(source, error.into()))?;
     Ok(ready(opened, source, stem(source), args.mesh_up, started))
 }
 
@@ -102,7 +104,8 @@ pub(super) fn open_mesh(
     args: &SceneArgs,
     progress: &dyn Progress,
 ) -> Result<(Mesh, Up), CliError> {
-    let (mesh, y_up) = scene::read_mesh(Path::new(source), &load_options(args), progress)?;
+    let (mesh, y_up) = scene::read_mesh(Path::new(source), &load_options(args), progress)
+        .map_err(|error| mesh_view::or_own_file(source, error.into()))?;
     let y_up = args.mesh_up.map_or(y_up, |up| up == UpName::Y);
     Ok((mesh, if y_up { Up::Y } else { Up::Z }))
 }

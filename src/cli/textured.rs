@@ -227,6 +227,7 @@ pub(super) const ENGINE: FileEngine = FileEngine {
     name: "textured",
     ending: ".tvx",
     buffers: &[Aov::Depth, Aov::Color],
+    flags: &["erosion", "erosion-grid"],
     is_file: is_textured_file,
     with_file,
 };
@@ -284,7 +285,7 @@ fn options(args: &DrawArgs<'_>, file: &TexturedFile, view: &View) -> Result<View
         })
     };
     let grid = args.engine.erosion_grid.map(number_of).transpose()?;
-    let detail = match args.engine.erosion {
+    let detail = match args.engine.erosion.unwrap_or_default() {
         Erosion::Auto if grid.is_some() => {
             return Err(CliError::usage(
                 "--erosion-grid needs --erosion K; auto chooses the grid too",
@@ -293,6 +294,11 @@ fn options(args: &DrawArgs<'_>, file: &TexturedFile, view: &View) -> Result<View
         Erosion::Auto => Detail::Auto {
             texel_px: args.engine.rules.lod.unwrap_or(1.0),
         },
+        Erosion::Level(_) if args.engine.rules.lod.is_some() => {
+            return Err(CliError::usage(
+                "--lod says how large texels are with --erosion auto, not with a number of erosions",
+            ));
+        }
         Erosion::Level(level) => Detail::Level {
             grid: grid.unwrap_or_else(|| choose_grid(file, view, level)),
             level,

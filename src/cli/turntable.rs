@@ -20,7 +20,7 @@ use crate::project::Camera;
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
 pub struct TurntableArgs {
-    /// Scene: a file (also .far and .tvx, with their --engine), or a generator such as gen:terrain,depth=10,seed=1
+    /// Scene: a file (also .far and .tvx), or a generator such as gen:terrain,depth=10,seed=1
     #[arg(value_name = "SCENE")]
     pub scene_name: Option<String>,
     /// Pictures to write; #### stands for the frame's number, from 0
@@ -122,6 +122,7 @@ impl Turn<'_> {
     /// Draws a voxel scene.
     fn scene(&mut self, console: &Console) -> Result<(), CliError> {
         let args = self.args;
+        args.engine.check_of_voxels().map_err(CliError::usage)?;
         let scene = open(
             self.name,
             &args.engine.rules.scene_args(&args.scene),
@@ -147,6 +148,7 @@ impl Turn<'_> {
         let draw_args = DrawArgs {
             engine: &args.engine,
             picture: &args.picture,
+            scene: &args.scene,
             memory: None,
         };
         let started = Instant::now();
@@ -217,6 +219,7 @@ type Keep<'k> = &'k dyn Fn(&Picture) -> Result<Option<String>, CliError>;
 
 fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
     let output = args.output.to_string_lossy().into_owned();
+    let engine = mesh_view::one_engine(&names, args.engine.engine);
     let mut settings: Vec<Setting> = vec![
         ("scene", names.into()),
         ("output", output.into()),
@@ -224,7 +227,7 @@ fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
     ];
     settings.extend(args.camera.settings());
     settings.extend(args.picture.settings());
-    settings.extend(args.engine.settings());
+    settings.extend(args.engine.settings(engine));
     settings.extend(args.scene.settings());
     settings
 }

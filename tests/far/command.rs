@@ -123,7 +123,7 @@ fn turntables_and_samples() {
     let again = hashes(&[&turn[..], &more, &["--force", "--threads", "1"]].concat());
     assert_eq!(frames, again);
     shiftvox(at)
-        .args(["turntable", "a.far", "-o", "g#.png"])
+        .args(["turntable", "a.far", "--engine", "fast", "-o", "g#.png"])
         .assert()
         .code(2);
     // One sample is what there is without the flag; more are another picture.
@@ -372,8 +372,7 @@ fn what_is_wrong_is_said_with_an_exit_code() {
             assert!(!at.join("x.png").exists());
         }
     }
-    let usage: [&[&str]; 6] = [
-        &["render", "a.far", "-o", "x.png"],
+    let usage: [&[&str]; 5] = [
         &[
             "render", "a.far", "--engine", "far", "--lod", "0", "-o", "x.png",
         ],
@@ -397,4 +396,78 @@ fn what_is_wrong_is_said_with_an_exit_code() {
         .args(["convert", "missing.obj", "b.far"])
         .assert()
         .code(4);
+}
+
+/// No engine named: a file is drawn with its own, also beside voxels. Flags that its engine does not
+/// follow are refused, and what a run leaves as its configuration draws it again.
+#[test]
+fn a_file_has_its_own_engine_and_no_idle_flags() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet()).unwrap();
+    for file in ["a.far", "b.tvx"] {
+        let convert = ["convert", "sheet.obj", file, "-q"];
+        shiftvox(at).args(convert).assert().success();
+    }
+    let hash = |arguments: &[&str]| {
+        let size = ["render", "--size", "32", "--hash", "-q"];
+        let output = shiftvox(at).args(size).args(arguments).assert().success();
+        String::from_utf8(output.get_output().stdout.clone()).unwrap()
+    };
+    for (file, engine) in [("a.far", "far"), ("b.tvx", "textured")] {
+        let named = hash(&[file, "--engine", engine]);
+        assert_eq!(hash(&[file]), named);
+        let outdir = ["--outdir", engine, "--far-opacity", "none"];
+        let kept = hash(&[&[file][..], &outdir[..if file == "a.far" { 4 } else { 2 }]].concat());
+        let again = format!("{engine}/config.toml");
+        assert_eq!(hash(&["--config", &again]), kept);
+        let other = [
+            ["--engine", "fast"],
+            ["--coverage", "any"],
+            ["--cage", "frame"],
+            ["--tolerance", "0"],
+            ["--bits", "32"],
+            ["--frac", "9"],
+            ["--overflow", "trap"],
+            ["--depth", "5"],
+            ["--aov", "voxel"],
+            ["--opacities", "--hash"],
+            ["--paper", "--hash"],
+            if file == "a.far" {
+                ["--erosion", "1"]
+            } else {
+                ["--far-opacity", "none"]
+            },
+        ];
+        for flags in other {
+            let render = ["render", file, "-o", "x.png"];
+            let output = shiftvox(at).args(render).args(flags).assert().code(2);
+            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            let flag = flags[0].trim_start_matches('-');
+            assert!(
+                told.contains(file) && told.contains(flag),
+                "{flags:?}: {told}"
+            );
+            let turn = ["turntable", file, "--frames", "1", "-o", "#.png"];
+            shiftvox(at).args(turn).args(flags).assert().code(2);
+        }
+        for verb in ["model", "triangles"] {
+            let wrong = [verb, file, "-o", "x.png"];
+            let count = if verb == "model" { 2 } else { 4 };
+            let output = shiftvox(at).args(&wrong[..count]).assert().code(4);
+            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            assert!(told.contains("render and turntable draw it"), "{told}");
+            assert_eq!(told.matches(file).count(), 1, "{told}");
+        }
+    }
+    // One command for files of three kinds.
+    let all = hash(&["a.far", "gen:menger,depth=2", "b.tvx", "--outdir", "all"]);
+    assert_eq!(all.lines().count(), 3);
+    assert_eq!(hash(&["--config", "all/config.toml"]), all);
+    for flags in [["--far-opacity", "six"], ["--erosion", "auto"]] {
+        let render = ["render", "gen:menger,depth=2", "--hash"];
+        shiftvox(at).args(render).args(flags).assert().code(2);
+    }
+    let render = ["render", "b.tvx", "--hash", "--erosion", "0", "--lod", "2"];
+    shiftvox(at).args(render).assert().code(2);
 }

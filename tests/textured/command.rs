@@ -201,7 +201,11 @@ fn what_is_refused() {
         (&["convert", "none.obj", "x.tvx"], 4, "none.obj"),
         (&["info", "short.tvx"], 4, "a file of"),
         (&["info", "damaged.tvx"], 4, "texels"),
-        (&["render", "a.tvx", "--hash"], 2, "--engine textured"),
+        (
+            &["render", "a.tvx", "--engine", "fast", "--hash"],
+            2,
+            "--engine textured",
+        ),
         (
             &[
                 "render",

@@ -143,31 +143,31 @@ pub struct RuleArgs {
     /// Fraction bits of a word [default: as many as the frame leaves room for]
     #[arg(long, value_name = "BITS")]
     pub frac: Option<u32>,
-    /// What a result that does not fit a word becomes
-    #[arg(long, value_enum, default_value_t)]
-    pub overflow: OverflowName,
+    /// What a result that does not fit a word becomes [default: trap]
+    #[arg(long, value_enum)]
+    pub overflow: Option<OverflowName>,
 }
 
 /// The engine and what it computes with.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Engine")]
 pub struct EngineArgs {
-    /// Engine that draws
-    #[arg(long, value_enum, default_value_t)]
-    pub engine: EngineName,
+    /// Engine that draws [default: fast; a .far file's is far, a .tvx file's textured]
+    #[arg(long, value_enum)]
+    pub engine: Option<EngineName>,
     /// By which rules, in which words.
     #[command(flatten)]
     pub rules: RuleArgs,
     /// Instructions of the fast engine; never changes a bit of output
     #[arg(long, value_enum, default_value_t)]
     pub isa: Isa,
-    /// What --engine far uses opacities for
-    #[arg(long, value_enum, default_value_t, value_name = "KIND")]
-    pub far_opacity: FarOpacityName,
+    /// What --engine far uses opacities for [default: six]
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub far_opacity: Option<FarOpacityName>,
     /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all grids,
-    /// whose texels are no larger than a pixel
-    #[arg(long, value_name = "K|auto", default_value_t)]
-    pub erosion: Erosion,
+    /// whose texels are no larger than a pixel [default: auto]
+    #[arg(long, value_name = "K|auto")]
+    pub erosion: Option<Erosion>,
     /// The grid of --erosion K, by its number of cells [default: the coarsest whose texels are no
     /// larger than a pixel, or else the finest]
     #[arg(long, value_name = "CELLS")]
@@ -221,14 +221,14 @@ impl RuleArgs {
     /// What the datapath does with a result that does not fit.
     #[must_use]
     pub fn overflow(&self) -> Overflow {
-        match self.overflow {
+        match self.overflow.unwrap_or_default() {
             OverflowName::Trap => Overflow::Trap,
             OverflowName::Wrap => Overflow::Wrap,
             OverflowName::Saturate => Overflow::Saturate,
         }
     }
 
-    /// Every setting, for a configuration file.
+    /// Settings that the engines of voxels have alone.
     fn settings(&self) -> Vec<Setting> {
         let options = self.options(0);
         let cage = match options.cage {
@@ -241,16 +241,13 @@ impl RuleArgs {
             Coverage::Exact => CoverageName::Exact,
             Coverage::Alpha => CoverageName::Alpha,
         };
+        let tolerance = Tolerance(options.tolerance_px);
         let mut settings = vec![
             ("cage", word(&cage)),
-            (
-                "tolerance",
-                Tolerance(options.tolerance_px).to_string().into(),
-            ),
+            ("tolerance", tolerance.to_string().into()),
             ("coverage", word(&coverage)),
-            ("lod", options.lod_px.into()),
             ("bits", i64::from(options.bits).into()),
-            ("overflow", word(&self.overflow)),
+            ("overflow", word(&self.overflow.unwrap_or_default())),
         ];
         settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
         settings
@@ -258,20 +255,68 @@ impl RuleArgs {
 }
 
 impl EngineArgs {
-    /// Every setting, for a configuration file.
+    /// Flags of the command line that not every engine follows, by their long names. Not among them:
+    /// `--isa`, which changes no picture.
     #[must_use]
-    pub fn settings(&self) -> Vec<Setting> {
-        let mut settings = vec![("engine", word(&self.engine))];
-        settings.extend(self.rules.settings());
-        settings.extend([
-            ("isa", word(&self.isa)),
-            ("far-opacity", word(&self.far_opacity)),
-            ("erosion", self.erosion.to_string().into()),
-        ]);
-        settings.extend(
-            self.erosion_grid
-                .map(|g| ("erosion-grid", i64::from(g).into())),
-        );
+    pub fn given(&self) -> Vec<&'static str> {
+        let flags = [
+            ("cage", self.rules.cage.is_some()),
+            ("tolerance", self.rules.tolerance.is_some()),
+            ("coverage", self.rules.coverage.is_some()),
+            ("paper", self.rules.paper),
+            ("bits", self.rules.bits.is_some()),
+            ("frac", self.rules.frac.is_some()),
+            ("overflow", self.rules.overflow.is_some()),
+            ("far-opacity", self.far_opacity.is_some()),
+            ("erosion", self.erosion.is_some()),
+            ("erosion-grid", self.erosion_grid.is_some()),
+        ];
+        let given = flags.into_iter().filter(|&(_, is_given)| is_given);
+        given.map(|(name, _)| name).collect()
+    }
+
+    /// Refuses flags of engines that draw files of their own, where voxels are drawn.
+    ///
+    /// # Errors
+    /// What the first such flag is for.
+    pub fn check_of_voxels(&self) -> Result<(), String> {
+        if self.far_opacity.is_some() {
+            return Err("--far-opacity is for .far files".to_owned());
+        }
+        if self.erosion.is_some() || self.erosion_grid.is_some() {
+            return Err("--erosion and --erosion-grid are for .tvx files".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Every setting that an engine follows, for a configuration file; `None` where scenes
+    /// have engines of different kinds: then what all of them follow.
+    #[must_use]
+    pub fn settings(&self, engine: Option<EngineName>) -> Vec<Setting> {
+        let mut settings = vec![("isa", word(&self.isa))];
+        settings.extend(engine.map(|engine| ("engine", word(&engine))));
+        let erosion = self.erosion.unwrap_or_default();
+        let lod = || ("lod", self.rules.options(0).lod_px.into());
+        match engine {
+            None => settings.push(lod()),
+            Some(EngineName::Far) => {
+                settings.push(lod());
+                settings.push(("far-opacity", word(&self.far_opacity.unwrap_or_default())));
+            }
+            Some(EngineName::Textured) => {
+                // The level of a texel's size is what auto finds.
+                settings.extend((erosion == Erosion::Auto).then(lod));
+                settings.push(("erosion", erosion.to_string().into()));
+                settings.extend(
+                    self.erosion_grid
+                        .map(|g| ("erosion-grid", i64::from(g).into())),
+                );
+            }
+            Some(EngineName::Fast | EngineName::Machine | EngineName::Rays) => {
+                settings.push(lod());
+                settings.extend(self.rules.settings());
+            }
+        }
         settings
     }
 }

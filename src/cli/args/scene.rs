@@ -78,6 +78,14 @@ impl SceneArgs {
         }
     }
 
+    /// Flags of the command line that say how meshes become voxels, by their long names.
+    pub fn of_meshes(&self) -> impl Iterator<Item = &'static str> {
+        let depth = self.depth.map(|_| "depth");
+        depth
+            .into_iter()
+            .chain(self.opacities.then_some("opacities"))
+    }
+
     /// Every setting, for a configuration file.
     #[must_use]
     pub fn settings(&self) -> Vec<Setting> {
