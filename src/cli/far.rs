@@ -23,6 +23,7 @@ use crate::mesh::Instances;
 use crate::mesh::raster::View;
 use crate::picture::store;
 use crate::project::Camera;
+use crate::scene::available_memory;
 
 impl From<BuildError> for CliError {
     fn from(error: BuildError) -> Self {
@@ -64,6 +65,7 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
     };
     let started = Instant::now();
     let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
+    check_room(triangles).map_err(|e| e.at(&args.input))?;
     let built = match args.instances {
         None => build(&mesh, &options, console.progress()),
         Some(count) => {
@@ -96,6 +98,26 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         console.document(&report::document("convert", fields))?;
     }
     Ok(())
+}
+
+/// Bytes a triangle that a build takes at the least, in memory; measured are 283 (`docs/far-voxels.md`).
+const LEAST_BYTES: u64 = 200;
+
+/// Refuses what cannot be numbered or does not fit the memory that is free, before copies are placed.
+fn check_room(triangles: u64) -> Result<(), CliError> {
+    if u32::try_from(triangles).is_err() {
+        return Err(BuildError::TooMany(format!("{triangles} triangles")).into());
+    }
+    // No overflow: 32 bits by 8.
+    let needed = triangles * LEAST_BYTES;
+    match available_memory() {
+        Some(free) if needed > free => Err(CliError::new(
+            Kind::Limit,
+            format!("{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, and {free} are free"),
+        )
+        .advise("ask for fewer --instances, or leave out a part of the mesh")),
+        _ => Ok(()),
+    }
 }
 
 /// Places of copies of what fills a box: in rows on the ground, a tenth of its

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use std::path::Path;
+
 use crate::graph::vxg;
 use crate::mesh::is_binary_stl;
 
@@ -96,6 +98,16 @@ pub fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind> {
         None | Some(FileKind::Stl) if is_binary_stl(prefix, length) => Some(FileKind::Stl),
         kind => kind,
     }
+}
+
+/// As [`detect_with_length`]; of what begins like no known format a name that ends in `.stl` is
+/// believed: nothing else tells a binary STL that was cut short, and its reader says what is missing.
+#[must_use]
+pub fn detect_named(prefix: &[u8], length: u64, name: &Path) -> Option<FileKind> {
+    let is_stl = name
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));
+    detect_with_length(prefix, length).or_else(|| is_stl.then_some(FileKind::Stl))
 }
 
 /// Whether the first line that is neither blank nor a comment begins with a Wavefront keyword.

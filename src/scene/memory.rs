@@ -6,7 +6,7 @@ const LEAST_BYTES: u64 = 25;
 
 /// Memory that this process can still take, bytes; none where the system does not tell.
 #[must_use]
-pub(super) fn available() -> Option<u64> {
+pub fn available() -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;
     let free = mem_available(&info)?;
     // A container may have less than its machine.

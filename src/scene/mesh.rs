@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::error::printable;
 use super::open::OpenError;
-use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_with_length};
+use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_named};
 use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
 use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshError, MeshFormat, SameFolder};
@@ -72,7 +72,7 @@ pub fn read_mesh(
     let name = path.display().to_string();
     let bytes = file_bytes(path)?;
     let beginning = &bytes[..bytes.len().min(DETECT_BYTES)];
-    let kind = match detect_with_length(beginning, bytes.len() as u64) {
+    let kind = match detect_named(beginning, bytes.len() as u64, path) {
         Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
         Some(kind) => return Err(SceneError::NotMesh { file: name, kind }.into()),
         None => {

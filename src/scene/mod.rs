@@ -26,9 +26,10 @@ mod ply_write;
 mod vox;
 
 pub use build_file::{BuiltFile, build_file};
-pub use detect::{DETECT_BYTES, FileKind, detect, detect_with_length};
+pub use detect::{DETECT_BYTES, FileKind, detect, detect_named, detect_with_length};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
+pub use memory::available as available_memory;
 pub use mesh::{MeshOptions, MeshSummary, read_mesh};
 pub use open::{OpenError, OpenOptions, Opened, open, open_bytes};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
@@ -155,7 +156,7 @@ fn tell(
 /// The format, where it is one that holds voxels.
 fn supported(prefix: &[u8], length: u64, name: &str) -> Result<FileKind, SceneError> {
     let file = name.to_owned();
-    match detect_with_length(prefix, length) {
+    match detect_named(prefix, length, Path::new(name)) {
         Some(kind) if kind.is_voxels() => Ok(kind),
         Some(FileKind::Vxg) => Err(SceneError::IsGraph { file }),
         Some(kind) => Err(SceneError::Mesh { file, kind }),

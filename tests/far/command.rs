@@ -392,6 +392,18 @@ fn what_is_wrong_is_said_with_an_exit_code() {
         .args(["turntable", "sheet.obj", "--engine", "far", "-o", "#.png"])
         .assert()
         .code(4);
+    // More than 32 bits number, or than any memory holds: said at once.
+    fs::write(at.join("one.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n").unwrap();
+    let copies = |mesh| ["convert", mesh, "b.far", "--instances", "4294967295"];
+    shiftvox(at).args(copies("sheet.obj")).assert().code(5);
+    if cfg!(target_os = "linux") {
+        let output = shiftvox(at).args(copies("one.obj")).assert().code(5);
+        let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        assert!(
+            told.contains("one.obj") && told.contains("are free"),
+            "{told}"
+        );
+    }
     shiftvox(at)
         .args(["convert", "missing.obj", "b.far"])
         .assert()

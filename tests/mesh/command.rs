@@ -142,6 +142,17 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
             "solid a\nfacet normal 0 0 1\n",
             "cut.stl: triangle 1",
         ),
+        // A binary one without most of its triangles, and without its count.
+        (
+            "binary.STL",
+            &"\x07".repeat(200),
+            "binary.STL: header at byte 80: expected 5895053234 bytes",
+        ),
+        (
+            "short.stl",
+            "binary",
+            "short.stl: header at byte 0: expected 84 bytes",
+        ),
     ];
     for (file, text, expected) in cases {
         fs::write(folder.path().join(file), text).unwrap();

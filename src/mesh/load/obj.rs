@@ -23,6 +23,7 @@ pub(super) fn read(
 ) -> Result<(), MeshError> {
     // Old files have names in other encodings; names decide nothing but materials.
     let text = String::from_utf8_lossy(bytes);
+    refuse_cut_face(&text)?;
     let line = Cell::new(0);
     let mut reader = Counted {
         rest: text.as_bytes(),
@@ -139,6 +140,32 @@ impl Libraries {
         self.materials.extend(library.materials);
         Ok((for_tobj, numbers))
     }
+}
+
+/// Refuses a file whose last line has no end and is part of a face only. `tobj` would read
+/// it as a face of other corners, or leave it out.
+fn refuse_cut_face(text: &str) -> Result<(), MeshError> {
+    let (before, last) = text.rsplit_once('\n').unwrap_or(("", text));
+    let mut words = last.split_whitespace();
+    if words.next() != Some("f") {
+        return Ok(());
+    }
+    // Which of position, texture coordinate and normal a corner has.
+    let parts = |corner: &str| corner.split('/').map(str::is_empty).collect::<Vec<bool>>();
+    let corners: Vec<Vec<bool>> = words.map(parts).collect();
+    let is_whole = corners.len() >= 3 && corners.iter().all(|parts| *parts == corners[0]);
+    if is_whole {
+        return Ok(());
+    }
+    let line = before.lines().count() as u64 + 1;
+    Err(MeshFault::new(
+        "face",
+        Place::Line(line),
+        "three or more corners of one form in the last line, which has no end",
+        shown(last),
+        "the file is cut short; export the mesh again",
+    )
+    .into())
 }
 
 /// What `tobj` says, with the place and what to do.
