@@ -5,6 +5,7 @@ mod build;
 mod city;
 mod command;
 mod file;
+mod models;
 mod samples;
 mod stopped;
 mod view;
