@@ -179,37 +179,48 @@ fn probes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Records a second under the paper's rule at 512 x 512, alone and counted.
+/// Records a second under the paper's rule, alone and counted: at 512 x 512 for
+/// times, at 128 x 128 for instruction counts.
 fn records(criterion: &mut Criterion) {
     for subject in &subjects()[..2] {
-        let setup = set_up(subject, 512, &paper());
-        let mut frame = Frame::new(512, 512, false);
-        let mut machine = Machine::default();
-        let counted = draw(&mut machine, subject, &setup, &mut frame, Counter::new());
-        let mut group = criterion.benchmark_group(format!("records/{}", subject.name));
-        group
-            .sample_size(10)
-            .sampling_mode(SamplingMode::Flat)
-            .throughput(Throughput::Elements(counted.records()))
-            .warm_up_time(Duration::from_millis(300))
-            .measurement_time(Duration::from_secs(2));
-        group.bench_function("alone", |bencher| {
-            bencher.iter_custom(|frames| {
-                time(frames, || {
-                    draw(&mut machine, subject, &setup, &mut frame, NoProbe);
-                })
+        for size in [128, 512] {
+            let setup = set_up(subject, size, &paper());
+            let mut frame = Frame::new(size, size, false);
+            let mut machine = Machine::default();
+            let mut group = criterion.benchmark_group(format!("records/{}/{size}", subject.name));
+            group
+                .sample_size(10)
+                .sampling_mode(SamplingMode::Flat)
+                .throughput(Throughput::Elements(records_of(subject, &setup)))
+                .warm_up_time(Duration::from_millis(300))
+                .measurement_time(Duration::from_secs(2));
+            group.bench_function("alone", |bencher| {
+                bencher.iter_custom(|frames| {
+                    time(frames, || {
+                        draw(&mut machine, subject, &setup, &mut frame, NoProbe);
+                    })
+                });
             });
-        });
-        group.bench_function("counted", |bencher| {
-            bencher.iter_custom(|frames| {
-                time(frames, || {
-                    let counter = draw(&mut machine, subject, &setup, &mut frame, Counter::new());
-                    black_box(counter.ops());
-                })
+            group.bench_function("counted", |bencher| {
+                bencher.iter_custom(|frames| {
+                    time(frames, || {
+                        let counter =
+                            draw(&mut machine, subject, &setup, &mut frame, Counter::new());
+                        black_box(counter.ops());
+                    })
+                });
             });
-        });
-        group.finish();
+            group.finish();
+        }
     }
+}
+
+/// Records of a frame.
+fn records_of(subject: &Subject, setup: &FrameSetup) -> u64 {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut machine = Machine::default();
+    let counter = draw(&mut machine, subject, setup, &mut frame, Counter::new());
+    counter.records()
 }
 
 criterion_group!(benches, by_size, probes, records);

@@ -444,6 +444,7 @@ pub(super) fn screen_quadrants<P: Probe>(
 }
 
 /// Fits a screen-space voxel. `None`: rejected.
+#[inline(always)]
 pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -147,12 +147,10 @@ impl Lattice for Corners {
     #[inline]
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
         let mut around = |a: (Word, Word), b: (Word, Word)| (dp.min(a.0, b.0), dp.max(a.1, b.1));
-        let corner = |i: usize| (self.0[i], self.0[i]);
-        let edges: [(Word, Word); 4] =
-            std::array::from_fn(|i| around(corner(2 * i), corner(2 * i + 1)));
-        let low = around(edges[0], edges[1]);
-        let high = around(edges[2], edges[3]);
-        around(low, high)
+        let [a, b, c, d, e, f, g, h] = self.0.map(|corner| (corner, corner));
+        let (ab, cd, ef, gh) = (around(a, b), around(c, d), around(e, f), around(g, h));
+        let (abcd, efgh) = (around(ab, cd), around(ef, gh));
+        around(abcd, efgh)
     }
 
     #[inline]

@@ -35,8 +35,10 @@ pub(super) trait ImageBox: Copy {
     ) -> Self;
 }
 
-/// The first sample of `quad` that a box overlaps and that is not drawn yet.
-pub(super) fn first<P: Probe, B: ImageBox>(
+/// The first sample of `quad` that a box overlaps and that is not drawn yet:
+/// [`first`] without a call, for boxes that are small.
+#[inline(always)]
+pub(super) fn first_in_place<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &Fill<'_>,
@@ -71,6 +73,17 @@ pub(super) fn first<P: Probe, B: ImageBox>(
         of = of.in_quadrant(dp, quadrant, below, tested);
         quad = quad.quadrant(quadrant);
     }
+}
+
+/// The first sample of `quad` that a box overlaps and that is not drawn yet.
+pub(super) fn first<P: Probe, B: ImageBox>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &Fill<'_>,
+    quad: QuadNode,
+    of: B,
+) -> Option<QuadNode> {
+    first_in_place(dp, constants, fill, quad, of)
 }
 
 impl<L: Lattice> ImageBox for Clip<L> {

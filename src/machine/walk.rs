@@ -308,7 +308,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let (dp, constants, quad) = (&mut self.dp, &self.constants, record.quad);
         match &record.pose {
             Pose::Clip(clip, _) => open::first(dp, constants, &fill, quad, *clip),
-            Pose::Screen(screen) => open::first(dp, constants, &fill, quad, screen.spans),
+            Pose::Screen(screen) => open::first_in_place(dp, constants, &fill, quad, screen.spans),
             Pose::Strips(strips) => {
                 let in_subtree = InSubtree {
                     subtree: self.subtree.as_ref()?,
