@@ -83,8 +83,8 @@ fn act() -> impl Strategy<Value = Act> {
         prop::sample::select(vec![0, 1, 2, 3, 16, 17, 34, 62, 70]).prop_map(Act::Record),
         (0..Stage::ALL.len()).prop_map(Act::Stage),
         (0u8..12).prop_map(Act::Words),
-        (0usize..5).prop_map(Act::Read),
-        (0usize..5).prop_map(Act::Write),
+        (0..Memory::ALL.len()).prop_map(Act::Read),
+        (0..Memory::ALL.len()).prop_map(Act::Write),
         (0u32..80).prop_map(Act::Integer),
         (16u32..=64).prop_map(Act::Format),
     ]
