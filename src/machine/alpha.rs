@@ -17,6 +17,7 @@ use super::taps::{Block, LEVEL_BITS};
 use super::walk::Walk;
 use crate::frame::Blend;
 use crate::graph::Opacity;
+use crate::project::host::Host;
 use crate::project::{ALL_LEFT, FrameSetup, OPAQUE_ENOUGH, SEEN_SHARE, SHARES};
 
 /// Bits of a share of a direction, 0 to 16.
@@ -42,9 +43,9 @@ pub(super) struct BlendEye {
 }
 
 impl BlendEye {
-    /// Loads them: host work.
-    pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
-        let eye = setup.opacity_eye();
+    /// Loads them: host work, of which `by` is told.
+    pub(super) fn load<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
+        let eye = setup.opacity_eye_by(by);
         Self {
             shift: eye.shift,
             at: eye.at.map(|c| dp.load(c)),

@@ -1,8 +1,9 @@
 //! The frame's constants as machine words, loaded before the first record.
 
-use hwmodel::{Datapath, Probe, WideWord, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
 use super::alpha::BlendEye;
+use crate::project::host::{Host, Num, Part, Tally, Untold, cross, lift_all};
 use crate::project::setup::ShiftSum;
 use crate::project::{Coverage, FrameSetup};
 
@@ -84,47 +85,54 @@ pub(super) struct Constants {
     pub(super) edges: [[Word; 3]; 3],
 }
 
-fn cross(a: [i64; 3], b: [i64; 3]) -> [i128; 3] {
-    let at = |i: usize, j: usize| {
-        i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])
-    };
-    [at(1, 2), at(2, 0), at(0, 1)]
-}
-
-/// An integer that the host hands over; beyond 64 bits it is cut to the
-/// nearest, which no format holds, so that the load overflows as it must.
-fn clamp(value: i128) -> i64 {
-    i64::try_from(value).unwrap_or(if value < 0 { i64::MIN } else { i64::MAX })
+/// Counts what the host does to load a frame into the machine's words.
+pub fn count_load(setup: &FrameSetup, tally: &Tally) {
+    let mut dp = Datapath::new(setup.format, Overflow::default(), NoProbe);
+    Constants::load_by(&mut dp, setup, tally);
 }
 
 impl Constants {
     /// Loads a frame. This is host work: it multiplies, once for a frame, and
     /// no probe sees it; the loads check that everything fits its word.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
+        Self::load_by(dp, setup, Untold)
+    }
+
+    /// The same; `by` is told of all that the host does.
+    fn load_by<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
+        by.enter(Part::Words);
         let options = &setup.options;
         let exact = options.coverage.draws_outlines();
         let scale = setup.sub_levels;
-        let mut word = |value: i64, shift: u32| dp.load(clamp(i128::from(value) << shift));
-        let origin = setup.origin_clip.map(|c| word(c, scale));
+        let origin_clip = lift_all(by, setup.origin_clip);
+        let edge_clip = setup.edge_clip.map(|e| lift_all(by, e));
+        let mut word = |value: Num<H, i64>, shift: u32| {
+            dp.load((value.widened() << shift).clamped_to_i64().value)
+        };
+        let origin = origin_clip.map(|c| word(c, scale));
         let edges =
-            [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(setup.edge_clip[k][c], scale + setup.depth)));
+            [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(edge_clip[k][c], scale + setup.depth)));
         let depths = |depths: &[i64]| -> Vec<Option<Word>> {
             let depth = |&w: &i64| {
-                let scaled = i128::from(w) << scale;
+                let w = by.lift(w);
+                let scaled = w.widened() << scale;
                 let reachable = w != i64::MAX && scaled <= i128::from(setup.format.max());
-                reachable.then(|| Word::from_host(clamp(scaled)))
+                reachable.then(|| Word::from_host(scaled.clamped_to_i64().value))
             };
             depths.iter().map(depth).collect()
         };
         // Beyond the object all eyes compare alike, so a far one is brought near.
-        let far = 1i64 << (setup.depth + setup.sub_levels);
-        let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, far + 1)));
+        let far = by.lift(1i64) << (setup.depth + setup.sub_levels);
+        let beyond = (far + 1).value;
+        let eye =
+            |eye: [i64; 3]| lift_all(by, eye).map(|c| Word::from_host(c.clamped(-1, beyond).value));
         let screen_frac = setup.format.frac();
         let screen_limit = |limit: &ShiftSum| {
-            let units = libm::ldexp(limit.value(), screen_frac as i32);
-            Word::from_host((libm::floor(units) as i64).max(LEAST_SIZE))
+            let units = limit.value_by(by).scaled(screen_frac as i32).floor();
+            Word::from_host(units.to_i64().max(by.lift(LEAST_SIZE)).value)
         };
-        let near = word(setup.near, scale);
+        let near = word(by.lift(setup.near), scale);
+        let near_crossing = by.lift(near.to_host()) >> NEAR_CROSSING_SHIFT;
 
         let mut axis_ab = [[WideWord::ZERO; 2]; 3];
         let mut axis_c = [WideWord::ZERO; 3];
@@ -132,29 +140,34 @@ impl Constants {
         if exact {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let [a, b, c] =
-                    cross(setup.edge_clip[i], setup.edge_clip[j]).map(|c| dp.load_wide(clamp(c)));
+                let mut plane = |a: [Num<H, i64>; 3], b: [Num<H, i64>; 3]| {
+                    // Beyond 64 bits it is cut to the nearest, which no format
+                    // holds, so that the load overflows as it must.
+                    cross(a.map(Num::widened), b.map(Num::widened))
+                        .map(|c| dp.load_wide(c.clamped_to_i64().value))
+                };
+                let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
                 axis_ab[k] = [a, b];
                 axis_c[k] = c;
-                edge_planes[k] =
-                    cross(setup.origin_clip, setup.edge_clip[k]).map(|c| dp.load_wide(clamp(c)));
+                edge_planes[k] = plane(origin_clip, edge_clip[k]);
             }
         }
-        let gap = exact && (setup.grow_shift.is_none() || options.tolerance_px <= 0.4375);
+        let tolerance = by.lift(options.tolerance_px);
+        let gap = exact && (setup.grow_shift.is_none() || tolerance <= 0.4375);
         Self {
             coverage: if exact {
                 Coverage::Exact
             } else {
                 options.coverage
             },
-            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup)),
+            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup, by)),
             levels: setup.levels,
             depth: setup.depth,
             sub_levels: setup.sub_levels,
             level_bound: setup.level_bound(),
             screen_frac,
             half_sample_places: [screen_frac.saturating_sub(1), u32::from(screen_frac == 0)],
-            finite_tolerance: options.tolerance_px.is_finite(),
+            finite_tolerance: tolerance.is_finite(),
             margin: match setup.grow_shift {
                 _ if gap => Margin::Gap(setup.size_limit.clone()),
                 Some(shift) => Margin::Grow(shift),
@@ -170,7 +183,7 @@ impl Constants {
                 .map_or(Word::from_host(LEAST_SIZE), screen_limit),
             least_size_screen: Word::from_host(LEAST_SIZE),
             near,
-            near_crossing: Word::from_host(near.to_host() >> NEAR_CROSSING_SHIFT),
+            near_crossing: Word::from_host(near_crossing.value),
             screen_depth: depths(&setup.screen_depth),
             lod_depth: depths(&setup.lod_depth),
             strip_guard: setup.strip_guard,

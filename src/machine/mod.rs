@@ -47,6 +47,7 @@ use walk::Walk;
 use crate::project::{CageKind, Coverage, Engine, EngineError, FrameSetup, Stats};
 
 pub use crate::project::OCCLUSION_ORDER;
+pub use constants::count_load;
 pub use positions::{Positions, Space, visit_positions};
 use steps::Steps;
 pub use steps::{SimulateError, Simulated};

@@ -7,8 +7,7 @@
 //! voxel of twice the side looks the same, so one ratio of side to depth
 //! serves all levels.
 
-use glam::DVec3;
-
+use super::host::{Host, Real};
 use super::setup::{Coverage, SCREEN_GUARD_SHIFT};
 
 /// Bits of a strip's normal (`SPEC.md`, "Strips").
@@ -21,61 +20,64 @@ const DEVIATION_POINTS: i32 = 9;
 const BISECTIONS: u32 = 40;
 
 /// Clip vectors of a finest voxel's edges, and the picture they are seen in.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Edges {
+pub(super) struct Edges<H> {
     /// X and Y in units of the image root times depth, W in voxels.
-    pub(super) edge: [DVec3; 3],
+    pub(super) edge: [[Real<H>; 3]; 3],
     /// Samples a side of the image root.
-    pub(super) root_samples: f64,
+    pub(super) root_samples: Real<H>,
+    /// Is told of all steps.
+    pub(super) by: H,
 }
 
-impl Edges {
+/// Where W is in a clip vector.
+const W: usize = 2;
+
+impl<H: Host> Edges<H> {
     /// How fast a picture position at `x` (0 to 1 across the image root)
     /// moves along each edge, times the depth, in samples.
-    fn speed(&self, axis: usize, x: f64) -> [f64; 3] {
-        self.edge.map(|e| (e[axis] - x * e.z) * self.root_samples)
+    fn speed(&self, axis: usize, x: Real<H>) -> [Real<H>; 3] {
+        self.edge.map(|e| (e[axis] - x * e[W]) * self.root_samples)
     }
 
     /// The two ends of the range of positions that may change: linear and
     /// convex functions of the position are greatest there.
-    fn ends() -> [f64; 2] {
-        let guard = 1.0 / f64::from(1u32 << SCREEN_GUARD_SHIFT);
-        [-guard, 1.0 + guard]
+    fn ends(&self) -> [Real<H>; 2] {
+        let guard = self.by.lift(1.0).scaled(-(SCREEN_GUARD_SHIFT as i32));
+        [-guard, guard + 1.0]
     }
 
     /// Sum over the edges of how fast they move a point, the greater of both
     /// axes and ends.
-    fn total_speed(&self) -> f64 {
-        let mut most: f64 = 0.0;
+    fn total_speed(&self) -> Real<H> {
+        let ends = self.ends();
+        let mut most = self.by.lift(0.0);
         for axis in 0..2 {
-            let mut sum = 0.0;
-            for k in 0..3 {
-                let here = Self::ends().map(|x| self.speed(axis, x)[k].abs());
-                sum += here[0].max(here[1]);
-            }
-            most = most.max(sum);
+            let [low, high] = ends.map(|x| self.speed(axis, x).map(Real::abs));
+            let [x, y, z] = [0, 1, 2].map(|k| low[k].max(high[k]));
+            most = most.max(x + y + z);
         }
         most
     }
 
     /// Depth that a finest voxel spans.
-    fn depth_span(&self) -> f64 {
-        self.edge.iter().map(|e| e.z.abs()).sum()
+    fn depth_span(&self) -> Real<H> {
+        let [x, y, z] = self.edge.map(|e| e[W].abs());
+        x + y + z
     }
 
     /// Least depth, in voxels, for a voxel of side 1 that a level of detail of
     /// at most `limit` samples takes for a solid.
-    pub(super) fn detail_depth(&self, limit: f64) -> f64 {
+    pub(super) fn detail_depth(&self, limit: Real<H>) -> Real<H> {
         self.total_speed() / limit
     }
 
     /// Least depth, in voxels, at which a voxel of side 1 may change to
     /// screen space with a deviation of at most `allowed` samples.
-    pub(super) fn screen_depth(&self, coverage: Coverage, allowed: f64) -> f64 {
+    pub(super) fn screen_depth(&self, coverage: Coverage, allowed: Real<H>) -> Real<H> {
         if coverage.draws_outlines() {
             return self.central_depth(allowed);
         }
-        libm::sqrt(self.total_speed() * self.depth_span() / allowed)
+        (self.total_speed() * self.depth_span() / allowed).sqrt()
     }
 
     /// The same for the map through the mean of the eight vertices.
@@ -85,18 +87,19 @@ impl Edges {
     /// `-(D d)(E d) / W^2 * (1 + at most sum|E| / 2W)`. The fit takes away
     /// the mean of the first part over the vertices, where `d_k^2 = 1/4`; it
     /// makes the second part at most five times as large.
-    fn central_depth(&self, allowed: f64) -> f64 {
-        let mut second_order: f64 = 0.0;
+    fn central_depth(&self, allowed: Real<H>) -> Real<H> {
+        let mut second_order = self.by.lift(0.0);
         for axis in 0..2 {
-            for x in Self::ends() {
+            for x in self.ends() {
                 second_order = second_order.max(self.greatest_bend(&self.speed(axis, x)));
             }
         }
         let span = self.depth_span();
-        let third_order = 5.0 * (self.total_speed() * span / 4.0) * (span / 2.0);
-        let excess = |depth: f64| (second_order + third_order / depth) / (depth * depth) - allowed;
-        let mut below = libm::sqrt(second_order / allowed);
-        let mut above = below + libm::cbrt(third_order / allowed);
+        let third_order = self.total_speed() * span / 4.0 * 5.0 * (span / 2.0);
+        let excess =
+            |depth: Real<H>| (second_order + third_order / depth) / (depth * depth) - allowed;
+        let mut below = (second_order / allowed).sqrt();
+        let mut above = below + (third_order / allowed).cbrt();
         for _ in 0..BISECTIONS {
             let middle = (below + above) / 2.0;
             if middle > 0.0 && excess(middle) <= 0.0 {
@@ -109,19 +112,22 @@ impl Edges {
     }
 
     /// The most of `|(D d)(E d) - mean over the vertices|` in a voxel.
-    fn greatest_bend(&self, speed: &[f64; 3]) -> f64 {
-        let product = |j: usize, k: usize| speed[j] * self.edge[k].z;
-        let at = |i: i32| f64::from(i) / f64::from(DEVIATION_POINTS - 1) - 0.5;
-        let mut most: f64 = 0.0;
-        for i in 0..DEVIATION_POINTS {
-            for j in 0..DEVIATION_POINTS {
-                for k in 0..DEVIATION_POINTS {
-                    let d = [at(i), at(j), at(k)];
-                    let mut bend = 0.0;
+    fn greatest_bend(&self, speed: &[Real<H>; 3]) -> Real<H> {
+        let product = [0, 1, 2].map(|j| [0, 1, 2].map(|k| speed[j] * self.edge[k][W]));
+        let step = self.by.lift(1.0) / f64::from(DEVIATION_POINTS - 1);
+        let at: [Real<H>; DEVIATION_POINTS as usize] = std::array::from_fn(|i| {
+            self.by.lift(i as u64).to_real() / f64::from(DEVIATION_POINTS - 1) - 0.5
+        });
+        let mut most = self.by.lift(0.0);
+        for x in at {
+            for y in at {
+                for z in at {
+                    let d = [x, y, z];
+                    let mut bend = self.by.lift(0.0);
                     for a in 0..3 {
-                        bend += product(a, a) * (d[a] * d[a] - 0.25);
+                        bend += product[a][a] * (d[a] * d[a] - 0.25);
                         for b in 0..a {
-                            bend += (product(a, b) + product(b, a)) * d[a] * d[b];
+                            bend += (product[a][b] + product[b][a]) * d[a] * d[b];
                         }
                     }
                     most = most.max(bend.abs());
@@ -130,8 +136,8 @@ impl Edges {
         }
         // Between two points a square is at most a quarter of their distance
         // squared away from the line through them.
-        let step = 1.0 / f64::from(DEVIATION_POINTS - 1);
-        let between: f64 = (0..3).map(|k| product(k, k).abs()).sum::<f64>() * step * step / 4.0;
+        let [x, y, z] = [0, 1, 2].map(|k| product[k][k].abs());
+        let between = (x + y + z) * step * step / 4.0;
         most + between
     }
 }
@@ -141,40 +147,57 @@ impl Edges {
 /// parts are two levels below or more.
 const STRIP_ROUNDING_UNITS: f64 = 7.0;
 
+/// `2^exponent`.
+fn power<H: Host>(by: H, exponent: i32) -> Real<H> {
+    by.lift(1.0).scaled(exponent)
+}
+
 /// Most of a sample by which rounding moves an outline in screen space.
 /// `guard` is the fraction bits of strips beyond those that their levels need.
-pub(super) fn rounding(coverage: Coverage, screen_frac: u32, guard: u32) -> f64 {
+pub(super) fn rounding<H: Host>(
+    by: H,
+    coverage: Coverage,
+    screen_frac: u32,
+    guard: u32,
+) -> Real<H> {
     // Quotients are rounded down: a corner and three edges, one unit each.
-    let quotients = 4.0 * libm::ldexp(1.0, -(screen_frac as i32));
+    let quotients = power(by, -(screen_frac as i32)) * 4.0;
     if !coverage.draws_outlines() {
         return quotients;
     }
     // A normal is at least half of 2^bits long.
-    let unit = libm::ldexp(1.0, -((STRIP_NORMAL_BITS - 1 + guard) as i32));
-    quotients + STRIP_ROUNDING_UNITS * unit
+    let unit = power(by, -((STRIP_NORMAL_BITS - 1 + guard) as i32));
+    quotients + unit * STRIP_ROUNDING_UNITS
 }
 
 /// Fraction bits that strips get so that their rounding is an eighth of the
 /// tolerance at most.
-pub(super) fn strip_guard(tolerance_px: f64) -> u32 {
+pub(super) fn strip_guard<H: Host>(tolerance_px: Real<H>) -> u32 {
     if tolerance_px == 0.0 || tolerance_px.is_infinite() {
         return 0;
     }
-    let unit = libm::ldexp(1.0, -((STRIP_NORMAL_BITS - 1) as i32));
-    let ratio = STRIP_ROUNDING_UNITS * unit / (tolerance_px / 8.0);
-    (libm::ceil(libm::log2(ratio)).max(0.0) as u32).min(MAX_STRIP_GUARD)
+    let by = tolerance_px.by;
+    let unit = power(by, -((STRIP_NORMAL_BITS - 1) as i32));
+    let ratio = unit * STRIP_ROUNDING_UNITS / (tolerance_px / 8.0);
+    whole_places(ratio.log2().ceil()).min(MAX_STRIP_GUARD)
 }
 
 /// By how much outlines in screen space are drawn wider, so that nothing
 /// falls between neighbours that changed apart: `2^-slack` of what a step of
 /// a sample along both axes adds: an eighth of the tolerance, rounded up to a
 /// power of two, and no more than a sample. `None`: not at all.
-pub(super) fn strip_slack(tolerance_px: f64) -> Option<u32> {
+pub(super) fn strip_slack<H: Host>(tolerance_px: Real<H>) -> Option<u32> {
     let is_approximate = tolerance_px > 0.0 && tolerance_px.is_finite();
     is_approximate.then(|| {
-        let places = libm::floor(3.0 - libm::log2(tolerance_px));
-        (places.max(0.0) as u32).min(MAX_STRIP_SLACK)
+        let places = (tolerance_px.by.lift(3.0) - tolerance_px.log2()).floor();
+        whole_places(places).min(MAX_STRIP_SLACK)
     })
+}
+
+/// A rounded number of places, 0 if it is below.
+fn whole_places<H: Host>(places: Real<H>) -> u32 {
+    let places = places.max(places.by.lift(0.0)).to_i64();
+    u32::try_from(places.value).unwrap_or(u32::MAX)
 }
 
 /// Beyond this the tolerance is below what screen positions hold.

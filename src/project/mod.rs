@@ -3,8 +3,11 @@
 pub mod camera;
 mod depths;
 pub mod engine;
+pub mod host;
 mod opacity;
+mod reach;
 pub mod setup;
+mod view;
 pub mod viewer;
 
 pub use camera::{Camera, CameraError};

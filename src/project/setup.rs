@@ -12,18 +12,20 @@
 //! left corner is the picture's. Sample `(i, j)` is at
 //! `((2i + 1) / 2^(levels + 1), (2j + 1) / 2^(levels + 1))`.
 
-use glam::DVec3;
 use hwmodel::{Format, FormatError};
 use serde::{Deserialize, Serialize};
 
-use super::camera::{Axes, Camera, CameraError};
+use super::camera::{Camera, CameraError};
 use super::depths;
+use super::host::{Host, Part, Real, Tally, Untold, lift_all, values};
+use super::reach::{Eye, Quantised, Reach};
+use super::view::{Levels, View};
 use crate::graph::{MAX_DEPTH, Placement};
 
 /// Most fraction bits of a clip vector; more would not be seen.
-const MAX_CLIP_FRAC: u32 = 30;
+pub(super) const MAX_CLIP_FRAC: u32 = 30;
 /// Most levels below a finest voxel.
-const MAX_SUB_LEVELS: u32 = 24;
+pub(super) const MAX_SUB_LEVELS: u32 = 24;
 /// Fraction bits of screen positions, unless the format or the user says otherwise.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Boxes widened by more samples than this may leave their words.
@@ -218,15 +220,43 @@ impl FrameSetup {
         depth: u32,
         options: &SetupOptions,
     ) -> Result<Self, SetupError> {
-        let axes = camera.axes()?;
-        check_settings(options)?;
+        Self::made(camera, placement, depth, options, Untold)
+    }
+
+    /// The same, with every step of its arithmetic counted.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn counted(
+        camera: &Camera,
+        placement: &Placement,
+        depth: u32,
+        options: &SetupOptions,
+        tally: &Tally,
+    ) -> Result<Self, SetupError> {
+        Self::made(camera, placement, depth, options, tally)
+    }
+
+    fn made<H: Host>(
+        camera: &Camera,
+        placement: &Placement,
+        depth: u32,
+        options: &SetupOptions,
+        by: H,
+    ) -> Result<Self, SetupError> {
+        by.enter(Part::View);
+        let axes = camera.host_axes(by)?;
+        by.enter(Part::Limits);
+        check_settings(by, options)?;
         if depth > MAX_DEPTH {
             return Err(SetupError::Depth(depth));
         }
+        by.enter(Part::View);
         let root_px_log2 = root_log2(camera.width, camera.height);
         let levels = root_px_log2 + options.aa_log2;
-        let view = View::new(camera, &axes, placement, root_px_log2);
+        let view = View::new(by, camera, &axes, placement, root_px_log2);
 
+        by.enter(Part::Quantise);
         let format = {
             let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
@@ -237,29 +267,34 @@ impl FrameSetup {
             None => view.widest_fraction(depth, format, options.coverage),
         };
         let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
-        let (origin_clip, edge_clip) = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
-        let reach = reach(&origin_clip, &edge_clip, depth).ok_or(SetupError::OutOfRange)?;
-        let finite = options.tolerance_px.is_finite();
+        let quantised = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
+        let reach = Reach::of(&quantised, depth).ok_or(SetupError::OutOfRange)?;
+        let tolerance = by.lift(options.tolerance_px);
+        let finite = tolerance.is_finite();
         let has_headroom = reach.fits(format, sub_levels)
-            && (!finite || options.tolerance_px <= MOST_TOLERANCE_WITH_HEADROOM)
-            && levels + format.frac() + screen_headroom_bits(options) <= options.bits;
+            && (!finite || tolerance <= MOST_TOLERANCE_WITH_HEADROOM)
+            && levels + format.frac() + screen_headroom_bits(finite, options) <= options.bits;
 
-        let eye = Eye::solve(&origin_clip, &edge_clip, sub_levels)
+        by.enter(Part::Eye);
+        let eye = Eye::solve(&quantised, sub_levels)
             .ok_or(SetupError::OutOfRange)?
             .ok_or(SetupError::Collapsed {
                 bits: options.bits,
                 frac: clip_frac,
             })?;
 
-        let near = 1i64 << clip_frac.saturating_sub(4);
+        by.enter(Part::Depths);
+        let near = by.lift(1i64) << clip_frac.saturating_sub(4);
         let levels_of = Levels {
             depth,
             bound: depth + sub_levels,
             clip_frac,
             near,
         };
-        let strip_guard = depths::strip_guard(options.tolerance_px);
-        let strip_slack = depths::strip_slack(options.tolerance_px);
+        let strip_guard = depths::strip_guard(tolerance);
+        let screen_depth = view.screen_depths(&levels_of, options, format.frac(), strip_guard);
+        let lod_depth = view.lod_depths(&levels_of, options);
+        by.enter(Part::Limits);
         Ok(Self {
             options: *options,
             width: camera.width << options.aa_log2,
@@ -268,21 +303,21 @@ impl FrameSetup {
             depth,
             format,
             clip_frac,
-            origin_clip,
-            edge_clip,
+            origin_clip: values(quantised.origin),
+            edge_clip: quantised.edge.map(values),
             positive: eye.positive,
             sub_levels,
-            eye_floor: eye.floor,
-            eye_ceil: eye.ceil,
-            near,
-            screen_depth: view.screen_depths(&levels_of, options, format.frac(), strip_guard),
-            lod_depth: view.lod_depths(&levels_of, options),
+            eye_floor: values(eye.floor),
+            eye_ceil: values(eye.ceil),
+            near: near.value,
+            screen_depth,
+            lod_depth,
             strip_guard,
-            strip_slack,
+            strip_slack: depths::strip_slack(tolerance),
             has_headroom,
-            grow_shift: grow_shift(options),
-            size_limit: size_limit(options, 1.0).unwrap_or_default(),
-            lod_limit: detail_limit(options),
+            grow_shift: grow_shift(tolerance),
+            size_limit: size_limit(by, options, 1.0).unwrap_or_default(),
+            lod_limit: detail_limit(by, options),
             placement: *placement,
         })
     }
@@ -297,27 +332,33 @@ impl FrameSetup {
     /// Largest magnitude of a coordinate of a clip vector in the object.
     #[must_use]
     pub fn position_reach(&self) -> Option<i128> {
-        reach(&self.origin_clip, &self.edge_clip, self.depth).map(|reach| reach.position)
+        let view = Quantised {
+            origin: lift_all(Untold, self.origin_clip),
+            edge: self.edge_clip.map(|e| lift_all(Untold, e)),
+        };
+        Reach::of(&view, self.depth).map(|reach| reach.position.value)
     }
 
     /// By octree level, least depth `W` of a record whose lattice, under the
     /// exact rule, deviates from its projection by at most so many samples.
     #[must_use]
     pub fn lattice_depths(&self, deviation_px: f64) -> Vec<i64> {
-        let unit = libm::ldexp(1.0, -(self.clip_frac as i32));
+        let by = Untold;
+        let unit = by.lift(1.0).scaled(-(self.clip_frac as i32));
         let edges = depths::Edges {
             edge: self
                 .edge_clip
-                .map(|e| DVec3::from_array(e.map(|c| c as f64 * unit))),
-            root_samples: libm::ldexp(1.0, self.levels as i32),
+                .map(|e| e.map(|c| by.lift(c).to_real() * unit)),
+            root_samples: by.lift(1.0).scaled(self.levels as i32),
+            by,
         };
         let levels = Levels {
             depth: self.depth,
             bound: self.depth,
             clip_frac: self.clip_frac,
-            near: 1,
+            near: by.lift(1),
         };
-        let allowed = deviation_px - self.lattice_rounding();
+        let allowed = by.lift(deviation_px) - self.lattice_rounding();
         if allowed <= 0.0 {
             return vec![i64::MAX; self.depth as usize + 1];
         }
@@ -327,7 +368,8 @@ impl FrameSetup {
     /// Most, in samples, by which rounding moves an outline of such a lattice.
     #[must_use]
     pub fn lattice_rounding(&self) -> f64 {
-        depths::rounding(Coverage::Exact, self.format.frac(), self.strip_guard)
+        let frac = self.format.frac();
+        depths::rounding(Untold, Coverage::Exact, frac, self.strip_guard).value
     }
 
     /// World depth of one unit of `W`.
@@ -340,7 +382,7 @@ impl FrameSetup {
 /// Shares `total` fraction bits of a position between the precision of the
 /// view (at most `most`) and exact halving below the finest voxels, which
 /// only the rules that subdivide solids have a use for.
-fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
+pub(super) fn split_fraction(total: u32, most: u32, coverage: Coverage) -> (u32, u32) {
     if coverage.draws_outlines() {
         return (total.min(most), 0);
     }
@@ -355,28 +397,30 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
 }
 
 /// Bits of a word beyond a screen position's, with which no sum of positions overflows.
-fn screen_headroom_bits(options: &SetupOptions) -> u32 {
-    if options.tolerance_px.is_infinite() && options.coverage.draws_outlines() {
+fn screen_headroom_bits(finite: bool, options: &SetupOptions) -> u32 {
+    if !finite && options.coverage.draws_outlines() {
         FAR_SCREEN_HEADROOM_BITS
     } else {
         SCREEN_HEADROOM_BITS
     }
 }
 
-fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
+fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupError> {
+    let tolerance = by.lift(options.tolerance_px);
+    let lod = by.lift(options.lod_px);
     let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
-    if options.tolerance_px.is_nan() || options.tolerance_px < 0.0 {
+    if tolerance.is_nan() || tolerance < 0.0 {
         return bad("tolerance", "0 pixels or more", options.tolerance_px);
     }
     // Beyond any picture, and within any word: more is what `inf` is for.
-    if options.tolerance_px.is_finite() && options.tolerance_px > 4096.0 {
+    if tolerance.is_finite() && tolerance > 4096.0 {
         return bad(
             "tolerance",
             "0 to 4096 pixels, or inf",
             options.tolerance_px,
         );
     }
-    if !(0.0..=4096.0).contains(&options.lod_px) {
+    if !(lod >= 0.0 && lod <= 4096.0) {
         return bad("level of detail", "0 to 4096 pixels", options.lod_px);
     }
     if options.aa_log2 > 2 {
@@ -387,9 +431,9 @@ fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
 }
 
 /// The tolerance, rounded up to `2^-shift` samples.
-fn grow_shift(options: &SetupOptions) -> Option<i32> {
-    let tolerance = options.tolerance_px;
-    (tolerance > 0.0 && tolerance.is_finite()).then(|| -(libm::ceil(libm::log2(tolerance)) as i32))
+fn grow_shift<H: Host>(tolerance: Real<H>) -> Option<i32> {
+    let is_approximate = tolerance > 0.0 && tolerance.is_finite();
+    is_approximate.then(|| -(tolerance.log2().ceil().to_i64().value as i32))
 }
 
 /// A constant factor as a sum of powers of two: `x` times it is a sum of
@@ -404,14 +448,18 @@ impl ShiftSum {
     /// The largest sum of at most five neighbouring powers of two that is not above `value`.
     #[must_use]
     pub fn floor(value: f64) -> Self {
+        Self::floor_by(Untold.lift(value))
+    }
+
+    fn floor_by<H: Host>(value: Real<H>) -> Self {
         if value <= 0.0 {
             return Self::default();
         }
-        let leading = libm::floor(libm::log2(value)) as i32;
-        let kept = libm::floor(libm::ldexp(value, SHIFT_SUM_BITS - 1 - leading)) as u32;
+        let leading = value.log2().floor().to_i64().value as i32;
+        let kept = value.scaled(SHIFT_SUM_BITS - 1 - leading).floor().to_i64();
         Self(
             (0..SHIFT_SUM_BITS)
-                .filter(|place| kept >> (SHIFT_SUM_BITS - 1 - place) & 1 != 0)
+                .filter(|place| (kept >> (SHIFT_SUM_BITS - 1 - place) as u32) & 1 != 0)
                 .map(|place| place - leading)
                 .collect(),
         )
@@ -426,275 +474,35 @@ impl ShiftSum {
     /// The factor.
     #[must_use]
     pub fn value(&self) -> f64 {
-        self.0.iter().map(|&s| libm::ldexp(1.0, -s)).sum()
+        self.value_by(Untold).value
+    }
+
+    /// The same, with all steps told.
+    pub(crate) fn value_by<H: Host>(&self, by: H) -> Real<H> {
+        let add = |sum, &shift: &i32| sum + by.lift(1.0).scaled(-shift);
+        self.0.iter().fold(by.lift(0.0), add)
     }
 }
 
 /// A size in samples, less its share of twice the tolerance, so that
 /// neighbours that deviate by the tolerance leave no pinhole; `None` for 0.
-fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
-    let finite = options.tolerance_px.is_finite();
-    let tolerance = if finite { options.tolerance_px } else { 0.0 };
+fn size_limit<H: Host>(by: H, options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
+    let tolerance = by.lift(options.tolerance_px);
+    let finite = tolerance.is_finite();
+    let tolerance = if finite { tolerance } else { by.lift(0.0) };
     // Never below an eighth: with coarser tolerances the user has chosen holes.
-    let share = (1.0 - 2.0 * tolerance).max(0.125);
-    (samples > 0.0).then(|| ShiftSum::floor(samples * share))
+    let share = (by.lift(1.0) - tolerance * 2.0).max(by.lift(0.125));
+    let samples = by.lift(samples);
+    (samples > 0.0).then(|| ShiftSum::floor_by(samples * share))
 }
 
 /// The size of a node that level of detail takes for a solid; `None` for 0.
 /// Under `exact`, where a solid is drawn at every sample of its silhouette and
 /// not at one, it needs no share for pinholes.
-fn detail_limit(options: &SetupOptions) -> Option<ShiftSum> {
+pub(super) fn detail_limit<H: Host>(by: H, options: &SetupOptions) -> Option<ShiftSum> {
     if options.coverage.draws_outlines() {
-        return (options.lod_px > 0.0).then(|| ShiftSum::floor(options.lod_px));
+        let samples = by.lift(options.lod_px);
+        return (samples > 0.0).then(|| ShiftSum::floor_by(samples));
     }
-    size_limit(options, options.lod_px)
-}
-
-/// The view of the object in real numbers.
-struct View {
-    /// Clip vectors of a voxel's edges.
-    edge: [DVec3; 3],
-    /// The eye in object coordinates, voxels.
-    eye: DVec3,
-    /// Pixels of the image root, as a power of two.
-    root_px_log2: u32,
-}
-
-impl View {
-    fn new(camera: &Camera, axes: &Axes, placement: &Placement, root_px_log2: u32) -> Self {
-        let root_px = f64::from(1u32 << root_px_log2);
-        let centre_x = f64::from(camera.width) / 2.0;
-        let centre_y = f64::from(camera.height) / 2.0;
-        let x = (axes.right * axes.focal_px + axes.forward * centre_x) / root_px;
-        let y = (axes.up * -axes.focal_px + axes.forward * centre_y) / root_px;
-        let w = axes.forward;
-        let origin = placement.origin_index;
-        let eye = (camera.eye - DVec3::from_array(placement.world_origin)) / placement.voxel_size
-            - DVec3::new(origin[0] as f64, origin[1] as f64, origin[2] as f64);
-        Self {
-            edge: [0, 1, 2].map(|k| DVec3::new(x[k], y[k], w[k])),
-            eye,
-            root_px_log2,
-        }
-    }
-
-    /// Integers of `2^-frac` voxels, if they fit 64 bits with room.
-    ///
-    /// The origin is made from the rounded edges, so that the eye stays where
-    /// the camera has it and only the view's shape is rounded.
-    fn quantise(&self, frac: u32) -> Option<([i64; 3], [[i64; 3]; 3])> {
-        let scale = (1u64 << frac) as f64;
-        let mut edge = [[0i64; 3]; 3];
-        for (to, from) in edge.iter_mut().zip(&self.edge) {
-            for (c, value) in to.iter_mut().enumerate() {
-                *value = to_i64(from[c] * scale)?;
-            }
-        }
-        let mut origin = [0i64; 3];
-        for (c, value) in origin.iter_mut().enumerate() {
-            let sum: f64 = (0..3).map(|k| edge[k][c] as f64 * self.eye[k]).sum();
-            *value = to_i64(-sum)?;
-        }
-        Some((origin, edge))
-    }
-
-    /// The most fraction bits, and levels below a finest voxel, with which
-    /// positions fit a word and silhouette planes a wide word, with headroom
-    /// (bisector tests take `2X - W`, the divide `X + 4W` and `8W`).
-    fn widest_fraction(&self, depth: u32, format: Format, coverage: Coverage) -> (u32, u32) {
-        let fits = |frac: u32, shift: u32, plane_too: bool| {
-            self.quantise(frac)
-                .and_then(|(origin, edge)| reach(&origin, &edge, depth))
-                .is_some_and(|reach| {
-                    reach.position_fits(format, shift) && (!plane_too || reach.plane_fits(format))
-                })
-        };
-        let plane_frac = (0..=MAX_CLIP_FRAC).rev().find(|&f| fits(f, 0, true));
-        let Some(plane_frac) = plane_frac else {
-            return (0, 0);
-        };
-        let room = (0..=MAX_SUB_LEVELS)
-            .rev()
-            .find(|&shift| fits(plane_frac, shift, false))
-            .unwrap_or(0);
-        split_fraction(plane_frac + room, plane_frac, coverage)
-    }
-}
-
-/// The octree levels of a frame, and the unit of its depths.
-struct Levels {
-    /// Level of the finest voxels.
-    depth: u32,
-    /// Deepest level of a record.
-    bound: u32,
-    clip_frac: u32,
-    /// Least of all depths below.
-    near: i64,
-}
-
-impl Levels {
-    /// By level, the depth that is `unit` for a finest voxel, in clip units, rounded up.
-    fn scaled(&self, unit: f64) -> Vec<i64> {
-        let at = |level: u32| {
-            // A record's side in voxels, exact in f64.
-            let side = libm::ldexp(unit, self.depth as i32 - level as i32);
-            let depth = libm::ceil(libm::ldexp(side, self.clip_frac as i32));
-            to_i64(depth).map_or(i64::MAX, |w| w.max(self.near))
-        };
-        (0..=self.bound).map(at).collect()
-    }
-}
-
-impl View {
-    fn edges(&self, options: &SetupOptions) -> depths::Edges {
-        depths::Edges {
-            edge: self.edge,
-            root_samples: f64::from(1u32 << (self.root_px_log2 + options.aa_log2)),
-        }
-    }
-
-    /// Least `W`, by level, at which a record deviates from its screen-space
-    /// cage by at most the tolerance: `SPEC.md`, "The change to screen space".
-    fn screen_depths(
-        &self,
-        levels: &Levels,
-        options: &SetupOptions,
-        screen_frac: u32,
-        strip_guard: u32,
-    ) -> Vec<i64> {
-        if options.tolerance_px.is_infinite() {
-            return vec![levels.near; levels.bound as usize + 1];
-        }
-        let rounding = depths::rounding(options.coverage, screen_frac, strip_guard);
-        // The slack takes its part of the tolerance: all that is drawn lies
-        // within that of the voxels.
-        let slack = match depths::strip_slack(options.tolerance_px) {
-            Some(places) if options.coverage.draws_outlines() => libm::ldexp(1.0, -(places as i32)),
-            _ => 0.0,
-        };
-        let allowed = (options.tolerance_px - rounding - slack) * (1.0 - 1e-6);
-        if options.tolerance_px == 0.0 || allowed <= 0.0 {
-            return vec![i64::MAX; levels.bound as usize + 1];
-        }
-        levels.scaled(self.edges(options).screen_depth(options.coverage, allowed))
-    }
-
-    /// Least `W`, by level, at which a node with children is no larger than
-    /// the level of detail, wherever in the picture.
-    fn lod_depths(&self, levels: &Levels, options: &SetupOptions) -> Vec<i64> {
-        match detail_limit(options) {
-            Some(limit) => levels.scaled(self.edges(options).detail_depth(limit.value())),
-            None => vec![i64::MAX; levels.bound as usize + 1],
-        }
-    }
-}
-
-/// A rounded f64 that fits 62 bits.
-fn to_i64(value: f64) -> Option<i64> {
-    let rounded = libm::round(value);
-    (rounded.abs() < (1u64 << 62) as f64).then_some(rounded as i64)
-}
-
-/// Largest magnitudes that a frame meets.
-struct Reach {
-    /// Of a coordinate of a clip vector.
-    position: i128,
-    /// Of a silhouette plane: the sum of its three coefficients.
-    plane: i128,
-}
-
-impl Reach {
-    /// Whether positions leave headroom (bisector tests take `2X - W`, the
-    /// guard `8X + W`, the divide `X + 4W` and `8W`).
-    fn position_fits(&self, format: Format, shift: u32) -> bool {
-        self.position << shift <= i128::from(format.max()) / 16
-    }
-
-    fn plane_fits(&self, format: Format) -> bool {
-        self.plane <= i128::from(format.wide().max()) / 8
-    }
-
-    fn fits(&self, format: Format, sub_levels: u32) -> bool {
-        self.position_fits(format, sub_levels) && self.plane_fits(format)
-    }
-}
-
-/// The reach over the object's eight corners; intermediate vertices lie between.
-/// `None` where it does not fit 127 bits.
-fn reach(origin: &[i64; 3], edge: &[[i64; 3]; 3], depth: u32) -> Option<Reach> {
-    let mut reach = Reach {
-        position: 0,
-        plane: 0,
-    };
-    for corner in 0..8u32 {
-        let mut at = origin.map(i128::from);
-        for (k, step) in edge.iter().enumerate() {
-            if corner >> (2 - k) & 1 == 1 {
-                for c in 0..3 {
-                    at[c] += i128::from(step[c]) << depth;
-                }
-            }
-        }
-        for c in at {
-            reach.position = reach.position.max(c.abs());
-        }
-        if reach.position > 1 << 62 {
-            return None;
-        }
-        for step in edge {
-            let plane = cross(&at, &step.map(i128::from));
-            let sum = plane.iter().map(|c| c.abs()).sum::<i128>();
-            reach.plane = reach.plane.max(sum);
-        }
-    }
-    Some(reach)
-}
-
-fn cross(a: &[i128; 3], b: &[i128; 3]) -> [i128; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// The eye of the quantised view, exactly: where the clip vector is zero.
-struct Eye {
-    floor: [i64; 3],
-    ceil: [i64; 3],
-    positive: bool,
-}
-
-impl Eye {
-    /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of
-    /// `2^-sub_levels`. `None`: beyond 127 bits; `Some(None)`: no volume.
-    fn solve(origin: &[i64; 3], edge: &[[i64; 3]; 3], sub_levels: u32) -> Option<Option<Self>> {
-        let edge = edge.map(|e| e.map(i128::from));
-        let minus_origin = origin.map(|c| -i128::from(c));
-        let determinant = |m: &[[i128; 3]; 3]| -> Option<i128> {
-            let minor = cross(&m[1], &m[2]);
-            (0..3).try_fold(0i128, |sum, c| {
-                m[0][c].checked_mul(minor[c])?.checked_add(sum)
-            })
-        };
-        let whole = determinant(&edge)?;
-        if whole == 0 {
-            return Some(None);
-        }
-        let mut floor = [0; 3];
-        let mut ceil = [0; 3];
-        for k in 0..3 {
-            let mut replaced = edge;
-            replaced[k] = minus_origin;
-            let part = determinant(&replaced)?.checked_mul(1i128 << sub_levels)?;
-            let (part, whole) = (part * whole.signum(), whole.abs());
-            floor[k] = i64::try_from(part.div_euclid(whole)).ok()?;
-            ceil[k] = floor[k] + i64::from(part.rem_euclid(whole) != 0);
-        }
-        Some(Some(Self {
-            floor,
-            ceil,
-            positive: whole > 0,
-        }))
-    }
+    size_limit(by, options, options.lod_px)
 }

@@ -118,7 +118,7 @@ fn any_options() -> impl Strategy<Value = FastOptions> {
     })
 }
 
-fn any_settings() -> impl Strategy<Value = SetupOptions> {
+pub(super) fn any_settings() -> impl Strategy<Value = SetupOptions> {
     let tolerance = prop_oneof![
         3 => Just(0.0),
         1 => Just(1.0 / 256.0),

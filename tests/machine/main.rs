@@ -10,6 +10,7 @@ mod exact;
 mod fast;
 mod files;
 mod golden;
+mod host;
 mod oracle;
 mod order;
 mod rules;

@@ -38,8 +38,8 @@ const TO_HOST: [Allowed; 9] = [
     ),
     allowed(
         "constants.rs",
-        "near_crossing: Word::from_host(near.to_host() >> NEAR_CROSSING_SHIFT),",
-        "a constant of the frame, made by the host before the first record",
+        "let near_crossing = by.lift(near.to_host()) >> NEAR_CROSSING_SHIFT;",
+        CONSTANT,
     ),
     allowed(
         "size.rs",
@@ -99,12 +99,7 @@ const SHOWN: [Allowed; 8] = [
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
-const PRODUCTS: [Allowed; 13] = [
-    allowed(
-        "constants.rs",
-        "i128::from(a[i]) * i128::from(b[j]) - i128::from(a[j]) * i128::from(b[i])",
-        "the host's cross products of frame constants, before the first record",
-    ),
+const PRODUCTS: [Allowed; 12] = [
     allowed(
         "constants.rs",
         "let (i, j) = ((k + 1) % 3, (k + 2) % 3);",
@@ -143,6 +138,41 @@ const PRODUCTS: [Allowed; 13] = [
     ),
 ];
 
+/// Lines that name the host's arithmetic, which multiplies.
+const HOST: [Allowed; 6] = [
+    allowed(
+        "alpha.rs",
+        "use crate::project::host::Host;",
+        "to hand it on",
+    ),
+    allowed(
+        "constants.rs",
+        "use crate::project::host::{Host, Num, Part, Tally, Untold, cross, lift_all};",
+        "for the lines below",
+    ),
+    allowed(
+        "constants.rs",
+        "let origin_clip = lift_all(by, setup.origin_clip);",
+        CONSTANT,
+    ),
+    allowed(
+        "constants.rs",
+        "let edge_clip = setup.edge_clip.map(|e| lift_all(by, e));",
+        CONSTANT,
+    ),
+    allowed(
+        "constants.rs",
+        "|eye: [i64; 3]| lift_all(by, eye).map(|c| Word::from_host(c.clamped(-1, beyond).value));",
+        CONSTANT,
+    ),
+    allowed(
+        "constants.rs",
+        "cross(a.map(Num::widened), b.map(Num::widened))",
+        CONSTANT,
+    ),
+];
+
+const CONSTANT: &str = "a constant of the frame, made by the host before the first record";
 const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const FOR_CHECKS: &str = "vertices shown to an experiment; nothing of it goes back";
 const INDEX: &str = "which wire, known when the machine is built";
@@ -244,6 +274,15 @@ fn words_are_read_by_the_host_alone() {
         &lines(&sources(), |line| line.contains("to_host")),
         &TO_HOST,
     );
+}
+
+#[test]
+fn the_host_s_arithmetic_makes_constants_alone() {
+    let is_host = |line: &str| {
+        let names = ["host::", "lift_all(", "cross(", "dot("];
+        names.iter().any(|name| line.contains(name))
+    };
+    check(&lines(&sources(), is_host), &HOST);
 }
 
 #[test]

@@ -22,6 +22,7 @@ use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
+use crate::lab::model::host::HostWork;
 use crate::lab::model::rival::{self, Rival};
 use crate::lab::model::rules::{self, RuleRow};
 use crate::lab::model::sweep::{self, FormatRow};
@@ -36,6 +37,8 @@ struct Findings {
     hardware: Hardware,
     widths: Widths,
     counted: Counted,
+    /// What the host did before the first record.
+    host: HostWork,
     simulated: Simulated,
     /// Samples that the hardware's picture shows otherwise than the serial machine's.
     differing: u64,
@@ -111,6 +114,14 @@ fn find(
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
+    let host = HostWork::measure(
+        &camera,
+        &graph.placement,
+        graph.depth,
+        &options,
+        &counted,
+        prices,
+    )?;
     vectors::write(args, name, graph, &setup, overflow, console)?;
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
@@ -179,6 +190,7 @@ fn find(
         hardware,
         widths,
         counted,
+        host,
         simulated,
         differing,
         cost,

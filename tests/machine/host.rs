@@ -1,0 +1,236 @@
+//! The host's part of a frame: what it makes, bit by bit, and what that takes.
+
+use glam::DVec3;
+use proptest::prelude::*;
+use shiftvox::graph::Placement;
+use shiftvox::machine::count_load;
+use shiftvox::project::host::{Kind, Part, Step, Tally};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
+
+use crate::common::{any_camera, camera};
+use crate::fast::any_settings;
+
+/// Numbers from a seed.
+struct Dice(u64);
+
+impl Dice {
+    fn bits(&mut self) -> u64 {
+        // SplitMix64.
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, end: u64) -> u64 {
+        self.bits() % end
+    }
+
+    /// From 0 to 1.
+    fn share(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.share()
+    }
+
+    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u64) as usize]
+    }
+}
+
+/// A frame of any kind, some of which cannot be set up.
+fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, SetupOptions) {
+    let depth = dice.below(18) as u32;
+    let side = (1u64 << depth) as f64;
+    let far = dice.of(&[1.0, 1.0, 1.0, 30.0, 1e6, 1e15]);
+    let mut point = |low, high| DVec3::from_array([0; 3].map(|_| dice.between(low, high) * side));
+    let (eye, seen) = (point(-1.5 * far, 2.5 * far), point(0.0, 1.0));
+    let target = match dice.below(12) {
+        0..3 => eye + dice.of(&DVec3::AXES),
+        3 => eye,
+        _ => seen,
+    };
+    let options = SetupOptions {
+        bits: dice.of(&[16, 20, 24, 32, 32, 40, 64, 64]),
+        frac: dice.of(&[None, None, None, Some(4), Some(8), Some(14), Some(24)]),
+        cage: dice.of(&[CageKind::Corners, CageKind::Frame]),
+        tolerance_px: dice.of(&[
+            0.0,
+            1.0 / 64.0,
+            0.1,
+            0.125,
+            0.3,
+            1.0,
+            7.0,
+            4097.0,
+            f64::INFINITY,
+        ]),
+        coverage: dice.of(&[
+            Coverage::Any,
+            Coverage::Center,
+            Coverage::Exact,
+            Coverage::Alpha,
+        ]),
+        lod_px: dice.of(&[0.0, 0.5, 1.0, 3.3]),
+        aa_log2: dice.of(&[0, 0, 0, 0, 0, 1, 1, 2, 2, 3]),
+    };
+    let placement = Placement {
+        world_origin: [0; 3].map(|_| dice.of(&[0.0, 0.1, -3.7])),
+        voxel_size: dice.of(&[1.0, 1.0, 0.037]),
+        origin_index: [0; 3].map(|_| dice.of(&[0, 0, 5, -9])),
+    };
+    let camera = Camera {
+        eye,
+        target,
+        up: dice.of(&[DVec3::Z, DVec3::Z, DVec3::Y, DVec3::new(0.3, -2.0, 9.0)]),
+        fov_degrees: dice.between(0.5, 179.0),
+        width: dice.of(&[1, 17, 512, 1024, 1000, 32768]),
+        height: dice.of(&[1, 30, 512, 1024, 720]),
+    };
+    (camera, placement, depth, options)
+}
+
+/// All integers of a frame, as text.
+fn integers(setup: &FrameSetup) -> String {
+    let sizes = (
+        (setup.width, setup.height, setup.levels, setup.depth),
+        (setup.format, setup.clip_frac, setup.sub_levels),
+        (setup.strip_guard, setup.strip_slack, setup.grow_shift),
+        (setup.positive, setup.has_headroom, setup.near),
+    );
+    let view = (setup.origin_clip, setup.edge_clip);
+    let eye = (setup.eye_floor, setup.eye_ceil, setup.opacity_eye());
+    let depths = (&setup.screen_depth, &setup.lod_depth);
+    let limits = (&setup.size_limit, &setup.lod_limit);
+    let lattices = [0.01, 0.125].map(|deviation| setup.lattice_depths(deviation));
+    format!("{sizes:?} {view:?} {eye:?} {depths:?} {limits:?} {lattices:?}")
+}
+
+/// Frames that the recorded hash is of.
+const RECORDED_FRAMES: u32 = 20_000;
+/// FNV-1a of what `FrameSetup::new` made of them before its arithmetic could be
+/// counted: all integers of all frames, or why there is none.
+const RECORDED_HASH: u64 = 0x9c95_71c2_d435_219e;
+
+#[test]
+fn the_integers_of_frames_are_those_recorded() {
+    let mut hash = 0xcbf2_9ce4_8422_2325u64;
+    let mut dice = Dice(1);
+    let mut set_up = 0;
+    for _ in 0..RECORDED_FRAMES {
+        let (camera, placement, depth, options) = any_frame(&mut dice);
+        let made = FrameSetup::new(&camera, &placement, depth, &options);
+        let text = match &made {
+            Ok(setup) => {
+                set_up += 1;
+                integers(setup)
+            }
+            Err(error) => format!("{error:?}"),
+        };
+        for byte in text.bytes() {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    eprintln!("{set_up} of {RECORDED_FRAMES} frames set up");
+    assert_eq!(hash, RECORDED_HASH, "{hash:#x}");
+}
+
+/// Steps of one kind that a part of the set-up took.
+fn times(tally: &Tally, part: Part, step: Step, kind: Kind) -> u64 {
+    let is_it = |cell: &shiftvox::project::host::HostCell| {
+        (cell.part, cell.step, cell.kind) == (part, step, kind)
+    };
+    tally.cells().find(is_it).map_or(0, |cell| cell.times)
+}
+
+#[test]
+fn counted_frames_are_the_same_or_fail_the_same() {
+    let mut dice = Dice(2);
+    let mut set_up = 0;
+    for _ in 0..1000 {
+        let (camera, placement, depth, options) = any_frame(&mut dice);
+        let plain = FrameSetup::new(&camera, &placement, depth, &options);
+        let tally = Tally::default();
+        let counted = FrameSetup::counted(&camera, &placement, depth, &options, &tally);
+        set_up += u32::from(plain.is_ok());
+        assert!(tally.cells().count() > 0);
+        // Errors may hold what is not a number.
+        assert_eq!(format!("{plain:?}"), format!("{counted:?}"));
+    }
+    assert!((300..700).contains(&set_up), "{set_up} of 1000 set up");
+}
+
+proptest! {
+    #[test]
+    fn counted_frames_are_the_same_bits(
+        camera in any_camera(64.0, 1..300),
+        settings in any_settings(),
+        depth in 0..12u32,
+    ) {
+        let placement = Placement::default();
+        let plain = FrameSetup::new(&camera, &placement, depth, &settings);
+        let tally = Tally::default();
+        let counted = FrameSetup::counted(&camera, &placement, depth, &settings, &tally);
+        prop_assert_eq!(&plain, &counted);
+        if let Ok(setup) = &plain {
+            count_load(setup, &tally);
+            let products = times(&tally, Part::Words, Step::Multiply, Kind::LongInteger);
+            let outlines = settings.coverage.draws_outlines();
+            // Six planes of six products each.
+            prop_assert_eq!(products, if outlines { 36 } else { 0 });
+        }
+    }
+}
+
+/// What a frame takes, worked out by hand from the code and SPEC.md.
+#[test]
+fn steps_worked_out_by_hand() {
+    let tally = Tally::default();
+    let options = SetupOptions {
+        tolerance_px: 0.0,
+        ..SetupOptions::default()
+    };
+    let camera = camera([20.0, -30.0, 25.0], [8.0, 8.0, 8.0], 64);
+    let placement = Placement::default();
+    let setup = FrameSetup::counted(&camera, &placement, 4, &options, &tally).unwrap();
+    count_load(&setup, &tally);
+    let floats = |step| times(&tally, Part::View, step, Kind::Float);
+    // Three lengths of 3, two vectors divided by theirs, two cross products,
+    // the least length of `right`, the half angle; three edges of 4.
+    assert_eq!(floats(Step::Multiply), 3 * 3 + 2 * 3 + 2 * 6 + 2 + 3 * 4);
+    // The way to the target, three lengths, two cross products; for each axis
+    // an edge's X and Y, and the eye less the world's and the object's origin.
+    assert_eq!(floats(Step::Add), 3 + 3 * 2 + 2 * 3 + 3 * (2 + 2));
+    // Two lengths' inverses, half the height, the focal length; half the
+    // picture; for each axis X, Y, and the eye in voxels.
+    assert_eq!(floats(Step::Divide), 2 + 2 + 2 + 3 * 3);
+    assert_eq!(floats(Step::SquareRoot), 3);
+    assert_eq!(floats(Step::Tangent), 1);
+    // Four determinants, each a cross product and three more; three of them
+    // with the sign of the first, in units below a voxel.
+    let eye = |step| times(&tally, Part::Eye, step, Kind::LongInteger);
+    assert_eq!(eye(Step::Multiply), 4 * (6 + 3) + 3 * 2);
+    assert_eq!(eye(Step::Add), 4 * (3 + 3));
+    // A quotient and a remainder for each axis.
+    assert_eq!(eye(Step::Divide), 3 * 2);
+    let rounded_up = times(&tally, Part::Eye, Step::Add, Kind::Integer);
+    assert_eq!(rounded_up, 3);
+    // Three planes of two edges, three of an edge and the origin.
+    let words = |step| times(&tally, Part::Words, step, Kind::LongInteger);
+    assert_eq!(words(Step::Multiply), 6 * 6);
+    assert_eq!(words(Step::Add), 6 * 3);
+    assert_eq!(words(Step::Divide), 0);
+    // Nothing changes to screen space, which is found out after two roundings
+    // and what they leave of the tolerance. Depths are those of level of detail
+    // alone: two axes, two ends, three edges of 2.
+    let depths = |step| times(&tally, Part::Depths, step, Kind::Float);
+    assert_eq!(depths(Step::Multiply), 2 + 1 + 2 * 2 * 3 * 2);
+    assert_eq!(depths(Step::SquareRoot) + depths(Step::CubeRoot), 0);
+    // By level up, then to an integer; and the limit as powers of two, its
+    // exponent and its bits.
+    let by_level = 2 * u64::from(setup.level_bound() + 1);
+    assert_eq!(depths(Step::Round), by_level + 2);
+}
