@@ -420,7 +420,8 @@ fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupErr
             options.tolerance_px,
         );
     }
-    if !(lod >= 0.0 && lod <= 4096.0) {
+    let most = by.lift(4096.0);
+    if !(lod >= 0.0 && lod <= most) {
         return bad("level of detail", "0 to 4096 pixels", options.lod_px);
     }
     if options.aa_log2 > 2 {

@@ -5,8 +5,8 @@
 //! to call one of these first, or work on something that never was a word. All
 //! are looked for in the machine's sources: every line with `to_host()`, every
 //! line that names what `show()` fills, and every line that multiplies or
-//! divides has to be on a list here that says why it may. `Datapath::tap` takes
-//! words and gives nothing back.
+//! divides or names the host's arithmetic has to be on a list here that says
+//! why it may. `Datapath::tap` takes words and gives nothing back.
 //!
 //! What this test can not see: comparing two words with `<` or `==`, or
 //! adding and shifting plain numbers. Those are for reviews.

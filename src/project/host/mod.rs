@@ -1,7 +1,7 @@
 //! The host's arithmetic, so that it can be counted while it is done.
 //!
-//! Set-up computes with [`Num`]s: a number and a [`Host`] that is told of each
-//! step. [`Untold`] takes no room and hears nothing, so a `Num` of it is the
+//! Set-up computes with `Num`s: a number and a `Host` that is told of each
+//! step. `Untold` takes no room and hears nothing, so a `Num` of it is the
 //! number; a [`Tally`] counts. The code is the same for both, and so are the bits.
 //!
 //! Not numbers here, and so not counted: levels, numbers of bits, places of
