@@ -37,6 +37,9 @@ fn each_fault_is_told_with_its_place() {
             "a file: face at line 5: expected a corner from 1 to 3, counted up to there, found 4; the file is cut"),
         (MeshFormat::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 0\n".to_vec(), "a file: face at line 4: expected a corner from 1 to 3"),
         (MeshFormat::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 -4\n".to_vec(), "a file: face at line 4: expected a corner from 1 to 3"),
+        // Counted back beyond the first, where a build with overflow checks once panicked.
+        (MeshFormat::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvt 0 0\nf 1/-12 2/1 3/1\n".to_vec(),
+            "a file: face at line 5: expected a corner from 1 to 1, counted up to there, found -12"),
         (MeshFormat::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nf 2 3".to_vec(),
             "a file: face at line 5: expected three or more corners of one form in the last line, which has no end, found \"f 2 3\"; the file is cut"),
         (MeshFormat::Obj, b"v 0 0 0\nv 1 0 0\nv 1 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\nf 1//1 2//1 3/".to_vec(), "a file: face at line 6: expected three"),

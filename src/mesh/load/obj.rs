@@ -24,6 +24,7 @@ pub(super) fn read(
     // Old files have names in other encodings; names decide nothing but materials.
     let text = String::from_utf8_lossy(bytes);
     refuse_cut_face(&text)?;
+    refuse_far_back(&text)?;
     let line = Cell::new(0);
     let mut reader = Counted {
         rest: text.as_bytes(),
@@ -215,28 +216,11 @@ fn bad_face(error: LoadError, line: u64, text: &str) -> MeshError {
         LoadError::FaceTexCoordOutOfBounds => 1,
         _ => 0,
     };
-    let mut counts = [0i64; 3];
-    for (number, line) in text.lines().enumerate() {
-        let mut words = line.split_whitespace();
-        match words.next() {
-            Some("v") => counts[0] += 1,
-            Some("vt") => counts[1] += 1,
-            Some("vn") => counts[2] += 1,
-            Some("f" | "l") => {
-                for word in words {
-                    let part = word.split('/').nth(which).unwrap_or_default();
-                    let Ok(index) = part.parse::<i64>() else {
-                        continue;
-                    };
-                    // What is defined below the face does not count, as in `tobj`.
-                    if index == 0 || index > counts[which] || index < -counts[which] {
-                        let place = number as u64 + 1;
-                        return out_of_range(index, counts[which] as usize, place);
-                    }
-                }
-            }
-            _ => {}
-        }
+    // What is defined below the face does not count, as in `tobj`.
+    let is_bad =
+        |part, index: i64, count| part == which && (index == 0 || index > count || index < -count);
+    if let Some(corner) = find_corner(text, |_| true, is_bad) {
+        return corner;
     }
     MeshFault::new(
         "face",
@@ -246,6 +230,46 @@ fn bad_face(error: LoadError, line: u64, text: &str) -> MeshError {
         "export the mesh again",
     )
     .into()
+}
+
+/// Refuses a corner that counts back beyond the first: `tobj` would compute
+/// with a negative number that it takes for a large one.
+fn refuse_far_back(text: &str) -> Result<(), MeshError> {
+    let is_bad = |_, index: i64, count: i64| index < -count;
+    find_corner(text, |line| line.contains('-'), is_bad).map_or(Ok(()), Err)
+}
+
+/// The first corner that `is_bad`, of faces and lines that are `of_interest`. It
+/// is told the part (0 position, 1 texture coordinate, 2 normal), the index,
+/// and how many there are up to there.
+fn find_corner(
+    text: &str,
+    of_interest: impl Fn(&str) -> bool,
+    is_bad: impl Fn(usize, i64, i64) -> bool,
+) -> Option<MeshError> {
+    let mut counts = [0i64; 3];
+    for (number, line) in text.lines().enumerate() {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => counts[0] += 1,
+            Some("vt") => counts[1] += 1,
+            Some("vn") => counts[2] += 1,
+            Some("f" | "l") if of_interest(line) => {
+                for word in words {
+                    for (part, (index, count)) in word.split('/').zip(counts).enumerate() {
+                        let Ok(index) = index.parse::<i64>() else {
+                            continue;
+                        };
+                        if is_bad(part, index, count) {
+                            return Some(out_of_range(index, count as usize, number as u64 + 1));
+                        }
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 fn out_of_range(index: i64, positions: usize, line: u64) -> MeshError {
