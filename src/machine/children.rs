@@ -108,6 +108,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
     }
 
+    /// Pushes a child whose vertices are in clip space, if it is seen. The
+    /// pools are those of its parent.
     fn push_in_clip_space(
         &mut self,
         octant: u8,
@@ -130,6 +132,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.push_if_seen(child.record(Pose::Clip(clip, planes)), w_max);
     }
 
+    /// The same in screen space.
     #[inline(always)]
     fn push_in_screen_space(&mut self, octant: u8, x: &L::Pool, y: &L::Pool, child: &Child<'_, L>) {
         // Wires, so taken from the pool again below: most children are
@@ -152,6 +155,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.push_at(child.record(Pose::Screen(screen)), found);
     }
 
+    /// The same in a lattice of screen space; `strips`: the child's, relative
+    /// to the quadtree node of its parent.
     fn push_in_lattice(&mut self, mut strips: Strips, child: &Child<'_, L>) {
         let Some(subtree) = &self.subtree else { return };
         let parent = child.parent;
@@ -168,7 +173,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 }
 
-/// The vertices of a record's children, by coordinate.
+/// One coordinate of the vertices of a record's children.
 #[inline(always)]
 fn pool<P: Probe, L: Lattice>(dp: &mut Datapath<P>, lattice: &L) -> L::Pool {
     let pool = lattice.pool(dp);

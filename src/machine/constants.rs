@@ -16,7 +16,8 @@ pub(super) enum Margin {
     /// to screen space may add.
     Grow(i32),
     /// Quadrants count only where the box holds one of their sample points:
-    /// narrowed by half of this many samples on each side, closed.
+    /// narrowed by half of this many samples on each side, closed. Of the
+    /// rules that draw outlines alone, which keep no vertices in screen space.
     Gap(ShiftSum),
 }
 

@@ -147,15 +147,7 @@ pub(super) fn write<T, E: From<FolderError>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn names(folder: &Path) -> Vec<String> {
-        let mut names: Vec<String> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        names.sort();
-        names
-    }
+    use crate::whole::tests::names;
 
     fn put(path: &Path, overwrite: bool, name: &str) -> Result<(), FolderError> {
         write(path, overwrite, |folder| {
