@@ -38,10 +38,9 @@ const SUBJECTS: [(&str, [f64; 3], [f64; 3]); 4] = [
     ),
 ];
 
-const SETS: [(&str, Instructions); 3] = [
+const SETS: [(&str, Instructions); 2] = [
     ("scalar", Instructions::Scalar),
     ("avx2", Instructions::Avx2),
-    ("avx512", Instructions::Avx512),
 ];
 
 fn frames(criterion: &mut Criterion) {

@@ -23,7 +23,6 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
         Isa::Auto => Instructions::Auto,
         Isa::Scalar => Instructions::Scalar,
         Isa::Avx2 => Instructions::Avx2,
-        Isa::Avx512 => Instructions::Avx512,
     };
     if !instructions.are_available() {
         return Err(CliError::new(

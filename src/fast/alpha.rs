@@ -1,9 +1,8 @@
 //! Blending, under the rule `alpha` (`SPEC.md`, section 12): what the machine
 //! has in sums of shifts, in products.
 //!
-//! Which samples a voxel draws is found as under `exact`; only voxels come one
-//! by one (no bricks, which look for the first of many), and a sample stays
-//! open until it is opaque enough.
+//! Which samples a voxel draws, and in which order, is found as under `exact`; a
+//! sample stays open until it is opaque enough.
 
 use super::lanes::Isa;
 use super::walk::Walk;
@@ -12,7 +11,7 @@ use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 
 /// What the sides of what is drawn count for, by axis.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Aim {
+struct Aim {
     /// In sixteenths of an outline.
     counts: [u32; 3],
     /// Whether a side's share is large enough for a full one to hide all.
@@ -40,14 +39,6 @@ fn aim(eye: &OpacityEye, min: [i32; 3], side: i32) -> Aim {
 }
 
 impl<I: Isa> Walk<'_, I> {
-    /// Takes the shares of a voxel's sides for those that are drawn next.
-    #[inline(always)]
-    pub(super) fn aim_at(&mut self, min: [i32; 3], level: u32) {
-        if let Some(eye) = &self.view.opacity_eye {
-            self.aim = aim(eye, min, self.view.levels[level as usize].side);
-        }
-    }
-
     /// Shows a voxel at open samples of the square whose first sample is given,
     /// eight bits a row. Those that are drawn by that: all, unless voxels are blended.
     #[inline(always)]
@@ -58,16 +49,25 @@ impl<I: Isa> Walk<'_, I> {
         node: u32,
         voxel: [i32; 4],
     ) -> u64 {
-        if self.view.opacity_eye.is_none() {
-            self.pixels.show(self.isa, corner, samples, node, voxel);
-            return samples;
+        match &self.view.opacity_eye {
+            None => {
+                self.pixels.show(self.isa, corner, samples, node, voxel);
+                samples
+            }
+            Some(eye) => self.blend(eye, corner, samples, node, voxel),
         }
-        self.blend(corner, samples, node, voxel)
     }
 
     #[inline(never)]
-    fn blend(&mut self, [x, y]: [i32; 2], samples: u64, node: u32, voxel: [i32; 4]) -> u64 {
-        let weight = self.weight(node, voxel);
+    fn blend(
+        &mut self,
+        eye: &OpacityEye,
+        [x, y]: [i32; 2],
+        samples: u64,
+        node: u32,
+        voxel: [i32; 4],
+    ) -> u64 {
+        let weight = self.weight(eye, node, voxel);
         if weight == 0 {
             return 0;
         }
@@ -102,17 +102,19 @@ impl<I: Isa> Walk<'_, I> {
     }
 
     /// A voxel's weight, 0 to 256.
-    fn weight(&self, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
+    fn weight(&self, eye: &OpacityEye, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
         let opacity = self.graph.opacity_of(node);
-        let half = i64::from(self.view.levels[level as usize].side / 2);
+        let side = self.view.levels[level as usize].side;
+        let aim = aim(eye, [x, y, z], side);
+        let half = i64::from(side / 2);
         let mut weight = 0;
         for (k, min) in [x, y, z].into_iter().enumerate() {
             let is_high = self.view.eye_floor[k] >= i64::from(min) + half;
             let covered = u32::from(sixteenths(opacity.from_side(k, is_high)));
-            if covered == SHARES as u32 && self.aim.is_seen[k] {
+            if covered == SHARES as u32 && aim.is_seen[k] {
                 return ALL_LEFT;
             }
-            weight += covered * self.aim.counts[k];
+            weight += covered * aim.counts[k];
         }
         weight
     }

@@ -26,69 +26,7 @@ pub(super) struct Window {
     pub(super) bottom: i32,
 }
 
-/// The windows of a record's eight children, by octant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Windows {
-    pub(super) left: [i32; 8],
-    pub(super) top: [i32; 8],
-    pub(super) right: [i32; 8],
-    pub(super) bottom: [i32; 8],
-    /// Of those no larger than a tile, which is meant by the next two: rows
-    /// less one times eight, and columns less one.
-    pub(super) shape: [i32; 8],
-    /// Place of the tile that holds the first sample, in the band.
-    pub(super) tile: [i32; 8],
-    /// Which of them have a sample, one bit each.
-    pub(super) held: u8,
-    /// Which of those are no larger than a tile.
-    pub(super) square: u8,
-}
-
-impl Windows {
-    /// One of them.
-    #[inline(always)]
-    pub(super) fn at(&self, octant: usize) -> Window {
-        Window {
-            left: self.left[octant],
-            top: self.top[octant],
-            right: self.right[octant],
-            bottom: self.bottom[octant],
-        }
-    }
-
-    /// The samples of one of them that is not empty, in a square that holds it
-    /// and begins at `corner`, eight bits a row.
-    #[inline(always)]
-    pub(super) fn in_square(&self, octant: usize, corner: [i32; 2]) -> u64 {
-        let (x, y) = (self.left[octant] - corner[0], self.top[octant] - corner[1]);
-        SQUARES[self.shape[octant] as usize & 63] << (8 * (y & 7) + (x & 7))
-    }
-}
-
-/// How large a window is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Extent {
-    /// Without a sample.
-    Empty,
-    /// No larger than a tile.
-    Square,
-    /// Larger.
-    Large,
-}
-
 impl Window {
-    /// How large it is.
-    #[inline(always)]
-    pub(super) fn extent(&self) -> Extent {
-        if self.is_empty() {
-            Extent::Empty
-        } else if self.right - self.left < 8 && self.bottom - self.top < 8 {
-            Extent::Square
-        } else {
-            Extent::Large
-        }
-    }
-
     /// Whether it has no sample.
     #[inline(always)]
     pub(super) fn is_empty(&self) -> bool {
@@ -228,7 +166,7 @@ static COLUMNS: [u64; 9] = {
     masks
 };
 
-/// The first rows and columns of a tile, by [`Windows::shape`].
+/// The first rows and columns of a tile: by rows less one times eight, and columns less one.
 static SQUARES: [u64; 64] = {
     let mut masks = [0; 64];
     let mut rows = 0;
@@ -271,11 +209,6 @@ impl<'p> Fill<'p> {
         fill
     }
 
-    /// Tiles a row, and the place of the band's first tile in the whole picture.
-    pub(super) fn place_of_tiles(&self) -> (i32, i32) {
-        (self.grid.tiles_across as i32, self.first_tile as i32)
-    }
-
     /// Place of the tile in column `x` and row `y` of tiles.
     #[inline(always)]
     fn tile_at(&self, x: i32, y: i32) -> usize {
@@ -301,34 +234,24 @@ impl<'p> Fill<'p> {
 
     /// The open samples of a square, eight bits a row.
     #[inline(always)]
-    pub(super) fn open_in_square<I: Isa>(&self, isa: I, window: &Window) -> u64 {
+    pub(super) fn open_in_square(&self, window: &Window) -> u64 {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
         let (more_x, more_y) = (
-            (window.right - window.left) as u32,
-            (window.bottom - window.top) as u32,
+            (window.right - window.left) as usize,
+            (window.bottom - window.top) as usize,
         );
-        let shape = more_y << 3 | more_x;
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        self.open_in_shape(isa, at, x, y, shape)
-    }
-
-    /// [`Fill::open_in_square`] of the square that begins at column `x` and row
-    /// `y` of the tile at `at`. `shape`: see [`Windows::shape`].
-    #[inline(always)]
-    pub(super) fn open_in_shape<I: Isa>(
-        &self,
-        isa: I,
-        at: usize,
-        x: u32,
-        y: u32,
-        shape: u32,
-    ) -> u64 {
         // What lies in the four tiles that the window may reach. Those that it
         // does not reach are shifted out or masked.
-        let across = self.grid.tiles_across;
-        let [left, right] = isa.square_of(self.part.tiles, at, across, x, y);
+        let below = at.wrapping_add(self.grid.tiles_across);
+        let [a, b, c, d] = match self.part.tiles.get(at..below.wrapping_add(2)) {
+            Some(tiles) => [tiles[0], tiles[1], tiles[below - at], tiles[below - at + 1]],
+            None => [at, at + 1, below, below + 1].map(|at| self.tile(at)),
+        };
+        let up = |upper: u64, lower: u64| upper >> (8 * y) | lower << 1 << (63 - 8 * y);
+        let (left, right) = (up(a, c) >> x, up(b, d) << 1 << (7 - x));
         let own = COLUMNS[8 - x as usize];
-        ((left ^ right) & own ^ right) & SQUARES[shape as usize & 63]
+        ((left ^ right) & own ^ right) & SQUARES[(more_y << 3 | more_x) & 63]
     }
 
     /// Marks samples of a tile as drawn, which are open.
@@ -416,9 +339,9 @@ impl<'p> Fill<'p> {
     /// and lies in the band. In windows larger than a tile, tiles that are
     /// not full count as open.
     #[inline(always)]
-    pub(super) fn is_open<I: Isa>(&self, isa: I, window: &Window) -> bool {
+    pub(super) fn is_open(&self, window: &Window) -> bool {
         if window.right - window.left < 8 && window.bottom - window.top < 8 {
-            return self.open_in_square(isa, window) != 0;
+            return self.open_in_square(window) != 0;
         }
         self.has_open_tile(window)
     }
@@ -493,10 +416,4 @@ impl Pixels<'_> {
         self.shown.fill(nothing);
         self.voxel.fill(crate::frame::NO_VOXEL);
     }
-}
-
-/// The tiles that a window overlaps, as a window of tiles.
-#[inline(always)]
-pub(super) fn tiles_of(window: &Window) -> Window {
-    window.coarser(TILE_LOG2)
 }

@@ -5,23 +5,21 @@ use crate::project::Stats;
 /// Counts of one frame, or of one band of it.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counters {
-    /// Nodes whose turn came in clip space.
-    pub(super) clip_records: u64,
-    /// Nodes whose turn came in screen space, above bricks.
-    pub(super) screen_records: u64,
-    /// Changes to screen space.
-    pub(super) changes: u64,
-    /// Two levels (64 parts) or one (8 parts) taken in one step.
+    /// Nodes whose children were looked at.
+    pub(super) nodes: u64,
+    /// Nodes of which two or four levels were taken in one step.
     pub(super) bricks: u64,
-    /// Samples tested against a brick's parts.
-    pub(super) brick_samples: u64,
-    /// Solids drawn by themselves.
+    /// Squares of their windows, and of solids', in which something was open.
+    pub(super) squares: u64,
+    /// Samples tested against the parts of a brick.
+    pub(super) samples_tested: u64,
+    /// Voxels drawn one by one.
     pub(super) solids: u64,
     /// Samples drawn.
     pub(super) samples_drawn: u64,
     /// Voxels that samples took, under the rule that blends.
     pub(super) samples_blended: u64,
-    /// Samples decided by exact planes.
+    /// Samples that the exact rule decided, once for each voxel.
     pub(super) exact_samples: u64,
     /// Children that do not exist.
     pub(super) skipped_absent: u64,
@@ -33,8 +31,7 @@ pub(super) struct Counters {
     pub(super) skipped_hidden: u64,
     /// Nodes whose further children were left because all samples were drawn.
     pub(super) skipped_full: u64,
-    /// Nodes with children that level of detail took for a solid in clip space,
-    /// and lattices that it ends above the finest voxels.
+    /// Nodes with children that level of detail took for a solid, outside of bricks.
     pub(super) skipped_detail: u64,
     /// Tiles filled whole by one solid.
     pub(super) tiles_filled: u64,
@@ -51,19 +48,18 @@ impl Counters {
 
     /// Names and counts, in a fixed order.
     pub(super) fn stats(&self) -> Stats {
-        let records = self.clip_records + self.screen_records + self.bricks;
+        let records = self.nodes + self.bricks;
         let mut stats = vec![("records", records)];
         stats.extend(self.fields());
         stats
     }
 
-    fn fields(&self) -> [(&'static str, u64); 16] {
+    fn fields(&self) -> [(&'static str, u64); 15] {
         [
-            ("clip_records", self.clip_records),
-            ("screen_records", self.screen_records),
-            ("changed_to_screen", self.changes),
+            ("nodes", self.nodes),
             ("bricks", self.bricks),
-            ("brick_samples", self.brick_samples),
+            ("squares", self.squares),
+            ("samples_tested", self.samples_tested),
             ("solids_drawn", self.solids),
             ("samples_drawn", self.samples_drawn),
             ("samples_blended", self.samples_blended),
@@ -78,13 +74,12 @@ impl Counters {
         ]
     }
 
-    fn fields_mut(&mut self) -> [&mut u64; 16] {
+    fn fields_mut(&mut self) -> [&mut u64; 15] {
         [
-            &mut self.clip_records,
-            &mut self.screen_records,
-            &mut self.changes,
+            &mut self.nodes,
             &mut self.bricks,
-            &mut self.brick_samples,
+            &mut self.squares,
+            &mut self.samples_tested,
             &mut self.solids,
             &mut self.samples_drawn,
             &mut self.samples_blended,

@@ -1,43 +1,35 @@
-//! The fast engine: the machine's bits, as fast as the processor goes.
+//! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! What the machine does for records this engine does for samples. Both go
-//! down the graph nearest first and leave what cannot be seen; but the last
-//! two levels are one step here (`brick.rs`): 64 parts, one lane each, and
-//! for every open sample the first lane whose outline holds it; where voxels
-//! are so small that three levels fit a tile, those are one step (`tall.rs`). That gives
-//! the machine's picture because the picture does not depend on when occluded
-//! records are rejected (`SPEC.md`, section 5), and because all that decides it
-//! (when a record changes to screen space, its lattice there, level of
-//! detail, order, outlines) is computed from the same whole numbers.
+//! What the machine does for records this engine does for samples. Under
+//! `exact` the picture is one mathematical fact (`SPEC.md`): each sample shows
+//! the first voxel on its ray. So the engine is free in its numbers and its
+//! order: approximate arithmetic whose error is bounded decides nearly all samples,
+//! and the exact rule what is left in doubt (`spec/fast.md`).
 //!
 //! ```text
-//! for each band of the picture, from the whole object down:
-//!     clip space (clip):     leave what is behind the eye, beside the picture, or hidden;
-//!                            change to screen space where the deviation allows
-//!     screen space (screen): the same with integer boxes; two levels above the finest: a brick
-//!     brick (brick, tall):   columns, rows and strips of 64 parts against each open sample
-//!     solids (planes):       by exact planes in clip space; by strips in screen space,
-//!                            the children of a node together where it fits a tile
+//! for each band of the picture, from the whole object down (walk):
+//!     leave what is behind the eye, beside the picture, or hidden
+//!     small voxels (bricks):  64 or 4096 to a step; for each open sample, which of them its
+//!                             line may meet (strips), and the first that it does (lines)
+//!     voxels (voxels):        one by one, against 64 samples at once
+//!     large or near ones:     by exact planes (exact)
 //! ```
 //!
-//! Frames with settings that this engine has no exact numbers for (rules other
-//! than `exact` and `alpha`, an infinite tolerance, records asked for, formats without
-//! headroom) are handed to the engine it is made with.
+//! Frames under other rules (and records, where asked for, and numbers too large
+//! for it) are handed to the engine it is made with.
 
 mod alpha;
-mod brick;
+mod bricks;
 mod canvas;
-mod clip;
 mod counters;
+mod exact;
 mod lanes;
+mod lines;
 mod parts;
-mod planes;
-mod screen;
-mod subtree;
+mod strips;
 mod switches;
-mod tables;
-mod tall;
 mod view;
+mod voxels;
 mod walk;
 
 use crate::frame::{Colors, Frame};
@@ -45,11 +37,11 @@ use crate::graph::GraphView;
 use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
 use canvas::{BLOCK_LOG2, Fill, FillMemory, FillPart, Grid, Pixels, Window};
 use counters::Counters;
+use exact::Exact;
 use lanes::{Isa, Scalar};
-use planes::Exact;
 pub use switches::Switches;
 use view::View;
-use walk::{Bounds, Walk};
+use walk::{Blocks, Walk};
 
 /// Which instructions the engine uses. Never changes a bit of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -61,8 +53,6 @@ pub enum Instructions {
     Scalar,
     /// AVX2; plain Rust where the processor has none.
     Avx2,
-    /// AVX-512; AVX2 or plain Rust where the processor has none.
-    Avx512,
 }
 
 /// How the engine works. None of it changes a bit of a picture.
@@ -157,13 +147,11 @@ impl Fast {
         };
         let counters = match self.options.instructions.found() {
             #[cfg(target_arch = "x86_64")]
-            Found::Avx512(isa) => run_bands(&job, piece, isa, threads),
-            #[cfg(target_arch = "x86_64")]
             Found::Avx2(isa) => run_bands(&job, piece, isa, threads),
             Found::Scalar(isa) => run_bands(&job, piece, isa, threads),
         };
-        self.counters = counters.unwrap_or_default();
-        counters.is_some()
+        self.counters = counters;
+        true
     }
 }
 
@@ -240,8 +228,6 @@ fn pixels_of(frame: &mut Frame) -> Pixels<'_> {
 /// A set of instructions that the processor has.
 enum Found {
     #[cfg(target_arch = "x86_64")]
-    Avx512(lanes::Avx512),
-    #[cfg(target_arch = "x86_64")]
     Avx2(lanes::Avx2),
     Scalar(Scalar),
 }
@@ -250,18 +236,8 @@ impl Instructions {
     /// The best of these that the processor has.
     fn found(self) -> Found {
         #[cfg(target_arch = "x86_64")]
-        {
-            let (avx512, avx2) = match self {
-                Self::Auto | Self::Avx512 => (true, true),
-                Self::Avx2 => (false, true),
-                Self::Scalar => (false, false),
-            };
-            if let Some(isa) = lanes::Avx512::detect().filter(|_| avx512) {
-                return Found::Avx512(isa);
-            }
-            if let Some(isa) = lanes::Avx2::detect().filter(|_| avx2) {
-                return Found::Avx2(isa);
-            }
+        if let Some(isa) = lanes::Avx2::detect().filter(|_| self != Self::Scalar) {
+            return Found::Avx2(isa);
         }
         Found::Scalar(Scalar)
     }
@@ -274,10 +250,8 @@ impl Instructions {
             Self::Auto | Self::Scalar => true,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => matches!(found, Found::Avx2(_)),
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => matches!(found, Found::Avx512(_)),
             #[cfg(not(target_arch = "x86_64"))]
-            Self::Avx2 | Self::Avx512 => false,
+            Self::Avx2 => false,
         }
     }
 }
@@ -350,9 +324,8 @@ impl Piece<'_> {
     }
 }
 
-/// Draws a band after the other, each while others draw the rest. `None`: a
-/// subtree has numbers that do not fit.
-fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Option<Counters> {
+/// Draws a band after the other, each while others draw the rest.
+fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Counters {
     let rows = piece.block_rows();
     let first = first_band(rows, threads);
     if first == rows {
@@ -363,13 +336,14 @@ fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) ->
         || run(job, band, isa),
         || run_bands(job, rest, isa, threads),
     );
-    let mut counters = counters?;
-    counters.add(&others?);
-    Some(counters)
+    let mut counters = counters;
+    counters.add(&others);
+    counters
 }
 
 /// Draws one band.
-fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> {
+fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
+    let mut blocks = Box::<Blocks>::default();
     piece.pixels.clear();
     let fill = Fill::clear(&piece.grid, piece.bounds, piece.fill);
     let mut walk = Walk {
@@ -378,19 +352,15 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Option<Counters> 
         exact: job.exact,
         graph: job.graph,
         switches: job.switches,
-        bounds: Bounds::new(&fill),
         fill,
+        blends: job.view.opacity_eye.is_some(),
+        places: std::array::from_fn(|i| ((i >> 3) * piece.pixels.width + (i & 7)) as u32),
         pixels: piece.pixels,
         counters: Counters::default(),
-        tables: tables::Tables::default(),
-        aim: alpha::Aim::default(),
-        found: [(0, 0); 64],
-        is_lost: false,
+        found: lanes::Found([0; 64]),
+        hits: [bricks::Hit::default(); 64],
+        blocks: &mut blocks,
     };
-    clip::start(&mut walk);
-    if !job.switches.absent_children {
-        // They were looked at like others.
-        walk.counters.skipped_absent = 0;
-    }
-    (!walk.is_lost).then_some(walk.counters)
+    walk::start(&mut walk);
+    walk.counters
 }

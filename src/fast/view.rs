@@ -1,73 +1,42 @@
 //! The constants of a frame, as the walk needs them.
 //!
-//! Clip vectors are whole numbers in `f64`: exact, because [`View::new`] takes
-//! no frame whose positions, times sixteen, leave 53 bits. So comparisons with
-//! the machine's thresholds have the machine's outcome, and the same lanes can
-//! divide.
+//! Clip vectors of nodes are halves of whole numbers in `f64`, and exact:
+//! [`View::new`] takes no frame whose positions, times sixteen, leave 53 bits.
+//! So the compares with depths of level of detail are the machine's.
 
 use crate::project::{Coverage, FrameSetup, OpacityEye};
 
 /// Positions, times sixteen, stay below this: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
-/// Deviation, in samples, at which a frame without tolerance uses lattices to
-/// find the few voxels that it then decides exactly.
-const SEARCH_TOLERANCE: f64 = 1.0 / 8.0;
-/// What windows of clip-space boxes are widened by beyond the tolerance, for
-/// the rounding of quotients, in samples: millions of times as much as needed.
-const QUOTIENT_MARGIN: f64 = 1e-6;
-/// Screen positions above this many bits do not fit the lanes.
-const MAX_POSITION_BITS: u32 = 40;
 
-/// Clip vectors of eight vertices: by coordinate (X, Y, W), then in Morton order.
-pub(super) type Vertices = [[f64; 8]; 3];
+/// Size, in samples, from which on voxels are drawn one by one
+/// (`voxels.rs`) and not sample by sample (`bricks.rs`). Measured.
+const COARSE_SAMPLES: f64 = 3.0;
+/// Size, in samples, up to which four levels are one brick. Measured.
+const FINE_SAMPLES: f64 = 0.75;
+/// Size, in samples, from which on a cube is drawn by its planes, whole
+/// blocks and tiles at a time (`exact.rs`). Measured.
+const LARGE_SAMPLES: f64 = 24.0;
 
-/// What voxels of one octree level have in common.
+/// What nodes of one octree level have in common.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
-    /// The vertices relative to the lowest corner.
-    pub(super) vertices: Vertices,
-    /// The children's lowest corners relative to their parent's, by octant.
-    pub(super) child: [[f64; 3]; 8],
-    /// Least and greatest W of a vertex, relative to the lowest corner's.
-    pub(super) w_span: [f64; 2],
-    /// Least W of a record that may change to screen space; infinite: none may.
-    pub(super) screen_depth: f64,
-    /// Least W of a node that is a solid by level of detail; infinite: none is.
+    /// The children's centres relative to their parent's: by coordinate of the clip vector, then by octant.
+    pub(super) child: [[f64; 8]; 3],
+    /// The vertices relative to the centre, in the same way.
+    pub(super) vertices: [[f64; 8]; 3],
+    /// Half of what a node spans in depth.
+    pub(super) half_depth: f64,
+    /// Least W of a node with children that is a solid by level of detail; infinite: none is.
     pub(super) lod_depth: f64,
-    /// A voxel's side, finest voxels.
+    /// A node's side, finest voxels.
     pub(super) side: i32,
-}
-
-impl Level {
-    /// The vertices of the voxel whose lowest corner is here.
-    #[inline(always)]
-    pub(super) fn vertices_at(&self, corner: [f64; 3]) -> Vertices {
-        let mut vertices = self.vertices;
-        for c in 0..3 {
-            for v in &mut vertices[c] {
-                *v += corner[c];
-            }
-        }
-        vertices
-    }
-}
-
-/// How far lattices are from the truth at most, in samples.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Search {
-    /// By what a voxel's projection bends, at the least depth of its level.
-    bend: f64,
-    /// By rounding.
-    rounding: f64,
-}
-
-impl Search {
-    /// The deviation of a voxel at this depth. Bends fall with its square, or faster.
-    #[inline(always)]
-    pub(super) fn deviation(&self, least_depth: f64, depth: f64) -> f64 {
-        let ratio = least_depth / depth;
-        self.bend * (ratio * ratio) + self.rounding
-    }
+    /// Depth up to which a node's parts, a quarter of its side, are coarse ([`COARSE_SAMPLES`]).
+    pub(super) coarse_depth: f64,
+    /// Depth from which on parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
+    pub(super) fine_depth: f64,
+    /// Depth up to which a node itself is large ([`LARGE_SAMPLES`]).
+    pub(super) large_depth: f64,
 }
 
 /// The constants of a frame.
@@ -77,140 +46,130 @@ pub(super) struct View {
     pub(super) levels: Vec<Level>,
     /// Octree level of the finest voxels.
     pub(super) depth: u32,
-    /// Clip vector of the object's lowest corner.
-    pub(super) origin: [f64; 3],
+    /// Clip vector of the object's centre.
+    pub(super) centre: [f64; 3],
     /// Samples a side of the image root.
     pub(super) root_samples: f64,
-    /// Fraction bits of screen positions.
-    pub(super) frac: u32,
-    /// Level of detail in the unit of screen positions.
-    pub(super) lod_limit: i64,
-    /// Fraction bits of strips beyond those that their levels need.
-    pub(super) strip_guard: u32,
-    /// See [`FrameSetup::strip_slack`].
-    pub(super) strip_slack: Option<u32>,
+    /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`,
+    /// so that the quotient is 0 at the centre of the first sample.
+    pub(super) edge: [[f64; 3]; 3],
+    /// The direction of a sample's ray in the object, along each axis, as a
+    /// linear function of column and row: `[along x, along y, at sample 0]`.
+    /// Scaled, so that it is about 1, and turned so that rays run forward.
+    pub(super) direction: [[f64; 3]; 3],
+    /// The same, by coefficient, then by axis.
+    pub(super) direction_lanes: [[f32; 4]; 3],
+    /// [`View::edge`], rounded.
+    pub(super) edge_lanes: [[f32; 3]; 3],
+    /// What a product of two edges is scaled by for [`View::direction`].
+    pub(super) scale: f64,
     /// The eye, finest voxels, rounded down.
     pub(super) eye_floor: [i64; 3],
     /// Under the rule that blends.
     pub(super) opacity_eye: Option<OpacityEye>,
-    /// What windows of clip-space boxes are widened by, samples.
-    pub(super) margin: f64,
-    /// In a frame without tolerance: how far lattices are from the truth. What
-    /// they find is then decided exactly.
-    pub(super) search: Option<Search>,
 }
 
 impl View {
-    /// The constants of a frame, or `None` where this engine has no exact
-    /// numbers for it: other coverage rules, no bound on the deviation,
-    /// numbers too large, words that may overflow.
+    /// The constants of a frame, or `None` where this engine does not draw
+    /// it: rules other than `exact` and `alpha`, numbers too large, words that may overflow.
     pub(super) fn new(setup: &FrameSetup) -> Option<Self> {
-        let options = &setup.options;
-        let tolerance = options.tolerance_px;
         let reach = setup.position_reach()?;
-        let frac = setup.format.frac();
-        if !options.coverage.draws_outlines()
-            || !tolerance.is_finite()
+        if !setup.options.coverage.draws_outlines()
+            || setup.options.tolerance_px != 0.0
             || !setup.has_headroom
             || reach * 16 >= EXACT_LIMIT
-            || setup.levels + frac + 5 > MAX_POSITION_BITS
         {
             return None;
         }
-        let search = (tolerance == 0.0).then(|| Search {
-            bend: SEARCH_TOLERANCE - setup.lattice_rounding(),
-            rounding: setup.lattice_rounding(),
-        });
-        let screen_depth = match search {
-            Some(_) => setup.lattice_depths(SEARCH_TOLERANCE),
-            None => setup.screen_depth.clone(),
+        let root_samples = libm::ldexp(1.0, setup.levels as i32);
+        let clip = setup.edge_clip.map(|e| e.map(|c| c as f64));
+        let edge = clip.map(|[x, y, w]| [x * root_samples - w / 2.0, y * root_samples - w / 2.0, w]);
+        let middle = [f64::from(setup.width) / 2.0, f64::from(setup.height) / 2.0];
+        let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
+        let at_middle = |n: [f64; 3]| (n[0] * middle[0] + n[1] * middle[1] + n[2]).abs();
+        let length = normal.map(at_middle).into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        let scale = if setup.positive { 1.0 } else { -1.0 } / length;
+        let direction = normal.map(|n| n.map(|c| c * scale));
+        let column = |i: usize| {
+            let [x, y, z] = [0, 1, 2].map(|k| direction[k][i] as f32);
+            [x, y, z, 0.0]
         };
-        let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
+        let focal = {
+            let squares = edge.map(|e| {
+                let x = e[0] - middle[0] * e[2];
+                x * x
+            });
+            libm::sqrt(squares.iter().sum())
+        };
         let levels = (0..=setup.depth)
-            .map(|level| level_constants(setup, &edge, &screen_depth, level))
+            .map(|level| level_constants(setup, &clip, focal, level))
             .collect();
         let far = 1i64 << setup.depth;
-        let unit = libm::ldexp(1.0, frac as i32);
-        let lod = setup.lod_limit.as_ref().map_or(0.0, |l| l.value());
+        let half = far as f64 / 2.0;
+        let centre = [0, 1, 2].map(|c| {
+            let edges = clip[0][c] + clip[1][c] + clip[2][c];
+            setup.origin_clip[c] as f64 + edges * half
+        });
         Some(Self {
             levels,
             depth: setup.depth,
-            origin: setup.origin_clip.map(|c| c as f64),
-            root_samples: libm::ldexp(1.0, setup.levels as i32),
-            frac,
-            lod_limit: (libm::floor(lod * unit) as i64).max(LEAST_SIZE),
-            strip_guard: setup.strip_guard,
-            strip_slack: setup.strip_slack,
+            centre,
+            root_samples,
+            edge,
+            direction,
+            direction_lanes: [column(0), column(1), column(2)],
+            edge_lanes: edge.map(|e| e.map(|c| c as f32)),
+            scale,
             eye_floor: setup.eye_floor.map(|c| c.clamp(-1, far + 1)),
-            opacity_eye: (options.coverage == Coverage::Alpha).then(|| setup.opacity_eye()),
-            margin: tolerance + QUOTIENT_MARGIN,
-            search,
+            opacity_eye: (setup.options.coverage == Coverage::Alpha).then(|| setup.opacity_eye()),
         })
     }
 
-    /// Which octant is nearest for a voxel with this centre: bit k is set
-    /// where the centre is above the eye.
+    /// Which octant of a node is nearest to the eye, the node's lowest corner
+    /// and half side given: bit k is set where the eye is above the centre.
     #[inline(always)]
-    pub(super) fn octant(&self, min: [i32; 3], half_side: i32) -> u8 {
+    pub(super) fn nearest_octant(&self, min: [i32; 3], half_side: i32) -> u8 {
         let mut octant = 0;
         for k in 0..3 {
             let centre = i64::from(min[k]) + i64::from(half_side);
-            octant = octant << 1 | u8::from(self.eye_floor[k] < centre);
+            octant = octant << 1 | u8::from(self.eye_floor[k] >= centre);
         }
         octant
     }
-
-    /// The octant of all voxels of any size inside a box, if it is one.
-    #[inline(always)]
-    pub(super) fn common_octant(&self, min: [i32; 3], side: i32, least_half: i32) -> Option<u8> {
-        let mut octant = 0;
-        for k in 0..3 {
-            let low = i64::from(min[k]) + i64::from(least_half);
-            let high = i64::from(min[k]) + i64::from(side) - i64::from(least_half);
-            let eye = self.eye_floor[k];
-            if eye >= low && eye < high {
-                return None;
-            }
-            octant = octant << 1 | u8::from(eye < low);
-        }
-        Some(octant)
-    }
 }
 
-/// Size, in units of the last place of a screen position, below which nothing
-/// is subdivided (the machine's `LEAST_SIZE`).
-const LEAST_SIZE: i64 = 4;
+fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
 
-fn level_constants(
-    setup: &FrameSetup,
-    edge: &[[f64; 3]; 3],
-    screen_depth: &[i64],
-    level: u32,
-) -> Level {
+/// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that
+/// a finest voxel takes, times its depth.
+fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: u32) -> Level {
     let side = f64::from(1u32 << (setup.depth - level));
-    let corner = |index: usize, scale: f64| -> [f64; 3] {
-        std::array::from_fn(|c| {
-            (0..3)
-                .filter(|k| index >> (2 - k) & 1 != 0)
-                .map(|k| edge[k][c] * scale)
-                .sum::<f64>()
+    // Corners of a cube about its centre: by coordinate, then by octant.
+    let corners = |half: f64| -> [[f64; 8]; 3] {
+        [0, 1, 2].map(|c| {
+            std::array::from_fn(|octant: usize| {
+                let sign = |k: usize| if octant >> (2 - k) & 1 == 1 { half } else { -half };
+                (0..3).map(|k| clip[k][c] * sign(k)).sum()
+            })
         })
     };
-    let corners: [[f64; 3]; 8] = std::array::from_fn(|index| corner(index, side));
-    let vertices: Vertices = std::array::from_fn(|c| corners.map(|corner| corner[c]));
-    let depth = |depths: &[i64]| match depths[level as usize] {
-        i64::MAX => f64::INFINITY,
-        w => w as f64,
-    };
     Level {
-        child: std::array::from_fn(|index| corner(index, side / 2.0)),
-        w_span: [
-            vertices[2].iter().copied().fold(f64::MAX, f64::min),
-            vertices[2].iter().copied().fold(f64::MIN, f64::max),
-        ],
-        vertices,
-        screen_depth: depth(screen_depth),
-        lod_depth: depth(&setup.lod_depth),
+        child: corners(side / 4.0),
+        vertices: corners(side / 2.0),
+        half_depth: clip.iter().map(|e| e[2].abs()).sum::<f64>() * side / 2.0,
+        lod_depth: match setup.lod_depth[level as usize] {
+            i64::MAX => f64::INFINITY,
+            w => w as f64,
+        },
         side: 1i32 << (setup.depth - level),
+        coarse_depth: focal * side / 4.0 / COARSE_SAMPLES,
+        fine_depth: focal * side / 16.0 / FINE_SAMPLES,
+        large_depth: focal * side / LARGE_SAMPLES,
     }
 }

@@ -95,11 +95,7 @@ const SPECS: [&str; 8] = [
     "gen:maze,depth=5",
 ];
 
-const SETS: [Instructions; 3] = [
-    Instructions::Scalar,
-    Instructions::Avx2,
-    Instructions::Avx512,
-];
+const SETS: [Instructions; 2] = [Instructions::Scalar, Instructions::Avx2];
 
 fn any_options() -> impl Strategy<Value = FastOptions> {
     let set = (0..SETS.len()).prop_map(|i| SETS[i]);

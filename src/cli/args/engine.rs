@@ -69,8 +69,6 @@ pub enum Isa {
     Scalar,
     /// AVX2.
     Avx2,
-    /// AVX-512.
-    Avx512,
 }
 
 /// What the far voxel engine uses opacities for.

@@ -1,20 +1,12 @@
-//! AVX2 and AVX-512, found at run time.
+//! AVX2, found at run time.
+//!
+//! Steps within a step are macros here: a closure would be compiled without the set's instructions.
 
 use std::arch::x86_64::*;
 
-use super::x86_eight::{self as eight, eight_lanes};
-use super::x86_reals::{Avx2Reals, Avx512Reals};
-use super::{Isa, Scalar};
-use crate::fast::brick;
-use crate::fast::canvas::{Extent, Window, Windows};
-use crate::fast::clip::{self, ClipRecord};
-use crate::fast::parts::Parts;
-use crate::fast::planes::Exact;
-use crate::fast::screen::{self, ScreenRecord};
-use crate::fast::subtree::{LANES, STRIPS, Subtree};
-use crate::fast::tables::{Coarse, Tables};
-use crate::fast::tall;
-use crate::fast::walk::{Bounds, Walk};
+use super::*;
+use crate::fast::parts::TURNED_BYTES;
+use crate::fast::strips::CELLS;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
 #[derive(Debug, Clone, Copy)]
@@ -33,234 +25,349 @@ impl Avx2 {
     }
 }
 
-/// What the walk has compiled for each set: a function with the set's
-/// instructions in a module of the set's name, and the step that calls it.
-/// They are not put into each other: what one needs now and then would be
-/// computed each time that the other is called.
-macro_rules! compiled {
-    ($set:ident, $name:ident, $features:literal) => {
-        mod $name {
-            use super::*;
+/// Four lanes. One can only be had from an [`Avx2`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Floats(__m128);
 
-            type Set = $set;
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn clip(walk: &mut Walk<'_, Set>, record: &ClipRecord) {
-                clip::turn(walk, record);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn change(walk: &mut Walk<'_, Set>, record: &ClipRecord) -> bool {
-                clip::change(walk, record)
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn screen(
-                walk: &mut Walk<'_, Set>,
-                subtree: &Subtree,
-                record: &ScreenRecord,
-            ) {
-                screen::turn(walk, subtree, record);
-            }
-
-            #[cold]
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn absent(
-                walk: &mut Walk<'_, Set>,
-                subtree: &Subtree,
-                record: &ScreenRecord,
-            ) {
-                screen::look_at_absent(walk, subtree, record);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn tiles(
-                walk: &mut Walk<'_, Set>,
-                subtree: &Subtree,
-                record: &ScreenRecord,
-            ) {
-                screen::draw_tiles(walk, subtree, record);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn brick(
-                walk: &mut Walk<'_, Set>,
-                subtree: &Subtree,
-                record: &ScreenRecord,
-                octant: u8,
-                parts: &Parts,
-            ) {
-                brick::draw_node(walk, subtree, record, octant, parts);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn tall(
-                walk: &mut Walk<'_, Set>,
-                subtree: &Subtree,
-                record: &ScreenRecord,
-                octant: u8,
-                parts: &Parts,
-            ) {
-                tall::draw_node(walk, subtree, record, octant, parts);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn tables(
-                isa: Set,
-                tables: &mut Tables,
-                subtree: &Subtree,
-                left: u32,
-                octant: u8,
-            ) {
-                tables.make_parts(isa, subtree, left, octant);
-            }
-
-            #[inline(never)]
-            #[target_feature(enable = $features)]
-            pub(super) fn covers(
-                exact: &Exact,
-                min: [i32; 3],
-                side: i32,
-                sample: [i32; 2],
-            ) -> bool {
-                exact.covers(min, side, sample)
-            }
-        }
-    };
-    ($name:ident) => {
-        fn clip(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::clip(walk, record) }
-        }
-
-        fn change(self, walk: &mut Walk<'_, Self>, record: &ClipRecord) -> bool {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::change(walk, record) }
-        }
-
-        fn screen(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::screen(walk, subtree, record) }
-        }
-
-        fn absent(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::absent(walk, subtree, record) }
-        }
-
-        fn tiles(self, walk: &mut Walk<'_, Self>, subtree: &Subtree, record: &ScreenRecord) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::tiles(walk, subtree, record) }
-        }
-
-        fn brick(
-            self,
-            walk: &mut Walk<'_, Self>,
-            subtree: &Subtree,
-            record: &ScreenRecord,
-            octant: u8,
-            parts: &Parts,
-        ) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::brick(walk, subtree, record, octant, parts) }
-        }
-
-        fn tall(
-            self,
-            walk: &mut Walk<'_, Self>,
-            subtree: &Subtree,
-            record: &ScreenRecord,
-            octant: u8,
-            parts: &Parts,
-        ) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::tall(walk, subtree, record, octant, parts) }
-        }
-
-        fn tables(self, tables: &mut Tables, subtree: &Subtree, left: u32, octant: u8) {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::tables(self, tables, subtree, left, octant) }
-        }
-
-        fn covers(self, exact: &Exact, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
-            // SAFETY: `self` is only made where these features were found.
-            unsafe { $name::covers(exact, min, side, sample) }
-        }
+/// An expression of intrinsics that read no memory.
+macro_rules! avx {
+    ($value:expr) => {
+        // SAFETY: an `Avx2` and its lanes are only made where these features were found.
+        unsafe { $value }
     };
 }
 
-compiled!(Avx2, avx2, "avx2,fma,bmi1,bmi2,lzcnt,popcnt");
-compiled!(
-    Avx512,
-    avx512,
-    "avx512f,avx512bw,avx512dq,avx512vl,avx2,fma,bmi1,bmi2,lzcnt,popcnt"
-);
+const NEXT: i32 = 0b11_00_10_01;
+const LAST: i32 = 0b11_01_00_10;
 
-/// By how much 32 lanes are beyond a width; 0 where they are within.
-#[inline(always)]
-fn half_beyond(table: &[u8; 64], half: usize, start: __m256i, width: __m256i) -> __m256i {
-    // SAFETY: an `Avx2` is only made where AVX2 was found, and only its steps
-    // call this; the load is of 32 entries that the array has.
-    unsafe {
-        let entries = _mm256_loadu_si256(table.as_ptr().add(32 * half).cast());
-        _mm256_subs_epu8(_mm256_sub_epi8(start, entries), width)
+impl Four for Floats {
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        avx!(Self(_mm_add_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        avx!(Self(_mm_sub_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        avx!(Self(_mm_mul_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        avx!(Self(_mm_div_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn fma(self, by: Self, plus: Self) -> Self {
+        avx!(Self(_mm_fmadd_ps(self.0, by.0, plus.0)))
+    }
+    #[inline(always)]
+    fn fms(self, by: Self, less: Self) -> Self {
+        avx!(Self(_mm_fmsub_ps(self.0, by.0, less.0)))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        avx!(Self(_mm_max_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        avx!(Self(_mm_min_ps(self.0, other.0)))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        avx!(Self(_mm_andnot_ps(_mm_set1_ps(-0.0), self.0)))
+    }
+    #[inline(always)]
+    fn flip(self, signs: Self) -> Self {
+        avx!(Self(_mm_xor_ps(self.0, signs.0)))
+    }
+    #[inline(always)]
+    fn next(self) -> Self {
+        avx!(Self(_mm_shuffle_ps::<NEXT>(self.0, self.0)))
+    }
+    #[inline(always)]
+    fn last(self) -> Self {
+        avx!(Self(_mm_shuffle_ps::<LAST>(self.0, self.0)))
+    }
+    #[inline(always)]
+    fn signs(self) -> u32 {
+        avx!(_mm_movemask_ps(self.0) as u32)
+    }
+    #[inline(always)]
+    fn cells(self) -> [usize; 3] {
+        avx!({
+            let whole = _mm_min_epu32(_mm_cvttps_epi32(self.0), _mm_set1_epi32(CELLS as i32 - 1));
+            // The bounds are repeated for the compiler to see.
+            [
+                _mm_cvtsi128_si32(whole) as usize % CELLS,
+                _mm_extract_epi32::<1>(whole) as usize % CELLS,
+                _mm_extract_epi32::<2>(whole) as usize % CELLS,
+            ]
+        })
+    }
+    #[inline(always)]
+    fn values(self) -> [f32; 4] {
+        let mut values = [0.0; 4];
+        // SAFETY: as above; the store is of the array's four.
+        unsafe { _mm_storeu_ps(values.as_mut_ptr(), self.0) };
+        values
     }
 }
 
-/// 64 lanes as bits.
+/// One of four lanes in all of eight.
 #[inline(always)]
-fn bits_of(low: __m256i, high: __m256i) -> u64 {
-    // SAFETY: as in `half_beyond`; no memory is touched.
-    unsafe {
-        u64::from(_mm256_movemask_epi8(low) as u32)
-            | u64::from(_mm256_movemask_epi8(high) as u32) << 32
+fn broadcast<const LANE: i32>(four: Floats) -> __m256 {
+    avx!(_mm256_broadcastss_ps(match LANE {
+        0 => four.0,
+        1 => _mm_movehdup_ps(four.0),
+        _ => _mm_movehl_ps(four.0, four.0),
+    }))
+}
+
+/// Functions compiled for the set.
+mod compiled {
+    use super::*;
+
+    macro_rules! compiled {
+        ($name:ident($($argument:ident: $type:ty),*) = $body:path) => {
+            #[inline(never)]
+            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+            pub(super) fn $name(walk: &mut Walk<'_, Avx2>, $($argument: $type),*) {
+                $body(walk, $($argument),*);
+            }
+        };
     }
+    compiled!(walk(record: &Record) = walk::turn);
+    compiled!(brick(brick: &bricks::Brick, window: &Window) = bricks::draw);
+    compiled!(deep_brick(brick: &bricks::Brick, window: &Window) = bricks::draw_deep);
+    compiled!(voxels(brick: &bricks::Brick, window: &Window) = voxels::draw);
 }
 
 impl Isa for Avx2 {
-    compiled!(avx2);
-
-    type Reals = Avx2Reals;
+    type Four = Floats;
 
     #[inline(always)]
-    fn reals(self, values: &[f64; 8]) -> Avx2Reals {
-        let values = values.as_ptr();
-        // SAFETY: `self` is only made where these features were found; the
-        // loads are of twice four entries that the array has.
-        unsafe { Avx2Reals(_mm256_loadu_pd(values), _mm256_loadu_pd(values.add(4))) }
+    fn walk(self, walk: &mut Walk<'_, Self>, record: &Record) {
+        avx!(compiled::walk(walk, record));
+    }
+    #[inline(always)]
+    fn brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+        avx!(compiled::brick(walk, brick, window));
+    }
+    #[inline(always)]
+    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+        avx!(compiled::deep_brick(walk, brick, window));
+    }
+    #[inline(always)]
+    fn voxels(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+        avx!(compiled::voxels(walk, brick, window));
     }
 
     #[inline(always)]
-    fn real(self, value: f64) -> Avx2Reals {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { Avx2Reals(_mm256_set1_pd(value), _mm256_set1_pd(value)) }
+    fn four(self, values: &[f32; 4]) -> Floats {
+        // SAFETY: as above; the load is of the array's four.
+        unsafe { Floats(_mm_loadu_ps(values.as_ptr())) }
+    }
+    #[inline(always)]
+    fn splat(self, value: f32) -> Floats {
+        avx!(Floats(_mm_set1_ps(value)))
     }
 
     #[inline(always)]
-    fn whole(self, values: Avx2Reals) -> __m256i {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { _mm256_set_m128i(_mm256_cvtpd_epi32(values.1), _mm256_cvtpd_epi32(values.0)) }
+    fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows {
+        let (own, below) = (&view.levels[level], &view.levels[level + 1]);
+        let mut windows = Windows {
+            sides: [[0; 8]; 4],
+            held: 0,
+            near: 0,
+        };
+        // SAFETY: as above; loads are of four of a level's eight, stores of
+        // all eight of a side, which are aligned.
+        unsafe {
+            macro_rules! at {
+                ($c:expr, $i:literal) => {{
+                    let child = _mm256_loadu_pd(own.child[$c].as_ptr().add($i));
+                    _mm256_add_pd(_mm256_set1_pd(centre[$c]), child)
+                }};
+            }
+            macro_rules! narrow {
+                ($low:expr, $high:expr) => {{
+                    let low = _mm256_castps128_ps256(_mm256_cvtpd_ps($low));
+                    _mm256_insertf128_ps::<1>(low, _mm256_cvtpd_ps($high))
+                }};
+            }
+            let (w_low, w_high) = (at!(2, 0), at!(2, 4));
+            let root = _mm256_set1_pd(view.root_samples);
+            let (over_low, over_high) = (_mm256_div_pd(root, w_low), _mm256_div_pd(root, w_high));
+            let half_sample = _mm256_set1_pd(0.5);
+            let depth = _mm256_set1_pd(below.half_depth);
+            let nearest = narrow!(_mm256_sub_pd(w_low, depth), _mm256_sub_pd(w_high, depth));
+            let zero = _mm256_setzero_ps();
+            windows.near = _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LE_OQ>(nearest, zero)) as u8;
+            // Half a child's side over its least depth; the inverse has 11 bits.
+            let half = own.side as f32 * (0.25 * WINDOW_SCALE);
+            let share = _mm256_mul_ps(_mm256_rcp_ps(nearest), _mm256_set1_ps(half));
+            let plain = _mm256_castsi256_ps(_mm256_set1_epi32(i32::MAX));
+            let rounding = _mm256_set1_ps(WINDOW_ROUNDING);
+            let margin = _mm256_set1_ps(WINDOW_MARGIN);
+            let mut held = _mm256_castsi256_ps(_mm256_set1_epi32(-1));
+            for axis in 0..2 {
+                let at = narrow!(
+                    _mm256_fmsub_pd(at!(axis, 0), over_low, half_sample),
+                    _mm256_fmsub_pd(at!(axis, 4), over_high, half_sample)
+                );
+                let mut edges = zero;
+                for e in &view.edge_lanes {
+                    let along = _mm256_fnmadd_ps(at, _mm256_set1_ps(e[2]), _mm256_set1_ps(e[axis]));
+                    edges = _mm256_add_ps(edges, _mm256_and_ps(plain, along));
+                }
+                let margin = _mm256_fmadd_ps(_mm256_and_ps(plain, at), rounding, margin);
+                let extent = _mm256_fmadd_ps(edges, share, margin);
+                let (first, last) = if axis == 0 {
+                    (band.left, band.right)
+                } else {
+                    (band.top, band.bottom)
+                };
+                let low = _mm256_ceil_ps(_mm256_sub_ps(at, extent));
+                let low = _mm256_max_ps(low, _mm256_set1_ps(first as f32));
+                let high = _mm256_floor_ps(_mm256_add_ps(at, extent));
+                let high = _mm256_min_ps(high, _mm256_set1_ps(last as f32));
+                held = _mm256_and_ps(held, _mm256_cmp_ps::<_CMP_LE_OQ>(low, high));
+                // Those that hold a sample are within the band.
+                for (side, lanes) in [(axis, low), (axis + 2, high)] {
+                    let to = windows.sides[side].as_mut_ptr().cast();
+                    _mm256_store_si256(to, _mm256_cvttps_epi32(lanes));
+                }
+            }
+            windows.held = _mm256_movemask_ps(held) as u8;
+        }
+        windows
     }
 
     #[inline(always)]
-    fn samples_between(self, x: Avx2Reals, y: Avx2Reals, margin: f64) -> Window {
-        eight::samples_between([x.0, x.1], [y.0, y.1], margin)
+    fn parts_of_samples(
+        self,
+        tables: [&Row; 3],
+        cells: &[Floats; 3],
+        wanted: u64,
+        rows: usize,
+        found: &mut Found,
+    ) -> u64 {
+        let mut any = 0u64;
+        // SAFETY: as above; cells are looked up below `CELLS`, which is what a
+        // table has, and stores are of eight of the 64 entries, which are aligned.
+        unsafe {
+            let ramp = _mm256_setr_ps(0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0);
+            let last = _mm256_set1_epi32(CELLS as i32 - 1);
+            let wanted = _mm256_set1_epi64x(wanted as i64);
+            let zero = _mm256_setzero_si256();
+            let [first, step_x, step_y] = *cells;
+            let mut at = [
+                _mm256_fmadd_ps(broadcast::<0>(step_x), ramp, broadcast::<0>(first)),
+                _mm256_fmadd_ps(broadcast::<1>(step_x), ramp, broadcast::<1>(first)),
+                _mm256_fmadd_ps(broadcast::<2>(step_x), ramp, broadcast::<2>(first)),
+            ];
+            let step = [broadcast::<0>(step_y), broadcast::<1>(step_y), broadcast::<2>(step_y)];
+            for row in found.0.chunks_exact_mut(8).take(rows) {
+                let mut low = wanted;
+                let mut high = wanted;
+                for j in 0..3 {
+                    let cell = _mm256_min_epu32(_mm256_cvttps_epi32(at[j]), last);
+                    at[j] = _mm256_add_ps(at[j], step[j]);
+                    let table = tables[j].as_ptr().cast();
+                    let (near, far) = (_mm256_castsi256_si128(cell), _mm256_extracti128_si256::<1>(cell));
+                    low = _mm256_and_si256(low, _mm256_i32gather_epi64::<8>(table, near));
+                    high = _mm256_and_si256(high, _mm256_i32gather_epi64::<8>(table, far));
+                }
+                let to = row.as_mut_ptr().cast::<__m256i>();
+                _mm256_store_si256(to, low);
+                _mm256_store_si256(to.add(1), high);
+                let (low, high) = (_mm256_cmpeq_epi64(low, zero), _mm256_cmpeq_epi64(high, zero));
+                let low = _mm256_movemask_pd(_mm256_castsi256_pd(low)) as u64;
+                let high = _mm256_movemask_pd(_mm256_castsi256_pd(high)) as u64;
+                // The last row ends up lowest.
+                any = any << 8 | (low | high << 4) ^ 0xff;
+            }
+        }
+        (any << (8 * (8 - rows.clamp(1, 8)))).swap_bytes()
     }
 
-    eight_lanes!();
+    #[inline(always)]
+    fn within(self, values: &[Floats; 3], most: i16, sure: i16) -> (u64, u64) {
+        avx!({
+            let [first, step_x, step_y] = *values;
+            let first = _mm_cvtps_epi32(first.0);
+            let first = _mm_packs_epi32(first, first);
+            let (step_x, step_y) = (_mm_cvtps_epi32(step_x.0), _mm_cvtps_epi32(step_y.0));
+            let (step_x, step_y) = (_mm_packs_epi32(step_x, step_x), _mm_packs_epi32(step_y, step_y));
+            // Two rows of eight.
+            let columns = _mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
+            let rows = _mm256_setr_epi16(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
+            let mut worst = [_mm256_setzero_si256(); 4];
+            macro_rules! function {
+                ($bytes:literal) => {
+                    let step_x = _mm256_broadcastw_epi16(_mm_srli_si128::<$bytes>(step_x));
+                    let step_y = _mm256_broadcastw_epi16(_mm_srli_si128::<$bytes>(step_y));
+                    let mut at = _mm256_broadcastw_epi16(_mm_srli_si128::<$bytes>(first));
+                    at = _mm256_add_epi16(at, _mm256_mullo_epi16(columns, step_x));
+                    at = _mm256_add_epi16(at, _mm256_and_si256(step_y, _mm256_sub_epi16(_mm256_setzero_si256(), rows)));
+                    let two_rows = _mm256_add_epi16(step_y, step_y);
+                    for worst in &mut worst {
+                        *worst = _mm256_max_epu16(*worst, _mm256_abs_epi16(at));
+                        at = _mm256_add_epi16(at, two_rows);
+                    }
+                };
+            }
+            function!(0);
+            function!(2);
+            function!(4);
+            macro_rules! below {
+                ($limit:expr, $i:literal) => {{
+                    let limit = _mm256_set1_epi16($limit);
+                    let upper = _mm256_cmpgt_epi16(limit, worst[$i]);
+                    let lower = _mm256_cmpgt_epi16(limit, worst[$i + 1]);
+                    // Rows 0 and 2, 1 and 3: packing goes by halves.
+                    let rows = _mm256_packs_epi16(upper, lower);
+                    let rows = _mm256_permute4x64_epi64::<0b11_01_10_00>(rows);
+                    _mm256_movemask_epi8(rows) as u32 as u64
+                }};
+            }
+            (
+                below!(most, 0) | below!(most, 2) << 32,
+                below!(sure, 0) | below!(sure, 2) << 32,
+            )
+        })
+    }
+
+    #[inline(always)]
+    fn turned_parts(self, parts: u64, octant: u8) -> u64 {
+        let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
+        // SAFETY: as above; the loads are of the arrays' sixteen.
+        unsafe {
+            let outer = _mm_loadu_si128(outer.as_ptr().cast());
+            let low = _mm_loadu_si128(low.as_ptr().cast());
+            let high = _mm_loadu_si128(high.as_ptr().cast());
+            let bytes = _mm_shuffle_epi8(_mm_cvtsi64_si128(parts as i64), outer);
+            let half = _mm_set1_epi8(15);
+            let lower = _mm_shuffle_epi8(low, _mm_and_si128(bytes, half));
+            let upper = _mm_and_si128(_mm_srli_epi16::<4>(bytes), half);
+            let upper = _mm_shuffle_epi8(high, upper);
+            _mm_cvtsi128_si64(_mm_or_si128(lower, upper)) as u64
+        }
+    }
+
+    #[inline(always)]
+    fn spread(self, bytes: u64, mask: u8) -> (u64, u64) {
+        avx!({
+            let places = _pdep_u64(u64::from(mask), 0x0101_0101_0101_0101);
+            let ones = (places << 8).wrapping_sub(places);
+            (_pdep_u64(bytes, ones), ones)
+        })
+    }
 
     #[inline(always)]
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
-        // SAFETY: `self` is only made where these features were found; what is
-        // stored to are eight entries from `at` on, which the slice has.
+        // SAFETY: as above; what is stored to are eight entries from `at` on, which the slice has.
         unsafe {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -275,251 +382,6 @@ impl Isa for Avx2 {
                 left >>= 8;
                 at = at.wrapping_add(width);
             }
-        }
-    }
-
-    #[inline(always)]
-    fn square_within(
-        self,
-        tables: &[[i16; 64]; STRIPS],
-        start: __m256i,
-        bound: &[i32; LANES],
-    ) -> u64 {
-        // SAFETY: `self` is only made where these features were found; the
-        // loads are of four times 16 entries, all that a table has.
-        unsafe {
-            let low = _mm256_castsi256_si128(start);
-            let starts = [low, _mm_srli_si128::<4>(low), _mm_srli_si128::<8>(low)];
-            let mut samples = [_mm256_set1_epi8(-1); 4];
-            for f in 0..STRIPS {
-                let start = _mm256_broadcastw_epi16(starts[f]);
-                let width = _mm256_set1_epi16((2 * bound[f]) as i16);
-                for part in 0..4 {
-                    let entries = _mm256_loadu_si256(tables[f].as_ptr().add(16 * part).cast());
-                    let value = _mm256_add_epi16(start, entries);
-                    let within = _mm256_cmpeq_epi16(_mm256_min_epu16(value, width), value);
-                    samples[part] = _mm256_and_si256(samples[part], within);
-                }
-            }
-            // Packing goes by halves: put the quarters back in order.
-            let low = _mm256_packs_epi16(samples[0], samples[1]);
-            let high = _mm256_packs_epi16(samples[2], samples[3]);
-            let low = _mm256_permute4x64_epi64::<0b11_01_10_00>(low);
-            bits_of(low, _mm256_permute4x64_epi64::<0b11_01_10_00>(high))
-        }
-    }
-
-    #[inline(always)]
-    fn strips_within(self, coarse: &Coarse, start: __m256i, few: bool) -> u64 {
-        if few {
-            return eight::few_strips(coarse, start);
-        }
-        let cut = eight::cut(coarse, start);
-        // SAFETY: as in `half_beyond`; a width has 32 entries.
-        unsafe {
-            let cut = _mm256_broadcastsi128_si256(cut);
-            let mut low = _mm256_setzero_si256();
-            let mut high = low;
-            for f in 0..3 {
-                let start = _mm256_shuffle_epi8(cut, _mm256_set1_epi8(4 * f as i8));
-                let width = _mm256_loadu_si256(coarse.width[f].as_ptr().cast());
-                let table = &coarse.parts[f];
-                low = _mm256_or_si256(low, half_beyond(table, 0, start, width));
-                high = _mm256_or_si256(high, half_beyond(table, 1, start, width));
-            }
-            let none = _mm256_setzero_si256();
-            bits_of(_mm256_cmpeq_epi8(low, none), _mm256_cmpeq_epi8(high, none))
-        }
-    }
-
-    #[inline(always)]
-    fn children_within(
-        self,
-        tables: &[[i32; 8]; STRIPS + 2],
-        value: __m256i,
-        width: &[i32; LANES],
-    ) -> u8 {
-        // SAFETY: as in `within_wide`.
-        unsafe {
-            let mut inside = _mm256_set1_epi32(-1);
-            for (f, by_child) in tables.iter().enumerate() {
-                let lane = f + usize::from(f >= STRIPS);
-                let value = _mm256_permutevar8x32_epi32(value, _mm256_set1_epi32(lane as i32));
-                let by_child = _mm256_loadu_si256(by_child.as_ptr().cast());
-                let value = _mm256_sub_epi32(value, by_child);
-                let least = _mm256_min_epu32(value, _mm256_set1_epi32(width[lane]));
-                inside = _mm256_and_si256(inside, _mm256_cmpeq_epi32(least, value));
-            }
-            _mm256_movemask_ps(_mm256_castsi256_ps(inside)) as u8
-        }
-    }
-
-    #[inline(always)]
-    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
-        let mut lanes = 0u64;
-        for part in 0..8 {
-            // SAFETY: `self` is only made where these features were found; the load is of 8 entries that the array has.
-            let eight = unsafe {
-                let entries = _mm256_loadu_si256(table.as_ptr().add(8 * part).cast());
-                let value = _mm256_add_epi32(_mm256_set1_epi32(start), entries);
-                let least = _mm256_min_epu32(value, _mm256_set1_epi32(width as i32));
-                let equal = _mm256_cmpeq_epi32(least, value);
-                _mm256_movemask_ps(_mm256_castsi256_ps(equal)) as u8
-            };
-            lanes |= u64::from(eight) << (8 * part);
-        }
-        lanes
-    }
-}
-
-/// AVX-512 with words and bytes, and all that AVX2 has.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Avx512(());
-
-impl Avx512 {
-    /// The set, if the processor has it.
-    pub(crate) fn detect() -> Option<Self> {
-        let found = Avx2::detect().is_some()
-            && is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        found.then_some(Self(()))
-    }
-}
-
-impl Isa for Avx512 {
-    compiled!(avx512);
-
-    type Reals = Avx512Reals;
-
-    #[inline(always)]
-    fn reals(self, values: &[f64; 8]) -> Avx512Reals {
-        // SAFETY: `self` is only made where these features were found; the
-        // load is of all that the array has.
-        unsafe { Avx512Reals(_mm512_loadu_pd(values.as_ptr())) }
-    }
-
-    #[inline(always)]
-    fn real(self, value: f64) -> Avx512Reals {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { Avx512Reals(_mm512_set1_pd(value)) }
-    }
-
-    #[inline(always)]
-    fn whole(self, values: Avx512Reals) -> __m256i {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe { _mm512_cvtpd_epi32(values.0) }
-    }
-
-    #[inline(always)]
-    fn samples_between(self, x: Avx512Reals, y: Avx512Reals, margin: f64) -> Window {
-        eight::samples_between(x.halves(), y.halves(), margin)
-    }
-
-    eight_lanes!();
-
-    #[inline(always)]
-    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
-        // SAFETY: `self` is only made where these features were found; what is
-        // stored to are eight entries from `at` on, which the slice has.
-        unsafe {
-            let value_lanes = _mm256_set1_epi32(value as i32);
-            let (mut left, mut at) = (samples, first);
-            while left != 0 {
-                if rows.len().saturating_sub(at) < 8 {
-                    return Scalar.put(rows, at, width, left, value);
-                }
-                let row = rows.as_mut_ptr().add(at).cast();
-                _mm256_mask_storeu_epi32(row, left as u8, value_lanes);
-                left >>= 8;
-                at = at.wrapping_add(width);
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn square_within(
-        self,
-        tables: &[[i16; 64]; STRIPS],
-        start: __m256i,
-        bound: &[i32; LANES],
-    ) -> u64 {
-        // SAFETY: `self` is only made where these features were found; the
-        // loads are of twice 32 entries, all that a table has.
-        unsafe {
-            let low = _mm256_castsi256_si128(start);
-            let starts = [low, _mm_srli_si128::<4>(low), _mm_srli_si128::<8>(low)];
-            let (mut upper, mut lower) = (u32::MAX, u32::MAX);
-            for f in 0..STRIPS {
-                let start = _mm512_broadcastw_epi16(starts[f]);
-                let width = _mm512_set1_epi16((2 * bound[f]) as i16);
-                let table = tables[f].as_ptr();
-                let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.cast()));
-                upper = _mm512_mask_cmple_epu16_mask(upper, value, width);
-                let value = _mm512_add_epi16(start, _mm512_loadu_si512(table.add(32).cast()));
-                lower = _mm512_mask_cmple_epu16_mask(lower, value, width);
-            }
-            u64::from(upper) | u64::from(lower) << 32
-        }
-    }
-
-    #[inline(always)]
-    fn strips_within(self, coarse: &Coarse, start: __m256i, few: bool) -> u64 {
-        if few {
-            return eight::few_strips(coarse, start);
-        }
-        let cut = eight::cut(coarse, start);
-        // SAFETY: `self` is only made where these features were found.
-        unsafe {
-            let mut lanes = u64::MAX;
-            for f in 0..3 {
-                let entries = _mm512_loadu_si512(coarse.parts[f].as_ptr().cast());
-                let start = _mm_shuffle_epi8(cut, _mm_set1_epi8(4 * f as i8));
-                let value = _mm512_sub_epi8(_mm512_broadcastb_epi8(start), entries);
-                let width = _mm512_set1_epi8(coarse.width[f][0] as i8);
-                lanes = _mm512_mask_cmple_epu8_mask(lanes, value, width);
-            }
-            lanes
-        }
-    }
-
-    #[inline(always)]
-    fn children_within(
-        self,
-        tables: &[[i32; 8]; STRIPS + 2],
-        value: __m256i,
-        width: &[i32; LANES],
-    ) -> u8 {
-        // SAFETY: `self` is only made where these features were found.
-        unsafe {
-            let mut inside = u8::MAX;
-            for (f, by_child) in tables.iter().enumerate() {
-                let lane = f + usize::from(f >= STRIPS);
-                let value = _mm256_permutevar8x32_epi32(value, _mm256_set1_epi32(lane as i32));
-                let by_child = _mm256_loadu_si256(by_child.as_ptr().cast());
-                let value = _mm256_sub_epi32(value, by_child);
-                let width = _mm256_set1_epi32(width[lane]);
-                inside = _mm256_mask_cmple_epu32_mask(inside, value, width);
-            }
-            inside
-        }
-    }
-
-    #[inline(always)]
-    fn within_wide(self, table: &[i32; 64], start: i32, width: u32) -> u64 {
-        // SAFETY: `self` is only made where these features were found; the
-        // loads are of four times 16 entries, all that the table has.
-        unsafe {
-            let start = _mm512_set1_epi32(start);
-            let width = _mm512_set1_epi32(width as i32);
-            let mut lanes = 0u64;
-            for part in 0..4 {
-                let entries = _mm512_loadu_si512(table.as_ptr().add(16 * part).cast());
-                let within = _mm512_cmple_epu32_mask(_mm512_add_epi32(start, entries), width);
-                lanes |= u64::from(within) << (16 * part);
-            }
-            lanes
         }
     }
 }

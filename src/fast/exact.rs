@@ -148,6 +148,12 @@ impl Exact {
         })
     }
 
+    /// Whether the ray of a sample runs downwards along an axis of the object.
+    #[cold]
+    pub(super) fn runs_downwards(&self, axis: usize, sample: [i32; 2]) -> bool {
+        (side_of(self.axis[axis], self.sample(sample)) < 0) == self.positive
+    }
+
     fn sample(&self, [x, y]: [i32; 2]) -> [i64; 3] {
         [2 * i64::from(x) + 1, 2 * i64::from(y) + 1, self.unit]
     }
@@ -320,7 +326,6 @@ impl Outline {
         voxel: [i32; 4],
     ) {
         walk.counters.solids += 1;
-        walk.aim_at([voxel[0], voxel[1], voxel[2]], voxel[3] as u32);
         let side = 1 << BLOCK_LOG2;
         for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
             for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
@@ -332,7 +337,7 @@ impl Outline {
                     bottom: top + side - 1,
                 }
                 .and(window);
-                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(walk.isa, &block)
+                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block)
                 {
                     continue;
                 }

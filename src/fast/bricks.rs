@@ -1,0 +1,394 @@
+//! Small voxels, sample by sample: two or four levels of the graph in one step.
+//!
+//! A brick is a node whose parts, the children's children, are solids: 64 parts.
+//! For each open sample of its window, three look-ups say which parts the
+//! sample's line may meet (`strips.rs`), in the order in which it meets them; the
+//! first that it does meet (`lines.rs`) is what the sample shows. So the work is
+//! for samples, not for voxels, and hidden voxels cost nothing.
+//!
+//! Where voxels are smaller than samples, a brick's parts are blocks, and each
+//! block's parts are the voxels: the same look-ups twice, 4096 voxels a brick.
+//! A block's parts are put in order when the first line asks for them.
+
+use super::canvas::Window;
+use super::lanes::Isa;
+use super::lines::{Heading, Lines, Meeting, OFFSETS, Place, by_octant};
+use super::parts::Parts;
+use super::strips::STRIPS;
+use super::walk::{Record, Walk, voxel_at};
+
+/// A node that is drawn in one step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Brick {
+    pub(super) level: u32,
+    /// Lowest corner, finest voxels.
+    pub(super) min: [i32; 3],
+    /// Clip vector of the centre.
+    pub(super) centre: [f64; 3],
+    pub(super) parts: Parts,
+}
+
+impl Brick {
+    #[inline(always)]
+    pub(super) fn new(record: &Record, parts: Parts) -> Self {
+        Self {
+            level: record.level,
+            min: record.min,
+            centre: record.centre,
+            parts,
+        }
+    }
+}
+
+/// Column and row of a square's samples.
+pub(super) static SAMPLES: [[f32; 2]; 64] = {
+    let mut table = [[0.0; 2]; 64];
+    let mut sample = 0;
+    while sample < 64 {
+        table[sample] = [(sample & 7) as f32, (sample >> 3) as f32];
+        sample += 1;
+    }
+    table
+};
+
+/// What draws squares.
+pub(super) trait DrawSquare<I: Isa> {
+    /// Draws open samples of a square whose lines begin in an octant; returns those drawn.
+    fn draw(
+        &self,
+        walk: &mut Walk<'_, I>,
+        square: &Window,
+        open: u64,
+        heading: &Heading<I>,
+        octant: u8,
+    ) -> u64;
+}
+
+/// Draws squares of a brick of two levels, or of four (`DEEP`).
+struct BySamples<'b, const DEEP: bool> {
+    brick: &'b Brick,
+    place: Place,
+}
+
+/// Draws a brick of two levels.
+#[inline(always)]
+pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+    draw_levels::<I, false>(walk, brick, window);
+}
+
+/// Draws a brick of four levels.
+#[inline(always)]
+pub(super) fn draw_deep<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+    draw_levels::<I, true>(walk, brick, window);
+}
+
+#[inline(always)]
+fn draw_levels<I: Isa, const DEEP: bool>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+    walk.counters.bricks += 1;
+    let parts_across = if DEEP { 16.0 } else { 4.0 };
+    let side = f64::from(walk.view.levels[brick.level as usize].side) / parts_across;
+    let place = Place::new(walk.view, brick.centre, side);
+    each_square(walk, window, &BySamples::<DEEP> { brick, place });
+}
+
+/// Takes a window apart into squares with open samples, and those into samples
+/// whose lines begin in one octant, which nearly always is all.
+#[inline(always)]
+pub(super) fn each_square<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    window: &Window,
+    drawer: &impl DrawSquare<I>,
+) {
+    let mut top = window.top;
+    while top <= window.bottom {
+        let mut left = window.left;
+        while left <= window.right {
+            let square = Window {
+                left,
+                top,
+                right: (left + 7).min(window.right),
+                bottom: (top + 7).min(window.bottom),
+            };
+            let open = walk.fill.open_in_square(&square);
+            if open != 0 {
+                walk.counters.squares += 1;
+                let heading = Heading::of(walk.isa, walk.view, &square);
+                let mut drawn = 0;
+                let mut groups = [0; 8];
+                let (mut group, mut octant) = (open, heading.octant);
+                if heading.is_mixed {
+                    groups = by_octant(walk.view, walk.exact, &square, open);
+                    (group, octant) = next_group(&mut groups);
+                }
+                loop {
+                    drawn |= drawer.draw(walk, &square, group, &heading, octant);
+                    if !heading.is_mixed {
+                        break;
+                    }
+                    (group, octant) = next_group(&mut groups);
+                    if group == 0 {
+                        break;
+                    }
+                }
+                walk.fill.mark_square(&square, drawn);
+            }
+            left += 8;
+        }
+        top += 8;
+    }
+}
+
+/// The first of the groups that is not empty, which is taken, and its number.
+#[inline(always)]
+fn next_group(groups: &mut [u64; 8]) -> (u64, u8) {
+    for (octant, group) in groups.iter_mut().enumerate() {
+        if *group != 0 {
+            return (std::mem::take(group), octant as u8);
+        }
+    }
+    (0, 0)
+}
+
+impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, DEEP> {
+    #[inline(always)]
+    fn draw(
+        &self,
+        walk: &mut Walk<'_, I>,
+        square: &Window,
+        open: u64,
+        heading: &Heading<I>,
+        octant: u8,
+    ) -> u64 {
+        draw_samples::<I, DEEP>(walk, self.brick, &self.place, square, open, heading, octant)
+    }
+}
+
+/// Draws the open samples of a square: returns those drawn.
+#[inline(always)]
+fn draw_samples<I: Isa, const DEEP: bool>(
+    walk: &mut Walk<'_, I>,
+    brick: &Brick,
+    place: &Place,
+    square: &Window,
+    open: u64,
+    heading: &Heading<I>,
+    octant: u8,
+) -> u64 {
+    let isa = walk.isa;
+    let strips = &*STRIPS;
+    walk.counters.samples_tested += u64::from(open.count_ones());
+    let lines = Lines::new(isa, walk.view, place, heading, square, octant);
+    let tables = strips.touched(lines.tables);
+    let exist = isa.turned_parts(brick.parts.exist, octant);
+    let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
+    let rows = (square.bottom - square.top) as usize + 1;
+    let any = isa.parts_of_samples(tables, &cells, exist, rows, &mut walk.found);
+    let pair = u32::from(octant) * 9;
+    let mut ready = 0u64;
+    let mut drawn = 0u64;
+    let mut count = 0;
+    let mut left = any & open;
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
+        let line = lines.line(isa, SAMPLES[bit]);
+        let mut wanted = walk.found.0[bit];
+        'sample: while wanted != 0 {
+            let number = wanted.trailing_zeros() as usize & 63;
+            wanted &= wanted - 1;
+            // What the number is of: a block with parts of its own, or a part.
+            let (line, mut parts) = if DEEP {
+                if ready >> number & 1 == 0 {
+                    ready |= 1 << number;
+                    prepare(walk, brick, number, octant);
+                }
+                let line = line.about(isa, &OFFSETS[number]);
+                let [x, y, z] = lines.cells(isa, &line);
+                let parts = tables[0][x] & tables[1][y] & tables[2][z];
+                (line, parts & walk.blocks.exist[number])
+            } else {
+                (line, 1 << number)
+            };
+            while parts != 0 {
+                let part = parts.trailing_zeros() as usize & 63;
+                parts &= parts - 1;
+                let meeting = lines.meets(isa, &line, &OFFSETS[part]);
+                if meeting == Meeting::Misses {
+                    continue;
+                }
+                let hit = Hit {
+                    bit: bit as u8,
+                    block: number as u8,
+                    part: (part as u32 ^ pair) as u8,
+                };
+                if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(walk, brick, square, hit, pair) {
+                    continue;
+                }
+                if walk.blends && !blend::<I, DEEP>(walk, brick, square, hit, pair) {
+                    continue;
+                }
+                drawn |= 1 << bit;
+                walk.hits[count & 63] = hit;
+                count += 1;
+                break 'sample;
+            }
+        }
+    }
+    if !walk.blends {
+        show_hits::<I, DEEP>(walk, brick, square, count, pair);
+    }
+    walk.counters.samples_drawn += u64::from(drawn.count_ones());
+    drawn
+}
+
+/// What a sample of a square shows of a brick.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Hit {
+    /// The sample.
+    bit: u8,
+    /// The block, in order of occlusion; of bricks of two levels nothing.
+    block: u8,
+    /// The part.
+    part: u8,
+}
+
+impl Hit {
+    /// The node, and where in the brick it is.
+    #[inline(always)]
+    fn path<I: Isa, const DEEP: bool>(self, walk: &Walk<'_, I>, brick: &Brick, pair: u32) -> (u32, Path) {
+        let at = u32::from(self.part);
+        let (part, block) = if DEEP {
+            let number = usize::from(self.block & 63);
+            let part = walk.blocks.parts[number].part(walk.graph, at);
+            (part, Some(number as u32 ^ pair))
+        } else {
+            (brick.parts.part(walk.graph, at), None)
+        };
+        let path = Path {
+            block,
+            part: at,
+            levels: part.levels,
+        };
+        (part.node, path)
+    }
+}
+
+/// Shows what was found. Memory is read for all samples before any is written,
+/// so that waiting for one does not hold up the next.
+#[inline(always)]
+fn show_hits<I: Isa, const DEEP: bool>(
+    walk: &mut Walk<'_, I>,
+    brick: &Brick,
+    square: &Window,
+    count: usize,
+    pair: u32,
+) {
+    let first = walk.pixels.at(square.left, square.top);
+    let mut nodes = [0; 64];
+    for i in 0..count.min(64) {
+        let hit = walk.hits[i];
+        let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
+        nodes[i] = node;
+        if walk.pixels.wants_voxels() {
+            let side = walk.view.levels[brick.level as usize].side;
+            let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
+            walk.pixels.voxel[at] = path.voxel(brick, side);
+        }
+    }
+    for i in 0..count.min(64) {
+        let at = first + walk.places[usize::from(walk.hits[i].bit & 63)] as usize;
+        let word = walk.pixels.word(nodes[i]);
+        if let Some(shown) = walk.pixels.shown.get_mut(at) {
+            *shown = word;
+        }
+    }
+}
+
+/// Blends what a sample meets: whether that hides all that is behind it.
+#[inline(never)]
+fn blend<I: Isa, const DEEP: bool>(
+    walk: &mut Walk<'_, I>,
+    brick: &Brick,
+    square: &Window,
+    hit: Hit,
+    pair: u32,
+) -> bool {
+    let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
+    let voxel = path.voxel(brick, walk.view.levels[brick.level as usize].side);
+    walk.show([square.left, square.top], 1 << hit.bit, node, voxel) != 0
+}
+
+/// Whether a sample that is in doubt meets what it may, by the exact rule.
+#[inline(never)]
+fn is_hit<I: Isa, const DEEP: bool>(
+    walk: &mut Walk<'_, I>,
+    brick: &Brick,
+    square: &Window,
+    hit: Hit,
+    pair: u32,
+) -> bool {
+    let (_, path) = hit.path::<I, DEEP>(walk, brick, pair);
+    is_covered(walk, brick, square, usize::from(hit.bit), &path)
+}
+
+/// Puts a block's parts in order.
+#[inline(always)]
+fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, number: usize, octant: u8) {
+    let block = brick.parts.part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
+    let parts = Parts::of(walk.isa, walk.graph, block.node, false, 0);
+    walk.blocks.exist[number] = walk.isa.turned_parts(parts.exist, octant);
+    walk.blocks.parts[number] = parts;
+}
+
+/// Where in a brick a voxel is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Path {
+    /// In which block, where parts are blocks.
+    pub(super) block: Option<u32>,
+    pub(super) part: u32,
+    /// Levels that the part is below the brick or block.
+    pub(super) levels: u32,
+}
+
+impl Path {
+    /// The voxel, as a picture shows it.
+    #[inline(never)]
+    pub(super) fn voxel(&self, brick: &Brick, side: i32) -> [i32; 4] {
+        let (mut min, mut side, mut level) = (brick.min, side, brick.level);
+        let mut down = |octant: u32| {
+            side /= 2;
+            level += 1;
+            for (k, c) in min.iter_mut().enumerate() {
+                *c += (octant as i32 >> (2 - k) & 1) * side;
+            }
+        };
+        if let Some(block) = self.block {
+            down(block >> 3);
+            down(block & 7);
+        }
+        if self.levels > 0 {
+            down(self.part >> 3);
+        }
+        if self.levels > 1 {
+            down(self.part & 7);
+        }
+        voxel_at(min, level)
+    }
+}
+
+/// Whether a voxel covers a sample, by the exact rule.
+#[inline(never)]
+pub(super) fn is_covered<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    brick: &Brick,
+    square: &Window,
+    bit: usize,
+    path: &Path,
+) -> bool {
+    walk.counters.exact_samples += 1;
+    let [x, y, z, level] = path.voxel(brick, walk.view.levels[brick.level as usize].side);
+    let side = walk.view.levels[level as usize].side;
+    let at = [square.left + (bit as i32 & 7), square.top + (bit as i32 >> 3)];
+    walk.exact.covers([x, y, z], side, at)
+}
+

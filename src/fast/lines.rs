@@ -1,0 +1,390 @@
+//! The lines of a square's samples against the parts of a node.
+//!
+//! # The idea
+//!
+//! With `P` the clip vector of the node's centre and `e_k` a voxel's edges, the
+//! line of the sample `q` has, in the object, the direction `v_k = (e_k+1 x e_k+2) q`
+//! and, about the node's centre, the moment `m_j = (P x e_j) q`: the exact rule's
+//! functions (`SPEC.md`, "Exact coverage"), and both are linear in the sample. So
+//! perspective costs nothing: a line's numbers are two multiply-adds from
+//! those of the square's first sample, and what is approximate in them is the
+//! rounding of `f32` alone, of numbers that are small, because moments are
+//! taken about the node and columns and rows counted from the square.
+//!
+//! All is turned so that lines run upwards along each axis (`v_k >= 0`). The
+//! unit of length is the side of a part. Errors: `spec/fast.md`.
+
+use super::exact::Exact;
+use super::lanes::{Four, Isa};
+use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
+use super::view::View;
+use super::canvas::Window;
+
+/// Of what lines' values are made of, the error of their sum: a few steps in
+/// `f32`, 2^-24 each, with room.
+const RELATIVE_ERROR: f32 = 1.0 / (1 << 20) as f32;
+/// Rounding of a direction in `f64`, of what it is summed of.
+const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
+/// Parts' centres are at most this many sides of a part from the node's.
+const FARTHEST: f32 = 8.0;
+
+/// A node's centre and edges in the picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Column and row of its centre.
+    centre: [f64; 2],
+    /// What a step of a column, and of a row, adds to the moments, by axis.
+    step: [[f32; 4]; 2],
+}
+
+impl Place {
+    /// The place of a node with this clip vector, whose parts have this side in finest voxels.
+    #[inline(always)]
+    pub(super) fn new(view: &View, [x, y, w]: [f64; 3], side: f64) -> Self {
+        let inverse = 1.0 / w;
+        let centre = [
+            x * view.root_samples * inverse - 0.5,
+            y * view.root_samples * inverse - 0.5,
+        ];
+        let unit = view.scale * w / side;
+        let mut step = [[0.0; 4]; 2];
+        for j in 0..3 {
+            let [x, y, w] = view.edge[j];
+            step[0][j] = ((centre[1] * w - y) * unit) as f32;
+            step[1][j] = ((x - centre[0] * w) * unit) as f32;
+        }
+        Self { centre, step }
+    }
+}
+
+/// By octant: which signs direction's components have, and products of two of them.
+static SIGNS: [[[f32; 4]; 2]; 8] = {
+    let mut table = [[[0.0; 4]; 2]; 8];
+    let mut octant = 0;
+    while octant < 8 {
+        let mut j = 0;
+        while j < 3 {
+            if octant >> (2 - j) & 1 == 1 {
+                table[octant][0][j] = -0.0;
+            }
+            if octant >> (2 - (j + 1) % 3) & 1 != octant >> (2 - (j + 2) % 3) & 1 {
+                table[octant][1][j] = -0.0;
+            }
+            j += 1;
+        }
+        octant += 1;
+    }
+    table
+};
+
+/// The lines of a square's samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lines<I: Isa> {
+    /// Direction at the first sample, and what a column and a row add.
+    direction: [I::Four; 3],
+    /// Moments, in the same way.
+    moment: [I::Four; 3],
+    /// Tables of strips, by function.
+    pub(super) tables: [usize; 3],
+    /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
+    inverse: I::Four,
+    /// By how many widths the values of functions that see may be wrong, at most.
+    pub(super) error: f32,
+    /// Whether a function is blind: it tells nothing.
+    pub(super) has_blind: bool,
+    /// What is nearer to a part's outline than this is in doubt.
+    doubt: I::Four,
+}
+
+/// Values of a square's lines: at the first sample, and what a column and a row add.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct InUnits<I: Isa> {
+    moment: [I::Four; 3],
+    next: [I::Four; 3],
+    last: [I::Four; 3],
+}
+
+impl<I: Isa> InUnits<I> {
+    /// The functions' values about a part's centre.
+    #[inline(always)]
+    pub(super) fn about(&self, isa: I, offset: &Offset) -> [I::Four; 3] {
+        let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
+        let mut values = self.moment;
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = last.fma(self.next[i], value.sub(next.mul(self.last[i])));
+        }
+        values
+    }
+}
+
+/// The line of one sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Line<I: Isa> {
+    /// `v_n` and `v_l`, by function.
+    next: I::Four,
+    last: I::Four,
+    /// The moments.
+    moment: I::Four,
+    /// `(v_n + v_l) / 2`.
+    half: I::Four,
+}
+
+/// How a line and a part are to each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Meeting {
+    Misses,
+    Meets,
+    /// Too close to the outline to tell.
+    Doubt,
+}
+
+/// The direction of lines in a square's middle, and by how much it changes from there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Heading<I: Isa> {
+    middle: I::Four,
+    spread: I::Four,
+    /// The octant in which lines begin: a bit for each axis along which they run downwards.
+    pub(super) octant: u8,
+    /// Whether lines of the square differ in that, or may.
+    pub(super) is_mixed: bool,
+}
+
+impl<I: Isa> Heading<I> {
+    #[inline(always)]
+    pub(super) fn of(isa: I, view: &View, square: &Window) -> Self {
+        let [columns, rows, first] = view.direction_lanes.map(|d| isa.four(&d));
+        let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
+        let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
+        let x = isa.splat(square.left as f32).add(half_across);
+        let y = isa.splat(square.top as f32).add(half_down);
+        let middle = columns.fma(x, rows.fma(y, first));
+        // What the sum is made of bounds its rounding.
+        let size = columns.abs().fma(x, rows.abs().fma(y, first.abs()));
+        let spread = size.fma(
+            isa.splat(RELATIVE_ERROR),
+            columns.abs().fma(half_across, rows.abs().mul(half_down)),
+        );
+        Self {
+            middle,
+            spread,
+            octant: OCTANTS[middle.signs() as usize & 7],
+            is_mixed: spread.sub(middle.abs()).signs() & 7 != 7,
+        }
+    }
+}
+
+/// Octants by signs, which have the x axis in their lowest bit.
+static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
+
+/// The samples of a square whose lines begin in each octant, by each sample's own sign.
+#[inline(never)]
+pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) -> [u64; 8] {
+    let mut parts = [0; 8];
+    let mut left = open;
+    while left != 0 {
+        let bit = left.trailing_zeros() as i32;
+        left &= left - 1;
+        let at = [square.left + (bit & 7), square.top + (bit >> 3)];
+        let [x, y] = at.map(f64::from);
+        let mut octant = 0;
+        for k in 0..3 {
+            let [along_x, along_y, first] = view.direction[k];
+            let value = along_x * x + along_y * y + first;
+            let size = along_x.abs() * x + along_y.abs() * y + first.abs();
+            let is_downwards = if value.abs() > size * DIRECTION_ERROR {
+                value < 0.0
+            } else {
+                exact.runs_downwards(k, at)
+            };
+            octant = octant << 1 | usize::from(is_downwards);
+        }
+        parts[octant] |= 1 << bit;
+    }
+    parts
+}
+
+impl<I: Isa> Lines<I> {
+    /// The lines of a square that begin in an octant, against a node.
+    #[inline(always)]
+    pub(super) fn new(
+        isa: I,
+        view: &View,
+        place: &Place,
+        heading: &Heading<I>,
+        square: &Window,
+        octant: u8,
+    ) -> Self {
+        let [turn, pair] = SIGNS[usize::from(octant & 7)].map(|signs| isa.four(&signs));
+        let zero = isa.splat(0.0);
+        let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
+        let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
+        let columns = isa.four(&view.direction_lanes[0]).flip(turn);
+        let rows = isa.four(&view.direction_lanes[1]).flip(turn);
+        let middle = heading.middle.flip(turn);
+        let first = middle.sub(columns.fma(half_across, rows.mul(half_down)));
+        // Where lines of a square run both ways, the middle may be of the others.
+        let middle = middle.max(zero);
+        let (next, last) = (middle.next(), middle.last());
+        let width = next.add(last);
+        let inverse = isa.splat(1.0).div(width.max(isa.splat(f32::MIN_POSITIVE)));
+        let spread = heading.spread.next().add(heading.spread.last());
+        let spread = if heading.is_mixed { spread.add(spread) } else { spread };
+        let error = spread.mul(inverse).mul(isa.splat(2.0));
+        let half_step = isa.splat(0.5);
+        let shares = last.mul(inverse).fma(isa.splat(SHARE_STEPS), half_step).cells();
+        let mut tables = [0, 1, 2].map(|j| Strips::table(j, shares[j], 0));
+        let mut sees = [1.0; 4];
+        let mut has_blind = false;
+        let mut most = MOST_ERROR[0];
+        if isa.splat(most).sub(error).signs() & 7 != 0 {
+            // Values are not so good here.
+            most = MOST_ERROR[1];
+            for (j, error) in error.values().into_iter().enumerate().take(3) {
+                if error <= MOST_ERROR[1] {
+                    tables[j] = Strips::table(j, shares[j], 1);
+                } else {
+                    tables[j] = Strips::BLIND;
+                    sees[j] = 0.0;
+                    has_blind = true;
+                }
+            }
+        }
+        let inverse = if has_blind { inverse.mul(isa.four(&sees)) } else { inverse };
+        let step_x = isa.four(&place.step[0]).flip(pair);
+        let step_y = isa.four(&place.step[1]).flip(pair);
+        let from = [
+            (f64::from(square.left) - place.centre[0]) as f32,
+            (f64::from(square.top) - place.centre[1]) as f32,
+        ];
+        let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
+        let reach_x = isa.splat(from[0].abs() + 8.0);
+        let reach_y = isa.splat(from[1].abs() + 8.0);
+        let size = step_x.abs().fma(reach_x, step_y.abs().mul(reach_y));
+        let size = width.add(spread).fma(isa.splat(FARTHEST), size);
+        Self {
+            direction: [first, columns, rows],
+            moment: [moment, step_x, step_y],
+            tables,
+            inverse,
+            error: error.max(error.next()).max(error.last()).values()[0].min(most),
+            has_blind,
+            doubt: size.mul(isa.splat(RELATIVE_ERROR)),
+        }
+    }
+
+    /// The functions' values in widths: at the first sample, and what a column and a row add.
+    #[inline(always)]
+    pub(super) fn in_widths(&self) -> [I::Four; 3] {
+        self.moment.map(|moment| moment.mul(self.inverse))
+    }
+
+    /// All that the values about a part's centre are made of, in parts of a width.
+    #[inline(always)]
+    pub(super) fn in_units(&self, isa: I, units_per_width: f32) -> InUnits<I> {
+        let unit = self.inverse.mul(isa.splat(units_per_width));
+        InUnits {
+            moment: self.moment.map(|moment| moment.mul(unit)),
+            next: self.direction.map(|direction| direction.next().mul(unit)),
+            last: self.direction.map(|direction| direction.last().mul(unit)),
+        }
+    }
+
+    /// The same in cells of a table.
+    #[inline(always)]
+    pub(super) fn in_cells(&self, isa: I, widths_per_part: f32) -> [I::Four; 3] {
+        let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH * widths_per_part));
+        let [first, step_x, step_y] = self.moment;
+        [first.fma(unit, isa.splat(MIDDLE)), step_x.mul(unit), step_y.mul(unit)]
+    }
+
+    /// The line of a sample, its column and row in the square given.
+    #[inline(always)]
+    pub(super) fn line(&self, isa: I, [x, y]: [f32; 2]) -> Line<I> {
+        let (x, y) = (isa.splat(x), isa.splat(y));
+        let at = |[first, step_x, step_y]: &[I::Four; 3]| step_x.fma(x, step_y.fma(y, *first));
+        let direction = at(&self.direction);
+        let (next, last) = (direction.next(), direction.last());
+        Line {
+            next,
+            last,
+            moment: at(&self.moment),
+            half: next.add(last).mul(isa.splat(0.5)),
+        }
+    }
+
+    /// The cells of a line's values about a node's centre.
+    #[inline(always)]
+    pub(super) fn cells(&self, isa: I, line: &Line<I>) -> [usize; 3] {
+        let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
+        line.moment.fma(unit, isa.splat(MIDDLE)).cells()
+    }
+
+    /// Whether a line meets the part of side 1 whose centre lies at an offset.
+    #[inline(always)]
+    pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
+        let from_centre = line.moment.sub(line.shift(isa, offset));
+        let outside = from_centre.abs().sub(line.half);
+        let is_inside = outside.add(self.doubt).signs() & 7 == 7;
+        let may_be_inside = outside.sub(self.doubt).signs() & 7 == 7;
+        if is_inside != may_be_inside {
+            Meeting::Doubt
+        } else if is_inside {
+            Meeting::Meets
+        } else {
+            Meeting::Misses
+        }
+    }
+}
+
+impl<I: Isa> Line<I> {
+    /// What the moments are smaller by about a point at an offset.
+    #[inline(always)]
+    fn shift(&self, isa: I, offset: &Offset) -> I::Four {
+        let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
+        next.fms(self.last, last.mul(self.next))
+    }
+
+    /// The same line about a block's centre, whose offset is given in sides of a block, of 4 parts.
+    #[inline(always)]
+    pub(super) fn about(&self, isa: I, block: &Offset) -> Self {
+        let shift = self.shift(isa, block);
+        Self {
+            moment: self.moment.sub(shift.mul(isa.splat(4.0))),
+            ..*self
+        }
+    }
+}
+
+/// Where a part's centre lies from its node's, in sides of a part: by function
+/// j, along the next axis and along the last one.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(32))]
+pub(super) struct Offset {
+    pub(super) next: [f32; 4],
+    pub(super) last: [f32; 4],
+}
+
+/// The offsets of 64 parts.
+pub(super) static OFFSETS: [Offset; 64] = {
+    let mut table = [Offset {
+        next: [0.0; 4],
+        last: [0.0; 4],
+    }; 64];
+    let mut part = 0;
+    while part < 64 {
+        let mut j = 0;
+        while j < 3 {
+            table[part].next[j] = super::strips::along(part, (j + 1) % 3) as f32 - 1.5;
+            table[part].last[j] = super::strips::along(part, (j + 2) % 3) as f32 - 1.5;
+            j += 1;
+        }
+        part += 1;
+    }
+    table
+};
+
+/// The offset of a node from itself.
+pub(super) static NO_OFFSET: Offset = Offset {
+    next: [0.0; 4],
+    last: [0.0; 4],
+};
