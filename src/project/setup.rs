@@ -329,6 +329,17 @@ impl FrameSetup {
         self.depth + self.sub_levels
     }
 
+    /// The same frame without level of detail, down to the finest voxels: what
+    /// pictures are measured against.
+    #[must_use]
+    pub fn without_detail(&self) -> Self {
+        let mut whole = self.clone();
+        whole.options.lod_px = 0.0;
+        whole.lod_depth.fill(i64::MAX);
+        whole.lod_limit = None;
+        whole
+    }
+
     /// Largest magnitude of a coordinate of a clip vector in the object.
     #[must_use]
     pub fn position_reach(&self) -> Option<i128> {

@@ -1,10 +1,11 @@
-//! The exact oracle: for every sample, the nearest solid cell on its ray.
+//! The exact oracle: for every sample, the nearest solid cell on its ray, of
+//! the graph as level of detail cuts it.
 //!
 //! It starts from the same integers as every other engine and computes in
 //! integers that cannot overflow, so its picture is the meaning of *exact*.
 //! It is kept plain, to be checked by eye, and shares no code with the other
-//! engines. Drawing rule, cage and level of detail of the set-up are ignored:
-//! a pixel shows what its centre sees. Rules: `spec/rays.md`.
+//! engines. Drawing rule, cage and tolerance of the set-up are ignored: a
+//! sample shows what its centre sees. Rules: `spec/rays.md`.
 
 mod line;
 mod number;
@@ -64,6 +65,8 @@ impl<'g> Caster<'g> {
     /// The rays of a frame whose image root has at most [`MAX_CASTER_LEVELS`]
     /// levels. With more of them than a picture needs (`setup.levels` raised, nothing
     /// else changed), the samples are those of a finer grid in the same picture.
+    /// They see the graph as the frame's level of detail cuts it; references
+    /// start from [`FrameSetup::without_detail`].
     #[must_use]
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);

@@ -26,6 +26,9 @@ pub(super) struct View {
     /// The eye in units of `2^-sub_levels` voxels, rounded down and up.
     eye_floor: [i64; 3],
     eye_ceil: [i64; 3],
+    /// By octree level, least depth of a node with children that is a solid
+    /// by level of detail; `None`: none is.
+    lod_depth: Vec<Option<i128>>,
 }
 
 impl View {
@@ -41,7 +44,30 @@ impl View {
             sub_levels: setup.sub_levels,
             eye_floor: setup.eye_floor,
             eye_ceil: setup.eye_ceil,
+            lod_depth: setup
+                .lod_depth
+                .iter()
+                .map(|&w| (w != i64::MAX).then_some(i128::from(w)))
+                .collect(),
         }
+    }
+
+    /// Whether level of detail takes a node with children for a solid: the
+    /// node of this level whose lowest corner is `lo`.
+    pub(super) fn is_solid_by_detail(&self, lo: [i64; 3], level: u32) -> bool {
+        let enough = self.lod_depth.get(level as usize).copied().flatten();
+        enough.is_some_and(|enough| self.least_depth(lo, level) >= enough)
+    }
+
+    /// The least `W` of the eight vertices of a node: `W` is linear, so along
+    /// each axis it is least at one end, whatever the other axes.
+    fn least_depth(&self, lo: [i64; 3], level: u32) -> i128 {
+        let side = 1i128 << (self.depth - level);
+        let mut least = self.origin[2];
+        for (step, at) in self.edge.iter().zip(lo) {
+            least += i128::from(at) * step[2] + (side * step[2]).min(0);
+        }
+        least
     }
 
     /// Direction, in clip space, of the ray of sample `(i, j)`.

@@ -13,6 +13,12 @@
 //! for every line with these direction signs. Children are disjoint cubes
 //! and all cells inside the nearer one lie before those in the other; depth
 //! first in this order, the first solid cell is the nearest.
+//!
+//! # Level of detail
+//!
+//! A node with children is a solid cell where its least depth is at least the
+//! level's: then it is no larger than the level of detail allows, wherever in
+//! the picture it is seen. Both are whole numbers, so nothing is rounded here.
 
 use super::line::{Cube, Line};
 use super::number::Number;
@@ -25,7 +31,7 @@ pub(super) type Seen = (u32, [i32; 4]);
 /// The search along one ray.
 pub(super) struct Walk<'w, N> {
     graph: &'w GraphView<'w>,
-    depth: u32,
+    view: &'w View,
     line: Line<'w, N>,
     /// The octant in which a line with this direction begins.
     start: u8,
@@ -39,7 +45,7 @@ impl<'w, N: Number> Walk<'w, N> {
         let [x, y, z] = line.direction.map(|d| u8::from(d < 0));
         Self {
             graph,
-            depth: view.depth,
+            view,
             line,
             start: x << 2 | y << 1 | z,
             tested: 0,
@@ -54,19 +60,24 @@ impl<'w, N: Number> Walk<'w, N> {
         };
         self.tested += 1;
         self.line
-            .enters(&root, 1 << self.depth, &self.line.along_side(self.depth))
+            .enters(
+                &root,
+                1 << self.view.depth,
+                &self.line.along_side(self.view.depth),
+            )
             .then(|| self.nearest_within(self.graph.root, 0, &root))
             .flatten()
     }
 
     /// The nearest solid cell in `node`, whose cube the ray goes through.
     fn nearest_within(&mut self, node: u32, level: u32, cube: &Cube<N>) -> Option<Seen> {
-        if level == self.depth || self.graph.mask(node) == 0 {
+        let is_leaf = level == self.view.depth || self.graph.mask(node) == 0;
+        if is_leaf || self.view.is_solid_by_detail(cube.lo, level) {
             // Coordinates are at most 2^30 and levels at most 30.
             let [x, y, z] = cube.lo.map(|c| c as i32);
             return Some((node, [x, y, z, level as i32]));
         }
-        let child_levels = self.depth - level - 1;
+        let child_levels = self.view.depth - level - 1;
         let side = 1i64 << child_levels;
         let along_side = self.line.along_side(child_levels);
         for rank in 0..8 {

@@ -1,5 +1,5 @@
-//! With tolerance 0, exact coverage and no level of detail, the machine's
-//! voxels are the oracle's: no sample more, none less, none other.
+//! With tolerance 0 and exact coverage the machine's voxels are the oracle's at
+//! every level of detail: no sample more, none less, none other.
 
 use crate::common::*;
 use proptest::prelude::*;
@@ -8,12 +8,12 @@ use shiftvox::graph::Graph;
 use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-fn exact(cage: CageKind) -> SetupOptions {
+fn exact(cage: CageKind, lod_px: f64) -> SetupOptions {
     SetupOptions {
         cage,
         tolerance_px: 0.0,
         coverage: Coverage::Exact,
-        lod_px: 0.0,
+        lod_px,
         ..SetupOptions::default()
     }
 }
@@ -36,8 +36,8 @@ fn differing(a: &Frame, b: &Frame) -> String {
     report
 }
 
-fn check(graph: &Graph, camera: &Camera, cage: CageKind) -> Result<(), TestCaseError> {
-    let setup = setup(graph, camera, &exact(cage));
+fn check(graph: &Graph, camera: &Camera, cage: CageKind, lod_px: f64) -> Result<(), TestCaseError> {
+    let setup = setup(graph, camera, &exact(cage, lod_px));
     let machine = draw(graph, &setup);
     let oracle = oracle(graph, &setup);
     prop_assert!(
@@ -52,6 +52,17 @@ fn any_cage() -> impl Strategy<Value = CageKind> {
     prop_oneof![Just(CageKind::Corners), Just(CageKind::Frame)]
 }
 
+/// None; parts of a sample, among them such as no short sum of powers of two
+/// is; samples, many samples; more than the picture.
+fn any_lod() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        2 => Just(0.0),
+        2 => Just(1.0),
+        2 => 0.01..8.0f64,
+        1 => prop_oneof![Just(0.5), Just(16.0), Just(4096.0)],
+    ]
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
@@ -60,8 +71,9 @@ proptest! {
         graph in any_octree(3, 0.2),
         camera in any_camera(8.0, 1..40),
         cage in any_cage(),
+        lod_px in any_lod(),
     ) {
-        check(&graph, &camera, cage)?;
+        check(&graph, &camera, cage, lod_px)?;
     }
 
     #[test]
@@ -71,16 +83,18 @@ proptest! {
             (Just(graph), any_camera(side, 1..40))
         }),
         cage in any_cage(),
+        lod_px in any_lod(),
     ) {
-        check(&graph, &camera, cage)?;
+        check(&graph, &camera, cage, lod_px)?;
     }
 
     #[test]
     fn a_solid_cube_seen_from_everywhere(
         camera in any_camera(4.0, 1..40),
         cage in any_cage(),
+        lod_px in any_lod(),
     ) {
-        check(&solid(2), &camera, cage)?;
+        check(&solid(2), &camera, cage, lod_px)?;
     }
 }
 
@@ -96,10 +110,9 @@ proptest! {
         cage in any_cage(),
         lod_px in prop_oneof![Just(0.5), Just(1.0), Just(4.0)],
     ) {
-        let options = SetupOptions { lod_px, ..exact(cage) };
-        let setup = setup(&graph, &camera, &options);
+        let setup = setup(&graph, &camera, &exact(cage, lod_px));
         let machine = draw(&graph, &setup);
-        let oracle = oracle(&graph, &setup);
+        let oracle = oracle(&graph, &setup.without_detail());
         for (at, (drawn, covered)) in machine.voxel.iter().zip(&oracle.voxel).enumerate() {
             prop_assert!(drawn[3] >= 0 || covered[3] < 0, "sample {} is lost", at);
         }
@@ -117,7 +130,7 @@ fn a_camera_on_a_face_and_on_a_corner() {
     ] {
         for target in [[4.0, 4.0, 3.5], [8.0, 3.0, 4.0], [1.0, 1.0, 1.0]] {
             let camera = camera(eye, target, 64);
-            let setup = setup(&graph, &camera, &exact(CageKind::Frame));
+            let setup = setup(&graph, &camera, &exact(CageKind::Frame, 0.0));
             let machine = draw(&graph, &setup);
             let oracle = oracle(&graph, &setup);
             assert!(
@@ -136,6 +149,8 @@ fn sierpinski_at_depth_30() {
     let side = f64::from(1u32 << 30);
     for eye in [[-0.7, -0.9, 0.6], [0.501, 0.499, 0.5], [1.0, 1.0, 1.0]] {
         let camera = camera(eye.map(|c| c * side), [side * 0.3; 3], 64);
-        check(&graph, &camera, CageKind::Frame).expect("equal pictures");
+        for lod_px in [0.0, 0.7, 1.0] {
+            check(&graph, &camera, CageKind::Frame, lod_px).expect("equal pictures");
+        }
     }
 }

@@ -78,8 +78,30 @@ fn random_graph(dice: &mut Dice, depth: u32) -> Graph {
 /// A solid cell: node, lowest corner, level.
 type Cell = (u32, [i64; 3], u32);
 
-fn cells(graph: &GraphView<'_>, node: u32, lo: [i64; 3], level: u32, out: &mut Vec<Cell>) {
-    if level == graph.depth || graph.mask(node) == 0 {
+/// Whether level of detail takes a node for a solid: all its eight vertices
+/// are at least at the level's depth.
+fn is_solid_by_detail(setup: &FrameSetup, lo: [i64; 3], level: u32) -> bool {
+    let enough = setup.lod_depth[level as usize];
+    let side = 1i64 << (setup.depth - level);
+    enough != i64::MAX
+        && (0..8i64).all(|vertex| {
+            let u = [0, 1, 2].map(|k| lo[k] + side * (vertex >> (2 - k) & 1));
+            let w = |k: usize| BigInt::from(setup.edge_clip[k][2]) * u[k];
+            BigInt::from(setup.origin_clip[2]) + w(0) + w(1) + w(2) >= BigInt::from(enough)
+        })
+}
+
+/// All cells of the graph as the frame's level of detail cuts it.
+fn cells(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    node: u32,
+    lo: [i64; 3],
+    level: u32,
+    out: &mut Vec<Cell>,
+) {
+    let is_leaf = level == graph.depth || graph.mask(node) == 0;
+    if is_leaf || is_solid_by_detail(setup, lo, level) {
         out.push((node, lo, level));
         return;
     }
@@ -88,7 +110,7 @@ fn cells(graph: &GraphView<'_>, node: u32, lo: [i64; 3], level: u32, out: &mut V
         if let Some(child) = graph.child(node, octant) {
             let above = [octant >> 2 & 1, octant >> 1 & 1, octant & 1].map(i64::from);
             let lo = [0, 1, 2].map(|k| lo[k] + half * above[k]);
-            cells(graph, child, lo, level + 1, out);
+            cells(graph, setup, child, lo, level + 1, out);
         }
     }
 }
@@ -217,7 +239,7 @@ fn assert_exact(graph: &Graph, setup: &FrameSetup) -> usize {
     let frame = draw(graph, setup);
     let exact = Exact::new(setup);
     let mut all = Vec::new();
-    cells(&view, view.root, [0; 3], 0, &mut all);
+    cells(&view, setup, view.root, [0; 3], 0, &mut all);
     for j in 0..setup.height {
         for i in 0..setup.width {
             let sample = (j * setup.width + i) as usize;
@@ -356,7 +378,8 @@ fn a_cycle_ends_at_the_finest_level() {
             32,
         ),
         30,
-    );
+    )
+    .without_detail();
     let frame = draw(&sierpinski(30), &setup);
     assert!(frame.voxel.iter().all(|v| v[3] == 30 || *v == NO_VOXEL));
 }
@@ -474,7 +497,7 @@ fn views_beyond_128_bits_give_the_same_picture() {
         let graph = random_graph(&mut dice, 3);
         let eye = [(); 3].map(|()| dice.roll(33) as f64 / 2.0 - 4.0);
         let target = [eye[0] + 1.0, eye[1], eye[2]];
-        let setup = set_up(&camera(eye, target, [0.0, 0.0, 1.0], 90.0, 16), 3);
+        let setup = set_up(&camera(eye, target, [0.0, 0.0, 1.0], 90.0, 16), 3).without_detail();
         let largest = |setup: &FrameSetup| {
             let edges = setup.edge_clip.iter().flatten().map(|c| c.abs()).max();
             edges

@@ -43,7 +43,7 @@ impl Probe for Bounded {
 
 fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays.render(&graph.view(), setup, &mut frame)
+    Rays.render(&graph.view(), &setup.without_detail(), &mut frame)
         .expect("the oracle never fails");
     frame
 }

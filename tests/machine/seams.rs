@@ -150,8 +150,9 @@ fn count(depth: u32, cameras_each: usize, pixels: u32) -> Vec<((f64, f64), Count
                 let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options);
                 let setup = setup.expect("a frame");
                 // The integers of a frame do not depend on either.
-                let wanted =
-                    wanted.get_or_insert_with(|| inside(&drawn(&mut Rays, &graph, &setup)));
+                let wanted = wanted.get_or_insert_with(|| {
+                    inside(&drawn(&mut Rays, &graph, &setup.without_detail()))
+                });
                 let frame = drawn(&mut fast, &graph, &setup);
                 let shown = frame.node.iter().zip(wanted.iter()).filter(|(_, w)| **w);
                 for (node, _) in shown {

@@ -146,6 +146,21 @@ mod tests {
     }
 
     #[test]
+    fn the_cut_is_what_is_drawn() {
+        let graph = sierpinski(4);
+        for away in [20.0, 60.0, 300.0] {
+            let setup = set_up(away, 1.0);
+            let cut = cut_at(&graph, &setup);
+            let draw = |graph: &Graph, setup: &FrameSetup| {
+                let mut frame = Frame::new(64, 64, false);
+                Rays.render(&graph.view(), setup, &mut frame).unwrap();
+                frame.voxel
+            };
+            assert_eq!(draw(&cut, &setup.without_detail()), draw(&graph, &setup));
+        }
+    }
+
+    #[test]
     fn without_level_of_detail_the_cut_is_the_scene() {
         let graph = sierpinski(4);
         let setup = set_up(30.0, 0.0);

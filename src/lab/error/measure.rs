@@ -216,6 +216,7 @@ impl<'m> References<'m> {
 fn truth(subject: &Subject, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, BenchError> {
     let options = SetupOptions {
         aa_log2,
+        lod_px: 0.0,
         ..SetupOptions::default()
     };
     let graph = &subject.graph;

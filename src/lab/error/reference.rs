@@ -46,7 +46,8 @@ pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
 /// is 0) whose image root has at most [`MAX_REFERENCE_LEVELS`] levels.
 ///
 /// The samples are those of a grid that is up to 256 times as fine as the
-/// pixels, so that the exact rays start from the same integers as the frame:
+/// pixels, so that the exact rays, which go down to the finest voxels whatever
+/// the frame's level of detail, start from the same integers as the frame:
 /// a pixel's strata are squares of that grid, and each has one of its grid
 /// points drawn by lot. The result depends on frame and sampling alone.
 /// `progress` is told of rows.
@@ -62,7 +63,7 @@ pub fn cast(
     let strata_log2 = sampling.strata_log2.min(4);
     let spare = MAX_CASTER_LEVELS.saturating_sub(setup.levels + strata_log2);
     let jitter_log2 = spare.min(MOST_JITTER_LEVELS);
-    let mut grid = setup.clone();
+    let mut grid = setup.without_detail();
     grid.levels += strata_log2 + jitter_log2;
     let view = graph.view();
     let pixels = Pixels {

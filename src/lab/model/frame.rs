@@ -137,13 +137,13 @@ pub fn simulate<O: Observer>(
     Ok((frame, simulated))
 }
 
-/// The exact picture of a frame's view.
+/// The exact picture of a frame's view, down to the finest voxels.
 ///
 /// # Errors
 /// Never; the oracle's errors are the engines'.
 pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    Rays.render(graph, setup, &mut frame)?;
+    Rays.render(graph, &setup.without_detail(), &mut frame)?;
     Ok(frame)
 }
 

@@ -198,7 +198,7 @@ impl Oracle {
         }
         let mut frame = Frame::new(setup.width, setup.height, false);
         // The oracle has no error to give.
-        let _ = Rays.render(&graph.view(), setup, &mut frame);
+        let _ = Rays.render(&graph.view(), &setup.without_detail(), &mut frame);
         self.last = Some((setup.clone(), frame.clone()));
         frame
     }
