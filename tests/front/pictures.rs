@@ -201,12 +201,12 @@ fn films_are_restless_and_more_samples_calm_them() {
             let film = films.iter().find(|film| film["method"] == name);
             film.unwrap_or_else(|| panic!("{name}"))["seen"]["Ok"].clone()
         };
-        let [one, four] = ["exact 1/8 frame", "exact 1/8 frame aa 4"].map(seen);
+        let [one, four] = ["exact frame", "exact frame aa 4"].map(seen);
         let flicker = |film: &Value| film["flicker"].as_f64().unwrap();
         assert!(flicker(&four) < flicker(&one), "{one} {four}");
         assert_eq!(one["flicker_by_step"].as_array().unwrap().len(), 2);
         // Without level of detail there is no cut.
-        assert!(seen("exact 1/8 frame lod 0")["pop"].is_null());
+        assert!(seen("exact frame lod 0")["pop"].is_null());
         assert!(one["pop"].as_f64().unwrap() >= 0.0);
     }
     let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
