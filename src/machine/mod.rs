@@ -27,7 +27,6 @@ mod open;
 mod planes;
 mod positions;
 mod record;
-mod silhouette;
 mod size;
 mod steps;
 mod taps;

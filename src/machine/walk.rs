@@ -8,7 +8,7 @@ use super::draw::Canvas;
 use super::fit::{self, Place};
 use super::lattice::Lattice;
 use super::open;
-use super::planes::{Cube, PlaneSilhouette};
+use super::planes::{Cube, Silhouette};
 use super::record::{Clip, Planes, Pose, Record};
 use super::size;
 use super::taps::Block;
@@ -337,7 +337,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             max: record.max,
             before_eye: self.dp.is_positive(clip.w_min),
         };
-        let outline = PlaneSilhouette::new(&mut self.dp, &self.constants, &cube);
+        let outline = Silhouette::new(&mut self.dp, &self.constants, &cube);
         self.canvas
             .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
     }

@@ -358,11 +358,11 @@ fn methods<'s>(
 /// rules, more samples; and whatever nothing beats.
 fn is_shown(method: &str) -> bool {
     const SHOWN: [&str; 5] = [
-        "exact 1/8 frame",
+        "exact frame",
         "any inf corners",
         "any 1/8 frame",
         "center 1/8 frame",
-        "exact 1/8 frame aa 4",
+        "exact frame aa 4",
     ];
     SHOWN.contains(&method)
 }
