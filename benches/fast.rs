@@ -56,9 +56,9 @@ fn frames(criterion: &mut Criterion) {
             height: 1024,
         };
         let mut group = criterion.benchmark_group(spec);
-        for tolerance_px in [0.0, 1.0 / 8.0] {
+        for lod_px in [0.0, 1.0] {
             let options = SetupOptions {
-                tolerance_px,
+                lod_px,
                 ..SetupOptions::default()
             };
             let setup =
@@ -74,7 +74,7 @@ fn frames(criterion: &mut Criterion) {
                 };
                 let mut fast = Fast::new(options, Box::new(Machine::default()));
                 let mut frame = Frame::nodes_only(setup.width, setup.height);
-                let id = BenchmarkId::new(name, format!("tolerance {tolerance_px}"));
+                let id = BenchmarkId::new(name, format!("level of detail {lod_px}"));
                 group.bench_function(id, |bencher| {
                     bencher.iter(|| {
                         fast.draw(&graph.view(), &setup, &mut frame)

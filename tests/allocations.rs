@@ -67,9 +67,9 @@ fn a_frame_allocates_nothing_after_the_first() {
             width: 301,
             height: 200,
         };
-        for tolerance_px in [0.0, 1.0 / 8.0] {
+        for lod_px in [0.0, 1.0] {
             let options = SetupOptions {
-                tolerance_px,
+                lod_px,
                 ..SetupOptions::default()
             };
             let setup =

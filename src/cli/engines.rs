@@ -240,13 +240,6 @@ const FAST_VARIANTS: &[Variant] = &[
         frames: Frames::Drawn,
     },
     Variant {
-        name: "screen space off",
-        about: "--tolerance 0: lattices only to find voxels, exact planes decide; the picture may change",
-        adjust: |options| options.tolerance_px = 0.0,
-        make: FAST.make,
-        frames: Frames::Drawn,
-    },
-    Variant {
         name: "unchanged frame kept",
         about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are written. All other rows draw every frame",
         adjust: |_| {},
@@ -291,13 +284,6 @@ const MACHINE_VARIANTS: &[Variant] = &[
         name: "level of detail off",
         about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
         adjust: |options| options.lod_px = 0.0,
-        make: MACHINE.make,
-        frames: Frames::Drawn,
-    },
-    Variant {
-        name: "screen space off",
-        about: "--tolerance 0: every record stays in clip space, no divides; the picture may change",
-        adjust: |options| options.tolerance_px = 0.0,
         make: MACHINE.make,
         frames: Frames::Drawn,
     },

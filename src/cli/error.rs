@@ -120,9 +120,10 @@ impl From<StoreError> for CliError {
 impl From<SetupError> for CliError {
     fn from(error: SetupError) -> Self {
         let kind = match error {
-            SetupError::Camera(_) | SetupError::Format(_) | SetupError::Setting { .. } => {
-                Kind::Usage
-            }
+            SetupError::Camera(_)
+            | SetupError::Format(_)
+            | SetupError::Tolerance(_)
+            | SetupError::Setting { .. } => Kind::Usage,
             SetupError::Depth(_) | SetupError::OutOfRange | SetupError::Collapsed { .. } => {
                 Kind::Limit
             }

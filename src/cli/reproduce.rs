@@ -331,7 +331,7 @@ fn page(found: &Found, context: &Context, plots: &[(&str, String)]) -> String {
         "The paper is \"voxel rendering for a light hardware\". Its numbers were taken on an Intel Pentium dual core with its own \
          scenes, which are not published; ours are stand-ins of the same kinds. So times can be compared by their growth, not one by one. \
          \"Paper settings\" are eight corners, screen space at once, coverage any; \"default settings\" are a corner and three edges, \
-         tolerance 1/8, exact coverage.",
+         exact coverage, which never leaves clip space.",
     );
     page.lines(&context.markdown(found.config.schedule()));
     page.key_figures(&key_figures(found));

@@ -39,7 +39,7 @@ pub(super) struct StressArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(1..=2048))]
     size: Vec<u32>,
-    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of 72
+    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of 56
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     rules: Option<u32>,
     /// Viewpoints that the seed chooses, beside the thirteen standard ones

@@ -179,7 +179,7 @@ pub struct GraphView<'g> {
     /// Opacities by node; empty: all are opaque.
     pub opacity: &'g [Opacity],
     /// Linear light by node, 0 to 65535 a channel, for rules that blend (`SPEC.md`,
-    /// section 12); empty: white.
+    /// section 11); empty: white.
     pub light: &'g [[u16; 3]],
 }
 

@@ -3,7 +3,7 @@
 //!
 //! Nothing here knows how the machine computes. What it does know are the
 //! widths of the numbers that the machine holds: the fraction bits of clip
-//! vectors, of screen positions and of strips.
+//! vectors and of screen positions.
 
 use glam::DVec3;
 
@@ -17,14 +17,10 @@ pub struct Widths {
     pub clip_frac: u32,
     /// Fraction bits of screen positions, of a sample.
     pub screen_frac: u32,
-    /// Fraction bits of strips beyond those that their levels need.
-    pub strip_guard: u32,
     /// Samples per pixel and axis, as a power of two.
     pub aa_log2: u32,
 }
 
-/// Bits of a strip's normal: at least half of 2 to this long.
-const STRIP_BITS: i32 = 11;
 /// Relative error of a sum of a few `f64`.
 const REAL_ERROR: f64 = 8.0 * f64::EPSILON;
 
@@ -53,8 +49,6 @@ pub enum Space {
     Corners(Cube),
     /// On the screen, as a corner and three edges.
     Frame(Cube),
-    /// On the screen, as a place in the lattice of the cube's mean vertices.
-    Lattice(Cube),
 }
 
 /// A bound in its parts, samples along x and y each.
@@ -64,7 +58,7 @@ pub struct Parts {
     pub host: [f64; 2],
     /// What the screen's straight lines deviate from perspective.
     pub deviation: [f64; 2],
-    /// Rounding of quotients, midpoints and half edges.
+    /// Rounding of quotients, midpoints and edges.
     pub rounding: [f64; 2],
 }
 
@@ -199,20 +193,7 @@ impl Bounds {
                 deviation: self.frame_deviation(&cube),
                 rounding: [(3.0 + 3.0 * levels) * unit; 2],
             },
-            Space::Lattice(cube) => Parts {
-                host,
-                deviation: self.mean_deviation(&cube),
-                rounding: [1.25 * unit + self.strip_rounding(true); 2],
-            },
         }
-    }
-
-    /// Most that a strip's rounding moves an outline, samples; `is_box`: of
-    /// the two functions that measure whole samples.
-    #[must_use]
-    pub fn strip_rounding(&self, is_box: bool) -> f64 {
-        let bits = if is_box { STRIP_BITS } else { STRIP_BITS - 1 };
-        libm::ldexp(7.0, -(bits + self.widths.strip_guard as i32))
     }
 
     /// Depths that the cube's edges span, the greatest speed of a position
@@ -266,24 +247,6 @@ impl Bounds {
                 speed[k] * most
             };
             (0..3).map(part).sum::<f64>() / (least * least)
-        })
-    }
-
-    /// The affine map with the mean of the eight corners, and of four edges each.
-    fn mean_deviation(&self, cube: &Cube) -> [f64; 2] {
-        [0, 1].map(|c| {
-            let (span, speed, least) = self.speeds(cube, c);
-            // At a vertex the parts of each edge alone have gone with the
-            // mean; what is left are those of two edges, a quarter each.
-            let mut pairs = 0.0;
-            for j in 0..3 {
-                for k in 0..j {
-                    pairs += (speed[j] * span[k] + speed[k] * span[j]) / 4.0;
-                }
-            }
-            let (all_speed, all_span) = (speed.iter().sum::<f64>(), span.iter().sum::<f64>());
-            let third = 5.0 * (all_speed * all_span / 4.0) * (all_span / 2.0) / least;
-            (pairs + third) / (least * least)
         })
     }
 }

@@ -1,10 +1,10 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 12): how much of its
+//! Blending, under the rule `alpha` (`SPEC.md`, section 11): how much of its
 //! outline a voxel covers, and what that adds to a sample.
 //!
 //! A voxel is seen from three sides at most, and the share that each has in
 //! its outline is that of the way to it along that axis; it counts by the
 //! square of the cosine, for that is without bias over all directions. Quotients
-//! of few bits, made for a lattice or for a voxel that is drawn in clip space.
+//! of few bits, made for each voxel that is drawn.
 //! With the opacities of the three sides they make the voxel's weight; a
 //! sample takes of each voxel that weight times what it still lets through.
 //! Products are sums of shifts over the bits of a number of nine.
@@ -269,16 +269,6 @@ impl Ink {
 }
 
 impl<P: Probe, L: Lattice> Walk<'_, P, L> {
-    /// Gives the lattice of a record that has just changed to screen space the
-    /// shares of its sides.
-    pub(super) fn aim_lattice(&mut self, record: &Record<L>) {
-        let (Some(eye), Some(subtree)) = (&self.constants.blend_eye, &mut self.subtree) else {
-            return;
-        };
-        self.dp.stage(Stage::Blend);
-        subtree.aim = Some(Aim::new(&mut self.dp, eye, &record.min, &record.max));
-    }
-
     /// Makes what a solid that is drawn adds to samples, under the rule that
     /// blends. Whether there is anything to draw.
     pub(super) fn take_up_ink(&mut self, record: &Record<L>) -> bool {
@@ -288,11 +278,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let dp = &mut self.dp;
         dp.stage(Stage::Blend);
         dp.read(Memory::Attribute, u64::from(record.node));
-        let aim = match (&record.pose, &self.subtree) {
-            (super::record::Pose::Strips(_), Some(subtree)) => subtree.aim,
-            _ => None,
-        };
-        let aim = aim.unwrap_or_else(|| Aim::new(dp, eye, &record.min, &record.max));
+        let aim = Aim::new(dp, eye, &record.min, &record.max);
         let high = std::array::from_fn(|k| {
             let centre = dp.midpoint(record.min[k], record.max[k]);
             !dp.lt(self.constants.eye_floor[k], centre)

@@ -7,7 +7,6 @@ use super::fit;
 use super::lattice::Lattice;
 use super::planes;
 use super::record::{Clip, Planes, Pose, Record, Screen};
-use super::strips::Strips;
 use super::taps::Block;
 use super::walk::Walk;
 use crate::project::Coverage;
@@ -57,13 +56,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 let y = pool(dp, &screen.y);
                 self.push_children(record, order, &centre, |walk, octant, child| {
                     walk.push_in_screen_space(octant, &x, &y, &child);
-                });
-            }
-            Pose::Strips(strips) => {
-                let Some(subtree) = &self.subtree else { return };
-                let strips = subtree.children(dp, record.level + 1, strips);
-                self.push_children(record, order, &centre, |walk, octant, child| {
-                    walk.push_in_lattice(strips[octant as usize], &child);
                 });
             }
         }
@@ -153,23 +145,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             spans,
         };
         self.push_at(child.record(Pose::Screen(screen)), found);
-    }
-
-    /// The same in a lattice of screen space; `strips`: the child's, relative
-    /// to the quadtree node of its parent.
-    fn push_in_lattice(&mut self, mut strips: Strips, child: &Child<'_, L>) {
-        let Some(subtree) = &self.subtree else { return };
-        let parent = child.parent;
-        let fill = self.canvas.seen_by_fit(self.options.reject_filled);
-        let found = fit::strips(
-            &mut self.dp,
-            &self.constants,
-            &fill,
-            &parent.place(),
-            (subtree, parent.level + 1),
-            &mut strips,
-        );
-        self.push_at(child.record(Pose::Strips(strips)), found);
     }
 }
 

@@ -16,9 +16,9 @@ pub(super) enum Margin {
     /// to screen space may add.
     Grow(i32),
     /// Quadrants count only where the box holds one of their sample points:
-    /// narrowed by half of this many samples on each side, closed. Of the
-    /// rules that draw outlines alone, which keep no vertices in screen space.
-    Gap(ShiftSum),
+    /// narrowed by half a sample on each side, closed. Of the rules that draw
+    /// outlines alone, which never leave clip space.
+    Gap,
 }
 
 /// Size, in units of the last place of a screen position, up to which a
@@ -67,10 +67,6 @@ pub(super) struct Constants {
     /// By level, least depth of a clip-space node that is a solid by level of
     /// detail; `None`: none is.
     pub(super) lod_depth: Vec<Option<Word>>,
-    /// Fraction bits of strips beyond those that their levels need.
-    pub(super) strip_guard: u32,
-    /// See [`FrameSetup::strip_slack`].
-    pub(super) strip_slack: Option<u32>,
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
     pub(super) positive: bool,
@@ -154,7 +150,6 @@ impl Constants {
             }
         }
         let tolerance = by.lift(options.tolerance_px);
-        let gap = exact && (setup.grow_shift.is_none() || tolerance <= 0.4375);
         Self {
             coverage: if exact {
                 Coverage::Exact
@@ -170,7 +165,7 @@ impl Constants {
             half_sample_places: [screen_frac.saturating_sub(1), u32::from(screen_frac == 0)],
             finite_tolerance: tolerance.is_finite(),
             margin: match setup.grow_shift {
-                _ if gap => Margin::Gap(setup.size_limit.clone()),
+                _ if exact => Margin::Gap,
                 Some(shift) => Margin::Grow(shift),
                 None => Margin::Plain,
             },
@@ -187,8 +182,6 @@ impl Constants {
             near_crossing: Word::from_host(near_crossing.value),
             screen_depth: depths(&setup.screen_depth),
             lod_depth: depths(&setup.lod_depth),
-            strip_guard: setup.strip_guard,
-            strip_slack: setup.strip_slack,
             eye_floor: eye(setup.eye_floor),
             eye_ceil: eye(setup.eye_ceil),
             positive: setup.positive,

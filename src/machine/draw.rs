@@ -4,7 +4,7 @@ use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::alpha::Ink;
 use super::fit::Fill;
-use super::silhouette::{Cover, Silhouette};
+use super::planes::{Cover, Silhouette};
 use super::taps::Block;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, Frame, QuadNode};
@@ -147,11 +147,11 @@ impl<'f> Canvas<'f> {
     }
 
     /// Draws all samples of `quad` that a silhouette covers.
-    pub(super) fn draw_outline<P: Probe, S: Silhouette>(
+    pub(super) fn draw_outline<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
         quad: QuadNode,
-        mut outline: S,
+        mut outline: Silhouette,
         node: u32,
         voxel: [i32; 4],
     ) {
@@ -162,7 +162,7 @@ impl<'f> Canvas<'f> {
             Cover::All => self.draw_all(dp, quad, node, voxel),
             Cover::Some => {
                 for quadrant in self.open_quadrants(dp, quad) {
-                    let inner = outline.quadrant(dp, quadrant, below);
+                    let inner = outline.quadrant(dp, quadrant);
                     self.draw_outline(dp, quad.quadrant(quadrant), inner, node, voxel);
                 }
             }

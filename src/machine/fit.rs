@@ -10,7 +10,6 @@ use hwmodel::{Datapath, Memory, Probe, Short, Stage, WideWord, Word};
 use super::constants::{Constants, Margin};
 use super::lattice::Lattice;
 use super::record::{Clip, Planes, Spans};
-use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use super::taps::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
@@ -197,11 +196,11 @@ fn bisect<P: Probe, L: Lattice>(
             tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
             halves
         }
-        Margin::Gap(samples) if below > 0 => {
-            // Narrowed: the sum of shifted widths, taken with the other sign.
+        Margin::Gap if below > 0 => {
+            // Narrowed: half a sample, taken with the other sign.
             let margin = w.map(|w| {
-                let sum = sum_of_shifts(dp, w, samples.shifts(), below);
-                dp.neg(sum)
+                let sample = dp.shr(w, below.unsigned_abs());
+                dp.neg(sample)
             });
             let node = Short::unsigned(below.unsigned_abs(), LEVEL_BITS);
             dp.tap(Block::MarginGap, &(w, node), &margin);
@@ -209,15 +208,10 @@ fn bisect<P: Probe, L: Lattice>(
             tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
             halves
         }
-        Margin::Gap(_) => {
+        Margin::Gap => {
             // At a sample there is one sample point, in the middle.
-            let (halves, margin) = match constants.grow {
-                None => (closed_plain(dp, &relative), w.map(|_| Word::ZERO)),
-                Some(grow) => {
-                    let margin = widening(dp, w, grow - 1);
-                    (closed(dp, &relative, &margin), margin)
-                }
-            };
+            let halves = closed_plain(dp, &relative);
+            let margin = w.map(|_| Word::ZERO);
             let both = halves.low && halves.high;
             let halves = Halves {
                 low: both,
@@ -471,117 +465,6 @@ pub(super) fn screen<P: Probe>(
         quad = quad.quadrant(quadrant);
     }
     Some(Place { quad, inside })
-}
-
-/// Fits a voxel of octree level `level` in its lattice, and makes its place
-/// relative to the node found. `None`: rejected.
-pub(super) fn strips<P: Probe>(
-    dp: &mut Datapath<P>,
-    constants: &Constants,
-    fill: &Fill<'_>,
-    place: &Place,
-    (subtree, level): (&Subtree, u32),
-    pose: &mut Strips,
-) -> Option<Place> {
-    dp.stage(Stage::QuadtreeFit);
-    let half_widths = [ACROSS, DOWN].map(|f| subtree.half_width(dp, f, level));
-    let mut quad = place.quad;
-    let inside = place.inside
-        || match strips_border(dp, constants, subtree, half_widths, quad, pose) {
-            Border::Outside => return None,
-            Border::Across => false,
-            Border::Inside => true,
-        };
-    loop {
-        let below = constants.levels - quad.level;
-        let overlapped = strips_quadrants(dp, subtree, half_widths, below, pose);
-        if fill.rejects(dp, quad, overlapped) {
-            return None;
-        }
-        let Some(quadrant) = only(overlapped).filter(|_| below > 0) else {
-            break;
-        };
-        *pose = subtree.in_quadrant(dp, pose, quadrant, below);
-        quad = quad.quadrant(quadrant);
-    }
-    Some(Place { quad, inside })
-}
-
-/// The quadrants of a node `below` levels above the samples of which a box
-/// holds samples.
-pub(super) fn strips_quadrants<P: Probe>(
-    dp: &mut Datapath<P>,
-    subtree: &Subtree,
-    half_widths: [WideWord; 2],
-    below: u32,
-    pose: &Strips,
-) -> u8 {
-    let mut halves = |function: usize| {
-        let high = half_widths[function - ACROSS];
-        let low = dp.neg(high);
-        let value = pose.value[function];
-        let halves = if below == 0 {
-            let both = dp.le(low, value) && dp.le(value, high);
-            Halves {
-                low: both,
-                high: both,
-            }
-        } else {
-            // The last sample of the near half, and the first of the far half.
-            let one = subtree.box_step(dp, function, 0);
-            let half = subtree.box_step(dp, function, below - 1);
-            let far = dp.add(value, half);
-            let near = dp.sub(far, one);
-            Halves {
-                low: dp.le(low, near),
-                high: dp.le(far, high),
-            }
-        };
-        let node = Short::unsigned(below, LEVEL_BITS);
-        let box_of = (value, high, subtree.sample_step(function), node);
-        dp.tap(Block::BisectorStrips, &box_of, &(halves.low, halves.high));
-        halves
-    };
-    let (across, down) = (halves(ACROSS), halves(DOWN));
-    quadrants(dp, across, down)
-}
-
-/// A box against the samples of a node that is cut by the picture's border.
-fn strips_border<P: Probe>(
-    dp: &mut Datapath<P>,
-    constants: &Constants,
-    subtree: &Subtree,
-    half_widths: [WideWord; 2],
-    quad: QuadNode,
-    pose: &Strips,
-) -> Border {
-    let below = constants.levels - quad.level;
-    let mut inside = true;
-    for function in [ACROSS, DOWN] {
-        let high = half_widths[function - ACROSS];
-        let first = pose.value[function];
-        let one = subtree.box_step(dp, function, 0);
-        let all = subtree.box_step(dp, function, below);
-        let after = dp.add(first, all);
-        let before = dp.sub(first, one);
-        let last = dp.sub(after, one);
-        let low = dp.neg(high);
-        let outside = dp.lt(last, low) || dp.lt(high, first);
-        // Neither the sample before the first nor the one after the last is held.
-        let within = !outside && dp.lt(before, low) && dp.lt(high, after);
-        let node = Short::unsigned(below, LEVEL_BITS);
-        let box_of = (first, high, subtree.sample_step(function), node);
-        dp.tap(Block::BorderStrips, &box_of, &(outside, within));
-        if outside {
-            return Border::Outside;
-        }
-        inside &= within;
-    }
-    if inside {
-        Border::Inside
-    } else {
-        Border::Across
-    }
 }
 
 /// A position on the picture in half samples, as a screen-space word: wires.

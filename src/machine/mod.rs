@@ -4,7 +4,7 @@
 //! push the object's record
 //! while there is a record:
 //!     pop it; if its quadtree node is full by now, it is done
-//!     change it to screen space, if its deviation allows
+//!     change it to screen space, if its rule has that and its deviation allows
 //!     if it maps to a sample, or is a solid that can be drawn: draw it
 //!     else: find its centre, the order of its children, their vertices;
 //!           for each child, farthest first: find its box and the smallest
@@ -27,10 +27,8 @@ mod open;
 mod planes;
 mod positions;
 mod record;
-mod silhouette;
 mod size;
 mod steps;
-mod strips;
 mod taps;
 mod to_screen;
 mod verdict;
@@ -165,7 +163,7 @@ impl Machine {
     /// Under [`Independence::None`] and [`Image`] the machine does exactly
     /// what it does serially, whatever the hardware. Under [`Classes`] and
     /// [`Both`] the picture is the same where no sample is claimed by two
-    /// children of one class: under the exact rule at tolerance 0.
+    /// children of one class: under the exact rule.
     ///
     /// [`Independence::None`]: hwmodel::cycles::Independence::None
     /// [`Image`]: hwmodel::cycles::Independence::Image

@@ -8,7 +8,6 @@ use super::constants::Constants;
 use super::fit::{self, Fill};
 use super::lattice::Lattice;
 use super::record::{Clip, Spans};
-use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
@@ -25,12 +24,11 @@ pub(super) trait ImageBox: Copy {
         quad: QuadNode,
     ) -> (u8, Self::Tested);
 
-    /// The box relative to a quadrant of a node `below` levels above the samples.
+    /// The box relative to a quadrant of a node.
     fn in_quadrant<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         quadrant: u8,
-        below: u32,
         tested: Self::Tested,
     ) -> Self;
 }
@@ -58,11 +56,10 @@ pub(super) fn first_in_place<P: Probe, B: ImageBox>(
         if candidates == 0 {
             return None;
         }
-        let below = constants.levels - quad.level;
         while !candidates.is_power_of_two() {
             let quadrant = candidates.trailing_zeros() as u8;
             candidates &= candidates - 1;
-            let inner = of.in_quadrant(dp, quadrant, below, tested);
+            let inner = of.in_quadrant(dp, quadrant, tested);
             let found = first(dp, constants, fill, quad.quadrant(quadrant), inner);
             if found.is_some() {
                 return found;
@@ -70,7 +67,7 @@ pub(super) fn first_in_place<P: Probe, B: ImageBox>(
         }
         // The last one, most often the only one, takes this node's place.
         let quadrant = candidates.trailing_zeros() as u8;
-        of = of.in_quadrant(dp, quadrant, below, tested);
+        of = of.in_quadrant(dp, quadrant, tested);
         quad = quad.quadrant(quadrant);
     }
 }
@@ -98,13 +95,7 @@ impl<L: Lattice> ImageBox for Clip<L> {
         fit::clip_quadrants(dp, constants, quad, self)
     }
 
-    fn in_quadrant<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        quadrant: u8,
-        _: u32,
-        far: [L; 2],
-    ) -> Self {
+    fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, far: [L; 2]) -> Self {
         fit::clip_in_quadrant(dp, self, quadrant, far)
     }
 }
@@ -124,43 +115,7 @@ impl ImageBox for Spans {
     }
 
     #[inline]
-    fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, _: u32, (): ()) -> Self {
+    fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, (): ()) -> Self {
         *self
-    }
-}
-
-/// A place in a lattice of screen space.
-#[derive(Clone, Copy)]
-pub(super) struct InSubtree<'s> {
-    pub(super) subtree: &'s Subtree,
-    /// Octree level of the record.
-    pub(super) level: u32,
-    pub(super) strips: Strips,
-}
-
-impl ImageBox for InSubtree<'_> {
-    type Tested = ();
-
-    fn quadrants<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        constants: &Constants,
-        quad: QuadNode,
-    ) -> (u8, ()) {
-        let below = constants.levels - quad.level;
-        let widths = [ACROSS, DOWN].map(|f| self.subtree.half_width(dp, f, self.level));
-        let overlapped = fit::strips_quadrants(dp, self.subtree, widths, below, &self.strips);
-        (overlapped, ())
-    }
-
-    fn in_quadrant<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        quadrant: u8,
-        below: u32,
-        (): (),
-    ) -> Self {
-        let strips = self.subtree.in_quadrant(dp, &self.strips, quadrant, below);
-        Self { strips, ..*self }
     }
 }

@@ -12,7 +12,6 @@ use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 use super::constants::Constants;
 use super::fit::rebased;
 use super::record::Planes;
-use super::silhouette::{Cover, Silhouette};
 use super::taps::{Block, LEVEL_BITS};
 
 /// On which side of a plane all samples of a node are.
@@ -116,9 +115,30 @@ impl Plane {
     }
 }
 
-/// The silhouette of a cube in clip space.
+/// What is known of a quadtree node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cover {
+    /// No sample of the node is covered.
+    None,
+    /// Some may be.
+    Some,
+    /// All are.
+    All,
+}
+
+impl Cover {
+    /// On two wires: 0 outside, 1 mixed, 2 covered.
+    #[inline]
+    pub(super) fn wires(self) -> Short {
+        Short::unsigned(self as u8, 2)
+    }
+}
+
+/// The silhouette of a cube in clip space, relative to a quadtree node. It is
+/// carried down the image quadtree: whole quadrants are accepted or refused,
+/// samples decided by their centres.
 #[derive(Debug, Clone)]
-pub(super) struct PlaneSilhouette {
+pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
     /// For a cube beside or behind the eye: a plane perpendicular to an axis,
@@ -138,7 +158,7 @@ pub(super) struct Cube<'a> {
     pub(super) before_eye: bool,
 }
 
-impl PlaneSilhouette {
+impl Silhouette {
     pub(super) fn new<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -253,9 +273,11 @@ fn combine<P: Probe>(
     })
 }
 
-impl Silhouette for PlaneSilhouette {
+impl Silhouette {
+    /// What the node, `below` levels above the samples, has of the
+    /// silhouette; never [`Cover::Some`] for a sample (`below` = 0).
     #[inline]
-    fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
+    pub(super) fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let cover = self.resolve(dp, below);
         let sides = self
             .edges
@@ -268,7 +290,8 @@ impl Silhouette for PlaneSilhouette {
         cover
     }
 
-    fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, _below: u32) -> Self {
+    /// The silhouette relative to a quadrant (`y << 1 | x`) of the node.
+    pub(super) fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
         Self {
             edges: std::array::from_fn(|j| {
                 std::array::from_fn(|e| self.edges[j][e].quadrant(dp, quadrant))

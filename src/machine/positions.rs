@@ -4,18 +4,15 @@
 //! arithmetic, without a picture: each record in the quadtree's root, changed
 //! to screen space where the set-up lets it change.
 
-use std::rc::Rc;
-
-use hwmodel::{Datapath, NoProbe, Overflow, WideWord, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
 use super::lattice::{Corners, Frame, Lattice};
 use super::record::{Clip, Screen};
-use super::strips::{ACROSS, DOWN, Strips, Subtree};
 use super::to_screen;
 use crate::frame::QuadNode;
-use crate::project::{CageKind, Coverage, FrameSetup};
+use crate::project::{CageKind, FrameSetup};
 
 /// How a record holds its vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +39,7 @@ pub struct Positions {
 
 /// Tells `visit` of the records of some voxels and of all their ancestors,
 /// each once. Voxels are given as in a frame: lowest corner in finest voxels,
-/// and level; those below a level that level of detail ends at are left out.
+/// and level.
 /// Returns whether all arithmetic stayed within its words.
 pub fn visit_positions(
     setup: &FrameSetup,
@@ -89,7 +86,6 @@ impl Way {
 enum Held<L> {
     Clip(Clip<L>),
     Screen(Screen<L>),
-    Strips(Rc<Subtree>, Strips),
 }
 
 struct Descent<'v, L> {
@@ -135,19 +131,18 @@ impl<'v, L: Lattice> Descent<'v, L> {
             corner,
             space: match held {
                 Held::Clip(_) => Space::Clip,
-                _ => Space::Screen,
+                Held::Screen(_) => Space::Screen,
             },
-            samples: self.samples(level, &held),
+            samples: self.samples(&held),
         };
         if self.dp.trap().is_none() {
             (self.visit)(&positions);
         }
-        let ends = matches!(&held, Held::Strips(subtree, _) if level >= subtree.finest());
         let deeper = |way: &Way| way.level > level;
-        if ends || level >= self.setup.depth || !ways.iter().any(deeper) {
+        if level >= self.setup.depth || !ways.iter().any(deeper) {
             return;
         }
-        let children = self.children(level, held);
+        let children = self.children(held);
         let side = 1i64 << (self.setup.depth - level - 1);
         for (octant, child) in children.into_iter().enumerate() {
             let below: Vec<Way> = ways
@@ -166,11 +161,6 @@ impl<'v, L: Lattice> Descent<'v, L> {
         if !to_screen::may_change(&mut self.dp, &self.constants, level, &PLACE, &clip) {
             return Held::Clip(clip);
         }
-        if self.constants.coverage == Coverage::Exact {
-            let mean = to_screen::mean(&mut self.dp, &self.constants, &PLACE, &clip);
-            let (subtree, strips) = Subtree::new(&mut self.dp, &self.constants, level, &mean);
-            return Held::Strips(Rc::new(subtree), strips);
-        }
         Held::Screen(to_screen::change(
             &mut self.dp,
             &self.constants,
@@ -179,7 +169,7 @@ impl<'v, L: Lattice> Descent<'v, L> {
         ))
     }
 
-    fn children(&mut self, level: u32, held: Held<L>) -> [Held<L>; 8] {
+    fn children(&mut self, held: Held<L>) -> [Held<L>; 8] {
         let dp = &mut self.dp;
         match held {
             Held::Clip(clip) => {
@@ -200,13 +190,10 @@ impl<'v, L: Lattice> Descent<'v, L> {
                     })
                 })
             }
-            Held::Strips(subtree, strips) => subtree
-                .children(dp, level + 1, &strips)
-                .map(|child| Held::Strips(Rc::clone(&subtree), child)),
         }
     }
 
-    fn samples(&mut self, level: u32, held: &Held<L>) -> [Option<[f64; 2]>; 8] {
+    fn samples(&mut self, held: &Held<L>) -> [Option<[f64; 2]>; 8] {
         let dp = &mut self.dp;
         let number = |word: Word| word.to_host() as f64;
         match held {
@@ -224,32 +211,8 @@ impl<'v, L: Lattice> Descent<'v, L> {
                 let (x, y) = (screen.x.vertices(dp), screen.y.vertices(dp));
                 std::array::from_fn(|i| Some([x[i], y[i]].map(|c| number(c) * unit)))
             }
-            Held::Strips(subtree, strips) => box_vertices(subtree, level, strips).map(Some),
         }
     }
-}
-
-/// The eight vertices, in Morton order, of a voxel of octree level `level`,
-/// as the box of its strips has them: samples from the picture's corner.
-fn box_vertices(subtree: &Subtree, level: u32, place: &Strips) -> [[f64; 2]; 8] {
-    let mut vertices = [[0.0; 2]; 8];
-    for (axis, function) in [ACROSS, DOWN].into_iter().enumerate() {
-        let (step, half_edge) = subtree.box_constants(function);
-        let sample = step.to_host() as f64;
-        let in_samples = |value: WideWord| value.to_host() as f64 / sample;
-        // The value is the first sample's place, half a sample from the corner, less the centre's.
-        let centre = 0.5 - in_samples(place.value[function]);
-        let scale = libm::ldexp(1.0, subtree.finest().saturating_sub(level) as i32);
-        let half = half_edge.map(|edge| in_samples(edge) * scale);
-        for (corner, vertex) in vertices.iter_mut().enumerate() {
-            let side = |k: usize| match corner >> (2 - k) & 1 {
-                0 => -half[k],
-                _ => half[k],
-            };
-            vertex[axis] = centre + side(0) + side(1) + side(2);
-        }
-    }
-    vertices
 }
 
 #[cfg(test)]
@@ -259,7 +222,7 @@ mod tests {
     use super::*;
     use crate::graph::Placement;
     use crate::machine::vertices::screen_corners;
-    use crate::project::{Camera, SetupOptions};
+    use crate::project::{Camera, Coverage, SetupOptions};
 
     const DEPTH: u32 = 4;
 
@@ -327,7 +290,7 @@ mod tests {
         let voxel = [[5, 6, 7, 4]];
         let truth = *found(&truth, &voxel).last().unwrap();
         assert_eq!(truth.space, Space::Clip);
-        for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+        for coverage in [Coverage::Any, Coverage::Center] {
             for cage in [CageKind::Corners, CageKind::Frame] {
                 let setup = set_up(&SetupOptions {
                     coverage,

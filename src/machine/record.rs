@@ -3,7 +3,6 @@
 use hwmodel::{WideWord, Word};
 
 use super::fit::Place;
-use super::strips::Strips;
 use crate::frame::QuadNode;
 
 /// A voxel's projected vertices.
@@ -13,12 +12,9 @@ pub(super) enum Pose<L> {
     /// quadtree node: 0 is its left (upper) edge, `w` its right (lower) one.
     /// The planes are in use under the exact rule.
     Clip(Clip<L>, Planes),
-    /// In screen space, an approximation; whole-picture samples with the
-    /// format's fraction bits.
+    /// In screen space, an approximation, of the rules that draw single
+    /// samples; whole-picture samples with the format's fraction bits.
     Screen(Screen<L>),
-    /// In screen space under the exact rule: a place in the lattice of the
-    /// record that changed, relative to the record's quadtree node.
-    Strips(Strips),
 }
 
 /// Vertices in clip space.

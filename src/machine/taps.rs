@@ -14,10 +14,6 @@ pub enum Block {
     ChangeGuard,
     /// A quotient, bit by bit.
     ToScreenDivide,
-    /// Eight vertices to their sum and sums of edges.
-    StripMean,
-    /// A lattice's constants from them.
-    StripLattice,
     /// Is a node, by its depth, within the level of detail?
     DetailDepth,
     /// Extent that a clip-space record of one sample may have.
@@ -32,8 +28,6 @@ pub enum Block {
     OctantOrder,
     /// The children's vertices, one coordinate.
     VertexPool,
-    /// The children's values of a strip function.
-    StripChildren,
     /// A child's silhouette planes.
     ChildPlanes,
     /// A child's corners in object space.
@@ -58,12 +52,6 @@ pub enum Block {
     BorderScreen,
     /// A screen-space box and a bisector.
     BisectorScreen,
-    /// A lattice's box and the samples of a node, along one axis.
-    BorderStrips,
-    /// A lattice's box and the samples on either side of a bisector.
-    BisectorStrips,
-    /// A strip function's value in a quadrant.
-    StripQuadrant,
     /// Two halves along each axis to quadrants.
     Quadrants,
     /// Overlapped quadrants and fill vector to: rejected, or which one.
@@ -82,8 +70,6 @@ pub enum Block {
     PlaneSide,
     /// Sides of a cube's planes to: covered, outside, mixed.
     PlaneCover,
-    /// A strip and a node's samples: covered, outside, mixed.
-    StripCover,
     /// Bits set in a fill vector.
     FillUpdate,
     /// The way from the eye to a voxel along one axis.
@@ -100,13 +86,11 @@ pub enum Block {
 
 impl Block {
     /// All blocks, in the order of their numbers.
-    pub const ALL: [Self; 45] = [
+    pub const ALL: [Self; 38] = [
         Self::Filled,
         Self::ChangeDepth,
         Self::ChangeGuard,
         Self::ToScreenDivide,
-        Self::StripMean,
-        Self::StripLattice,
         Self::DetailDepth,
         Self::SizeLimit,
         Self::SizeClip,
@@ -114,7 +98,6 @@ impl Block {
         Self::Centre,
         Self::OctantOrder,
         Self::VertexPool,
-        Self::StripChildren,
         Self::ChildPlanes,
         Self::ChildCorners,
         Self::ChildSpan,
@@ -127,9 +110,6 @@ impl Block {
         Self::PlaneQuadrant,
         Self::BorderScreen,
         Self::BisectorScreen,
-        Self::BorderStrips,
-        Self::BisectorStrips,
-        Self::StripQuadrant,
         Self::Quadrants,
         Self::NodeChoice,
         Self::CageCentre,
@@ -139,7 +119,6 @@ impl Block {
         Self::CubeFront,
         Self::PlaneSide,
         Self::PlaneCover,
-        Self::StripCover,
         Self::FillUpdate,
         Self::BlendWay,
         Self::BlendShares,

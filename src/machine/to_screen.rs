@@ -7,7 +7,6 @@ use super::constants::Constants;
 use super::fit::Place;
 use super::lattice::Lattice;
 use super::record::{Clip, Screen};
-use super::strips::Mean;
 use super::taps::{Block, LEVEL_BITS, PLACES_BITS};
 use crate::project::setup::SCREEN_GUARD_SHIFT;
 
@@ -56,33 +55,6 @@ pub(super) fn change<P: Probe, L: Lattice>(
         x,
         y,
         spans: [x_span, y_span],
-    }
-}
-
-/// The mean of the eight vertices in screen space, relative to the record's
-/// quadtree node, of a record that may change.
-pub(super) fn mean<P: Probe, L: Lattice>(
-    dp: &mut Datapath<P>,
-    constants: &Constants,
-    place: &Place,
-    pose: &Clip<L>,
-) -> Mean {
-    let bits = constants.levels - place.quad.level + constants.screen_frac;
-    let w = pose.w.vertices(dp);
-    let offset = dp.load(1i64 << (OFFSET_SHIFT + bits));
-    let mut along = |x: &L| {
-        let x = x.vertices(dp);
-        let positions = std::array::from_fn(|i| {
-            let position = divide(dp, x[i], w[i], bits);
-            dp.sub(position, offset)
-        });
-        Mean::of(dp, positions)
-    };
-    let (x, x_edges) = along(&pose.x);
-    let (y, y_edges) = along(&pose.y);
-    Mean {
-        sum: [x, y],
-        edges: [x_edges, y_edges],
     }
 }
 

@@ -78,7 +78,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     /// Whether screen positions cannot part a record's vertices any more.
     fn is_least(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
-            Pose::Clip(..) | Pose::Strips(_) => false,
+            Pose::Clip(..) => false,
             Pose::Screen(screen) => {
                 size::screen_at_most(&mut self.dp, screen, self.constants.least_size_screen)
             }
@@ -145,17 +145,13 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                     solid
                 }),
             Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.lod_limit_screen),
-            Pose::Strips(_) => self
-                .subtree
-                .as_ref()
-                .is_some_and(|subtree| record.level >= subtree.finest()),
         };
     }
 
     fn crosses_near(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
             Pose::Clip(clip, _) => self.dp.lt(clip.w_min, self.constants.near),
-            Pose::Screen(_) | Pose::Strips(_) => false,
+            Pose::Screen(_) => false,
         }
     }
 
@@ -169,10 +165,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 size::clip_at_most(&mut self.dp, clip, &c.size_limit, below)
             }
             Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.size_limit_screen),
-            Pose::Strips(_) => self
-                .subtree
-                .as_ref()
-                .is_some_and(|subtree| subtree.at_most_a_sample(&mut self.dp, record.level)),
         }
     }
 }

@@ -1,15 +1,14 @@
 //! A window on the machine's vertices, for who checks what is said about them.
 
-use hwmodel::{Datapath, NoProbe, Overflow, Trap, WideWord, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
 use super::constants::Constants;
 use super::fit::Place;
 use super::lattice::{Corners, Frame, Lattice};
 use super::record::Clip;
-use super::strips::{FUNCTIONS, Subtree};
 use super::to_screen;
 use crate::frame::QuadNode;
-use crate::project::{CageKind, Coverage, FrameSetup};
+use crate::project::{CageKind, FrameSetup};
 
 /// The eight vertices of a voxel, in Morton order, as the machine has them
 /// relative to the whole picture.
@@ -23,20 +22,11 @@ pub(crate) enum Held {
     Clip([[i64; 8]; 3]),
     /// x and y, in screen units.
     Screen([[i64; 8]; 2]),
-    /// Values of the lattice's five functions.
-    Strips {
-        /// By function, relative to the picture's first sample.
-        value: [[i64; 8]; FUNCTIONS],
-        /// By function, what a step of a sample along x and y adds.
-        step: [[i64; 2]; FUNCTIONS],
-        /// The lattice's finest level: what is there, or on the way to it, is held.
-        finest: u32,
-    },
 }
 
 /// The voxels on the way that `path` leads from the root, octant by octant,
 /// the root first, in the cage of the set-up. Each changes to screen space
-/// where the machine would let it. The way ends early at a lattice's finest level.
+/// where the machine would let it.
 ///
 /// # Errors
 /// Where a word overflows. The machine has these vertices relative to a node
@@ -62,47 +52,29 @@ pub(super) fn follow_as<L: Lattice>(setup: &FrameSetup, path: &[u8]) -> Result<V
         quad: QuadNode::ROOT,
         inside: false,
     };
-    let (mut clip, mut screen, mut strips) = ([x, y, w], None::<[L; 2]>, None);
+    let (mut clip, mut screen) = ([x, y, w], None::<[L; 2]>);
     for level in 0..=path.len() as u32 {
         if let Some(octant) = level
             .checked_sub(1)
             .map(|at| usize::from(path[at as usize]))
         {
-            if let Some((subtree, at)) = &mut strips {
-                let subtree: &Subtree = subtree;
-                if level > subtree.finest() {
-                    break;
-                }
-                *at = subtree.children(&mut dp, level, at)[octant];
-            } else if let Some(lattices) = &mut screen {
+            if let Some(lattices) = &mut screen {
                 *lattices = lattices.map(|lattice| lattice.children(&mut dp)[octant]);
             } else {
                 clip = clip.map(|lattice| lattice.children(&mut dp)[octant]);
             }
         }
-        if strips.is_none() && screen.is_none() {
+        if screen.is_none() {
             let [x, y, w] = clip;
             let (w_min, _) = w.span(&mut dp);
             let pose = Clip { x, y, w, w_min };
             if to_screen::may_change(&mut dp, &constants, level, &place, &pose) {
-                if constants.coverage == Coverage::Exact {
-                    let mean = to_screen::mean(&mut dp, &constants, &place, &pose);
-                    strips = Some(Subtree::new(&mut dp, &constants, level, &mean));
-                } else {
-                    let changed = to_screen::change(&mut dp, &constants, &place, &pose);
-                    screen = Some([changed.x, changed.y]);
-                }
+                let changed = to_screen::change(&mut dp, &constants, &place, &pose);
+                screen = Some([changed.x, changed.y]);
             }
         }
         let host = |vertices: [Word; 8]| vertices.map(Word::to_host);
-        way.push(if let Some((subtree, at)) = &strips {
-            let vertices = subtree.vertices(&mut dp, level, at);
-            Held::Strips {
-                value: vertices.map(|function| function.map(WideWord::to_host)),
-                step: subtree.steps().map(|step| step.map(WideWord::to_host)),
-                finest: subtree.finest(),
-            }
-        } else if let Some(lattices) = screen {
+        way.push(if let Some(lattices) = screen {
             Held::Screen(lattices.map(|lattice| host(lattice.vertices(&mut dp))))
         } else {
             Held::Clip(clip.map(|lattice| host(lattice.vertices(&mut dp))))

@@ -7,11 +7,10 @@ use super::constants::Constants;
 use super::draw::Canvas;
 use super::fit::{self, Place};
 use super::lattice::Lattice;
-use super::open::{self, InSubtree};
-use super::planes::{Cube, PlaneSilhouette};
+use super::open;
+use super::planes::{Cube, Silhouette};
 use super::record::{Clip, Planes, Pose, Record};
 use super::size;
-use super::strips::{StripSilhouette, Subtree};
 use super::taps::Block;
 use super::to_screen;
 use super::verdict::Verdict;
@@ -92,9 +91,6 @@ pub(super) struct Walk<'a, P: Probe, L> {
     pub(super) graph: &'a GraphView<'a>,
     pub(super) canvas: Canvas<'a>,
     pub(super) stack: Vec<Record<L>>,
-    /// The lattice of the record that changed to screen space last, under the
-    /// exact rule. Depth first, so its records are done before the next change.
-    pub(super) subtree: Option<Subtree>,
     pub(super) counts: Counts,
 }
 
@@ -119,7 +115,6 @@ impl<'a, P: Probe, L: Lattice> Walk<'a, P, L> {
             graph,
             canvas: Canvas::new(fill, frame, heat),
             stack: Vec::new(),
-            subtree: None,
             counts: Counts::default(),
         }
     }
@@ -259,8 +254,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             let place = record.place();
             if to_screen::may_change(&mut self.dp, &self.constants, record.level, &place, clip) {
                 self.counts.changed_to_screen += 1;
-                record.pose = self.changed(record.level, &place, clip);
-                self.aim_lattice(record);
+                let screen = to_screen::change(&mut self.dp, &self.constants, &place, clip);
+                record.pose = Pose::Screen(screen);
             }
         }
 
@@ -281,18 +276,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         false
     }
 
-    /// A record's vertices after the change to screen space.
-    fn changed(&mut self, level: u32, place: &Place, clip: &Clip<L>) -> Pose<L> {
-        if self.constants.coverage != Coverage::Exact {
-            let screen = to_screen::change(&mut self.dp, &self.constants, place, clip);
-            return Pose::Screen(screen);
-        }
-        let mean = to_screen::mean(&mut self.dp, &self.constants, place, clip);
-        let (subtree, strips) = Subtree::new(&mut self.dp, &self.constants, level, &mean);
-        self.subtree = Some(subtree);
-        Pose::Strips(strips)
-    }
-
     /// Draws a record at every sample that its box overlaps.
     fn draw_box(&mut self, record: &Record<L>) {
         let seen = self.seen(record);
@@ -309,14 +292,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         match &record.pose {
             Pose::Clip(clip, _) => open::first(dp, constants, &fill, quad, *clip),
             Pose::Screen(screen) => open::first_in_place(dp, constants, &fill, quad, screen.spans),
-            Pose::Strips(strips) => {
-                let in_subtree = InSubtree {
-                    subtree: self.subtree.as_ref()?,
-                    level: record.level,
-                    strips: *strips,
-                };
-                open::first(dp, constants, &fill, quad, in_subtree)
-            }
         }
     }
 
@@ -336,8 +311,6 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
             Pose::Screen(screen) => {
                 size::screen_sample(&mut self.dp, &self.constants, record, screen)
             }
-            // The exact rule draws no centres.
-            Pose::Strips(_) => None,
         };
         if let Some(sample) = sample {
             let seen = self.seen(record);
@@ -345,35 +318,28 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
     }
 
+    /// Draws a solid by its silhouette. Only rules that draw single samples
+    /// keep vertices in screen space.
     fn draw_solid(&mut self, record: &Record<L>) {
+        let Pose::Clip(clip, planes) = &record.pose else {
+            return;
+        };
         self.counts.solids += 1;
         self.dp.stage(Stage::Draw);
         if !self.take_up_ink(record) {
             return;
         }
         let seen = self.seen(record);
-        match &record.pose {
-            Pose::Clip(clip, planes) => {
-                let cube = Cube {
-                    planes,
-                    level: record.level,
-                    min: record.min,
-                    max: record.max,
-                    before_eye: self.dp.is_positive(clip.w_min),
-                };
-                let outline = PlaneSilhouette::new(&mut self.dp, &self.constants, &cube);
-                self.canvas
-                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
-            }
-            Pose::Strips(strips) => {
-                let Some(subtree) = &self.subtree else { return };
-                let outline = StripSilhouette::new(&mut self.dp, subtree, record.level, *strips);
-                self.canvas
-                    .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
-            }
-            // Only rules that draw single samples keep vertices in screen space.
-            Pose::Screen(_) => {}
-        }
+        let cube = Cube {
+            planes,
+            level: record.level,
+            min: record.min,
+            max: record.max,
+            before_eye: self.dp.is_positive(clip.w_min),
+        };
+        let outline = Silhouette::new(&mut self.dp, &self.constants, &cube);
+        self.canvas
+            .draw_outline(&mut self.dp, record.quad, outline, record.node, seen);
     }
 
     /// The voxel that a record stands for: lowest corner in finest voxels, level.

@@ -8,9 +8,9 @@
 //! serves all levels.
 
 use super::host::{Host, Real};
-use super::setup::{Coverage, SCREEN_GUARD_SHIFT};
+use super::setup::SCREEN_GUARD_SHIFT;
 
-/// Bits of a strip's normal (`SPEC.md`, "Strips").
+/// Bits of a strip's normal: the fast engine's lattices, which find what is then decided exactly.
 pub const STRIP_NORMAL_BITS: u32 = 11;
 
 /// Points along each axis at which the deviation is looked at, ends included.
@@ -73,10 +73,7 @@ impl<H: Host> Edges<H> {
 
     /// Least depth, in voxels, at which a voxel of side 1 may change to
     /// screen space with a deviation of at most `allowed` samples.
-    pub(super) fn screen_depth(&self, coverage: Coverage, allowed: Real<H>) -> Real<H> {
-        if coverage.draws_outlines() {
-            return self.central_depth(allowed);
-        }
+    pub(super) fn screen_depth(&self, allowed: Real<H>) -> Real<H> {
         (self.total_speed() * self.depth_span() / allowed).sqrt()
     }
 
@@ -87,7 +84,7 @@ impl<H: Host> Edges<H> {
     /// `-(D d)(E d) / W^2 * (1 + at most sum|E| / 2W)`. The fit takes away
     /// the mean of the first part over the vertices, where `d_k^2 = 1/4`; it
     /// makes the second part at most five times as large.
-    fn central_depth(&self, allowed: Real<H>) -> Real<H> {
+    pub(super) fn central_depth(&self, allowed: Real<H>) -> Real<H> {
         let mut second_order = self.by.lift(0.0);
         for axis in 0..2 {
             for x in self.ends() {
@@ -142,66 +139,25 @@ impl<H: Host> Edges<H> {
     }
 }
 
-/// Rounding of a strip, in its units: its place by less than one, each half
-/// edge by half a unit at its end, up to four units where the voxel's finest
-/// parts are two levels below or more.
-const STRIP_ROUNDING_UNITS: f64 = 7.0;
-
 /// `2^exponent`.
 fn power<H: Host>(by: H, exponent: i32) -> Real<H> {
     by.lift(1.0).scaled(exponent)
 }
 
-/// Most of a sample by which rounding moves an outline in screen space.
-/// `guard` is the fraction bits of strips beyond those that their levels need.
-pub(super) fn rounding<H: Host>(
-    by: H,
-    coverage: Coverage,
-    screen_frac: u32,
-    guard: u32,
-) -> Real<H> {
-    // Quotients are rounded down: a corner and three edges, one unit each.
-    let quotients = power(by, -(screen_frac as i32)) * 4.0;
-    if !coverage.draws_outlines() {
-        return quotients;
-    }
+/// Most of a sample by which rounding moves a vertex in screen space: quotients
+/// are rounded down, a corner and three edges, one unit each.
+pub(super) fn rounding<H: Host>(by: H, screen_frac: u32) -> Real<H> {
+    power(by, -(screen_frac as i32)) * 4.0
+}
+
+/// Rounding of a strip, in its units: its place by less than one, each half
+/// edge by half a unit at its end, up to four units where the voxel's finest
+/// parts are two levels below or more.
+const STRIP_ROUNDING_UNITS: f64 = 7.0;
+
+/// Most of a sample by which rounding moves an outline made of strips.
+pub(super) fn lattice_rounding<H: Host>(by: H, screen_frac: u32) -> Real<H> {
     // A normal is at least half of 2^bits long.
-    let unit = power(by, -((STRIP_NORMAL_BITS - 1 + guard) as i32));
-    quotients + unit * STRIP_ROUNDING_UNITS
-}
-
-/// Fraction bits that strips get so that their rounding is an eighth of the
-/// tolerance at most.
-pub(super) fn strip_guard<H: Host>(tolerance_px: Real<H>) -> u32 {
-    if tolerance_px == 0.0 || tolerance_px.is_infinite() {
-        return 0;
-    }
-    let by = tolerance_px.by;
     let unit = power(by, -((STRIP_NORMAL_BITS - 1) as i32));
-    let ratio = unit * STRIP_ROUNDING_UNITS / (tolerance_px / 8.0);
-    whole_places(ratio.log2().ceil()).min(MAX_STRIP_GUARD)
+    rounding(by, screen_frac) + unit * STRIP_ROUNDING_UNITS
 }
-
-/// By how much outlines in screen space are drawn wider, so that nothing
-/// falls between neighbours that changed apart: `2^-slack` of what a step of
-/// a sample along both axes adds: an eighth of the tolerance, rounded up to a
-/// power of two, and no more than a sample. `None`: not at all.
-pub(super) fn strip_slack<H: Host>(tolerance_px: Real<H>) -> Option<u32> {
-    let is_approximate = tolerance_px > 0.0 && tolerance_px.is_finite();
-    is_approximate.then(|| {
-        let places = (tolerance_px.by.lift(3.0) - tolerance_px.log2()).floor();
-        whole_places(places).min(MAX_STRIP_SLACK)
-    })
-}
-
-/// A rounded number of places, 0 if it is below.
-fn whole_places<H: Host>(places: Real<H>) -> u32 {
-    let places = places.max(places.by.lift(0.0)).to_i64();
-    u32::try_from(places.value).unwrap_or(u32::MAX)
-}
-
-/// Beyond this the tolerance is below what screen positions hold.
-const MAX_STRIP_SLACK: u32 = 32;
-
-/// Beyond this many, the tolerance is below what screen positions hold.
-const MAX_STRIP_GUARD: u32 = 16;

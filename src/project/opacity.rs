@@ -1,5 +1,5 @@
 //! What a frame that blends starts from, beyond what every frame does
-//! (`SPEC.md`, section 12).
+//! (`SPEC.md`, section 11).
 
 use super::FrameSetup;
 use super::host::{Host, Untold, lift_all, values};

@@ -33,9 +33,6 @@ const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
 /// Bits of a word beyond a screen position's fraction and the levels of the
 /// image: sign, guard, and sums of eight vertices.
 const SCREEN_HEADROOM_BITS: u32 = 5;
-/// The same for an infinite tolerance under `exact`: positions may be twelve
-/// pictures away, and eight of them are added.
-const FAR_SCREEN_HEADROOM_BITS: u32 = 8;
 /// Records whose box leaves the picture by more than this part of it do not
 /// change to screen space (as a shift: 2^-3).
 pub const SCREEN_GUARD_SHIFT: u32 = 3;
@@ -73,6 +70,17 @@ impl Coverage {
     pub const fn draws_outlines(self) -> bool {
         matches!(self, Self::Exact | Self::Alpha)
     }
+
+    /// The tolerance, samples, where none is given. What draws outlines never
+    /// changes to screen space and has no other than 0.
+    #[inline]
+    #[must_use]
+    pub const fn default_tolerance(self) -> f64 {
+        match self {
+            Self::Any | Self::Center => 1.0 / 8.0,
+            Self::Exact | Self::Alpha => 0.0,
+        }
+    }
 }
 
 /// What a frame is drawn with.
@@ -86,7 +94,8 @@ pub struct SetupOptions {
     /// How a record holds its vertices.
     pub cage: CageKind,
     /// Largest deviation, in samples, at which a record may change from clip
-    /// space to screen space: 0 never, infinity at once.
+    /// space to screen space: 0 never, infinity at once. Of `any` and
+    /// `center` alone: the other rules take 0.
     pub tolerance_px: f64,
     /// Drawing rule.
     pub coverage: Coverage,
@@ -98,12 +107,20 @@ pub struct SetupOptions {
 
 impl Default for SetupOptions {
     fn default() -> Self {
+        Self::of(Coverage::default())
+    }
+}
+
+impl SetupOptions {
+    /// What a frame is drawn with under a rule, where nothing else is asked for.
+    #[must_use]
+    pub fn of(coverage: Coverage) -> Self {
         Self {
             bits: 64,
             frac: None,
             cage: CageKind::default(),
-            tolerance_px: 1.0 / 8.0,
-            coverage: Coverage::default(),
+            tolerance_px: coverage.default_tolerance(),
+            coverage,
             lod_px: 1.0,
             aa_log2: 0,
         }
@@ -138,6 +155,12 @@ pub enum SetupError {
         /// Fraction bits of clip vectors.
         frac: u32,
     },
+    /// A tolerance of a rule that has none.
+    #[error(
+        "a tolerance of {0} pixels does not go with exact or alpha coverage, whose picture is defined \
+         at every sample and approximates nothing: leave it at 0, or take the rule any or center"
+    )]
+    Tolerance(f64),
     /// A setting outside its range.
     #[error("{name} must be {range}, not {value}")]
     Setting {
@@ -183,16 +206,14 @@ pub struct FrameSetup {
     /// that is before the eye), units of `2^-clip_frac` voxels.
     pub near: i64,
     /// By octree level, least depth `W` of a record that may change to screen
-    /// space; `i64::MAX`: none may.
+    /// space; `i64::MAX`: none may, as under the rules that draw outlines.
     pub screen_depth: Vec<i64>,
     /// By octree level, least depth `W` of a clip-space node with children that
     /// level of detail takes for a solid; `i64::MAX`: none is.
     pub lod_depth: Vec<i64>,
-    /// Fraction bits of strips beyond those that their levels need.
+    /// Fraction bits of strips beyond those that their levels need: 0.
     pub strip_guard: u32,
-    /// By how much strips and boxes of a lattice are wider than the voxels: as
-    /// a shift to the right of what a step of a sample along both axes adds;
-    /// `None`: nothing.
+    /// By how much strips are wider than the voxels: `None`, nothing.
     pub strip_slack: Option<u32>,
     /// Whether no word of a frame with these integers can overflow.
     pub has_headroom: bool,
@@ -273,7 +294,8 @@ impl FrameSetup {
         let finite = tolerance.is_finite();
         let has_headroom = reach.fits(format, sub_levels)
             && (!finite || tolerance <= MOST_TOLERANCE_WITH_HEADROOM)
-            && levels + format.frac() + screen_headroom_bits(finite, options) <= options.bits;
+            && (options.coverage.draws_outlines()
+                || levels + format.frac() + SCREEN_HEADROOM_BITS <= options.bits);
 
         by.enter(Part::Eye);
         let eye = Eye::solve(&quantised, sub_levels)
@@ -291,8 +313,7 @@ impl FrameSetup {
             clip_frac,
             near,
         };
-        let strip_guard = depths::strip_guard(tolerance);
-        let screen_depth = view.screen_depths(&levels_of, options, format.frac(), strip_guard);
+        let screen_depth = view.screen_depths(&levels_of, options, format.frac());
         let lod_depth = view.lod_depths(&levels_of, options);
         by.enter(Part::Limits);
         Ok(Self {
@@ -312,8 +333,8 @@ impl FrameSetup {
             near: near.value,
             screen_depth,
             lod_depth,
-            strip_guard,
-            strip_slack: depths::strip_slack(tolerance),
+            strip_guard: 0,
+            strip_slack: None,
             has_headroom,
             grow_shift: grow_shift(tolerance),
             size_limit: size_limit(by, options, 1.0).unwrap_or_default(),
@@ -373,14 +394,14 @@ impl FrameSetup {
         if allowed <= 0.0 {
             return vec![i64::MAX; self.depth as usize + 1];
         }
-        levels.scaled(edges.screen_depth(Coverage::Exact, allowed))
+        levels.scaled(edges.central_depth(allowed))
     }
 
     /// Most, in samples, by which rounding moves an outline of such a lattice.
     #[must_use]
     pub fn lattice_rounding(&self) -> f64 {
         let frac = self.format.frac();
-        depths::rounding(Untold, Coverage::Exact, frac, self.strip_guard).value
+        depths::lattice_rounding(Untold, frac).value
     }
 
     /// World depth of one unit of `W`.
@@ -407,15 +428,6 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
     width.max(height).next_power_of_two().trailing_zeros()
 }
 
-/// Bits of a word beyond a screen position's, with which no sum of positions overflows.
-fn screen_headroom_bits(finite: bool, options: &SetupOptions) -> u32 {
-    if !finite && options.coverage.draws_outlines() {
-        FAR_SCREEN_HEADROOM_BITS
-    } else {
-        SCREEN_HEADROOM_BITS
-    }
-}
-
 fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupError> {
     let tolerance = by.lift(options.tolerance_px);
     let lod = by.lift(options.lod_px);
@@ -430,6 +442,9 @@ fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupErr
             "0 to 4096 pixels, or inf",
             options.tolerance_px,
         );
+    }
+    if options.coverage.draws_outlines() && tolerance != 0.0 {
+        return Err(SetupError::Tolerance(options.tolerance_px));
     }
     let most = by.lift(4096.0);
     if !(lod >= 0.0 && lod <= most) {
@@ -498,6 +513,7 @@ impl ShiftSum {
 
 /// A size in samples, less its share of twice the tolerance, so that
 /// neighbours that deviate by the tolerance leave no pinhole; `None` for 0.
+/// The rules that draw outlines have no tolerance to take a share of.
 fn size_limit<H: Host>(by: H, options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
     let tolerance = by.lift(options.tolerance_px);
     let finite = tolerance.is_finite();

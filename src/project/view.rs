@@ -117,26 +117,16 @@ impl<H: Host> View<H> {
         levels: &Levels<H>,
         options: &SetupOptions,
         screen_frac: u32,
-        strip_guard: u32,
     ) -> Vec<i64> {
         let tolerance = self.by.lift(options.tolerance_px);
         if tolerance.is_infinite() {
             return levels.all(levels.near.value);
         }
-        let rounding = depths::rounding(self.by, options.coverage, screen_frac, strip_guard);
-        // The slack takes its part of the tolerance: all that is drawn lies
-        // within that of the voxels.
-        let slack = match depths::strip_slack(tolerance) {
-            Some(places) if options.coverage.draws_outlines() => {
-                self.by.lift(1.0).scaled(-(places as i32))
-            }
-            _ => self.by.lift(0.0),
-        };
-        let allowed = (tolerance - rounding - slack) * (1.0 - 1e-6);
+        let allowed = (tolerance - depths::rounding(self.by, screen_frac)) * (1.0 - 1e-6);
         if tolerance == 0.0 || allowed <= 0.0 {
             return levels.all(i64::MAX);
         }
-        levels.scaled(self.edges(options).screen_depth(options.coverage, allowed))
+        levels.scaled(self.edges(options).screen_depth(allowed))
     }
 
     /// Least `W`, by level, at which a node with children is no larger than

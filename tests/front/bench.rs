@@ -256,7 +256,7 @@ fn ablation_tells_what_a_technique_changes() {
         of("level of detail off", "work"),
         of("everything on", "work")
     );
-    let screen = &row("machine", "screen space off")["coverage"];
+    let screen = &row("machine", "everything on")["coverage"];
     assert_eq!(
         (&screen["extra"], &screen["missing"], &screen["wrong_voxel"]),
         (&0.into(), &0.into(), &0.into())

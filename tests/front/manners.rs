@@ -62,6 +62,42 @@ fn wrong_command_lines_exit_with_2() {
 }
 
 #[test]
+fn exact_pictures_have_no_tolerance() {
+    let folder = folder();
+    for coverage in ["exact", "alpha"] {
+        for tolerance in ["0.125", "inf"] {
+            let line = [
+                "render",
+                SCENE,
+                "--coverage",
+                coverage,
+                "--tolerance",
+                tolerance,
+            ];
+            let assert = shiftvox(folder.path())
+                .args(line)
+                .args(["-o", "a.png"])
+                .assert()
+                .code(2);
+            let told = stderr_of(&assert);
+            assert!(told.contains("approximates nothing"), "{told}");
+        }
+    }
+    assert!(names(folder.path()).is_empty());
+    let line = [
+        "render",
+        SCENE,
+        "--size",
+        "16",
+        "--tolerance",
+        "0",
+        "-o",
+        "a.png",
+    ];
+    shiftvox(folder.path()).args(line).assert().success();
+}
+
+#[test]
 fn bad_inputs_exit_with_4_and_name_the_file() {
     let folder = folder();
     fs::write(folder.path().join("noise.vox"), b"this is not a scene").unwrap();

@@ -106,17 +106,14 @@ fn the_document_adds_up() {
 fn tables_of_rules_formats_lanes_and_growth() {
     let found = document(&with(&["--rules", "--sweep", "bits=16..32+8", "--lanes"]));
     let rules = found["rules"].as_array().expect("rules");
-    assert_eq!(rules.len(), 2 * 3 * 6);
-    let exact = |row: &&Value| row["coverage"] == "exact" && row["tolerance_px"] == 0.0;
+    assert_eq!(rules.len(), 2 * (1 + 2 * 3));
+    let exact = |row: &&Value| row["coverage"] == "exact";
     for row in rules.iter().filter(exact) {
         let error = &row["error"];
         let wrong = ["extra", "missing", "wrong_voxel"].map(|key| error[key].as_u64());
         assert_eq!(row["outcome"], "drawn");
         assert_eq!(row["divide_steps"], 0);
-        assert!(
-            wrong.iter().all(|w| *w <= Some(2)),
-            "32 bits, tolerance 0: {row}"
-        );
+        assert!(wrong.iter().all(|w| *w <= Some(2)), "32 bits: {row}");
     }
     assert!(rules.iter().any(|row| row["tolerance_px"] == "inf"));
     let formats = found["formats"].as_array().expect("formats");
@@ -146,7 +143,7 @@ fn threads_change_no_table() {
     for table in tables {
         assert_eq!(one[table], three[table], "{table}");
     }
-    assert_eq!(one["rules"].as_array().map(Vec::len), Some(2 * 3 * 6));
+    assert_eq!(one["rules"].as_array().map(Vec::len), Some(2 * (1 + 2 * 3)));
 }
 
 #[test]
@@ -327,7 +324,7 @@ fn samples_that_the_order_of_children_changes_are_counted() {
     };
     let samples = 64 * 64;
     assert!((1..samples).contains(&differing(&["--paper"])));
-    assert_eq!(differing(&["--tolerance", "0"]), 0);
+    assert_eq!(differing(&[]), 0);
     // One context works on one record after the other, as the serial machine does.
     assert_eq!(differing(&["--paper", "--hw", "tiny"]), 0);
 }
@@ -335,7 +332,7 @@ fn samples_that_the_order_of_children_changes_are_counted() {
 /// A claim of growth tells each step, so that no bend is hidden.
 #[test]
 fn growth_is_told_step_by_step() {
-    let found = document(&with(&["--growth", "--tolerance", "inf"]));
+    let found = document(&with(&["--growth", "--paper"]));
     let claims = found["claims"].as_array().expect("claims");
     let evidence = |of: &str| {
         let claim = claims.iter().find(|claim| claim["claim"] == of);

@@ -10,12 +10,10 @@ use shiftvox::graph::{Graph, GraphView, Opacity};
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Coverage, Engine, FrameSetup, SetupOptions};
 
-fn alpha(tolerance_px: f64, lod_px: f64) -> SetupOptions {
+fn alpha(lod_px: f64) -> SetupOptions {
     SetupOptions {
-        coverage: Coverage::Alpha,
-        tolerance_px,
         lod_px,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Alpha)
     }
 }
 
@@ -57,7 +55,7 @@ fn slabs(eye: [f64; 3], ray: [f64; 3], corner: [i64; 3]) -> (f64, f64) {
 }
 
 /// What a ray takes of the voxels that it meets, nearest first: `SPEC.md`,
-/// section 12, in products and quotients. `None`: it grazes one.
+/// section 11, in products and quotients. `None`: it grazes one.
 fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -> Option<Blend> {
     let axes = camera.axes().expect("a camera");
     let across = at[0] - f64::from(camera.width) / 2.0;
@@ -149,7 +147,7 @@ proptest! {
         prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
         let graph = with_opacities(graph, &opacities);
         let light = lights(&graph);
-        let setup = setup(&graph, &camera, &alpha(0.0, 0.0));
+        let setup = setup(&graph, &camera, &alpha(0.0));
         let frame = draw_lit(&graph, &light, &setup);
         let blend = frame.blend.as_ref().expect("blended");
         let (mut compared, mut covered) = (0, 0);
@@ -170,11 +168,10 @@ proptest! {
     fn opaque_voxels_are_drawn_as_under_exact(
         graph in any_mixed_octree(4),
         camera in any_camera(16.0, 5..60),
-        tolerance_px in prop_oneof![Just(0.0), Just(0.125), Just(f64::INFINITY)],
         lod_px in prop_oneof![Just(0.0), Just(1.0)],
         stored in any::<bool>(),
     ) {
-        let options = alpha(tolerance_px, lod_px);
+        let options = alpha(lod_px);
         let exact = SetupOptions { coverage: Coverage::Exact, ..options };
         let right = draw(&graph, &setup(&graph, &camera, &exact));
         let graph = if stored { with_opacities(graph, &[[255; 3]]) } else { graph };
@@ -201,13 +198,12 @@ proptest! {
         low in any_opacities(),
         more in any_opacities(),
         camera in any_camera(8.0, 5..40),
-        tolerance_px in prop_oneof![Just(0.0), Just(0.125)],
     ) {
         let higher = |(a, b): (&[u8; 3], &[u8; 3])| {
             std::array::from_fn(|k| (a[k] & 15).max(b[k] & 15) | (a[k] >> 4).max(b[k] >> 4) << 4)
         };
         let high: Vec<[u8; 3]> = low.iter().zip(&more).map(higher).collect();
-        let setup = setup(&graph, &camera, &alpha(tolerance_px, 1.0));
+        let setup = setup(&graph, &camera, &alpha(1.0));
         let left = |opacities: &[[u8; 3]]| -> Vec<u16> {
             let graph = with_opacities(graph.clone(), opacities);
             let frame = draw_lit(&graph, &[], &setup);
@@ -245,7 +241,7 @@ fn two_voxels_by_hand() {
         let mut light = vec![[0; 3]; graph.len()];
         light[top as usize] = [1000, 0, 7];
         light[bottom as usize] = [0, 1, 7];
-        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &alpha(0.0, 0.0)));
+        let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &alpha(0.0)));
         let at = 4 * 9 + 4;
         let first = frame.node[at];
         let blend = frame.blend.expect("blended")[at];
@@ -267,20 +263,19 @@ fn two_voxels_by_hand() {
 /// Operations of the stage `blend`: so many for a voxel, so many for a sample.
 #[test]
 fn what_blending_costs() {
-    for (size, tolerance) in [(1, 0.0), (7, 0.0), (7, 0.125), (41, 0.125)] {
+    for size in [1, 7, 41] {
         let graph = with_opacities(octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
         let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
-        let setup = setup(&graph, &camera, &alpha(tolerance, 0.0));
+        let setup = setup(&graph, &camera, &alpha(0.0));
         let mut frame = Frame::new(setup.width, setup.height, false);
         let (stats, counter) = Machine::default()
             .render_probed(&graph.view(), &setup, &mut frame, Counter::new())
             .expect("no overflow");
         let [solids, blended] = ["solids_drawn", "samples_blended"].map(|name| stat(&stats, name));
-        assert_eq!(solids, 1, "{size}, {tolerance}: {stats:?}");
+        assert_eq!(solids, 1, "{size}: {stats:?}");
         assert!(blended > 0);
         let count = |class| counter.ops_at(Stage::Blend, class);
-        // What the sides count for, made once, for the lattice or for the
-        // voxel: the way, its shares, their squares, a root, three quotients.
+        // What the sides count for, made once for the voxel: the way, its shares, their squares, a root, three quotients.
         let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
         let sub = 3 + 3 + 2;
         let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;
@@ -319,11 +314,7 @@ fn other_rules_blend_nothing() {
     let graph = with_opacities(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);
     let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
     for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
-        let options = SetupOptions {
-            coverage,
-            ..SetupOptions::default()
-        };
-        let setup = setup(&graph, &camera, &options);
+        let setup = setup(&graph, &camera, &SetupOptions::of(coverage));
         let mut frame = Frame::new(setup.width, setup.height, false);
         let (_, counter) = Machine::default()
             .render_probed(&graph.view(), &setup, &mut frame, Counter::new())

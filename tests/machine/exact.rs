@@ -1,18 +1,17 @@
-//! With tolerance 0 and exact coverage the machine's voxels are the oracle's at
-//! every level of detail: no sample more, none less, none other.
+//! Under exact coverage the picture is defined once: machine, fast engine and
+//! oracle show the same voxel and node at every sample, at every level of
+//! detail and number of samples a pixel. (`draw` compares the fast engine.)
 
 use crate::common::*;
 use proptest::prelude::*;
 use shiftvox::frame::{Frame, NO_VOXEL};
 use shiftvox::graph::Graph;
-use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions};
+use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupError, SetupOptions};
 use shiftvox::rays::Rays;
 
 fn exact(cage: CageKind, lod_px: f64) -> SetupOptions {
     SetupOptions {
         cage,
-        tolerance_px: 0.0,
-        coverage: Coverage::Exact,
         lod_px,
         ..SetupOptions::default()
     }
@@ -36,8 +35,16 @@ fn differing(a: &Frame, b: &Frame) -> String {
     report
 }
 
-fn check(graph: &Graph, camera: &Camera, cage: CageKind, lod_px: f64) -> Result<(), TestCaseError> {
-    let setup = setup(graph, camera, &exact(cage, lod_px));
+fn check(
+    graph: &Graph,
+    camera: &Camera,
+    (cage, lod_px, aa_log2): (CageKind, f64, u32),
+) -> Result<(), TestCaseError> {
+    let options = SetupOptions {
+        aa_log2,
+        ..exact(cage, lod_px)
+    };
+    let setup = setup(graph, camera, &options);
     let machine = draw(graph, &setup);
     let oracle = oracle(graph, &setup);
     prop_assert!(
@@ -72,8 +79,9 @@ proptest! {
         camera in any_camera(8.0, 1..40),
         cage in any_cage(),
         lod_px in any_lod(),
+        aa_log2 in 0..3u32,
     ) {
-        check(&graph, &camera, cage, lod_px)?;
+        check(&graph, &camera, (cage, lod_px, aa_log2))?;
     }
 
     #[test]
@@ -84,8 +92,9 @@ proptest! {
         }),
         cage in any_cage(),
         lod_px in any_lod(),
+        aa_log2 in 0..3u32,
     ) {
-        check(&graph, &camera, cage, lod_px)?;
+        check(&graph, &camera, (cage, lod_px, aa_log2))?;
     }
 
     #[test]
@@ -93,8 +102,9 @@ proptest! {
         camera in any_camera(4.0, 1..40),
         cage in any_cage(),
         lod_px in any_lod(),
+        aa_log2 in 0..3u32,
     ) {
-        check(&solid(2), &camera, cage, lod_px)?;
+        check(&solid(2), &camera, (cage, lod_px, aa_log2))?;
     }
 }
 
@@ -150,7 +160,33 @@ fn sierpinski_at_depth_30() {
     for eye in [[-0.7, -0.9, 0.6], [0.501, 0.499, 0.5], [1.0, 1.0, 1.0]] {
         let camera = camera(eye.map(|c| c * side), [side * 0.3; 3], 64);
         for lod_px in [0.0, 0.7, 1.0] {
-            check(&graph, &camera, CageKind::Frame, lod_px).expect("equal pictures");
+            check(&graph, &camera, (CageKind::Frame, lod_px, 0)).expect("equal pictures");
         }
     }
+}
+
+/// There is no other tolerance than 0 to ask for.
+#[test]
+fn a_tolerance_is_refused_with_the_reason() {
+    let graph = solid(2);
+    let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
+    for coverage in [Coverage::Exact, Coverage::Alpha] {
+        for tolerance_px in [1.0 / 256.0, 0.125, f64::INFINITY] {
+            let options = SetupOptions {
+                tolerance_px,
+                ..SetupOptions::of(coverage)
+            };
+            let error = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)
+                .expect_err("no such frame");
+            assert_eq!(error, SetupError::Tolerance(tolerance_px));
+            assert!(
+                error.to_string().contains("approximates nothing"),
+                "{error}"
+            );
+        }
+    }
+    for coverage in [Coverage::Any, Coverage::Center] {
+        assert_eq!(SetupOptions::of(coverage).tolerance_px, 0.125);
+    }
+    assert_eq!(SetupOptions::default().tolerance_px, 0.0);
 }

@@ -1,5 +1,5 @@
 //! The fast engine equals the machine in every buffer: on random graphs,
-//! cameras, sizes, cages, coverage rules, tolerances, levels of detail,
+//! cameras, sizes, cages, coverage rules, levels of detail,
 //! formats, thread counts and instruction sets.
 
 use std::sync::Arc;
@@ -115,18 +115,8 @@ fn any_options() -> impl Strategy<Value = FastOptions> {
 }
 
 pub(super) fn any_settings() -> impl Strategy<Value = SetupOptions> {
-    let tolerance = prop_oneof![
-        3 => Just(0.0),
-        1 => Just(1.0 / 256.0),
-        2 => Just(1.0 / 16.0),
-        3 => Just(1.0 / 8.0),
-        2 => Just(0.4),
-        2 => Just(1.5),
-        // Slack that is rounded up, and the most that this engine draws itself.
-        1 => Just(0.24),
-        1 => Just(4.0),
-        1 => Just(f64::INFINITY),
-    ];
+    // Of the rules that have one.
+    let tolerance = prop_oneof![Just(0.0), Just(1.0 / 8.0), Just(f64::INFINITY)];
     let coverage = prop_oneof![
         24 => Just(Coverage::Exact),
         12 => Just(Coverage::Alpha),
@@ -145,7 +135,7 @@ pub(super) fn any_settings() -> impl Strategy<Value = SetupOptions> {
             bits,
             frac,
             cage,
-            tolerance_px,
+            tolerance_px: tolerance_of(coverage, tolerance_px),
             coverage,
             lod_px,
             aa_log2,
@@ -207,7 +197,7 @@ fn agree(
         _ => prop_assert!(false, "only one of them drew: {:?}", right.err()),
     }
     let usual = settings.bits == 64 && settings.frac.is_none();
-    if usual && settings.coverage.draws_outlines() && settings.tolerance_px.is_finite() {
+    if usual && settings.coverage.draws_outlines() {
         // Deep graphs far away may be beyond its lanes; these are not.
         prop_assert!(by_itself || graph.depth > 12, "left to the machine");
     }

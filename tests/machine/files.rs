@@ -8,7 +8,7 @@ use crate::scenes::*;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
-use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions};
+use shiftvox::project::{CageKind, Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
 /// Pictures: pixels across and down, samples per pixel and axis as a power of two.
@@ -93,8 +93,6 @@ fn draw(engine: &mut impl Engine, graph: &Graph, setup: &FrameSetup) -> Frame {
 fn set_up(graph: &Graph, camera: &Camera, cage: CageKind, aa_log2: u32) -> FrameSetup {
     let options = SetupOptions {
         cage,
-        tolerance_px: 0.0,
-        coverage: Coverage::Exact,
         lod_px: 0.0,
         aa_log2,
         ..SetupOptions::default()

@@ -15,7 +15,6 @@ mod oracle;
 mod order;
 mod rules;
 mod scenes;
-mod seams;
 mod stress;
 mod vectors;
 mod vertex_error;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
 use shiftvox::machine::{MachineOptions, OCCLUSION_ORDER};
-use shiftvox::project::{Coverage, Engine, SetupOptions};
+use shiftvox::project::{Engine, SetupOptions};
 use shiftvox::rays::Rays;
 
 /// Children in occlusion order for an eye on side -1, 0, +1 of each centre plane.
@@ -181,8 +181,6 @@ fn a_disturbed_order_draws_another_picture() {
     let graph = octree(4, &|[x, y, z]| (x * 3 + y * 5 + z * 7) % 4 == 0);
     let camera = camera([-20.0, -15.0, 25.0], [8.0, 8.0, 8.0], 64);
     let options = SetupOptions {
-        tolerance_px: 0.0,
-        coverage: Coverage::Exact,
         lod_px: 0.0,
         ..SetupOptions::default()
     };

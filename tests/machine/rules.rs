@@ -82,6 +82,7 @@ proptest! {
         tolerance_px in prop_oneof![Just(0.0), Just(1.0 / 16.0), Just(0.25)],
         lod_px in prop_oneof![Just(0.0), Just(0.5), Just(1.0)],
     ) {
+        let tolerance_px = tolerance_of(coverage, tolerance_px);
         // Few fraction bits, so that a solid has few levels below it.
         let frac = (coverage == Coverage::Any).then_some(6);
         let options = SetupOptions {
@@ -114,6 +115,7 @@ proptest! {
             Just(Overflow::Trap), Just(Overflow::Wrap), Just(Overflow::Saturate)
         ],
     ) {
+        let tolerance_px = tolerance_of(coverage, tolerance_px);
         let options = SetupOptions {
             bits, frac, cage, tolerance_px, coverage, lod_px, aa_log2: 0,
         };
@@ -212,11 +214,7 @@ fn an_object_beside_the_picture_costs_next_to_nothing() {
     for target in [[-1000.0, -900.0, 0.0], [900.0, -1000.0, 128.0]] {
         let camera = camera([128.0, -300.0, 128.0], target, 512);
         for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
-            let options = SetupOptions {
-                coverage,
-                ..SetupOptions::default()
-            };
-            let setup = setup(&graph, &camera, &options);
+            let setup = setup(&graph, &camera, &SetupOptions::of(coverage));
             let (frame, stats) =
                 draw_with(MachineOptions::default(), &graph, &setup).expect("a frame");
             assert_eq!(frame.drawn(), 0);

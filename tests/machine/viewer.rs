@@ -117,7 +117,6 @@ fn settings() -> [SetupOptions; 3] {
             ..usual
         },
         SetupOptions {
-            tolerance_px: 0.0,
             aa_log2: 1,
             ..usual
         },

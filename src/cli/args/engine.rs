@@ -17,7 +17,7 @@ pub enum EngineName {
     Fast,
     /// The paper's loop in machine words: adders and shifts.
     Machine,
-    /// The exact reference: what each sample's centre sees.
+    /// The exact reference: what each sample's centre sees, by plain rays.
     Rays,
     /// Far voxels, of a .far file; see `convert`.
     Far,
@@ -121,8 +121,9 @@ pub struct RuleArgs {
     /// How a record holds its projected vertices [default: frame]
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub cage: Option<CageName>,
-    /// Largest deviation in pixels at which a record may change from clip to screen space:
-    /// 0 never, inf at once [default: 0.125]
+    /// Of --coverage any and center: largest deviation in pixels at which a record may change from
+    /// clip to screen space, 0 never, inf at once [default: 0.125]. With exact and alpha, whose
+    /// picture is defined without approximation, it is 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     pub tolerance: Option<Tolerance>,
     /// Which pixels a voxel draws [default: exact]
@@ -182,10 +183,16 @@ impl RuleArgs {
             coverage: Coverage::Any,
             ..SetupOptions::default()
         };
+        let coverage = self.coverage.map(|rule| match rule {
+            CoverageName::Any => Coverage::Any,
+            CoverageName::Center => Coverage::Center,
+            CoverageName::Exact => Coverage::Exact,
+            CoverageName::Alpha => Coverage::Alpha,
+        });
         let base = if self.paper {
             paper
         } else {
-            SetupOptions::default()
+            SetupOptions::of(coverage.unwrap_or_default())
         };
         SetupOptions {
             bits: self.bits.unwrap_or(base.bits),
@@ -195,12 +202,7 @@ impl RuleArgs {
                 CageName::Frame => CageKind::Frame,
             }),
             tolerance_px: self.tolerance.map_or(base.tolerance_px, |t| t.0),
-            coverage: self.coverage.map_or(base.coverage, |rule| match rule {
-                CoverageName::Any => Coverage::Any,
-                CoverageName::Center => Coverage::Center,
-                CoverageName::Exact => Coverage::Exact,
-                CoverageName::Alpha => Coverage::Alpha,
-            }),
+            coverage: base.coverage,
             lod_px: self.lod.unwrap_or(base.lod_px),
             aa_log2,
         }

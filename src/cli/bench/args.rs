@@ -56,8 +56,8 @@ pub(super) struct MeasureArgs {
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
     coverage: Option<CoverageName>,
-    /// Largest deviation in pixels at which a record may change from clip to screen space
-    /// [default: 0.125]
+    /// Of --coverage any and center: largest deviation in pixels at which a record may change from
+    /// clip to screen space [default: 0.125]; with exact and alpha 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     tolerance: Option<Tolerance>,
     /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]

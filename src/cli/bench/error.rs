@@ -101,7 +101,7 @@ struct SelectArgs {
     /// Drawing rules
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     coverages: Vec<CoverageName>,
-    /// Tolerances, pixels
+    /// Tolerances, pixels, of the rules any and center; exact has 0 alone
     #[arg(long, value_delimiter = ',', value_name = "PX|inf,...")]
     tolerances: Vec<Tolerance>,
     /// Cages
@@ -149,7 +149,11 @@ struct Choice {
 
 impl Choice {
     fn default_with(coverage: CoverageName) -> Self {
-        let options = SetupOptions::default();
+        let rule = RuleArgs {
+            coverage: Some(coverage),
+            ..RuleArgs::default()
+        };
+        let options = rule.options(0);
         Self {
             coverage,
             tolerance: options.tolerance_px,
@@ -202,9 +206,12 @@ impl SelectArgs {
         let tolerances: Vec<f64> = self.tolerances.iter().map(|t| t.0).collect();
         let inf = f64::INFINITY;
         let all = [0.125, 0.0, 1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.5, inf];
-        let tolerances = list(&tolerances, self.full, &all);
         let mut choices = Vec::new();
         for coverage in list(&self.coverages, self.full, &COVERAGES) {
+            let tolerances = match has_tolerances(coverage) {
+                true => list(&tolerances, self.full, &all),
+                false => vec![0.0],
+            };
             for cage in list(&self.cages, self.full, &CAGES) {
                 for bits in list(&self.bits, self.full, &[64, 48, 32, 24, 20, 16]) {
                     for lod in list(&self.lods, self.full, &[1.0, 0.0, 0.5, 2.0]) {
@@ -226,20 +233,27 @@ impl SelectArgs {
     }
 }
 
-/// Around the default settings: every drawing rule with every tolerance and
+/// Whether a rule takes other tolerances than 0.
+fn has_tolerances(coverage: CoverageName) -> bool {
+    matches!(coverage, CoverageName::Any | CoverageName::Center)
+}
+
+/// Around the default settings: every drawing rule with every tolerance it has and
 /// both cages; and each rule with other levels of detail, formats, and samples a pixel.
 fn standard() -> Vec<Choice> {
     let mut choices = Vec::new();
     for coverage in COVERAGES {
         let default = Choice::default_with(coverage);
+        let tolerances: &[f64] = match has_tolerances(coverage) {
+            true => &[0.125, 0.0, 1.0 / 64.0, f64::INFINITY],
+            false => &[0.0],
+        };
         for cage in CAGES {
-            for tolerance in [0.125, 0.0, 1.0 / 64.0, f64::INFINITY] {
-                choices.push(Choice {
-                    cage,
-                    tolerance,
-                    ..default
-                });
-            }
+            choices.extend(tolerances.iter().map(|&tolerance| Choice {
+                cage,
+                tolerance,
+                ..default
+            }));
         }
         // The other rules take seconds for a frame of 16 samples a pixel.
         let exact = matches!(coverage, CoverageName::Exact);
@@ -344,11 +358,11 @@ fn methods<'s>(
 /// rules, more samples; and whatever nothing beats.
 fn is_shown(method: &str) -> bool {
     const SHOWN: [&str; 5] = [
-        "exact 1/8 frame",
+        "exact frame",
         "any inf corners",
         "any 1/8 frame",
         "center 1/8 frame",
-        "exact 1/8 frame aa 4",
+        "exact frame aa 4",
     ];
     SHOWN.contains(&method)
 }
@@ -473,7 +487,7 @@ mod tests {
         };
         let standard = none.options();
         assert_eq!(standard[0], SetupOptions::default());
-        assert_eq!(standard.len(), 3 * (8 + 1 + 3 + 5) + 1);
+        assert_eq!(standard.len(), 2 + 2 * 8 + 3 * (1 + 3 + 5) + 1);
         for (place, options) in standard.iter().enumerate() {
             assert!(!standard[..place].contains(options), "{options:?}");
         }
@@ -481,7 +495,7 @@ mod tests {
             full: true,
             ..none.clone()
         };
-        assert_eq!(full.options().len(), 3 * 2 * 6 * 4 * 3 * 7);
+        assert_eq!(full.options().len(), (1 + 2 * 7) * 2 * 6 * 4 * 3);
         let some = SelectArgs {
             bits: vec![24, 32],
             aas: vec![1],

@@ -88,9 +88,8 @@ fn options(blends: bool) -> Vec<SetupOptions> {
     let mut all = Vec::new();
     for (coverage, aa_log2) in one.into_iter().chain(four).chain([(Coverage::Exact, 2)]) {
         all.push(SetupOptions {
-            coverage,
             aa_log2,
-            ..SetupOptions::default()
+            ..SetupOptions::of(coverage)
         });
     }
     all.push(SetupOptions {

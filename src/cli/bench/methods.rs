@@ -237,10 +237,9 @@ fn methods<'m>(
         ];
         for (label, coverage, lod_px, aa_log2) in rules {
             let options = SetupOptions {
-                coverage,
                 lod_px,
                 aa_log2,
-                ..SetupOptions::default()
+                ..SetupOptions::of(coverage)
             };
             let (graph, ms) = match coverage {
                 Coverage::Alpha => airy,

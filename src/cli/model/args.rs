@@ -85,7 +85,7 @@ pub(super) struct HardwareArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Tables")]
 pub(super) struct TableArgs {
-    /// Both cages, three drawing rules and tolerances from 0 to inf side by side
+    /// Both cages, three drawing rules and the tolerances of each side by side
     #[arg(long)]
     pub(super) rules: bool,
     /// The same frame with 1 to 64 lanes

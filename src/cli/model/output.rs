@@ -197,16 +197,15 @@ pub(super) fn summary(found: &Findings) -> Table {
     row(
         "records beyond the serial machine's",
         format!(
-            "{} ({}); lattices at once {}",
+            "{} ({})",
             cycles.records as i64 - found.counted.counter.records() as i64,
             match found.differing {
                 0 => "the picture is the same".to_owned(),
                 some => format!(
-                    "the picture differs at {}: under a tolerance, children of one class may claim the same sample",
+                    "the picture differs at {}: under this rule, children of one class may claim the same sample",
                     samples(some)
                 ),
             },
-            found.simulated.most_lattices
         ),
     );
     row(

@@ -9,8 +9,8 @@ use crate::project::FrameSetup;
 /// The decision is that of clip space: a node with children is a solid where
 /// its least depth is at least the set-up's depth for its level
 /// (`FrameSetup::lod_depth`). It depends on camera, level and place of the
-/// node alone, not on the drawing rule. (In screen space the machine decides
-/// for a whole lattice, or by a record's box; these decisions lie around this one.) Nodes
+/// node alone, not on the drawing rule. (In screen space `any` and `center`
+/// decide by a record's box; these decisions lie around this one.) Nodes
 /// wholly behind the eye are solids too: nobody sees them. Shared and
 /// cyclic nodes are written out, once for each place.
 #[must_use]

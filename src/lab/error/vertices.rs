@@ -136,10 +136,9 @@ mod tests {
         // The root's corners are projected; what is halved from them errs.
         assert!(paper[0].px.worst < 1e-3, "{paper:?}");
         assert!(paper[1].px.worst > 0.5, "{paper:?}");
-        assert!(exact.iter().all(|l| l.px.worst <= 0.125), "{exact:?}");
+        assert!(exact.iter().all(|l| l.px.worst < 1e-3), "{exact:?}");
         let narrow = levels(&SetupOptions {
             bits: 20,
-            tolerance_px: 0.0,
             ..SetupOptions::default()
         });
         assert!(narrow[3].px.worst > 1e-3, "{narrow:?}");

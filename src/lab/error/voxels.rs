@@ -173,12 +173,11 @@ impl Method for VoxelMethod<'_> {
 
     fn name(&self) -> String {
         let o = &self.options;
-        let mut name = format!(
-            "{} {} {}",
-            coverage_name(o.coverage),
-            tolerance_in_words(o.tolerance_px),
-            cage_name(o.cage)
-        );
+        let mut name = coverage_name(o.coverage).to_owned();
+        if !o.coverage.draws_outlines() {
+            name += &format!(" {}", tolerance_in_words(o.tolerance_px));
+        }
+        name += &format!(" {}", cage_name(o.cage));
         if o.bits != 64 || o.frac.is_some() {
             name += &format!(" {} bits", o.bits);
         }

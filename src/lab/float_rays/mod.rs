@@ -181,7 +181,9 @@ mod tests {
             FrameSetup::new(&camera, placement, graph.depth, &SetupOptions::default()).unwrap();
         let mut exact = Frame::new(256, 256, false);
         let mut float = exact.clone();
-        Oracle.render(&graph.view(), &setup, &mut exact).unwrap();
+        // It knows no level of detail.
+        let whole = setup.without_detail();
+        Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
         let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();
         let error = CoverageError::between(&float.voxel, &exact.voxel);
         for (a, b) in float.voxel.iter().zip(&float.node) {

@@ -140,14 +140,14 @@ fn power(rows: &[GrowthRow], x: fn(&GrowthRow) -> u64) -> Option<String> {
 #[must_use]
 pub fn of_hardware(simulated: &Simulated, differing: u64, setup: &FrameSetup) -> Vec<Claim> {
     let report = &simulated.cycles;
-    let bound = setup.options.coverage == Coverage::Exact && setup.options.tolerance_px == 0.0;
+    let bound = setup.options.coverage == Coverage::Exact;
     vec![Claim {
         claim: "children of one class of the order are independent",
         // Elsewhere two children may claim a sample, and the first draws it.
         holds: bound.then_some(differing == 0),
         evidence: format!(
             "drawn on {} contexts with independence `{:?}`: the picture is {}; work over span {:.1}. What \
-             must hold (exact coverage, tolerance 0) {} this frame's settings",
+             must hold (exact coverage) {} this frame's settings",
             u64::from(report.lanes) * u64::from(report.contexts),
             report.independence,
             match differing {

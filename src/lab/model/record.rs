@@ -2,7 +2,8 @@
 //! architect needs to know of the stack's width.
 //!
 //! Numbers have as many bits as their greatest value needs, coordinates those
-//! of the frame's format. Poses share their bits: a record has one at a time.
+//! of the frame's format. Poses share their bits: a record has one at a time,
+//! and under the rules that draw outlines there is one pose alone.
 
 use crate::project::{CageKind, FrameSetup};
 
@@ -28,8 +29,6 @@ pub enum Held {
     InScreenSpace,
 }
 
-/// Functions of a lattice under the exact rule: three strips, two boxes.
-const STRIP_FUNCTIONS: u32 = 5;
 /// Silhouette plane coefficients of a record: three planes of three, and
 /// three constants.
 const PLANE_WORDS: u32 = 12;
@@ -73,7 +72,10 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
             },
             Held::Always,
         ),
-        field("solid, inside, pose", 3, Held::Always),
+        match exact {
+            true => field("solid, inside", 2, Held::Always),
+            false => field("solid, inside, pose", 3, Held::Always),
+        },
         field("lowest vertex", 3 * position, Held::Always),
         // It can be had from the lowest vertex and the level; the paper keeps it.
         field("highest vertex", 3 * position, Held::Always),
@@ -89,7 +91,6 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
     if exact {
         let planes = PLANE_WORDS * wide;
         fields.push(field("silhouette planes", planes, Held::InClipSpace));
-        fields.push(field("strips", STRIP_FUNCTIONS * wide, Held::InScreenSpace));
     } else {
         fields.push(field(
             "screen x, y",
@@ -139,13 +140,12 @@ mod tests {
         let options = |coverage, cage| SetupOptions {
             bits: 32,
             frac: Some(8),
-            coverage,
             cage,
-            ..SetupOptions::default()
+            ..SetupOptions::of(coverage)
         };
-        // Node 10, level 3, flags 3, two corners of three times 0..=16, quadtree
+        // Node 10, level 3, flags 2, two corners of three times 0..=16, quadtree
         // level 0..=8 and 8 bits each way.
-        let always = 10 + 3 + 3 + 2 * 3 * 5 + 4 + 16;
+        let always = 10 + 3 + 2 + 2 * 3 * 5 + 4 + 16;
         let exact = options(Coverage::Exact, CageKind::Frame);
         let clip = 3 * 4 * 32 + 32 + 12 * 64;
         assert_eq!(bits(exact, 1024), always + clip);

@@ -15,15 +15,16 @@ use crate::machine::SimulateError;
 use crate::measure::CoverageError;
 use crate::project::{CageKind, Camera, Coverage, EngineError, FrameSetup, SetupOptions};
 
-/// Tolerances of the table, pixels.
-pub const TOLERANCES: [f64; 6] = [
-    0.0,
-    1.0 / 64.0,
-    1.0 / 16.0,
-    1.0 / 8.0,
-    1.0 / 4.0,
-    f64::INFINITY,
-];
+/// Tolerances of the table, pixels, of a rule: `exact` has none but 0.
+#[must_use]
+pub fn tolerances(coverage: Coverage) -> &'static [f64] {
+    const OF_SAMPLES: [f64; 3] = [0.0, 1.0 / 8.0, f64::INFINITY];
+    if coverage.draws_outlines() {
+        &OF_SAMPLES[..1]
+    } else {
+        &OF_SAMPLES
+    }
+}
 
 /// A way to draw, and what it costs.
 #[derive(Debug, Clone, Serialize)]
@@ -151,10 +152,10 @@ pub fn table(
     let exact = frame::reference(&graph.view(), &true_setup(graph, camera, base)?)?;
     let cages = [CageKind::Corners, CageKind::Frame];
     let rules = [Coverage::Any, Coverage::Center, Coverage::Exact];
-    let mut ways = Vec::with_capacity(cages.len() * rules.len() * TOLERANCES.len());
+    let mut ways = Vec::new();
     for cage in cages {
         for coverage in rules {
-            ways.extend(TOLERANCES.map(|tolerance_px| (cage, coverage, tolerance_px)));
+            ways.extend(tolerances(coverage).iter().map(|&px| (cage, coverage, px)));
         }
     }
     progress.begin("cages, rules and tolerances", ways.len() as u64);

@@ -313,10 +313,4 @@ fn cycles(list: &mut Statistics, simulated: &Simulated) {
         "Count",
         "records without an entry",
     );
-    list.add(
-        "lattices.most",
-        simulated.most_lattices,
-        "Count",
-        "most lattices at once",
-    );
 }

@@ -1,12 +1,9 @@
-//! Vertices by the book: `SPEC.md`, sections 4, 5 and 9, in wide integers
+//! Vertices by the book: `SPEC.md`, sections 4 and 5, in wide integers
 //! that multiply and divide. It is written from the specification and shares
 //! nothing with the machine but the recorded integers of a frame.
 
 use crate::machine::vertices::Held;
-use crate::project::{CageKind, Coverage, FrameSetup, STRIP_NORMAL_BITS};
-
-/// Linear functions of a lattice in screen space.
-const FUNCTIONS: usize = 5;
+use crate::project::{CageKind, FrameSetup};
 
 /// What the book says of a voxel on the way down.
 #[derive(Debug, Clone)]
@@ -71,8 +68,7 @@ impl<'s> Book<'s> {
     }
 
     /// What a voxel is held as that changed `changed` levels below the root,
-    /// or not at all. `None` for a level below a lattice's finest, and for a
-    /// change that may not be.
+    /// or not at all. `None` for a change that may not be.
     pub(super) fn held(&self, path: &[u8], changed: Option<usize>) -> Option<Held> {
         let narrow = |values: [Wide; 8]| values.map(|v| i64::try_from(v).unwrap_or(i64::MAX));
         let Some(changed) = changed else {
@@ -80,123 +76,12 @@ impl<'s> Book<'s> {
         };
         let (to, below) = path.split_at(changed);
         let projected = self.projected(to)?;
-        if self.setup.options.coverage == Coverage::Exact {
-            return self.strips(projected, changed as u32, below);
-        }
         let by_cage: fn([Wide; 8], &[u8]) -> [Wide; 8] = match self.setup.options.cage {
             CageKind::Corners => corners_below,
             CageKind::Frame => frame_below,
         };
         Some(Held::Screen(projected.map(|p| narrow(by_cage(p, below)))))
     }
-
-    /// Section 9, by products.
-    fn strips(&self, projected: [[Wide; 8]; 2], level: u32, below: &[u8]) -> Option<Held> {
-        let setup = self.setup;
-        let frac = setup.format.frac();
-        let sum = projected.map(|p| p.iter().sum::<Wide>());
-        let edges = projected.map(|p| {
-            [0usize, 1, 2].map(|k| {
-                (0..8usize)
-                    .map(|v| if v >> (2 - k) & 1 != 0 { p[v] } else { -p[v] })
-                    .sum::<Wide>()
-            })
-        });
-        let size = |c: usize| edges[c].iter().map(|e: &Wide| e.abs()).sum::<Wide>();
-        let least = 4;
-        let limit = setup.lod_limit.as_ref().map_or(least, |limit| {
-            let units = libm::ldexp(limit.value(), frac as i32);
-            (libm::floor(units) as Wide).max(least)
-        });
-        let mut levels = 0;
-        let largest = size(0).max(size(1));
-        // The sums have four times the unit of an edge.
-        while level + levels < setup.depth && 4 * limit < largest >> levels {
-            levels += 1;
-        }
-        if below.len() as u32 > levels {
-            return None;
-        }
-        let fine = levels.saturating_sub(2).min(frac) + setup.strip_guard;
-        let places = (frac + 3) as i32 - fine as i32;
-        let normals: [[Wide; 2]; FUNCTIONS] = std::array::from_fn(|function| match function {
-            3 => [1 << STRIP_NORMAL_BITS, 0],
-            4 => [0, 1 << STRIP_NORMAL_BITS],
-            k => {
-                let (x, y) = direction(edges[0][k], edges[1][k]);
-                [-y, x]
-            }
-        });
-        let half_sample = 1 << (frac + 2);
-        let value = normals.map(|[a, b]| {
-            let centre = down(
-                a * (sum[0] - half_sample) + b * (sum[1] - half_sample),
-                places,
-            );
-            let halves = [0, 1, 2].map(|k| {
-                let exact = a * edges[0][k] + b * edges[1][k];
-                nearest(exact, places + levels as i32)
-            });
-            // From the centre, half edges of half the size with every level.
-            let mut centre = centre;
-            let mut side = 1 << levels;
-            for octant in below {
-                side /= 2;
-                for k in 0..3 {
-                    let is_high = octant >> (2 - k) & 1 != 0;
-                    centre += if is_high { halves[k] } else { -halves[k] } * side;
-                }
-            }
-            std::array::from_fn(|v| {
-                let out = |k: usize| {
-                    if v >> (2 - k) & 1 != 0 {
-                        halves[k]
-                    } else {
-                        -halves[k]
-                    }
-                };
-                (centre + (out(0) + out(1) + out(2)) * side) as i64
-            })
-        });
-        Some(Held::Strips {
-            value,
-            step: normals.map(|g| g.map(|c| (c << fine) as i64)),
-            finest: level + levels,
-        })
-    }
-}
-
-/// `a / 2^places` rounded down, or `a` times a power of two.
-fn down(a: Wide, places: i32) -> Wide {
-    if places >= 0 {
-        a.div_euclid(1 << places)
-    } else {
-        a << places.unsigned_abs()
-    }
-}
-
-/// The same to the nearest, halves up.
-fn nearest(a: Wide, places: i32) -> Wide {
-    if places <= 0 {
-        return down(a, places);
-    }
-    down(2 * a + (1 << places), places + 1)
-}
-
-/// A direction's components with the longer in 11 bits, cut towards zero.
-fn direction(x: Wide, y: Wide) -> (Wide, Wide) {
-    let longest = x.unsigned_abs().max(y.unsigned_abs());
-    let length = 128 - longest.leading_zeros() as i32;
-    let scaled = |c: Wide| {
-        let shift = length - STRIP_NORMAL_BITS as i32;
-        let size = if shift > 0 {
-            c.abs() >> shift
-        } else {
-            c.abs() << -shift
-        };
-        c.signum() * size
-    };
-    (scaled(x), scaled(y))
 }
 
 /// Corner and three edges, halved towards zero: the edge at a level is the

@@ -21,11 +21,12 @@ pub enum Check {
     Ends,
     /// A frame whose set-up says that it cannot overflow does not.
     Headroom,
-    /// Under `exact` without tolerance or level of detail the picture is the oracle's.
+    /// Under `exact` the picture is the oracle's, at every level of detail.
     Exact,
-    /// Under `exact` without tolerance no sample that the oracle covers is missing.
+    /// Under `exact` no sample that is covered without level of detail is missing.
     Missing,
-    /// A closed surface has no holes (tolerance 0 to 1/64).
+    /// A closed surface has no holes: under `exact`; under the other rules at
+    /// tolerance 0 to 1/64 where no record met the level bound.
     Holes,
     /// Nothing is seen that lies behind what the oracle sees.
     Order,
@@ -78,10 +79,12 @@ impl Check {
             Self::Ends => "a frame ends within a bound on records",
             Self::Headroom => "a frame whose set-up promises that no word overflows does not trap",
             Self::Exact => {
-                "exact, tolerance 0, level of detail 0: the oracle's picture, sample by sample"
+                "exact: the oracle's picture, sample by sample, at every level of detail"
             }
-            Self::Missing => "exact, tolerance 0: no sample that the oracle covers is missing",
-            Self::Holes => "a closed surface has no holes, at tolerance 0 to 1/64",
+            Self::Missing => "exact: no sample that is covered without level of detail is missing",
+            Self::Holes => {
+                "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no record met the level bound"
+            }
             Self::Order => "nothing is seen that the oracle's voxel hides",
             Self::Place => {
                 "what is seen is before the eye and no more than the rule allows from its sample"
@@ -132,10 +135,10 @@ pub struct Outcome {
     pub holes: u64,
     /// Samples that show what the oracle's voxel hides.
     pub order: u64,
-    /// The picture against the oracle's.
+    /// The picture against the oracle's, without level of detail.
     pub coverage: CoverageError,
     /// Vertices, by [`super::Hold`].
-    pub worst: [Worst; 4],
+    pub worst: [Worst; 3],
 }
 
 impl Outcome {
@@ -175,7 +178,7 @@ const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;
 
-/// The last oracle's picture, for cases with the same integers.
+/// The last oracle's picture without level of detail, for cases with the same integers.
 #[derive(Debug, Default)]
 pub(crate) struct Oracle {
     last: Option<(FrameSetup, Frame)>,
@@ -200,6 +203,17 @@ impl Oracle {
         // The oracle has no error to give.
         let _ = Rays.render(&graph.view(), &setup.without_detail(), &mut frame);
         self.last = Some((setup.clone(), frame.clone()));
+        frame
+    }
+
+    /// The picture that `exact` must show: at the frame's level of detail.
+    fn picture_with_detail(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        if setup.lod_limit.is_none() {
+            return self.picture(graph, setup);
+        }
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        // The oracle has no error to give.
+        let _ = Rays.render(&graph.view(), setup, &mut frame);
         frame
     }
 
@@ -261,7 +275,10 @@ pub(crate) fn check(
         right: &right,
         is_at_bound: stat("at_level_bound") > 0,
     };
-    seen.check_exact(&mut outcome);
+    if seen.is_exact() {
+        let defined = oracle.picture_with_detail(graph, &setup);
+        seen.check_exact(&defined, &mut outcome);
+    }
     seen.check_place(&mut outcome);
     seen.check_order(&mut outcome);
     if case.scene.is_closed() {
@@ -369,23 +386,23 @@ impl Seen<'_> {
         parted
     }
 
-    fn check_exact(&self, outcome: &mut Outcome) {
-        if !self.is_exact() || self.tolerance() != 0.0 {
-            return;
-        }
-        let differs = |sample: &usize| self.frame.voxel[*sample] != self.right.voxel[*sample];
+    /// Of a frame under `exact`: it is the one that is `defined`, and has all
+    /// samples that are covered without level of detail.
+    fn check_exact(&self, defined: &Frame, outcome: &mut Outcome) {
+        let differs = |sample: &usize| {
+            self.frame.voxel[*sample] != defined.voxel[*sample]
+                || self.frame.node[*sample] != defined.node[*sample]
+        };
         let all = 0..self.frame.voxel.len();
-        if self.setup.options.lod_px == 0.0
-            && let Some(sample) = all.clone().find(differs)
-        {
+        if let Some(sample) = all.clone().find(differs) {
             outcome.fail(
                 Check::Exact,
                 format!(
                     "{} samples differ, the first at {:?}: {:?}, should be {:?}",
-                    outcome.coverage.differing(),
+                    all.clone().filter(differs).count(),
                     self.at(sample),
                     self.frame.voxel[sample],
-                    self.right.voxel[sample]
+                    defined.voxel[sample]
                 ),
             );
         }
@@ -446,13 +463,12 @@ impl Seen<'_> {
         }
     }
 
-    /// A sample whose voxel hides what is shown: without tolerance under
-    /// `exact` any, else in the middle of a voxel, where no seam is.
+    /// A sample whose voxel hides what is shown: under `exact` any, else in the middle of a voxel, where no seam is.
     fn check_order(&self, outcome: &mut Outcome) {
         if !self.tolerance().is_finite() {
             return;
         }
-        let strict = self.is_exact() && self.tolerance() == 0.0;
+        let strict = self.is_exact();
         let mut first = None;
         for sample in 0..self.frame.voxel.len() {
             let (shown, right) = (&self.frame.voxel[sample], &self.right.voxel[sample]);
@@ -494,14 +510,12 @@ impl Seen<'_> {
                 first.get_or_insert(sample);
             }
         }
-        // Where words are too narrow to part a voxel, `center` draws it at one
-        // sample however large it is; `any` and an infinite tolerance are the paper's.
-        let is_promised = match self.setup.options.coverage {
-            Coverage::Exact | Coverage::Any | Coverage::Alpha => {
-                self.tolerance() <= STRICT_TOLERANCE
-            }
-            Coverage::Center => self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound,
-        };
+        // The paper's rules part a voxel down to the level bound; where a record
+        // meets that, words are too narrow for the view, and what is left of a
+        // voxel is drawn at one sample, or by its box. An infinite tolerance is
+        // the paper's to the letter. Holes of both are listed, not failures.
+        let is_promised =
+            self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
         if let Some(sample) = first.filter(|_| is_promised) {
             outcome.fail(
                 Check::Holes,
@@ -554,7 +568,7 @@ fn check_vertices(
 
 fn check_engines(graph: &Graph, seen: &Seen<'_>, outcome: &mut Outcome) {
     // What the fast engine does not draw it hands to the machine.
-    if !seen.is_exact() || !seen.tolerance().is_finite() || !seen.setup.has_headroom {
+    if !seen.is_exact() || !seen.setup.has_headroom {
         return;
     }
     let options = FastOptions {

@@ -36,7 +36,7 @@ pub struct Plan {
     pub shrink_budget: u32,
 }
 
-/// Tolerances, samples.
+/// Tolerances, samples, of `any` and `center`; `exact` has the first alone.
 pub const TOLERANCES: [f64; 6] = [
     0.0,
     1.0 / 256.0,
@@ -104,19 +104,31 @@ impl Plan {
     }
 }
 
+/// Levels of detail, samples: `exact` must be the oracle's picture at all of
+/// them, and has as many rules here as it has in them.
+const EXACT_LODS: [f64; 4] = [0.0, 1.0, 0.3, 3.0];
+/// Rules under which the picture is defined at every sample: the first ones.
+const STRICT_RULES: usize = 2 * EXACT_LODS.len();
+
 /// All rules, those that promise most first.
 fn rules() -> Vec<SetupOptions> {
     let mut rules = Vec::new();
-    for coverage in [Coverage::Exact, Coverage::Center, Coverage::Any] {
+    for cage in [CageKind::Frame, CageKind::Corners] {
+        rules.extend(EXACT_LODS.map(|lod_px| SetupOptions {
+            cage,
+            lod_px,
+            ..SetupOptions::of(Coverage::Exact)
+        }));
+    }
+    for coverage in [Coverage::Center, Coverage::Any] {
         for tolerance_px in TOLERANCES {
             for cage in [CageKind::Frame, CageKind::Corners] {
                 for lod_px in [0.0, 1.0] {
                     rules.push(SetupOptions {
                         cage,
                         tolerance_px,
-                        coverage,
                         lod_px,
-                        ..SetupOptions::default()
+                        ..SetupOptions::of(coverage)
                     });
                 }
             }
@@ -384,8 +396,7 @@ fn run_job(subject: &dyn Subject, plan: &Plan, job: &Job<'_>) -> Findings {
     let mut findings = Findings::default();
     let mut numbers = Numbers::new(job.salt);
     let all = rules();
-    // Those under which the picture must be right.
-    let strict = all.len() / 6;
+    let strict = STRICT_RULES;
     let mut oracle = Oracle::default();
     oracle.forget();
     for &bits in &plan.bits {

@@ -19,13 +19,11 @@ pub enum Hold {
     Corners,
     /// Screen space, a corner and three edges.
     Frame,
-    /// Screen space, the lattice of the exact rule.
-    Lattice,
 }
 
 impl Hold {
     /// All, in order.
-    pub const ALL: [Self; 4] = [Self::Clip, Self::Corners, Self::Frame, Self::Lattice];
+    pub const ALL: [Self; 3] = [Self::Clip, Self::Corners, Self::Frame];
 
     /// Its name in tables.
     #[must_use]
@@ -34,7 +32,6 @@ impl Hold {
             Self::Clip => "clip space, both cages",
             Self::Corners => "screen space, corners",
             Self::Frame => "screen space, frame",
-            Self::Lattice => "screen space, exact rule's lattice",
         }
     }
 }
@@ -77,7 +74,7 @@ impl Worst {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Vertices {
     /// By [`Hold`].
-    pub(super) worst: [Worst; 4],
+    pub(super) worst: [Worst; 3],
     /// A voxel that is not held by the book.
     pub(super) not_by_the_book: Option<String>,
     /// A vertex beyond its bound.
@@ -148,7 +145,6 @@ fn measure(
     let root = libm::ldexp(1.0, setup.levels as i32);
     let (hold, space) = match (held, setup.options.cage) {
         (Held::Clip(_), _) => (Hold::Clip, Space::Clip),
-        (Held::Strips { .. }, _) => (Hold::Lattice, Space::Lattice(top)),
         (Held::Screen(_), CageKind::Corners) => (Hold::Corners, Space::Corners(top)),
         (Held::Screen(_), CageKind::Frame) => (Hold::Frame, Space::Frame(top)),
     };
@@ -193,27 +189,6 @@ fn measure(
                     note((is - truth[c]).abs(), bound[c]);
                 }
             }
-            Held::Strips { value, step, .. } => {
-                for (function, value) in value.iter().enumerate() {
-                    let [a, b] = step[function].map(|s| s as f64);
-                    let length = libm::hypot(a, b);
-                    if length == 0.0 {
-                        continue;
-                    }
-                    let should = a * (truth[0] - 0.5) + b * (truth[1] - 0.5);
-                    let off = (value[vertex] as f64 - should).abs() / length;
-                    let along = [a.abs() / length, b.abs() / length];
-                    let mixed = (0..2)
-                        .map(|c| along[c] * (parts.host[c] + parts.deviation[c]))
-                        .sum::<f64>();
-                    let quotients =
-                        1.25 * libm::ldexp(along[0] + along[1], -(setup.format.frac() as i32));
-                    note(
-                        off,
-                        mixed + quotients + bounds.strip_rounding(function >= 3),
-                    );
-                }
-            }
         }
     }
 }
@@ -227,7 +202,6 @@ pub(super) fn bounds_of(
     let widths = Widths {
         clip_frac: setup.clip_frac,
         screen_frac: setup.format.frac(),
-        strip_guard: setup.strip_guard,
         aa_log2: setup.options.aa_log2,
     };
     Bounds::new(camera, placement, widths).ok()

@@ -8,7 +8,7 @@ use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, PackedNormal, Placement};
 use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::{Camera, Engine, EngineError, FrameSetup, SetupOptions, Stats};
+use shiftvox::project::{Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 
 /// A graph from each node's children by octant; a node without any is a leaf.
 pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
@@ -212,6 +212,15 @@ pub fn camera(eye: [f64; 3], target: [f64; 3], size: u32) -> Camera {
         fov_degrees: 60.0,
         width: size,
         height: size,
+    }
+}
+
+/// The tolerance, or 0 under the rules that draw outlines, which have no other.
+pub fn tolerance_of(coverage: Coverage, tolerance_px: f64) -> f64 {
+    if coverage.draws_outlines() {
+        0.0
+    } else {
+        tolerance_px
     }
 }
 

@@ -43,8 +43,6 @@ const WITHIN: &str = "all of the box is";
 const PLANE: &str = "a, b, c of the edge's plane a x + b y + c";
 const NORMAL: &str = "a, b of the plane perpendicular to the axis";
 const AXIS_C: &str = "c of the plane perpendicular to the axis";
-const VALUE: &str = "the function at the node's first sample, less its value at the centre";
-const HALF_WIDTH: &str = "half the strip's width at the record's level";
 const OBJECT: &str = "object coordinate, units of a finest voxel shifted by the levels below it";
 const COUNT: &str = "v of the axis: what the side counts for, sixteenths";
 const COLORS: [&str; 3] = ["red", "green", "blue"];
@@ -62,29 +60,6 @@ fn planes(ports: Ports) -> Ports {
     ports.each("axis", &["x_c", "y_c", "z_c"], WIDE, AXIS_C)
 }
 
-fn lattice(ports: Ports) -> Ports {
-    const FUNCTIONS: [&str; 5] = ["strip_x", "strip_y", "strip_z", "across", "down"];
-    let ports = ports.one("levels", LEVEL, "levels to the finest voxels");
-    let ports = FUNCTIONS.iter().fold(ports, |ports, function| {
-        let meaning = "what one sample adds to the function";
-        ports.each(&format!("step_{function}"), &["x", "y"], WIDE, meaning)
-    });
-    let ports = FUNCTIONS.iter().fold(ports, |ports, function| {
-        let meaning = "what half an edge adds, at the finest level";
-        ports.axes(&format!("half_edge_{function}"), WIDE, meaning)
-    });
-    let meaning = "half the strip's width, at the finest level";
-    ports
-        .each("half_width", &FUNCTIONS, WIDE, meaning)
-        .each(
-            "slack",
-            &FUNCTIONS,
-            WIDE,
-            "how much more bounds a voxel of any level on either side",
-        )
-        .each("value", &FUNCTIONS, WIDE, VALUE)
-}
-
 /// Why a frame with these integers has no rows of a block, if that is so.
 #[must_use]
 pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
@@ -94,30 +69,19 @@ pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
     const IS_EXACT: &str = "coverages exact and alpha do not have it";
     const NOT_ALPHA: &str = "only coverage alpha has it";
     const NO_CHANGE: &str = "at this tolerance no record changes to screen space";
-    let of_strips = || match (exact, changes) {
-        (false, _) => Some(NOT_EXACT),
-        (_, false) => Some(NO_CHANGE),
-        _ => None,
-    };
     let of_screen = || match (exact, changes) {
         (true, _) => Some(IS_EXACT),
         (_, false) => Some(NO_CHANGE),
         _ => None,
     };
     match block {
-        Block::ChangeDepth | Block::ChangeGuard | Block::ToScreenDivide => {
-            (!changes).then_some(NO_CHANGE)
-        }
-        Block::StripMean
-        | Block::StripLattice
-        | Block::StripChildren
-        | Block::BorderStrips
-        | Block::BisectorStrips
-        | Block::StripQuadrant
-        | Block::StripCover => of_strips(),
-        Block::SizeScreen | Block::BorderScreen | Block::BisectorScreen | Block::CentreSample => {
-            of_screen()
-        }
+        Block::ChangeDepth
+        | Block::ChangeGuard
+        | Block::ToScreenDivide
+        | Block::SizeScreen
+        | Block::BorderScreen
+        | Block::BisectorScreen
+        | Block::CentreSample => of_screen(),
         Block::ChildPlanes
         | Block::PlaneQuadrant
         | Block::MarginGap
@@ -135,6 +99,9 @@ pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
             (setup.lod_limit.is_none()).then_some("level of detail 0 takes no node for a solid")
         }
         Block::MarginGrow => {
+            if exact {
+                return Some(IS_EXACT);
+            }
             (setup.grow_shift.is_none()).then_some("at this tolerance boxes are not widened")
         }
         _ => None,
@@ -177,17 +144,6 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             .one("node", NODE, "the quadtree node's column (or row)")
             .one("below", LEVEL, BELOW)
     };
-    let strip_box = || {
-        ports()
-            .one("value", WIDE, VALUE)
-            .one("half_width", WIDE, HALF_WIDTH)
-            .one(
-                "step",
-                WIDE,
-                "what one sample along the function's axis adds",
-            )
-            .one("below", LEVEL, BELOW)
-    };
     let corners = |ports: Ports| ports.axes("min", WORD, OBJECT).axes("max", WORD, OBJECT);
     match block {
         Block::Filled => made(
@@ -203,9 +159,11 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::ToScreen],
             "5",
             "deep = w_min >= least",
-            ports()
-                .one("w_min", WORD, "least W of the vertices")
-                .one("least", WORD, "T of the record's octree level"),
+            ports().one("w_min", WORD, "least W of the vertices").one(
+                "least",
+                WORD,
+                "T of the record's octree level",
+            ),
             bit("deep", "far enough to change to screen space"),
         ),
         Block::ChangeGuard => made(
@@ -213,8 +171,15 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::ToScreen],
             "5",
             "enclosed = at all vertices x + (w >> places) >= 0 and (w - x) + (w >> places) >= 0, nothing rounded; places < 0: w shifted left",
-            clip(ports()).one("places", PLACES, "part of the width by which the box may leave the node, as a shift"),
-            bit("enclosed", "the box leaves the picture by little enough, along this axis"),
+            clip(ports()).one(
+                "places",
+                PLACES,
+                "part of the width by which the box may leave the node, as a shift",
+            ),
+            bit(
+                "enclosed",
+                "the box leaves the picture by little enough, along this axis",
+            ),
         ),
         Block::ToScreenDivide => made(
             "to_screen_divide",
@@ -225,39 +190,22 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
                 .one("x", WORD, "X (or Y) of a vertex")
                 .one("w", WORD, "W of the vertex, positive")
                 .one("fraction_bits", LEVEL, "steps after the four integer steps"),
-            ports().one("quotient", WORD, "x / w + 4 with so many fraction bits, rounded down"),
-        ),
-        Block::StripMean => made(
-            "strip_mean",
-            &[Stage::ToScreen],
-            "9",
-            "sum = all eight; edge_k = those with bit k of the vertex set less those without (x is bit 2 of the number, z bit 0)",
-            ports().list("position", 8, WORD, "a projected vertex relative to the node, Morton order"),
-            ports()
-                .one("sum", WORD, "eight times the mean")
-                .axes("edge", WORD, "D_k: sum of the four edges along k"),
-        ),
-        Block::StripLattice => made(
-            "strip_lattice",
-            &[Stage::ToScreen],
-            "9",
-            "the table of the section, for all five functions; constants depth, screen_fraction_bits, strip_guard and strip_slack (null: slack is 0) stand in the manifest",
-            ports()
-                .each("sum", &["x", "y"], WORD, "S of the coordinate")
-                .axes("edge_x", WORD, "D_k of coordinate x")
-                .axes("edge_y", WORD, "D_k of coordinate y")
-                .one("level", LEVEL, "octree level of the record")
-                .one("limit", WORD, "size of the finest voxels, screen units: level of detail or 4 units of the last place"),
-            lattice(ports()),
+            ports().one(
+                "quotient",
+                WORD,
+                "x / w + 4 with so many fraction bits, rounded down",
+            ),
         ),
         Block::DetailDepth => made(
             "detail_depth",
             &[Stage::OnePixel],
             "7",
             "solid = w_min >= least",
-            ports()
-                .one("w_min", WORD, "least W of the vertices")
-                .one("least", WORD, "depth from which on no node of the level is larger than the level of detail"),
+            ports().one("w_min", WORD, "least W of the vertices").one(
+                "least",
+                WORD,
+                "depth from which on no node of the level is larger than the level of detail",
+            ),
             bit("solid", "the node is drawn as a solid"),
         ),
         Block::SizeLimit => made(
@@ -265,7 +213,9 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::OnePixel, Stage::Filled, Stage::ToScreen],
             "7",
             "most = sum of w_min >> (s + below) over the shifts s of constant size_shifts; shifts below zero go left",
-            ports().one("w_min", WORD, "least W of the vertices").one("below", LEVEL, BELOW),
+            ports()
+                .one("w_min", WORD, "least W of the vertices")
+                .one("below", LEVEL, BELOW),
             ports().one("most", WORD, "extent of one sample at the least depth"),
         ),
         Block::SizeClip => made(
@@ -301,7 +251,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
         Block::OctantOrder => made(
             "octant_order",
             &[Stage::Order],
-            "10",
+            "9",
             "octant bit k = eye_floor_k < centre_k, x highest; child_i = octant XOR {7,6,5,3,4,2,1,0}[i]",
             ports()
                 .axes("centre", WORD, OBJECT)
@@ -317,19 +267,10 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "corners: midpoints (a + b) >> 1 along x, then y, then z; frame: edges (e + sign) >> 1, corners by seven adds",
             ports().cage("parent", "one coordinate of the record's cage"),
             OCTANTS.iter().fold(ports(), |ports, octant| {
-                ports.cage(&format!("child_{octant}"), "the same coordinate of a child's cage")
-            }),
-        ),
-        Block::StripChildren => made(
-            "strip_children",
-            &[Stage::VertexPool],
-            "9",
-            "value of child c = value + sum over k of half_edge_k where bit k of c is clear, - half_edge_k where it is set",
-            ports()
-                .one("value", WIDE, VALUE)
-                .axes("half_edge", WIDE, "half an edge of the children's level"),
-            OCTANTS.iter().fold(ports(), |ports, octant| {
-                ports.one(&format!("child_{octant}"), WIDE, VALUE)
+                ports.cage(
+                    &format!("child_{octant}"),
+                    "the same coordinate of a child's cage",
+                )
             }),
         ),
         Block::ChildPlanes => made(
@@ -338,7 +279,11 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "8",
             "for edge j, k = j+1, l = j+2 (mod 3): less axis_l << half where the octant has bit k, plus axis_k << half where it has bit l",
             planes(ports())
-                .one("half", LEVEL, "half the record's side in finest voxels, as a shift")
+                .one(
+                    "half",
+                    LEVEL,
+                    "half the record's side in finest voxels, as a shift",
+                )
                 .one("octant", THREE, "which child, x highest"),
             ["x", "y", "z"].iter().fold(ports(), |ports, axis| {
                 ports.each(&format!("edge_{axis}"), &["a", "b", "c"], WIDE, PLANE)
@@ -349,9 +294,11 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::ChildBox],
             "1",
             "along k: centre to max where the octant has bit k, else min to centre",
-            corners(ports())
-                .axes("centre", WORD, OBJECT)
-                .one("octant", THREE, "which child, x highest"),
+            corners(ports()).axes("centre", WORD, OBJECT).one(
+                "octant",
+                THREE,
+                "which child, x highest",
+            ),
             ports()
                 .axes("child_min", WORD, OBJECT)
                 .axes("child_max", WORD, OBJECT),
@@ -371,16 +318,23 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::QuadtreeFit],
             "6",
             "each number of the cage: (w >> places) + 1 for places > 0, else w << -places",
-            ports().cage("w", W).one("places", PLACES, "tolerance as a part of the node's width, as a shift"),
+            ports().cage("w", W).one(
+                "places",
+                PLACES,
+                "tolerance as a part of the node's width, as a shift",
+            ),
             ports().cage("margin", "what the box is widened by"),
         ),
         Block::MarginGap => made(
             "margin_gap",
             &[Stage::QuadtreeFit],
             "6",
-            "each number of the cage: -(sum of w >> (s + below)) over the shifts s of constant size_shifts; shifts below zero go left",
+            "each number of the cage: -(w >> below)",
             ports().cage("w", W).one("below", LEVEL, BELOW),
-            ports().cage("margin", "what the box is widened by: negative, it is narrowed"),
+            ports().cage(
+                "margin",
+                "what the box is widened by: negative, it is narrowed",
+            ),
         ),
         Block::BorderClip => made(
             "border_clip",
@@ -389,7 +343,11 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "outside = x + margin < 0 at all vertices or x - w - margin > 0 at all; enclosed = not outside, x - margin >= 0 and x - w + margin <= 0 at all (wider: > 0 and < 0)",
             clip(ports())
                 .cage("margin", "what the box is widened by")
-                .one("wider", BIT, "the box is widened: it must lie strictly within"),
+                .one(
+                    "wider",
+                    BIT,
+                    "the box is widened: it must lie strictly within",
+                ),
             border(),
         ),
         Block::BisectorClip => made(
@@ -409,7 +367,10 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "6",
             "near = x + w >= 0 and x - 2 w <= 0 at all vertices",
             clip(ports()),
-            bit("near", "the box leaves the node by at most its width, along this axis"),
+            bit(
+                "near",
+                "the box leaves the node by at most its width, along this axis",
+            ),
         ),
         Block::HalfClip => made(
             "half_clip",
@@ -427,7 +388,9 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::QuadtreeFit, Stage::Draw],
             "8",
             "inner_c = 2 c + (quadrant bit 0 ? a : 0) + (quadrant bit 1 ? b : 0)",
-            ports().each("plane", &["a", "b", "c"], WIDE, "of a x + b y + c").one("quadrant", TWO, "y << 1 | x"),
+            ports()
+                .each("plane", &["a", "b", "c"], WIDE, "of a x + b y + c")
+                .one("quadrant", TWO, "y << 1 | x"),
             ports().one("inner_c", WIDE, "c in the quadrant's coordinates"),
         ),
         Block::BorderScreen => made(
@@ -445,34 +408,6 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "with c = (2 node + 1) << (below + F - 1), rounded down: low_half = low < c, high_half = high > c or not low_half",
             screen_box(),
             halves(ports()),
-        ),
-        Block::BorderStrips => made(
-            "border_strips",
-            &[Stage::QuadtreeFit],
-            "9",
-            "with last = value + (step << below) - step: outside = last < -half_width or value > half_width; enclosed = not outside, value - step < -half_width and last + step > half_width",
-            strip_box(),
-            border(),
-        ),
-        Block::BisectorStrips => made(
-            "bisector_strips",
-            &[Stage::QuadtreeFit],
-            "9",
-            "with far = value + (step << (below - 1)): low_half = far - step >= -half_width, high_half = far <= half_width; below = 0: both = |value| <= half_width",
-            strip_box(),
-            halves(ports()),
-        ),
-        Block::StripQuadrant => made(
-            "strip_quadrant",
-            &[Stage::QuadtreeFit, Stage::Draw],
-            "9",
-            "inner = value + (quadrant bit 0 ? step_x << (below - 1) : 0) + (quadrant bit 1 ? step_y << (below - 1) : 0)",
-            ports()
-                .one("value", WIDE, VALUE)
-                .each("step", &["x", "y"], WIDE, "what one sample adds")
-                .one("quadrant", TWO, "y << 1 | x")
-                .one("below", LEVEL, BELOW),
-            ports().one("inner", WIDE, "the value at the quadrant's first sample"),
         ),
         Block::Quadrants => made(
             "quadrants",
@@ -535,7 +470,11 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::Draw],
             "8",
             "for edge j, k = j+1, l = j+2 (mod 3): plane 0 = edge_j, 1 = 0 less axis_l << side, 2 = 0 plus axis_k << side, 3 = 1 plus axis_k << side",
-            planes(ports()).one("side", LEVEL, "the cube's side in finest voxels, as a shift"),
+            planes(ports()).one(
+                "side",
+                LEVEL,
+                "the cube's side in finest voxels, as a shift",
+            ),
             ["x", "y", "z"].iter().fold(ports(), |ports, axis| {
                 (0..4).fold(ports, |ports, i| {
                     ports.each(&format!("plane_{axis}{i}"), &["a", "b", "c"], WIDE, PLANE)
@@ -573,22 +512,12 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             "0: along some axis no plane is 0 and not both 1 and 2 are there, or front_side is neither 0 nor wanted; 2: along all axes both 1 and 2, and front_side = wanted or no front; else 1. Front last",
             ["x", "y", "z"]
                 .iter()
-                .fold(ports(), |ports, axis| ports.list(&format!("side_{axis}"), 4, TWO, SIDE))
+                .fold(ports(), |ports, axis| {
+                    ports.list(&format!("side_{axis}"), 4, TWO, SIDE)
+                })
                 .one("front", BIT, "the cube has a front plane")
                 .one("front_side", TWO, SIDE)
                 .one("wanted", TWO, "the side on which rays reach the cube"),
-            ports().one("cover_code", TWO, COVER),
-        ),
-        Block::StripCover => made(
-            "strip_cover",
-            &[Stage::Draw],
-            "9",
-            "least, greatest of value + i step_x + j step_y, i and j from 0 to 2^below - 1: 0 where greatest < -half_width or least > half_width, 2 where both are within, else 1",
-            ports()
-                .one("value", WIDE, VALUE)
-                .one("half_width", WIDE, HALF_WIDTH)
-                .each("step", &["x", "y"], WIDE, "what one sample adds")
-                .one("below", LEVEL, BELOW),
             ports().one("cover_code", TWO, COVER),
         ),
         Block::FillUpdate => made(
@@ -596,17 +525,21 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
             &[Stage::FillUpdate],
             "6",
             "after = vector OR bits; full = all four bits are set",
-            ports()
-                .one("vector", FOUR, "the node's fill vector")
-                .one("bits", FOUR, "quadrants that are full by now"),
-            ports()
-                .one("after", FOUR, "written back")
-                .one("full", BIT, "the parent's bit is to be set"),
+            ports().one("vector", FOUR, "the node's fill vector").one(
+                "bits",
+                FOUR,
+                "quadrants that are full by now",
+            ),
+            ports().one("after", FOUR, "written back").one(
+                "full",
+                BIT,
+                "the parent's bit is to be set",
+            ),
         ),
         Block::BlendWay => made(
             "blend_way",
             &[Stage::Blend],
-            "12",
+            "11",
             "way = |((min + max) >> 1 >> shift) - eye|, the first sum with its carry",
             ports()
                 .one("min", WORD, OBJECT)
@@ -618,7 +551,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
         Block::BlendShares => made(
             "blend_shares",
             &[Stage::Blend],
-            "12",
+            "11",
             "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but at most 16 - share_x, share_z = 16 - share_x - share_y; seen = share >= 4",
             ports().axes("way", WORD, "d of the axis"),
             ports()
@@ -628,7 +561,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
         Block::BlendCounts => made(
             "blend_counts",
             &[Stage::Blend],
-            "12",
+            "11",
             "with n = the square root of the sum of the squares, to the nearest: count = share^2 / n to the nearest, halves up",
             ports().axes("share", SHARE, "u of the axis, sixteenths"),
             ports().axes("count", SHARE, COUNT),
@@ -636,7 +569,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
         Block::BlendWeight => made(
             "blend_weight",
             &[Stage::Blend],
-            "12",
+            "11",
             "with a = opacity_high where high is set, else opacity_low: weight = 256 where an axis that is seen has a = 15, else the sum of (a + (a >> 3)) count",
             ["x", "y", "z"]
                 .iter()
@@ -652,7 +585,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
         Block::BlendSample => made(
             "blend_sample",
             &[Stage::Blend],
-            "12",
+            "11",
             "with m = (left weight + 128) >> 8: full = left - m <= 64, and then m = left; rest = left - m; after = sum + m light; first = left is 256",
             ports()
                 .one("left", WEIGHT, "T: what the sample still lets through")

@@ -54,8 +54,6 @@ pub(super) fn document(
             "depth": setup.depth,
             "image_levels": setup.levels,
             "screen_fraction_bits": setup.format.frac(),
-            "strip_guard": setup.strip_guard,
-            "strip_slack": setup.strip_slack,
             "size_shifts": setup.size_limit.shifts(),
         },
         "blocks": blocks,

@@ -28,7 +28,7 @@ use crate::project::{EngineError, FrameSetup};
 use recorder::Recorder;
 
 /// Version of the manifest and of what blocks there are.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// What is to be recorded, and where.
 #[derive(Debug, Clone, Copy)]
