@@ -37,7 +37,7 @@ impl PackedNormal {
         let floor = |x: f64| f64::from((x * STEPS + STEPS) as i32) - STEPS;
         let low_u = floor(u).clamp(-STEPS, STEPS - 1.0);
         let low_v = floor(v).clamp(-STEPS, STEPS - 1.0);
-        let mut best = (f64::NEG_INFINITY, low_u, low_v);
+        let mut best = (f64::NEG_INFINITY, Self::NONE);
         for (du, dv) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
             let (u, v) = (low_u + du, low_v + dv);
             let point = unfold(u, v);
@@ -45,13 +45,11 @@ impl PackedNormal {
             // The square of the cosine, but for a factor, with its sign.
             let likeness = along * along.abs() / point.length_squared();
             if likeness > best.0 {
-                best = (likeness, u, v);
+                let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
+                best = (likeness, Self(byte(u) << 8 | byte(v)));
             }
         }
-        // Of four points around a direction one is always like it.
-        let (_, u, v) = best;
-        let byte = |step: f64| (step as i16 + ZERO as i16) as u16;
-        Self(byte(u) << 8 | byte(v))
+        best.1
     }
 
     /// The unit vector, if there is a normal. Any 16 bits are accepted.
