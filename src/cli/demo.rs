@@ -34,12 +34,13 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         ..CameraArgs::default()
     };
     let camera = view.camera(&bounds, scene.up, (SIDE, SIDE), 0.0);
-    let drawn = draw(&scene, &camera, &engine_args, &picture_args, 1)?;
+    let drawing = draw(&scene, &camera, &engine_args, &picture_args, 1, true)?;
+    let (drawn, rows) = drawing.shown()?;
     let counter = engines::count_operations(&engine_args, &scene.graph.view(), &drawn.setup)?;
-    outputs::write(&drawn.picture, Path::new(PICTURE), &[], true)?;
-    let hash = picture::hash(&drawn.picture);
+    outputs::write(&drawn.pixels, &rows, Path::new(PICTURE), &[], true)?;
+    let hash = picture::hash_rows(&rows)?;
     if console.json {
-        let mut result = report::drawn(&scene, &camera, &drawn, Some(&hash));
+        let mut result = report::drawn(&scene, &camera, drawn, Some(&hash));
         result["output"] = json!(PICTURE);
         result["operations"] = json!(counter.ops());
         return console.document(&report::document("demo", result));

@@ -6,24 +6,28 @@ use super::args::{Aov, EngineArgs, PictureArgs};
 use super::engines;
 use super::error::{CliError, Kind};
 use super::scenes::Scene;
-use crate::frame::{Colors, Frame};
+use crate::frame::Colors;
 use crate::graph::GraphView;
-use crate::picture::{Picture, Shading, lights, resolve};
+use crate::picture::png::Pixels;
+use crate::picture::{ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{Camera, Contents, Engine, FrameSetup, Stats, Viewer};
 
 /// A drawn picture and what it took.
 pub(super) struct Drawn {
-    pub(super) picture: Picture,
+    /// Its colours. The other buffers are made when they are written.
+    pub(super) pixels: Pixels,
+    /// Pixels that show a voxel at their middle sample.
+    pub(super) pixels_drawn: usize,
     pub(super) setup: FrameSetup,
     /// What the engine counted of one frame.
     pub(super) stats: Stats,
     /// Time of the engine for each repetition, milliseconds.
     pub(super) times_ms: Vec<f64>,
-    /// Time to make the picture from the last frame, milliseconds.
+    /// Time to make the colours from the last frame, milliseconds.
     pub(super) resolve_ms: f64,
 }
 
-/// Most samples of a picture: about nine gigabytes with all that is made of them.
+/// Most samples of a picture: about three gigabytes with all that is made of them.
 const MAX_SAMPLES: u64 = 1 << 27;
 
 /// Refuses a picture that would take too much memory.
@@ -46,52 +50,87 @@ pub(super) struct Drawing<'s> {
     engine_args: &'s EngineArgs,
     picture_args: &'s PictureArgs,
     viewer: Viewer<'s, Box<dyn Engine>>,
+    /// What the viewer's frames hold.
+    contents: Contents,
     /// What the viewer shows.
     last: Option<Drawn>,
 }
 
 impl<'s> Drawing<'s> {
-    /// Nothing is drawn yet.
+    /// Nothing is drawn yet. `is_hashed`: whether pictures' hashes are wanted,
+    /// which are over all buffers.
     pub(super) fn new(
         scene: &'s Scene,
         engine_args: &'s EngineArgs,
         picture_args: &'s PictureArgs,
+        is_hashed: bool,
     ) -> Result<Self, CliError> {
         let engine = engines::engine(engine_args)?;
-        let contents = match picture_args.aov.contains(&Aov::Records) {
-            true => Contents::Records,
-            false => Contents::Voxels,
+        let wants = |aov: Aov| picture_args.aov.contains(&aov);
+        let of_voxels = [Aov::Depth, Aov::Normal, Aov::Voxel];
+        let contents = if wants(Aov::Records) {
+            Contents::Records
+        } else if is_hashed || of_voxels.into_iter().any(wants) || !scene.graph.links.is_empty() {
+            Contents::Voxels
+        } else {
+            // A fifth of the memory. Colours depend on voxels where a node has
+            // no normal, and the graph then says where the node is.
+            Contents::Nodes
         };
         Ok(Self {
             scene,
             engine_args,
             picture_args,
             viewer: Viewer::new(scene.graph.view(), engine, contents),
+            contents,
             last: None,
         })
     }
 
-    /// Draws the scene, unless it was drawn like this the last time, and makes the picture.
-    pub(super) fn draw(&mut self, camera: &Camera) -> Result<&Drawn, CliError> {
+    /// Draws the scene, unless it was drawn like this the last time, and makes the colours.
+    pub(super) fn draw(&mut self, camera: &Camera) -> Result<(), CliError> {
         let setup = self.setup(camera)?;
-        let started = Instant::now();
+        let mut started = Instant::now();
         let is_shown = self.viewer.shows(&setup);
         let graph = &self.scene.graph;
         let light = lights(graph, &setup, self.picture_args.shading());
-        let stats = self.viewer.render_lit(&setup, &light)?;
-        let times_ms = vec![milliseconds_since(started)];
-        let started = Instant::now();
-        let picture = match self.last.take().filter(|_| is_shown) {
-            Some(last) => last.picture,
-            None => self.resolve(&setup)?,
+        let mut stats = self.viewer.render_lit(&setup, &light)?;
+        let mut draw_ms = milliseconds_since(started);
+        started = Instant::now();
+        let pixels = match self.last.take().filter(|_| is_shown) {
+            Some(last) => last.pixels,
+            None => match self.pixels(&setup) {
+                Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
+                    // The graph does not say it: once more, with voxels.
+                    let engine = engines::engine(self.engine_args)?;
+                    self.contents = Contents::Voxels;
+                    self.viewer = Viewer::new(graph.view(), engine, self.contents);
+                    started = Instant::now();
+                    stats = self.viewer.render_lit(&setup, &light)?;
+                    draw_ms += milliseconds_since(started);
+                    started = Instant::now();
+                    self.pixels(&setup)?
+                }
+                made => made?,
+            },
         };
-        Ok(self.last.insert(Drawn {
-            picture,
+        let pixels_drawn = self.resolver(&setup)?.drawn();
+        self.last = Some(Drawn {
+            pixels,
+            pixels_drawn,
             setup,
             stats,
-            times_ms,
+            times_ms: vec![draw_ms],
             resolve_ms: milliseconds_since(started),
-        }))
+        });
+        Ok(())
+    }
+
+    /// What was drawn, and its buffers.
+    pub(super) fn shown(&self) -> Result<(&Drawn, Resolver<'_>), CliError> {
+        let nothing = || CliError::new(Kind::Run, "nothing was drawn");
+        let drawn = self.last.as_ref().ok_or_else(nothing)?;
+        Ok((drawn, self.resolver(&drawn.setup)?))
     }
 
     /// Times of drawing the same frame so many times, each time all of it, as
@@ -125,38 +164,49 @@ impl<'s> Drawing<'s> {
         Ok(setup)
     }
 
-    /// The picture of what the viewer shows.
-    fn resolve(&self, setup: &FrameSetup) -> Result<Picture, CliError> {
-        let nothing = Frame::nodes_only(0, 0);
-        let frame = self.viewer.frame().unwrap_or(&nothing);
+    /// The buffers of what the viewer shows.
+    fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
+        // A frame that is not there has no samples.
+        let frame = self.viewer.frame();
+        let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
         let shading = self.picture_args.shading();
         let background = self.picture_args.background.unwrap_or_default();
-        let picture = resolve(frame, &self.scene.graph, setup, shading, background)?;
-        Ok(picture)
+        Resolver::new(frame, &self.scene.graph, setup, shading, background)
+    }
+
+    /// The colours of what the viewer shows.
+    fn pixels(&self, setup: &FrameSetup) -> Result<Pixels, ResolveError> {
+        let resolver = self.resolver(setup)?;
+        let (width, height) = resolver.size();
+        let rows = 0..height;
+        Ok(match resolver.is_opaque() {
+            true => Pixels::opaque(width, height, resolver.colors(rows)?),
+            false => Pixels::new(width, height, resolver.colors(rows)?),
+        })
     }
 }
 
-/// Draws a scene and makes the picture. With `repeat` above 1 the times are
+/// Draws a scene and makes the colours. With `repeat` above 1 the times are
 /// those of so many frames drawn for that alone.
-pub(super) fn draw(
-    scene: &Scene,
+pub(super) fn draw<'s>(
+    scene: &'s Scene,
     camera: &Camera,
-    engine_args: &EngineArgs,
-    picture_args: &PictureArgs,
+    engine_args: &'s EngineArgs,
+    picture_args: &'s PictureArgs,
     repeat: u32,
-) -> Result<Drawn, CliError> {
-    let mut drawing = Drawing::new(scene, engine_args, picture_args)?;
+    is_hashed: bool,
+) -> Result<Drawing<'s>, CliError> {
+    let mut drawing = Drawing::new(scene, engine_args, picture_args, is_hashed)?;
     let times_ms = if repeat > 1 {
         Some(drawing.measure(camera, repeat)?)
     } else {
         None
     };
     drawing.draw(camera)?;
-    let drawn = drawing.last.map(|drawn| Drawn {
-        times_ms: times_ms.unwrap_or(drawn.times_ms),
-        ..drawn
-    });
-    drawn.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))
+    if let (Some(drawn), Some(times_ms)) = (&mut drawing.last, times_ms) {
+        drawn.times_ms = times_ms;
+    }
+    Ok(drawing)
 }
 
 pub(super) fn milliseconds_since(started: Instant) -> f64 {

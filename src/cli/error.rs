@@ -1,5 +1,6 @@
 //! What can go wrong, and which exit code says so.
 
+use std::convert::Infallible;
 use std::fmt;
 use std::io;
 use std::process::ExitCode;
@@ -140,10 +141,16 @@ impl From<EngineError> for CliError {
     }
 }
 
+impl From<Infallible> for CliError {
+    fn from(never: Infallible) -> Self {
+        match never {}
+    }
+}
+
 impl From<ResolveError> for CliError {
     fn from(error: ResolveError) -> Self {
         let kind = match error {
-            ResolveError::Size(..) => Kind::Run,
+            ResolveError::Size(..) | ResolveError::Voxel => Kind::Run,
             ResolveError::Index => Kind::Limit,
         };
         Self::new(kind, error)

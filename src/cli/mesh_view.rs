@@ -21,6 +21,7 @@ use crate::graph::file::FileError;
 use crate::lab::mesh_view::view_of;
 use crate::mesh::Mesh;
 use crate::mesh::raster::View;
+use crate::picture::png::Pixels;
 use crate::picture::{self, Background, Picture};
 use crate::project::Camera;
 
@@ -280,7 +281,8 @@ impl MeshDrawn<'_> {
             })?;
         }
         if let Some(path) = output {
-            outputs::write(picture, path, &args.picture.aov, args.out.force)?;
+            let pixels = Pixels::new(picture.width, picture.height, picture.rgba.clone());
+            outputs::write(&pixels, *picture, path, &args.picture.aov, args.out.force)?;
         }
         let (min, median, max) = min_median_max(self.times_ms);
         if args.repeat > 1 && !console.json {

@@ -1,11 +1,12 @@
 //! Names and contents of the files that a picture becomes.
 
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::args::{Aov, Setting};
-use super::error::{CliError, Kind};
-use crate::picture::npy::{Array, Values};
-use crate::picture::{Picture, npy, png, store};
+use super::error::CliError;
+use crate::picture::png::Pixels;
+use crate::picture::{Buffer, Rows, npy, store};
 
 /// The file of a buffer: `{out stem}.{aov}.npy` beside the picture.
 pub(super) fn aov_path(picture: &Path, aov: Aov) -> PathBuf {
@@ -38,41 +39,61 @@ pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     )
 }
 
-/// Writes a picture and its buffers.
-pub(super) fn write(
-    picture: &Picture,
+/// Writes a picture's colours, and of its rows the buffers that are asked for.
+pub(super) fn write<R: Rows>(
+    pixels: &Pixels,
+    picture: &R,
     path: &Path,
     aovs: &[Aov],
     force: bool,
-) -> Result<(), CliError> {
-    let bytes = png::encode(picture.width, picture.height, &picture.rgba)
-        .map_err(|e| CliError::new(Kind::Run, format!("{}: {e}", path.display())))?;
-    store::write(path, &bytes, force)?;
+) -> Result<(), CliError>
+where
+    CliError: From<R::Error>,
+{
+    store::write_with(path, force, |file| {
+        let mut file = BufWriter::new(file);
+        pixels.write(&mut file).map_err(io::Error::other)?;
+        file.flush()
+    })?;
     for &aov in aovs {
-        let bytes = npy::encode(&buffer(picture, aov));
-        store::write(&aov_path(path, aov), &bytes, force)?;
+        write_buffer(picture, aov.buffer(), &aov_path(path, aov), force)?;
     }
     Ok(())
 }
 
-fn buffer(picture: &Picture, aov: Aov) -> Array {
-    let (values, entries) = match aov {
-        Aov::Depth => (Values::F32(picture.depth.clone()), 1),
-        Aov::Normal => (Values::F32(picture.normal.as_flattened().to_vec()), 3),
-        Aov::Voxel => (Values::I32(picture.voxel.as_flattened().to_vec()), 4),
-        Aov::Node => (Values::I32(picture.node.clone()), 1),
-        Aov::Records => {
-            let records = picture.records.clone();
-            let zeros = || vec![0.0; picture.node.len()];
-            (Values::F32(records.unwrap_or_else(zeros)), 1)
-        }
-        Aov::Color => (Values::U8(picture.rgba.as_flattened().to_vec()), 4),
-    };
-    let mut shape = vec![picture.height as usize, picture.width as usize];
-    if entries > 1 {
-        shape.push(entries);
+/// Writes a buffer as it is made.
+fn write_buffer<R: Rows>(
+    picture: &R,
+    buffer: Buffer,
+    path: &Path,
+    force: bool,
+) -> Result<(), CliError>
+where
+    CliError: From<R::Error>,
+{
+    let (width, height) = picture.size();
+    let mut shape = vec![height as usize, width as usize];
+    if buffer.entries() > 1 {
+        shape.push(buffer.entries());
     }
-    Array { shape, values }
+    let mut failed = None;
+    let written = store::write_with(path, force, |file| {
+        file.write_all(&npy::header(&shape, &buffer.none()))?;
+        for rows in picture.steps() {
+            match picture.rows(buffer, rows) {
+                Ok(values) => file.write_all(&values.bytes())?,
+                Err(error) => {
+                    failed = Some(error);
+                    return Err(io::Error::other("rows cannot be made"));
+                }
+            }
+        }
+        Ok(())
+    });
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    Ok(written?)
 }
 
 /// The two files that `--outdir` leaves.

@@ -213,10 +213,21 @@ fn render_one(
     if args.print_camera && !console.json {
         console.data(camera_line(&camera))?;
     }
-    let drawn =
-        draw(&scene, &camera, &args.engine, &args.picture, args.repeat).map_err(|e| e.at(name))?;
-    let hash = (args.hash || args.expect_hash.is_some() || console.json)
-        .then(|| picture::hash(&drawn.picture));
+    let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
+    let drawing = draw(
+        &scene,
+        &camera,
+        &args.engine,
+        &args.picture,
+        args.repeat,
+        is_hashed,
+    )
+    .map_err(|e| e.at(name))?;
+    let (drawn, rows) = drawing.shown()?;
+    let hash = match is_hashed {
+        true => Some(picture::hash_rows(&rows).map_err(|e| CliError::from(e).at(name))?),
+        false => None,
+    };
     if args.hash && !console.json {
         let hash = hash.as_deref().unwrap_or_default();
         let line = if of > 1 {
@@ -227,9 +238,15 @@ fn render_one(
         console.data(line)?;
     }
     if let Some(path) = &output {
-        outputs::write(&drawn.picture, path, &args.picture.aov, args.out.force)?;
+        outputs::write(
+            &drawn.pixels,
+            &rows,
+            path,
+            &args.picture.aov,
+            args.out.force,
+        )?;
     }
-    tell(&scene, &drawn, output.as_deref(), args.repeat, console)?;
+    tell(&scene, drawn, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
         && !expected.eq_ignore_ascii_case(found)
     {
@@ -238,7 +255,7 @@ fn render_one(
             format!("{name}: the picture's hash is {found}, expected {expected}"),
         ));
     }
-    let mut result = report::drawn(&scene, &camera, &drawn, hash.as_deref());
+    let mut result = report::drawn(&scene, &camera, drawn, hash.as_deref());
     result["output"] = json!(output);
     Ok((camera, result))
 }

@@ -51,9 +51,9 @@ pub(super) fn drawn(scene: &Scene, at: &Camera, drawn: &Drawn, hash: Option<&str
     }
     json!({
         "scene": scene.source,
-        "width": drawn.picture.width,
-        "height": drawn.picture.height,
-        "pixels_drawn": drawn.picture.drawn(),
+        "width": drawn.pixels.size().0,
+        "height": drawn.pixels.size().1,
+        "pixels_drawn": drawn.pixels_drawn,
         "camera": camera(at),
         "word": {
             "bits": drawn.setup.format.bits(),

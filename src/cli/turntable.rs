@@ -1,6 +1,6 @@
 //! `turntable`: many frames around a scene in one process.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -14,7 +14,8 @@ use super::fit::{Bounds, Up};
 use super::mesh_view::{self, DrawArgs, FileEngine, MeshDrawn};
 use super::render::{choose_scenes, open};
 use super::{outputs, report};
-use crate::picture::{self, Picture};
+use crate::picture::png::Pixels;
+use crate::picture::{self, Rows};
 use crate::project::Camera;
 
 /// Arguments of `turntable`.
@@ -128,12 +129,18 @@ impl Turn<'_> {
             &args.engine.rules.scene_args(&args.scene),
             console,
         )?;
-        let mut drawing =
-            Drawing::new(&scene, &args.engine, &args.picture).map_err(|e| e.at(self.name))?;
+        let mut drawing = Drawing::new(
+            &scene,
+            &args.engine,
+            &args.picture,
+            args.hash || console.json,
+        )
+        .map_err(|e| e.at(self.name))?;
         let bounds = Bounds::of(&scene.graph);
-        self.frames(&bounds, scene.up, console, |camera, keep| {
-            let drawn = drawing.draw(camera)?;
-            let hash = keep(&drawn.picture)?;
+        self.frames(&bounds, scene.up, console, |camera, keeper| {
+            drawing.draw(camera)?;
+            let (drawn, rows) = drawing.shown()?;
+            let hash = keeper.keep(&drawn.pixels, &rows)?;
             let times_ms = drawn.times_ms.clone();
             Ok((
                 times_ms,
@@ -156,11 +163,12 @@ impl Turn<'_> {
         engine.open(name, draw_args, &mut |file| {
             let load_ms = milliseconds_since(started);
             let up = args.scene.up_or(file.up());
-            self.frames(&file.bounds(), up, console, |camera, keep| {
+            self.frames(&file.bounds(), up, console, |camera, keeper| {
                 let started = Instant::now();
                 let (picture, counters) = file.draw(camera)?;
                 let times_ms = vec![milliseconds_since(started)];
-                let hash = keep(&picture)?;
+                let pixels = Pixels::new(picture.width, picture.height, picture.rgba.clone());
+                let hash = keeper.keep(&pixels, &picture)?;
                 let drawn = MeshDrawn {
                     name,
                     engine: engine.name,
@@ -177,14 +185,14 @@ impl Turn<'_> {
         })
     }
 
-    /// Has all frames drawn by `draw`, which is handed a camera and what keeps a picture: writes it, and
-    /// gives its hash where that is wanted. It gives times and what to say of the frame.
+    /// Has all frames drawn by `draw`, which is handed a camera and what keeps a picture.
+    /// It gives times and what to say of the frame.
     fn frames(
         &mut self,
         bounds: &Bounds,
         up: Up,
         console: &Console,
-        mut draw: impl FnMut(&Camera, Keep<'_>) -> Result<(Vec<f64>, Value), CliError>,
+        mut draw: impl FnMut(&Camera, &Keeper<'_>) -> Result<(Vec<f64>, Value), CliError>,
     ) -> Result<(), CliError> {
         let args = self.args;
         // One distance for all frames, so that the object does not breathe.
@@ -194,16 +202,13 @@ impl Turn<'_> {
             let turn = 360.0 * frame as f64 / f64::from(args.frames);
             let size = args.picture.size();
             let camera = args.camera.camera(&bounds, up, size, turn);
-            let keep = |picture: &Picture| {
-                outputs::write(picture, path, &args.picture.aov, args.out.force)?;
-                let hash = (args.hash || console.json).then(|| picture::hash(picture));
-                if let (true, false, Some(hash)) = (args.hash, console.json, &hash) {
-                    console.data(format!("{hash}  {}", path.display()))?;
-                }
-                Ok(hash)
+            let keeper = Keeper {
+                args,
+                path,
+                console,
             };
-            let (times_ms, mut result) =
-                draw(&camera, &keep).map_err(|e| e.at(format!("{}, frame {frame}", self.name)))?;
+            let (times_ms, mut result) = draw(&camera, &keeper)
+                .map_err(|e| e.at(format!("{}, frame {frame}", self.name)))?;
             self.times_ms.extend(times_ms);
             result["output"] = json!(path);
             self.results.push(result);
@@ -214,8 +219,35 @@ impl Turn<'_> {
     }
 }
 
-/// Keeps a picture; gives its hash where that is wanted.
-type Keep<'k> = &'k dyn Fn(&Picture) -> Result<Option<String>, CliError>;
+/// Keeps a frame's picture.
+struct Keeper<'k> {
+    args: &'k TurntableArgs,
+    path: &'k Path,
+    console: &'k Console,
+}
+
+impl Keeper<'_> {
+    /// Writes a picture; gives its hash where that is wanted.
+    fn keep<R: Rows>(&self, pixels: &Pixels, picture: &R) -> Result<Option<String>, CliError>
+    where
+        CliError: From<R::Error>,
+    {
+        let Self {
+            args,
+            path,
+            console,
+        } = self;
+        outputs::write(pixels, picture, path, &args.picture.aov, args.out.force)?;
+        if !args.hash && !console.json {
+            return Ok(None);
+        }
+        let hash = picture::hash_rows(picture)?;
+        if args.hash && !console.json {
+            console.data(format!("{hash}  {}", path.display()))?;
+        }
+        Ok(Some(hash))
+    }
+}
 
 fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
     let output = args.output.to_string_lossy().into_owned();
@@ -233,7 +265,7 @@ fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
 }
 
 /// The pattern with its run of `#` replaced by each frame's number.
-fn frame_paths(pattern: &std::path::Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
+fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
     let text = pattern.to_string_lossy();
     let wrong = || {
         CliError::usage(format!("{text}: the frames need different names"))
@@ -253,7 +285,6 @@ fn frame_paths(pattern: &std::path::Path, frames: u32) -> Result<Vec<PathBuf>, C
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
     #[test]
     fn numbered_names() {

@@ -29,10 +29,29 @@ static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     })
 });
 
+/// Bits of linear light by which [`encode`] begins to look.
+const BEGINNING_BITS: u32 = 12;
+
+/// For each beginning of 24 bits of linear light how many sRGB values are darker than all of it.
+static DARKER: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let darker = |beginning: u32| {
+        let least = beginning << (24 - BEGINNING_BITS);
+        LINEAR.partition_point(|&entry| entry < least) as u8
+    };
+    (0..1 << BEGINNING_BITS).map(darker).collect()
+});
+
 /// The sRGB value whose linear light is nearest.
 fn encode(linear: u64) -> u8 {
     let table: &[u32; 256] = &LINEAR;
-    let above = table.partition_point(|&entry| u64::from(entry) < linear);
+    let beginning = (linear >> (24 - BEGINNING_BITS)) as usize;
+    // More than full light is as bright as full light.
+    let mut above = DARKER
+        .get(beginning)
+        .map_or(255, |&darker| usize::from(darker));
+    while above < 256 && u64::from(table[above]) < linear {
+        above += 1;
+    }
     if above == 0 {
         return 0;
     }
@@ -86,7 +105,11 @@ impl Sum {
     /// The average colour; black of nothing.
     pub(super) fn color(&self) -> [u8; 3] {
         let count = self.count.max(1);
-        self.light.map(|light| encode((light + count / 2) / count))
+        let mut color = [0; 3];
+        for (value, light) in color.iter_mut().zip(self.light) {
+            *value = encode((light + count / 2) / count);
+        }
+        color
     }
 
     /// The average direction; none where the normals cancel or there are none.
@@ -110,6 +133,19 @@ mod tests {
             assert_eq!(sum.color(), [value; 3]);
             assert_eq!(sum.normal(), PackedNormal::NONE);
         }
+    }
+
+    #[test]
+    fn the_nearest_value_is_found_for_every_light() {
+        // Between two values the nearer, on the middle the brighter; each step of both.
+        for value in 0..255usize {
+            let (below, above) = (u64::from(LINEAR[value]), u64::from(LINEAR[value + 1]));
+            for linear in below..=above {
+                let nearer = usize::from(above - linear <= linear - below) + value;
+                assert_eq!(usize::from(encode(linear)), nearer, "{linear}");
+            }
+        }
+        assert_eq!((encode(1 << 24), encode(u64::MAX)), (255, 255));
     }
 
     #[test]

@@ -12,9 +12,9 @@
 //! unless nothing led to the nodes of its finest levels.
 
 use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hash};
+use std::hash::{BuildHasherDefault, Hash, Hasher};
 
-use xxhash_rust::xxh3::Xxh3Default;
+use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 use super::{Graph, Progress};
 
@@ -50,7 +50,25 @@ impl MergeReport {
     }
 }
 
-type Map<K> = HashMap<K, u32, BuildHasherDefault<Xxh3Default>>;
+/// XXH3 of a key's parts, each at once: keys are short, and a hash that
+/// takes them byte by byte would spend its time on keeping books.
+#[derive(Default)]
+struct Parts(u64);
+
+impl Hasher for Parts {
+    fn write(&mut self, bytes: &[u8]) {
+        self.0 = xxh3_64_with_seed(bytes, self.0);
+    }
+
+    /// Lengths of arrays are the same in all keys of a map.
+    fn write_usize(&mut self, _: usize) {}
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+type Map<K> = HashMap<K, u32, BuildHasherDefault<Parts>>;
 /// What stands for a child that does not exist.
 const ABSENT: u32 = u32::MAX;
 

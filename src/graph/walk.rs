@@ -70,6 +70,46 @@ impl Graph {
         }
     }
 
+    /// Where the one voxel of a node is: lowest corner in finest voxels, and
+    /// level. Looked for upwards, by its number: nodes are stored level by
+    /// level and parent by parent, so of the nodes above, the last whose children do
+    /// not begin after it is its parent. Takes a search a level.
+    ///
+    /// None in graphs whose nodes may be in several places, that are not
+    /// stored so, or whose leaves lie above the finest level: an engine may then
+    /// show a part of a leaf.
+    #[must_use]
+    pub fn place_of(&self, node: u32) -> Option<[i32; 4]> {
+        if !self.links.is_empty() || self.depth > super::MAX_DEPTH {
+            return None;
+        }
+        let level = self.level_start.partition_point(|&start| start <= node);
+        let level = level.checked_sub(1).filter(|&l| l <= self.depth as usize)?;
+        let has_children = self.mask.get(node as usize).is_some_and(|&mask| mask != 0);
+        if level < self.depth as usize && !has_children {
+            return None;
+        }
+        let mut corner = [0i32; 3];
+        let mut child = node;
+        for below in (1..=level).rev() {
+            let above = self.level_start[below - 1];
+            let firsts = above as usize..self.level_start[below] as usize;
+            let begun = self.first.get(firsts)?;
+            let at = begun.partition_point(|&first| first <= child);
+            let parent = above + at.checked_sub(1)? as u32;
+            let rank = child - self.first.get(parent as usize)?;
+            let mask = *self.mask.get(parent as usize)?;
+            let octant = (0..8u8).filter(|octant| mask >> octant & 1 != 0);
+            let octant = i32::from({ octant }.nth(rank as usize)?);
+            for (k, c) in corner.iter_mut().enumerate() {
+                *c |= (octant >> (2 - k) & 1) << (self.depth as usize - below);
+            }
+            child = parent;
+        }
+        let [x, y, z] = corner;
+        (child == self.root).then_some([x, y, z, level as i32])
+    }
+
     /// File index of a cell's lowest corner.
     #[must_use]
     pub fn file_index(&self, cell: &Cell) -> [i64; 3] {
@@ -160,11 +200,75 @@ impl Graph {
             let leaves = if height == 0 {
                 nodes.len() as u64
             } else {
-                let view = self.view();
-                nodes.filter(|&node| view.mask(node) == 0).count() as u64
+                let has_masks = |at: u32| (at as usize).min(self.mask.len());
+                let inner = has_masks(nodes.start)..has_masks(nodes.end);
+                // Nodes without a mask have no children.
+                let beyond = nodes.len() - inner.len();
+                let masks = self.mask[inner].iter();
+                (masks.filter(|&&mask| mask == 0).count() + beyond) as u64
             };
             let each = 1u64.checked_shl(3 * height).unwrap_or(u64::MAX);
             total.saturating_add(leaves.saturating_mul(each))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::graph::{BuildOptions, Builder, Graph, MergeBy, Silent, Voxel, merge};
+
+    fn scattered() -> Graph {
+        let mut builder = Builder::new(BuildOptions::default());
+        let mut state = 1u32;
+        builder.extend((0..500).map(|_| {
+            let index = [0; 3].map(|_| {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                (state >> 24) as i32 - 90
+            });
+            Voxel {
+                index,
+                ..Voxel::default()
+            }
+        }));
+        builder.finish(([0.0; 3], 1.0), &Silent).unwrap()
+    }
+
+    #[test]
+    fn every_node_of_a_tree_is_where_a_walk_meets_it() {
+        let graph = scattered();
+        let mut met = 0;
+        let mut stack = vec![(graph.root, [0i32; 3], 0u32)];
+        while let Some((node, corner, level)) = stack.pop() {
+            let [x, y, z] = corner;
+            assert_eq!(graph.place_of(node), Some([x, y, z, level as i32]));
+            met += 1;
+            for (octant, child) in graph.children(node).into_iter().enumerate() {
+                let side = 1 << (graph.depth - level - u32::from(child.is_some()));
+                let along = |k: usize| corner[k] + side * (octant as i32 >> (2 - k) & 1);
+                stack.extend(child.map(|child| (child, [along(0), along(1), along(2)], level + 1)));
+            }
+        }
+        assert_eq!(met, graph.len());
+        assert_eq!(graph.place_of(graph.len() as u32), None);
+        assert_eq!(graph.place_of(u32::MAX), None);
+    }
+
+    #[test]
+    fn places_that_the_graph_does_not_tell() {
+        let graph = scattered();
+        let (merged, _) = merge(&graph, MergeBy::ShapeAndAttributes, &Silent);
+        assert_eq!(merged.place_of(merged.root), None);
+        let mut unordered = graph.clone();
+        unordered.level_start.clear();
+        assert_eq!(unordered.place_of(1), None);
+        // A leaf above the finest level is drawn in parts; and a child list that was lost.
+        let mut damaged = graph.clone();
+        let mut mask = graph.mask.to_vec();
+        let leaf = graph.level_start[2] as usize;
+        mask[leaf] = 0;
+        damaged.mask = mask.into();
+        assert_eq!(damaged.place_of(leaf as u32), None);
+        assert_eq!(damaged.place_of(graph.first[leaf]), None);
+        assert_eq!(damaged.place_of(1), graph.place_of(1));
     }
 }

@@ -42,7 +42,7 @@ impl ColorError {
     /// When the sizes differ.
     pub fn between(a: Colors<'_>, b: Colors<'_>) -> Result<Self, SizeError> {
         check_sizes((a.0, a.1), (b.0, b.1))?;
-        let linear = Linear::new();
+        let linear = Linear::tables();
         let (mut differing, mut max_abs) = (0u64, 0u8);
         let (mut sum_abs, mut sum_srgb) = (0u64, 0u64);
         let mut sum_linear = 0.0f64;

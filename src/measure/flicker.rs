@@ -15,7 +15,7 @@ impl LinearPicture {
     /// The light of a picture of sRGB bytes, as it looks on black.
     #[must_use]
     pub fn of((width, height, rgba): Colors<'_>) -> Self {
-        let linear = Linear::new();
+        let linear = Linear::tables();
         let light = |&pixel: &[u8; 4]| {
             let light = linear.decode(on_black(pixel));
             light.map(|c| c as f32 / 65535.0)

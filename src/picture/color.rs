@@ -65,6 +65,7 @@ pub const KEY_LIGHT: DVec3 = DVec3::new(-0.3, 0.6, 0.75);
 pub const AMBIENT: u32 = 64;
 
 /// Light of a direction: a share of 256.
+#[derive(Clone, Copy)]
 pub(super) struct Light {
     /// Towards the key light; `None`: everything is lit in full.
     key: Option<DVec3>,
@@ -80,6 +81,11 @@ impl Light {
         }
     }
 
+    /// Whether it depends on where a surface looks.
+    pub(super) fn is_directed(&self) -> bool {
+        self.key.is_some()
+    }
+
     /// The share of 256 of its colour that a surface shows.
     pub(super) fn on(&self, normal: DVec3) -> u32 {
         let Some(key) = self.key else { return 256 };
@@ -88,63 +94,9 @@ impl Light {
     }
 }
 
-/// Linear light of the sRGB bytes, both ways, by tables.
-pub(crate) struct Linear {
-    /// Linear light of each byte, 0..=65535, rising.
-    of: [u16; 256],
-    /// For each byte but the last, twice the light midway to the next.
-    doubled_midpoint: [u32; 255],
-}
-
-impl Linear {
-    pub(crate) fn new() -> Self {
-        let mut of = [0; 256];
-        for (byte, entry) in of.iter_mut().enumerate() {
-            *entry = (to_linear(byte as f64 / 255.0) * 65535.0 + 0.5) as u16;
-        }
-        let doubled_midpoint = std::array::from_fn(|i| u32::from(of[i]) + u32::from(of[i + 1]));
-        Self {
-            of,
-            doubled_midpoint,
-        }
-    }
-
-    /// Linear light of a colour, 0..=65535 a channel.
-    pub(crate) fn decode(&self, color: [u8; 3]) -> [u32; 3] {
-        color.map(|byte| u32::from(self.of[usize::from(byte)]))
-    }
-
-    /// The colour whose linear light is nearest; of two the brighter.
-    pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
-        light.map(|value| {
-            self.doubled_midpoint
-                .partition_point(|&midpoint| midpoint <= 2 * value) as u8
-        })
-    }
-}
-
-/// Linear light, 0..=1, of an sRGB value, 0..=1 (IEC 61966-2-1).
-fn to_linear(value: f64) -> f64 {
-    if value <= 0.040_45 {
-        value / 12.92
-    } else {
-        libm::pow((value + 0.055) / 1.055, 2.4)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn every_byte_survives_linear_light() {
-        let linear = Linear::new();
-        for byte in 0..=255 {
-            let color = [byte, 255 - byte, byte / 2];
-            assert_eq!(linear.encode(linear.decode(color)), color);
-        }
-        assert_eq!(linear.encode([0, 65535, 40_000]), [0, 255, 205]);
-    }
 
     #[test]
     fn backgrounds() {

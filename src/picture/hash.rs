@@ -3,9 +3,20 @@
 use xxhash_rust::xxh3::Xxh3;
 
 use super::Picture;
+use super::npy::Values;
+use super::rows::{Buffer, Rows};
 
 /// What every stream begins with; a change of the stream changes it too.
 const STREAM: &[u8] = b"shiftvox picture 1\n";
+
+/// The buffers of the stream, in its order.
+const BUFFERS: [Buffer; 5] = [
+    Buffer::Color,
+    Buffer::Depth,
+    Buffer::Node,
+    Buffer::Normal,
+    Buffer::Voxel,
+];
 
 /// The picture's hash: XXH3 with 128 bits and seed 0, as 32 lower-case
 /// hexadecimal digits, most significant first.
@@ -18,24 +29,31 @@ const STREAM: &[u8] = b"shiftvox picture 1\n";
 /// picture was found, not what it shows.
 #[must_use]
 pub fn hash(picture: &Picture) -> String {
+    let Ok(hash) = hash_rows(picture);
+    hash
+}
+
+/// [`hash`] of a picture that is made some rows at a time.
+///
+/// # Errors
+/// When rows cannot be made.
+pub fn hash_rows<R: Rows>(picture: &R) -> Result<String, R::Error> {
     let mut state = Xxh3::new();
     state.update(STREAM);
-    state.update(&picture.width.to_le_bytes());
-    state.update(&picture.height.to_le_bytes());
-    let mut row = Vec::new();
-    let mut feed = |bytes: &mut dyn Iterator<Item = [u8; 4]>| {
-        row.clear();
-        row.extend(bytes.flatten());
-        state.update(&row);
-    };
-    // Adding zero turns -0 into 0.
-    let float = |value: f32| (value + 0.0).to_le_bytes();
-    feed(&mut picture.rgba.iter().copied());
-    feed(&mut picture.depth.iter().map(|&depth| float(depth)));
-    feed(&mut picture.node.iter().map(|node| node.to_le_bytes()));
-    feed(&mut picture.normal.iter().flatten().map(|&n| float(n)));
-    feed(&mut picture.voxel.iter().flatten().map(|v| v.to_le_bytes()));
-    format!("{:032x}", state.digest128())
+    let (width, height) = picture.size();
+    state.update(&width.to_le_bytes());
+    state.update(&height.to_le_bytes());
+    for buffer in BUFFERS {
+        for rows in picture.steps() {
+            let mut values = picture.rows(buffer, rows)?;
+            if let Values::F32(values) = &mut values {
+                // Adding zero turns -0 into 0.
+                values.iter_mut().for_each(|value| *value += 0.0);
+            }
+            state.update(&values.bytes());
+        }
+    }
+    Ok(format!("{:032x}", state.digest128()))
 }
 
 #[cfg(test)]

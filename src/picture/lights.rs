@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::Shading;
-use super::color::{Light, Linear};
+use super::color::Light;
+use super::linear::Linear;
 use super::shade::towards_eye;
 use super::sight::Sight;
 use crate::graph::{Graph, PackedNormal};
@@ -24,7 +25,7 @@ pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 
     let sight = Sight::new(setup);
     let [_, _, back] = sight.axes();
     let light = Light::new(shading, sight.axes());
-    let linear = Linear::new();
+    let linear = Linear::tables();
     (0..graph.len() as u32)
         .into_par_iter()
         .map(|node| {

@@ -7,19 +7,24 @@
 mod color;
 mod hash;
 mod lights;
+mod linear;
 pub mod npy;
+mod paint;
 #[cfg(feature = "png")]
 pub mod png;
 mod resolve;
+mod rows;
 mod shade;
+mod shares;
 mod sight;
 pub mod store;
 
-pub(crate) use color::Linear;
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
-pub use hash::hash;
+pub use hash::{hash, hash_rows};
 pub use lights::lights;
-pub use resolve::{ResolveError, resolve};
+pub(crate) use linear::Linear;
+pub use resolve::{ResolveError, Resolver, resolve};
+pub use rows::{Buffer, Rows};
 pub use shade::Shader;
 
 /// `depth` where nothing is seen.

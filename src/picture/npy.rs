@@ -62,12 +62,21 @@ pub fn is_npy(beginning: &[u8]) -> bool {
 /// The bytes of a `.npy` file.
 #[must_use]
 pub fn encode(array: &Array) -> Vec<u8> {
-    let kind = match array.values {
+    let mut bytes = header(&array.shape, &array.values);
+    bytes.extend_from_slice(&array.values.bytes());
+    bytes
+}
+
+/// What stands before the numbers of an array in its file: of a shape, and of
+/// numbers of the same type as some.
+#[must_use]
+pub fn header(shape: &[usize], like: &Values) -> Vec<u8> {
+    let kind = match like {
         Values::U8(_) => "|u1",
         Values::I32(_) => "<i4",
         Values::F32(_) => "<f4",
     };
-    let lengths: Vec<String> = array.shape.iter().map(ToString::to_string).collect();
+    let lengths: Vec<String> = shape.iter().map(ToString::to_string).collect();
     // A tuple of one keeps its comma.
     let comma = if lengths.len() == 1 { "," } else { "" };
     let mut header = format!(
@@ -83,11 +92,6 @@ pub fn encode(array: &Array) -> Vec<u8> {
     bytes.extend([1, 0]);
     bytes.extend((header.len() as u16).to_le_bytes());
     bytes.extend(header.as_bytes());
-    match &array.values {
-        Values::U8(values) => bytes.extend(values),
-        Values::I32(values) => bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
-        Values::F32(values) => bytes.extend(values.iter().flat_map(|v| v.to_le_bytes())),
-    }
     bytes
 }
 

@@ -1,6 +1,6 @@
 //! PNG in and out: 8 bits a channel, sRGB.
 
-use std::io::{BufRead, Cursor, Seek};
+use std::io::{BufRead, Cursor, Seek, Write};
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageError, ImageReader, Limits};
@@ -19,20 +19,81 @@ pub struct Image {
 /// Most pixels a side that are read.
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
+/// Colours of a picture as a PNG file has them: without an alpha channel where
+/// all pixels are opaque.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pixels {
+    width: u32,
+    height: u32,
+    /// Red, green, blue, and alpha if there is one, row by row from the top left.
+    bytes: Vec<u8>,
+    has_alpha: bool,
+}
+
+impl Pixels {
+    /// Opaque pixels.
+    #[must_use]
+    pub fn opaque(width: u32, height: u32, rgb: Vec<[u8; 3]>) -> Self {
+        Self {
+            width,
+            height,
+            bytes: rgb.into_flattened(),
+            has_alpha: false,
+        }
+    }
+
+    /// Pixels that may be opaque.
+    #[must_use]
+    pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
+        let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
+        let mut bytes = rgba.into_flattened();
+        if !has_alpha {
+            // In place: a second buffer would be as large as the picture.
+            let pixels = bytes.len() / 4;
+            for pixel in 1..pixels {
+                bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
+            }
+            bytes.truncate(3 * pixels);
+        }
+        Self {
+            width,
+            height,
+            bytes,
+            has_alpha,
+        }
+    }
+
+    /// Pixels across and down.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// Writes a PNG file's bytes.
+    ///
+    /// # Errors
+    /// When sizes and pixels do not fit together, and those of `to`.
+    pub fn write(&self, to: impl Write) -> Result<(), ImageError> {
+        let kind = match self.has_alpha {
+            true => ExtendedColorType::Rgba8,
+            false => ExtendedColorType::Rgb8,
+        };
+        PngEncoder::new_with_quality(to, CompressionType::Fast, FilterType::Adaptive).write_image(
+            &self.bytes,
+            self.width,
+            self.height,
+            kind,
+        )
+    }
+}
+
 /// The bytes of a PNG file; without an alpha channel where all pixels are opaque.
 ///
 /// # Errors
 /// When sizes and pixels do not fit together.
 pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, ImageError> {
     let mut bytes = Vec::new();
-    let encoder =
-        PngEncoder::new_with_quality(&mut bytes, CompressionType::Fast, FilterType::Adaptive);
-    if rgba.iter().all(|pixel| pixel[3] == 255) {
-        let rgb: Vec<u8> = rgba.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
-        encoder.write_image(&rgb, width, height, ExtendedColorType::Rgb8)?;
-    } else {
-        encoder.write_image(rgba.as_flattened(), width, height, ExtendedColorType::Rgba8)?;
-    }
+    Pixels::new(width, height, rgba.to_vec()).write(&mut bytes)?;
     Ok(bytes)
 }
 

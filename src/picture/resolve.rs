@@ -1,10 +1,17 @@
 //! Samples become pixels.
 
+use std::ops::Range;
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
-use super::shade::Shader;
+use super::npy::Values;
+use super::paint::Painter;
+use super::rows::{Buffer, Rows};
+use super::shade::{Shader, Surface};
+use super::shares::Shares;
 use super::{Background, NO_DEPTH, Picture, Shading};
-use crate::frame::{Blend, Frame, NO_NODE, NO_VOXEL};
+use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
 use crate::project::FrameSetup;
 
@@ -17,16 +24,10 @@ pub enum ResolveError {
     /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
     #[error("the file index of a voxel is beyond 32 bits")]
     Index,
-}
-
-/// One pixel of a [`Picture`].
-struct Pixel {
-    rgba: [u8; 4],
-    depth: f32,
-    normal: [f32; 3],
-    voxel: [i32; 4],
-    node: i32,
-    records: f32,
+    /// A frame of nodes alone does not say which voxel of a node is seen, and
+    /// neither does the graph.
+    #[error("the frame does not tell which voxels are seen")]
+    Voxel,
 }
 
 /// Makes the picture of a drawn frame.
@@ -36,7 +37,8 @@ struct Pixel {
 /// pixel's only one without anti-aliasing), records from all samples together.
 ///
 /// # Errors
-/// When the frame is not of the set-up's size, or indices leave `i32`.
+/// When the frame is not of the set-up's size, or does not say which voxels
+/// are seen, or indices leave `i32`.
 pub fn resolve(
     frame: &Frame,
     graph: &Graph,
@@ -44,184 +46,233 @@ pub fn resolve(
     shading: Shading,
     background: Background,
 ) -> Result<Picture, ResolveError> {
-    if (frame.width, frame.height) != (setup.width, setup.height) {
-        return Err(ResolveError::Size(
-            frame.width,
-            frame.height,
-            setup.width,
-            setup.height,
-        ));
-    }
-    let aa = setup.options.aa_log2;
-    let (width, height) = (frame.width >> aa, frame.height >> aa);
-    let resolver = Resolver::new(frame, graph, setup, shading, background);
-    let pixels: Vec<Pixel> = (0..height)
-        .into_par_iter()
-        .flat_map_iter(|y| {
-            let resolver = &resolver;
-            (0..width).map(move |x| resolver.pixel(x, y))
-        })
-        .collect::<Result<_, _>>()?;
+    let resolver = Resolver::new(frame, graph, setup, shading, background)?;
+    let (width, height) = resolver.size();
+    let all = 0..height;
     Ok(Picture {
         width,
         height,
-        rgba: pixels.iter().map(|p| p.rgba).collect(),
-        depth: pixels.iter().map(|p| p.depth).collect(),
-        normal: pixels.iter().map(|p| p.normal).collect(),
-        voxel: pixels.iter().map(|p| p.voxel).collect(),
-        node: pixels.iter().map(|p| p.node).collect(),
-        records: frame
-            .records
-            .is_some()
-            .then(|| pixels.iter().map(|p| p.records).collect()),
+        rgba: resolver.colors(all.clone())?,
+        depth: resolver.fill(all.clone(), NO_DEPTH, |at, to| resolver.depth(at, to))?,
+        normal: resolver.fill(all.clone(), [0.0; 3], |at, to| resolver.normal(at, to))?,
+        voxel: resolver.fill(all.clone(), NO_VOXEL, |at, to| resolver.voxel(at, to))?,
+        node: resolver.fill(all.clone(), -1, |at, to| resolver.node(at, to))?,
+        records: match frame.records {
+            Some(_) => Some(resolver.fill(all, 0.0, |at, to| resolver.records(at, to))?),
+            None => None,
+        },
     })
 }
 
-/// What all pixels of a picture share.
-struct Resolver<'f> {
+/// A drawn frame as a picture that is made as far as it is asked for: see [`resolve`].
+pub struct Resolver<'f> {
     frame: &'f Frame,
     shader: Shader<'f>,
     origin_index: [i64; 3],
+    /// Samples of a pixel along an axis, by their logarithm.
     aa: u32,
+    /// Made when colours are first wanted; none where everything is lit in full.
+    shares: OnceLock<Option<Shares>>,
+}
+
+/// A pixel that is made.
+#[derive(Clone, Copy)]
+struct At {
+    x: u32,
+    y: u32,
 }
 
 impl<'f> Resolver<'f> {
-    fn new(
+    /// Makes nothing yet.
+    ///
+    /// # Errors
+    /// When the frame is not of the set-up's size.
+    pub fn new(
         frame: &'f Frame,
         graph: &'f Graph,
         setup: &FrameSetup,
         shading: Shading,
         background: Background,
-    ) -> Self {
-        Self {
+    ) -> Result<Self, ResolveError> {
+        if (frame.width, frame.height) != (setup.width, setup.height) {
+            return Err(ResolveError::Size(
+                frame.width,
+                frame.height,
+                setup.width,
+                setup.height,
+            ));
+        }
+        Ok(Self {
             frame,
             shader: Shader::new(graph, setup, shading, background),
             origin_index: setup.placement.origin_index,
             aa: setup.options.aa_log2,
-        }
+            shares: OnceLock::new(),
+        })
     }
 
-    fn pixel(&self, x: u32, y: u32) -> Result<Pixel, ResolveError> {
-        let side = 1u32 << self.aa;
-        let mut sum = [0u32; 3];
-        let mut seen = 0u32;
-        let mut blended = Blended::default();
-        let mut records = 0.0;
-        let mut pixel = Pixel {
-            rgba: [0; 4],
-            depth: NO_DEPTH,
-            normal: [0.0; 3],
-            voxel: NO_VOXEL,
-            node: -1,
-            records: 0.0,
-        };
-        for j in 0..side {
-            for i in 0..side {
-                let (sx, sy) = (x * side + i, y * side + j);
-                let at = sy as usize * self.frame.width as usize + sx as usize;
-                if let Some(all) = &self.frame.records {
-                    records += all[at];
-                }
-                if let Some(blend) = &self.frame.blend {
-                    blended.add(&blend[at], self.shader.background());
-                }
-                let light = if self.frame.node[at] == NO_NODE {
-                    self.shader.background().unwrap_or([0; 3])
-                } else {
-                    seen += 1;
-                    let middle = (i, j) == (side >> 1, side >> 1);
-                    self.sample(sx, sy, at, middle.then_some(&mut pixel))?
-                };
-                for (sum, light) in sum.iter_mut().zip(light) {
-                    *sum += light;
-                }
-            }
-        }
-        pixel.rgba = match self.frame.blend {
-            Some(_) => blended.mix(&self.shader, 2 * self.aa),
-            None => self.mix(sum, seen),
-        };
-        pixel.records = records;
-        Ok(pixel)
+    /// The colours of some rows: `N` bytes a pixel, red, green, blue, and alpha if `N` is 4.
+    ///
+    /// # Errors
+    /// When the frame does not say which voxels are seen and a colour depends on it.
+    pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
+        let (width, _) = self.size();
+        let Shader { sight, light, .. } = &self.shader;
+        let is_lit = light.is_directed() && self.frame.blend.is_none();
+        let shares = self
+            .shares
+            .get_or_init(|| is_lit.then(|| Shares::new(sight, *light)));
+        let painter = Painter::new(self.frame, &self.shader, shares.as_ref(), self.aa);
+        let mut pixels = vec![[0; N]; width as usize * rows.len()];
+        pixels
+            .par_chunks_mut((width as usize).max(1))
+            .zip(rows)
+            .try_for_each(|(to, y)| painter.row(y, to))?;
+        Ok(pixels)
     }
 
-    /// Linear light of a drawn sample; fills in the pixel that it stands for.
-    fn sample(
+    /// Whether no pixel can be transparent.
+    #[must_use]
+    pub fn is_opaque(&self) -> bool {
+        self.shader.background().is_some()
+    }
+
+    /// Pixels that show a voxel at their middle sample.
+    #[must_use]
+    pub fn drawn(&self) -> usize {
+        if self.aa == 0 {
+            return self.frame.drawn();
+        }
+        let (width, height) = self.size();
+        let row = |y: u32| (0..width).filter(move |&x| self.middle(At { x, y }).is_some());
+        (0..height).map(|y| row(y).count()).sum()
+    }
+
+    /// A buffer's rows, each pixel as `each` makes it of what it is where nothing is seen.
+    fn fill<T: Copy + Send + Sync>(
         &self,
-        x: u32,
-        y: u32,
-        at: usize,
-        pixel: Option<&mut Pixel>,
-    ) -> Result<[u32; 3], ResolveError> {
-        let (node, voxel) = (self.frame.node[at], self.frame.voxel[at]);
-        let surface = self.shader.surface(x, y, node, voxel);
-        if let Some(pixel) = pixel {
-            pixel.depth = surface.meeting.depth as f32;
-            pixel.normal = surface.normal.as_vec3().to_array();
+        rows: Range<u32>,
+        nothing: T,
+        each: impl Fn(At, &mut T) -> Result<(), ResolveError> + Sync,
+    ) -> Result<Vec<T>, ResolveError> {
+        let (width, _) = self.size();
+        let mut pixels = vec![nothing; width as usize * rows.len()];
+        pixels
+            .par_chunks_mut((width as usize).max(1))
+            .zip(rows)
+            .try_for_each(|(to, y)| {
+                let row = (0..width).zip(to);
+                { row }.try_for_each(|(x, to)| each(At { x, y }, to))
+            })?;
+        Ok(pixels)
+    }
+
+    /// The sample right of and below a pixel's middle, and its place in the
+    /// frame; none where it shows nothing.
+    fn middle(&self, At { x, y }: At) -> Option<(u32, u32, usize)> {
+        let half = (1 << self.aa) >> 1;
+        let (x, y) = ((x << self.aa) + half, (y << self.aa) + half);
+        let at = y as usize * self.frame.width as usize + x as usize;
+        (self.frame.node[at] != NO_NODE).then_some((x, y, at))
+    }
+
+    /// The voxel of a sample that sees one.
+    fn voxel_at(&self, at: usize) -> Result<[i32; 4], ResolveError> {
+        let voxel = match self.frame.voxel.get(at) {
+            Some(&voxel) => Some(voxel),
+            None => self.shader.graph.place_of(self.frame.node[at]),
+        };
+        voxel.ok_or(ResolveError::Voxel)
+    }
+
+    fn surface(&self, at: At) -> Result<Option<Surface>, ResolveError> {
+        let Some((x, y, sample)) = self.middle(at) else {
+            return Ok(None);
+        };
+        let voxel = self.voxel_at(sample)?;
+        Ok(Some(self.shader.surface(
+            x,
+            y,
+            self.frame.node[sample],
+            voxel,
+        )))
+    }
+
+    fn depth(&self, at: At, to: &mut f32) -> Result<(), ResolveError> {
+        if let Some(surface) = self.surface(at)? {
+            *to = surface.meeting.depth as f32;
+        }
+        Ok(())
+    }
+
+    fn normal(&self, at: At, to: &mut [f32; 3]) -> Result<(), ResolveError> {
+        if let Some(surface) = self.surface(at)? {
+            *to = surface.normal.as_vec3().to_array();
+        }
+        Ok(())
+    }
+
+    fn voxel(&self, at: At, to: &mut [i32; 4]) -> Result<(), ResolveError> {
+        if let Some((_, _, sample)) = self.middle(at) {
+            let voxel = self.voxel_at(sample)?;
             for k in 0..3 {
                 let index = i64::from(voxel[k]) + self.origin_index[k];
-                pixel.voxel[k] = i32::try_from(index).map_err(|_| ResolveError::Index)?;
+                to[k] = i32::try_from(index).map_err(|_| ResolveError::Index)?;
             }
-            pixel.voxel[3] = voxel[3];
-            pixel.node = node as i32;
+            to[3] = voxel[3];
         }
-        Ok(self.shader.light_of(node, &surface))
+        Ok(())
     }
 
-    /// The mean of a pixel's samples, of which `seen` show a voxel.
-    fn mix(&self, sum: [u32; 3], seen: u32) -> [u8; 4] {
-        let samples_log2 = 2 * self.aa;
-        let half = (1u32 << samples_log2) >> 1;
-        if self.shader.background().is_some() {
-            // All samples count, so their number is a power of two.
-            let mean = sum.map(|channel| (channel + half) >> samples_log2);
-            let [r, g, b] = self.shader.encode(mean);
-            return [r, g, b, 255];
+    fn node(&self, at: At, to: &mut i32) -> Result<(), ResolveError> {
+        if let Some((_, _, sample)) = self.middle(at) {
+            *to = self.frame.node[sample] as i32;
         }
-        if seen == 0 {
-            return [0; 4];
+        Ok(())
+    }
+
+    fn records(&self, at: At, to: &mut f32) -> Result<(), ResolveError> {
+        let Some(records) = &self.frame.records else {
+            return Ok(());
+        };
+        let side = 1usize << self.aa;
+        let width = self.frame.width as usize;
+        for j in 0..side {
+            let start = (at.y as usize * side + j) * width + at.x as usize * side;
+            for share in &records[start..start + side] {
+                *to += share;
+            }
         }
-        let alpha = ((seen << 8) - seen + half) >> samples_log2;
-        // PNG stores colours that are not premultiplied: the host divides.
-        let mean = sum.map(|channel| (channel + seen / 2) / seen);
-        let [r, g, b] = self.shader.encode(mean);
-        [r, g, b, alpha as u8]
+        Ok(())
     }
 }
 
-/// What the samples of a pixel took, of 256 each.
-#[derive(Default)]
-struct Blended {
-    light: [u64; 3],
-    covered: u32,
+impl Rows for Resolver<'_> {
+    type Error = ResolveError;
+
+    fn size(&self) -> (u32, u32) {
+        (self.frame.width >> self.aa, self.frame.height >> self.aa)
+    }
+
+    fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, ResolveError> {
+        Ok(match buffer {
+            Buffer::Color => Values::U8(flat(self.colors::<4>(rows)?)),
+            Buffer::Depth => Values::F32(self.fill(rows, NO_DEPTH, |at, to| self.depth(at, to))?),
+            Buffer::Normal => {
+                let normals = self.fill(rows, [0.0; 3], |at, to| self.normal(at, to))?;
+                Values::F32(flat(normals))
+            }
+            Buffer::Voxel => {
+                let voxels = self.fill(rows, NO_VOXEL, |at, to| self.voxel(at, to))?;
+                Values::I32(flat(voxels))
+            }
+            Buffer::Node => Values::I32(self.fill(rows, -1, |at, to| self.node(at, to))?),
+            Buffer::Records => Values::F32(self.fill(rows, 0.0, |at, to| self.records(at, to))?),
+        })
+    }
 }
 
-impl Blended {
-    fn add(&mut self, sample: &Blend, background: Option<[u32; 3]>) {
-        self.covered += 256 - u32::from(sample.left);
-        let behind = background.unwrap_or([0; 3]);
-        for c in 0..3 {
-            let through = u32::from(sample.left) * behind[c];
-            self.light[c] += u64::from(sample.light[c] + through);
-        }
-    }
-
-    /// The mean of `2^samples_log2` samples.
-    fn mix(&self, shader: &Shader<'_>, samples_log2: u32) -> [u8; 4] {
-        let places = 8 + samples_log2;
-        let half = 1u32 << (places - 1);
-        if shader.background().is_some() {
-            let mean = self.light.map(|c| ((c + u64::from(half)) >> places) as u32);
-            let [r, g, b] = shader.encode(mean);
-            return [r, g, b, 255];
-        }
-        if self.covered == 0 {
-            return [0; 4];
-        }
-        let covered = u64::from(self.covered);
-        let mean = self.light.map(|c| ((c + covered / 2) / covered) as u32);
-        let [r, g, b] = shader.encode(mean);
-        let alpha = ((self.covered << 8) - self.covered + half) >> places;
-        [r, g, b, alpha as u8]
-    }
+/// The same numbers, one after the other.
+fn flat<T, const N: usize>(items: Vec<[T; N]>) -> Vec<T> {
+    items.into_flattened()
 }

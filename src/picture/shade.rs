@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::color::{Light, Linear};
+use super::color::Light;
+use super::linear::Linear;
 use super::sight::{Meeting, Sight};
 use super::{Background, Shading};
 use crate::graph::{Graph, PackedNormal};
@@ -12,10 +13,10 @@ use crate::project::FrameSetup;
 /// sample is, and not on whether its neighbours are drawn: so it serves
 /// pictures of any number of samples.
 pub struct Shader<'g> {
-    graph: &'g Graph,
-    sight: Sight,
-    light: Light,
-    linear: Linear,
+    pub(super) graph: &'g Graph,
+    pub(super) sight: Sight,
+    pub(super) light: Light,
+    pub(super) linear: &'static Linear,
     /// Linear light of the background; `None`: transparent.
     background: Option<[u32; 3]>,
 }
@@ -40,7 +41,7 @@ impl<'g> Shader<'g> {
     ) -> Self {
         let sight = Sight::new(setup);
         let light = Light::new(shading, sight.axes());
-        let linear = Linear::new();
+        let linear = Linear::tables();
         let background = match background {
             Background::None => None,
             Background::Color(color) => Some(linear.decode(color)),
@@ -91,15 +92,20 @@ impl<'g> Shader<'g> {
 }
 
 /// Cosine above which a normal is taken to point away from the eye.
-const AWAY: f64 = 0.25;
+pub(super) const AWAY: f64 = 0.25;
 
 /// A normal turned to the side from which it is seen. A thin wall has two
 /// sides and one normal; the rounded corners of a solid, whose normals lean
 /// away by a little, keep theirs.
 pub(super) fn towards_eye(normal: DVec3, ray: DVec3) -> DVec3 {
-    if normal.dot(ray) > AWAY {
+    if is_turned(normal, ray) {
         -normal
     } else {
         normal
     }
+}
+
+/// Whether a normal is turned to the side from which it is seen.
+pub(super) fn is_turned(normal: DVec3, ray: DVec3) -> bool {
+    normal.dot(ray) > AWAY
 }

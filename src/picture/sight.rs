@@ -16,11 +16,13 @@ pub(super) struct Sight {
     origin: [i64; 3],
     edge: [[i64; 3]; 3],
     depth: u32,
+    /// Whether the clip vectors of all points of the object fit 64 bits.
+    is_narrow: bool,
     /// Object direction of a clip direction.
-    to_object: DMat3,
+    pub(super) to_object: DMat3,
     depth_unit: f64,
     /// Samples across the image root, doubled.
-    root_doubled: f64,
+    pub(super) root_doubled: f64,
     axes: [DVec3; 3],
 }
 
@@ -53,6 +55,7 @@ impl Sight {
             origin: setup.origin_clip,
             edge: setup.edge_clip,
             depth: setup.depth,
+            is_narrow: is_narrow(setup),
             to_object,
             depth_unit: setup.depth_unit_world(),
             root_doubled: 2.0 * (1u64 << setup.levels) as f64,
@@ -97,6 +100,11 @@ impl Sight {
         }
     }
 
+    /// Unit object direction of a sample's ray, as [`Sight::meet`] has it.
+    pub(super) fn ray(&self, x: u32, y: u32) -> DVec3 {
+        self.direction(x, y).normalize_or_zero()
+    }
+
     /// The object direction of a sample's ray along which `W` grows by one.
     fn direction(&self, x: u32, y: u32) -> DVec3 {
         self.to_object
@@ -110,9 +118,18 @@ impl Sight {
     /// Clip vector of a voxel's lowest corner, exact before it is rounded to
     /// f64, and the voxel's side in finest voxels.
     fn cube(&self, voxel: [i32; 4]) -> (DVec3, f64) {
+        let [x, y, z, _] = voxel;
+        let is_inside = |c: i32| u64::try_from(c).is_ok_and(|c| c < 1 << self.depth);
+        // Either way the exact sum is rounded once, to the nearest `f64`.
         let clip = |c: usize| {
+            let edge = [self.edge[0][c], self.edge[1][c], self.edge[2][c]];
+            if self.is_narrow && is_inside(x) && is_inside(y) && is_inside(z) {
+                let along =
+                    edge[0] * i64::from(x) + edge[1] * i64::from(y) + edge[2] * i64::from(z);
+                return (self.origin[c] + along) as f64;
+            }
             let sum: i128 = (0..3)
-                .map(|k| i128::from(self.edge[k][c]) * i128::from(voxel[k]))
+                .map(|k| i128::from(edge[k]) * i128::from(voxel[k]))
                 .sum();
             (i128::from(self.origin[c]) + sum) as f64
         };
@@ -120,6 +137,17 @@ impl Sight {
         let side = (1u64 << (self.depth - level)) as f64;
         (DVec3::new(clip(0), clip(1), clip(2)), side)
     }
+}
+
+/// Whether the clip vectors of all points of the object fit 64 bits.
+fn is_narrow(setup: &FrameSetup) -> bool {
+    let within = |c: usize| {
+        let longest: u128 = (0..3)
+            .map(|k| u128::from(setup.edge_clip[k][c].unsigned_abs()) << setup.depth)
+            .sum();
+        longest + u128::from(setup.origin_clip[c].unsigned_abs()) <= i64::MAX as u128
+    };
+    (0..3).all(within)
 }
 
 /// The inverse by Cramer's rule.

@@ -1,10 +1,16 @@
 //! Hand-made frames become the pictures that are written here as text.
 
 use glam::DVec3;
-use shiftvox::frame::Frame;
-use shiftvox::graph::{Graph, PackedNormal, Placement};
-use shiftvox::picture::{Background, NO_DEPTH, Picture, Shading, resolve};
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
+use shiftvox::fast::{Fast, FastOptions};
+use shiftvox::frame::{Frame, NO_NODE};
+use shiftvox::graph::{Graph, PackedNormal, Placement, Silent};
+use shiftvox::machine::Machine;
+use shiftvox::picture::{
+    Background, NO_DEPTH, Picture, ResolveError, Resolver, Shader, Shading, hash, hash_rows,
+    resolve,
+};
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::scene::{OpenOptions, open};
 
 /// Three voxels without children: red, green, blue; the last one with a normal along +X.
 fn graph(placement: Placement) -> Graph {
@@ -180,4 +186,113 @@ fn a_frame_of_another_size_is_refused() {
     let frame = Frame::new(3, 2, false);
     let graph = graph(placement);
     assert!(resolve(&frame, &graph, &setup, Shading::Flat, Background::None).is_err());
+}
+
+/// The picture's colours by the words of `spec/picture.md`, sample by sample.
+fn plain_colors(
+    frame: &Frame,
+    graph: &Graph,
+    setup: &FrameSetup,
+    shading: Shading,
+    background: Background,
+) -> Vec<[u8; 4]> {
+    let shader = Shader::new(graph, setup, shading, background);
+    let side = 1u32 << setup.options.aa_log2;
+    let samples = side * side;
+    let mut pixels = Vec::new();
+    for y in 0..frame.height / side {
+        for x in 0..frame.width / side {
+            let (mut sum, mut seen) = ([0u32; 3], 0u32);
+            for (j, i) in (0..side).flat_map(|j| (0..side).map(move |i| (j, i))) {
+                let (x, y) = (x * side + i, y * side + j);
+                let at = (y * frame.width + x) as usize;
+                let light = if frame.node[at] == NO_NODE {
+                    shader.background().unwrap_or([0; 3])
+                } else {
+                    seen += 1;
+                    shader.light(x, y, frame.node[at], frame.voxel[at])
+                };
+                for c in 0..3 {
+                    sum[c] += light[c];
+                }
+            }
+            pixels.push(if background != Background::None {
+                let [r, g, b] = shader.encode(sum.map(|c| (c + samples / 2) / samples));
+                [r, g, b, 255]
+            } else if seen == 0 {
+                [0; 4]
+            } else {
+                let [r, g, b] = shader.encode(sum.map(|c| (c + seen / 2) / seen));
+                [r, g, b, ((255 * seen + samples / 2) / samples) as u8]
+            });
+        }
+    }
+    pixels
+}
+
+/// Scenes with and without normals, drawn from outside, near and within.
+#[test]
+fn colours_are_those_of_the_plain_rule() {
+    let scenes = [
+        "gen:terrain,depth=6",
+        "gen:menger,depth=3",
+        "gen:random,depth=4",
+        "gen:wires,depth=5",
+        "gen:sierpinski,depth=5",
+    ];
+    let mut compared = 0;
+    for scene in scenes {
+        let opened = open(scene, &OpenOptions::default(), &Silent).unwrap();
+        let mut without = opened.graph.clone();
+        without.normal = vec![PackedNormal::NONE; without.len()].into();
+        let side = f64::from(1u32 << opened.graph.depth);
+        for (graph, eye) in [
+            (&opened.graph, [1.6, -0.7, 1.25]),
+            (&opened.graph, [0.47, 0.52, 0.61]),
+            (&without, [-0.9, 1.3, 0.8]),
+        ] {
+            for (aa_log2, lod_px) in [(0, 0.0), (0, 3.0), (1, 1.0), (2, 1.0)] {
+                let camera = Camera {
+                    eye: DVec3::from_array(eye) * side,
+                    target: DVec3::splat(0.45) * side,
+                    up: DVec3::Z,
+                    fov_degrees: 75.0,
+                    width: 53,
+                    height: 38,
+                };
+                let options = SetupOptions {
+                    aa_log2,
+                    lod_px,
+                    ..SetupOptions::default()
+                };
+                let setup =
+                    FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+                let mut fast = Fast::new(FastOptions::default(), Box::new(Machine::default()));
+                let mut frame = Frame::new(setup.width, setup.height, false);
+                fast.draw(&graph.view(), &setup, &mut frame).unwrap();
+                let mut nodes = frame.clone();
+                nodes.voxel.clear();
+                for shading in [Shading::Lambert, Shading::Flat] {
+                    for background in [Background::None, Background::default()] {
+                        let plain = plain_colors(&frame, graph, &setup, shading, background);
+                        let picture = resolve(&frame, graph, &setup, shading, background).unwrap();
+                        assert_eq!(picture.rgba, plain, "{scene} {eye:?} {aa_log2} {lod_px}");
+                        compared += picture.drawn();
+                        // Nodes tell as much as nodes and voxels, where each is in one place.
+                        let of_nodes = resolve(&nodes, graph, &setup, shading, background);
+                        match graph.links.is_empty() {
+                            true => assert_eq!(of_nodes.unwrap(), picture),
+                            false => assert_eq!(of_nodes, Err(ResolveError::Voxel)),
+                        }
+                        let resolver =
+                            Resolver::new(&frame, graph, &setup, shading, background).unwrap();
+                        assert_eq!(hash_rows(&resolver), Ok(hash(&picture)));
+                        let rgb: Vec<[u8; 3]> = resolver.colors(0..picture.height).unwrap();
+                        assert!(rgb.iter().zip(&plain).all(|(a, b)| a[..] == b[..3]));
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared > 100_000, "{compared}");
 }

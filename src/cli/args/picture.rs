@@ -4,7 +4,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 
 use super::{Setting, Size, word};
-use crate::picture::{Background, Shading};
+use crate::picture::{Background, Buffer, Shading};
 
 /// A buffer that can be written beside the picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -34,6 +34,18 @@ impl Aov {
             Self::Node => "node",
             Self::Records => "records",
             Self::Color => "color",
+        }
+    }
+
+    /// The buffer of a picture that it is.
+    pub(in crate::cli) fn buffer(self) -> Buffer {
+        match self {
+            Self::Depth => Buffer::Depth,
+            Self::Normal => Buffer::Normal,
+            Self::Voxel => Buffer::Voxel,
+            Self::Node => Buffer::Node,
+            Self::Records => Buffer::Records,
+            Self::Color => Buffer::Color,
         }
     }
 }

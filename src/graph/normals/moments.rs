@@ -19,18 +19,22 @@ const ONE_SIDED: f64 = 0.6;
 /// wall is out, against the middle of the object.
 const OFFSET_SHARE: f64 = 0.25;
 
-/// Mass, first and second moments of a row of five voxels, by its bits.
-const ROW_MOMENTS: [[i32; 3]; 32] = {
-    let mut table = [[0; 3]; 32];
+/// Bits of a moment where three are in one number: none is beyond 1152, of
+/// squares along two axes of a full neighbourhood.
+const FIELD: u32 = 20;
+
+/// Mass, first and second moments of a row of five voxels, by its bits: three
+/// numbers with signs in one, so that one sum adds up all three.
+const ROW_MOMENTS: [i64; 32] = {
+    let mut table = [0; 32];
     let mut bits = 0;
     while bits < 32 {
         let mut place = 0;
         while place < 5 {
             if bits >> place & 1 == 1 {
-                let distance = place as i32 - 2;
-                table[bits][0] += WEIGHT[place];
-                table[bits][1] += WEIGHT[place] * distance;
-                table[bits][2] += WEIGHT[place] * distance * distance;
+                let distance = place as i64 - 2;
+                let moments = 1 + (distance << FIELD) + ((distance * distance) << (2 * FIELD));
+                table[bits] += WEIGHT[place] as i64 * moments;
             }
             place += 1;
         }
@@ -38,6 +42,33 @@ const ROW_MOMENTS: [[i32; 3]; 32] = {
     }
     table
 };
+
+/// Sums of five numbers, -2 to 2 along an axis, by [`WEIGHT`]; by weight and
+/// place; by weight and the place's square.
+#[inline(always)]
+fn along(of: impl Fn(usize) -> i64) -> [i64; 3] {
+    let [a, b, c, d, e] = [of(0), of(1), of(2), of(3), of(4)];
+    let (ends, inner) = (a + e, b + d);
+    [
+        ends + 2 * (inner + c),
+        2 * (d + e - a - b),
+        4 * ends + 2 * inner,
+    ]
+}
+
+/// The three moments in one number.
+#[inline(always)]
+fn fields(sum: i64) -> [i32; 3] {
+    let low = |sum: i64| sum << (64 - FIELD) >> (64 - FIELD);
+    let first = low(sum);
+    let rest = (sum - first) >> FIELD;
+    let second = low(rest);
+    [
+        first as i32,
+        second as i32,
+        ((rest - second) >> FIELD) as i32,
+    ]
+}
 
 /// Moments of the filled part of a voxel's neighbourhood, about the voxel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -52,33 +83,25 @@ impl Moments {
     /// Of the voxel at a place of the brick, 0 to 3 along each axis.
     #[inline]
     pub(super) fn around(rows: &Window, [x, y, z]: [usize; 3]) -> Self {
-        let mut sum = Self::default();
-        for (k, weight_z) in WEIGHT.iter().enumerate() {
-            let mut plane = [0i32; 6];
-            for (j, weight_y) in WEIGHT.iter().enumerate() {
-                let [mass, mx, mxx] = ROW_MOMENTS[usize::from(rows[z + k][y + j] >> x & 31)];
-                let dy = j as i32 - 2;
-                plane[0] += weight_y * mass;
-                plane[1] += weight_y * mx;
-                plane[2] += weight_y * dy * mass;
-                plane[3] += weight_y * mxx;
-                plane[4] += weight_y * dy * dy * mass;
-                plane[5] += weight_y * dy * mx;
-            }
-            let [mass, mx, my, mxx, myy, mxy] = plane.map(|moment| moment * weight_z);
-            let dz = k as i32 - 2;
-            sum.mass += mass;
-            sum.first[0] += mx;
-            sum.first[1] += my;
-            sum.first[2] += dz * mass;
-            sum.second[0] += mxx;
-            sum.second[1] += myy;
-            sum.second[2] += dz * dz * mass;
-            sum.second[3] += mxy;
-            sum.second[4] += dz * mx;
-            sum.second[5] += dz * my;
+        // Along x by the table, then along y in each plane, then along z.
+        let planes: [[i64; 3]; 5] = std::array::from_fn(|k| {
+            let rows = &rows[z + k];
+            along(|j| ROW_MOMENTS[usize::from(rows[y + j] >> x & 31)])
+        });
+        let [all, by_z, by_zz] = along(|k| planes[k][0]);
+        let [by_y, by_yz, _] = along(|k| planes[k][1]);
+        let [by_yy, ..] = along(|k| planes[k][2]);
+        let [mass, mx, xx] = fields(all);
+        let [mz, xz, _] = fields(by_z);
+        let [zz, ..] = fields(by_zz);
+        let [my, xy, _] = fields(by_y);
+        let [yz, ..] = fields(by_yz);
+        let [yy, ..] = fields(by_yy);
+        Self {
+            mass,
+            first: [mx, my, mz],
+            second: [xx, yy, zz, xy, xz, yz],
         }
-        sum
     }
 
     /// The normal; `outward` says which side of a thin wall is preferred.

@@ -115,6 +115,7 @@ impl<'a, R: BufRead> Source<'a, R> {
     }
 
     /// Reads a binary number; `None` where the file ends first.
+    #[inline]
     pub(super) fn number(
         &mut self,
         scalar: Scalar,
@@ -122,10 +123,19 @@ impl<'a, R: BufRead> Source<'a, R> {
     ) -> Result<Option<Number>, Problem> {
         let mut bytes = [0u8; 8];
         let size = scalar.size();
-        match self.reader.read_exact(&mut bytes[..size]) {
-            Ok(()) => self.offset += size as u64,
-            Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => return Ok(None),
-            Err(error) => return Err(Problem::Read(error)),
+        // Nearly always more than a number is at hand. What lies behind it is not looked at.
+        if let Ok(buffer) = self.reader.fill_buf()
+            && let Some(at_hand) = buffer.first_chunk()
+        {
+            bytes = *at_hand;
+            self.reader.consume(size);
+            self.offset += size as u64;
+        } else {
+            match self.reader.read_exact(&mut bytes[..size]) {
+                Ok(()) => self.offset += size as u64,
+                Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => return Ok(None),
+                Err(error) => return Err(Problem::Read(error)),
+            }
         }
         if encoding == Encoding::Big {
             bytes[..size].reverse();

@@ -1,0 +1,119 @@
+//! sRGB bytes and linear light, both ways, each by one look-up.
+
+use std::sync::LazyLock;
+
+/// Numbers that 16 bits of linear light are.
+const LIGHTS: usize = 1 << 16;
+
+/// Linear light of the sRGB bytes, 16 bits a channel, and back.
+pub(crate) struct Linear {
+    /// Linear light of each byte, 0..=65535, rising.
+    of: [u16; 256],
+    /// For each linear light the byte whose light is nearest. 64 KB, of which
+    /// a picture touches the part of its own brightness.
+    nearest: Box<[u8; LIGHTS]>,
+}
+
+impl Linear {
+    /// The tables, made when they are first wanted.
+    pub(crate) fn tables() -> &'static Self {
+        static TABLES: LazyLock<Linear> = LazyLock::new(Linear::new);
+        &TABLES
+    }
+
+    fn new() -> Self {
+        let mut of = [0; 256];
+        for (byte, entry) in of.iter_mut().enumerate() {
+            *entry = (to_linear(byte as f64 / 255.0) * 65535.0 + 0.5) as u16;
+        }
+        let mut nearest = Box::new([u8::MAX; LIGHTS]);
+        let mut from = 0;
+        for byte in 0..255usize {
+            // A byte is nearest up to midway to the next; on the middle the brighter counts.
+            let to = (usize::from(of[byte]) + usize::from(of[byte + 1])).div_ceil(2);
+            nearest[from..to].fill(byte as u8);
+            from = to;
+        }
+        Self { of, nearest }
+    }
+
+    /// Linear light of a colour, 0..=65535 a channel.
+    #[inline]
+    pub(crate) fn decode(&self, color: [u8; 3]) -> [u32; 3] {
+        color.map(|byte| u32::from(self.of[usize::from(byte)]))
+    }
+
+    /// The colour whose linear light is nearest; of two the brighter.
+    #[inline]
+    pub(super) fn encode(&self, light: [u32; 3]) -> [u8; 3] {
+        // More than full light is full light.
+        self.encode_16(light.map(|value| value.min(u32::from(u16::MAX))))
+    }
+
+    /// The same of light that is at most full: 16 bits a channel.
+    #[inline]
+    pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
+        light.map(|value| self.nearest[usize::from(value as u16)])
+    }
+}
+
+/// Linear light, 0..=1, of an sRGB value, 0..=1 (IEC 61966-2-1).
+fn to_linear(value: f64) -> f64 {
+    if value <= 0.040_45 {
+        value / 12.92
+    } else {
+        libm::pow((value + 0.055) / 1.055, 2.4)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_light_becomes_the_nearest_byte_of_two_the_brighter() {
+        let linear = Linear::tables();
+        assert!(
+            linear.of.is_sorted_by(|a, b| a < b),
+            "bytes have a light each"
+        );
+        assert_eq!((linear.of[0], linear.of[255]), (0, u16::MAX));
+        for light in 0..=u16::MAX {
+            let apart = |byte: &u8| light.abs_diff(linear.of[usize::from(*byte)]);
+            // `max_by_key` keeps the last, which is the brighter.
+            let nearest = (0..=255u8).max_by_key(|byte| std::cmp::Reverse(apart(byte)));
+            let channel = u32::from(light);
+            assert_eq!(
+                linear.encode([channel; 3]).map(Some),
+                [nearest; 3],
+                "{light}"
+            );
+        }
+        assert_eq!(linear.encode([65536, u32::MAX, 0]), [255, 255, 0]);
+    }
+
+    #[test]
+    fn lights_are_those_of_the_standard() {
+        let linear = Linear::tables();
+        for byte in 0..=255u8 {
+            // By `std`'s own power, which may differ in the last place, never in 16 bits.
+            let value = f64::from(byte) / 255.0;
+            let light = match byte {
+                0..=10 => value / 12.92,
+                _ => ((value + 0.055) / 1.055).powf(2.4),
+            };
+            let expected = (light * 65535.0).round() as u32;
+            assert_eq!(linear.decode([byte; 3]), [expected; 3]);
+        }
+    }
+
+    #[test]
+    fn every_byte_survives_linear_light() {
+        let linear = Linear::tables();
+        for byte in 0..=255 {
+            let color = [byte, 255 - byte, byte / 2];
+            assert_eq!(linear.encode(linear.decode(color)), color);
+        }
+        assert_eq!(linear.encode([0, 65535, 40_000]), [0, 255, 205]);
+    }
+}

@@ -1,0 +1,130 @@
+//! The buffers of a picture, some rows at a time: what files and hashes are
+//! made of, so that no buffer has to be whole in memory.
+
+use std::borrow::Cow;
+use std::convert::Infallible;
+use std::ops::Range;
+
+use super::Picture;
+use super::npy::Values;
+
+/// A buffer of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Buffer {
+    /// [`Picture::rgba`].
+    Color,
+    /// [`Picture::depth`].
+    Depth,
+    /// [`Picture::normal`].
+    Normal,
+    /// [`Picture::voxel`].
+    Voxel,
+    /// [`Picture::node`].
+    Node,
+    /// [`Picture::records`]; zeros where they were not counted.
+    Records,
+}
+
+impl Buffer {
+    /// Numbers of a pixel.
+    #[must_use]
+    pub fn entries(self) -> usize {
+        match self {
+            Self::Depth | Self::Node | Self::Records => 1,
+            Self::Normal => 3,
+            Self::Color | Self::Voxel => 4,
+        }
+    }
+
+    /// No numbers of the buffer's type.
+    #[must_use]
+    pub fn none(self) -> Values {
+        match self {
+            Self::Color => Values::U8(Vec::new()),
+            Self::Node | Self::Voxel => Values::I32(Vec::new()),
+            Self::Depth | Self::Normal | Self::Records => Values::F32(Vec::new()),
+        }
+    }
+}
+
+/// Pixels that are worth making at once.
+const SHARE: u32 = 1 << 17;
+
+/// A picture whose rows can be asked for.
+pub trait Rows {
+    /// Why rows may not be made.
+    type Error;
+
+    /// Pixels across and down.
+    fn size(&self) -> (u32, u32);
+
+    /// Some rows of a buffer.
+    ///
+    /// # Errors
+    /// When they cannot be made.
+    fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Self::Error>;
+
+    /// All rows from the top, as many at a time as are worth making at once.
+    fn steps(&self) -> impl Iterator<Item = Range<u32>> {
+        let (width, height) = self.size();
+        let step = (SHARE / width.max(1)).max(1);
+        { 0..height }
+            .step_by(step as usize)
+            .map(move |from| from..height.min(from.saturating_add(step)))
+    }
+}
+
+impl Rows for Picture {
+    type Error = Infallible;
+
+    fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, Infallible> {
+        let pixels =
+            self.width as usize * rows.start as usize..self.width as usize * rows.end as usize;
+        Ok(match buffer {
+            Buffer::Color => Values::U8(self.rgba[pixels].as_flattened().to_vec()),
+            Buffer::Depth => Values::F32(self.depth[pixels].to_vec()),
+            Buffer::Normal => Values::F32(self.normal[pixels].as_flattened().to_vec()),
+            Buffer::Voxel => Values::I32(self.voxel[pixels].as_flattened().to_vec()),
+            Buffer::Node => Values::I32(self.node[pixels].to_vec()),
+            Buffer::Records => Values::F32(match &self.records {
+                Some(records) => records[pixels].to_vec(),
+                None => vec![0.0; pixels.len()],
+            }),
+        })
+    }
+}
+
+impl Values {
+    /// The numbers' bytes, least significant first.
+    #[must_use]
+    pub fn bytes(&self) -> Cow<'_, [u8]> {
+        if cfg!(target_endian = "little") {
+            return Cow::Borrowed(match self {
+                Self::U8(values) => values,
+                Self::I32(values) => bytemuck::cast_slice(values),
+                Self::F32(values) => bytemuck::cast_slice(values),
+            });
+        }
+        Cow::Owned(match self {
+            Self::U8(values) => values.clone(),
+            Self::I32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+            Self::F32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_little_endian() {
+        assert_eq!(*Values::U8(vec![7, 8]).bytes(), [7, 8]);
+        assert_eq!(*Values::I32(vec![-2]).bytes(), [0xfe, 0xff, 0xff, 0xff]);
+        assert_eq!(*Values::F32(vec![1.0]).bytes(), [0, 0, 0x80, 0x3f]);
+    }
+}

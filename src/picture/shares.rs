@@ -1,0 +1,249 @@
+//! How much of its colour a sample shows, by its node's normal: for most
+//! samples a look-up, a product and two compares.
+//!
+//! There are 65536 packed normals. What the light gives each of them and its
+//! opposite is kept once it was wanted. Which of the two a sample shows is
+//! decided by its ray (`is_turned`): normal times direction against a
+//! quarter of the direction's length. Both are linear along a row or nearly
+//! so, and taken here in `f32`; where they are closer than `f32` can tell,
+//! the rule itself decides. So the answer is always that of
+//! [`Shader::light`](super::Shader::light).
+
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use glam::{DVec3, Vec3};
+
+use super::color::Light;
+use super::shade::AWAY;
+use super::sight::Sight;
+use crate::graph::PackedNormal;
+
+/// Samples of a row that are looked at together.
+pub(super) const TOGETHER: usize = 16;
+
+/// Packed normals that there are.
+const NORMALS: usize = 1 << 16;
+
+/// How far `f32` may be off here, as a share of the three columns' lengths
+/// together: eight roundings of 2^-24 each in the product and ten in the
+/// length are 1e-6, and this is ten times as much.
+const MARGIN: f32 = 1e-5;
+
+/// Shares by normal, for one frame.
+pub(super) struct Shares {
+    light: Light,
+    /// Object direction of a step across the image root, one down, and of its
+    /// corner; of any common length.
+    columns: [DVec3; 3],
+    columns_f32: [Vec3; 3],
+    /// One over the samples across the image root, doubled.
+    step: f32,
+    margin: f32,
+    /// By packed normal: what its product with the direction grows by across
+    /// and down the image root, what it begins with, and both shares; zeros: not
+    /// made yet. Whoever makes one makes the same; the shares are stored last.
+    entries: Vec<[AtomicU32; 4]>,
+}
+
+/// What the samples of a row need to know of a normal.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Facing {
+    /// Normal times direction is `along * u + base`.
+    along: f32,
+    base: f32,
+    /// Share of 256 of its colour that the normal shows.
+    pub(super) front: u32,
+    /// The same of its opposite.
+    pub(super) back: u32,
+}
+
+impl Facing {
+    /// Always the front, with the whole colour.
+    pub(super) const FLAT: Self = Self {
+        along: 0.0,
+        base: f32::NEG_INFINITY,
+        front: 256,
+        back: 256,
+    };
+    /// For the rule to decide.
+    pub(super) const UNKNOWN: Self = Self {
+        base: f32::NAN,
+        ..Self::FLAT
+    };
+}
+
+/// Neighbouring samples of a row.
+pub(super) struct Run {
+    /// How far to the right, of the image root.
+    across: [f32; TOGETHER],
+    /// A normal whose product with the direction is above is turned.
+    limit: [f32; TOGETHER],
+    /// Unless it is closer than this.
+    margin: f32,
+}
+
+impl Shares {
+    pub(super) fn new(sight: &Sight, light: Light) -> Self {
+        let m = sight.to_object;
+        let columns = [m.x_axis, m.y_axis, m.z_axis];
+        // Lengths around 1, so that no square leaves the range of `f32`.
+        let longest = columns.iter().fold(0.0f64, |l, c| l.max(c.length()));
+        let columns = columns.map(|column| column / longest);
+        let columns_f32 = columns.map(|column| column.as_vec3());
+        let lengths: f64 = columns.iter().map(|column| column.length()).sum();
+        Self {
+            light,
+            columns,
+            columns_f32,
+            step: (1.0 / sight.root_doubled) as f32,
+            margin: MARGIN * lengths as f32,
+            entries: (0..NORMALS).map(|_| Default::default()).collect(),
+        }
+    }
+
+    /// How far down a row of samples is, of the image root.
+    pub(super) fn down(&self, y: u32) -> f32 {
+        self.across(y)
+    }
+
+    #[inline]
+    fn across(&self, x: u32) -> f32 {
+        (2 * x + 1) as i32 as f32 * self.step
+    }
+
+    /// Samples `x` and those after it, in a row that is so far down.
+    #[inline]
+    pub(super) fn run(&self, x: u32, down: f32) -> Run {
+        let [right, low, corner] = self.columns_f32;
+        let start = low * down + corner;
+        let mut run = Run {
+            margin: self.margin,
+            ..Run::FLAT
+        };
+        // Plain loops over numbers: four at a time.
+        for (i, across) in run.across.iter_mut().enumerate() {
+            *across = self.across(x + i as u32);
+        }
+        for (limit, &u) in run.limit.iter_mut().zip(&run.across) {
+            let dx = right.x * u + start.x;
+            let dy = right.y * u + start.y;
+            let dz = right.z * u + start.z;
+            *limit = AWAY as f32 * (dx * dx + dy * dy + dz * dz).sqrt();
+        }
+        run
+    }
+
+    /// What the samples of a row need to know of a node's normal.
+    #[inline]
+    /// None where it is none.
+    pub(super) fn facing(&self, packed: PackedNormal, down: f32) -> Option<Facing> {
+        let entry = self.entries.get(usize::from(packed.0))?;
+        let mut shares = entry[3].load(Ordering::Acquire);
+        if shares == 0 {
+            shares = self.make(packed, entry)?;
+        }
+        let number = |i: usize| f32::from_bits(entry[i].load(Ordering::Relaxed));
+        Some(Facing {
+            along: number(0),
+            base: number(1) * down + number(2),
+            front: shares & 0xffff,
+            back: shares >> 16,
+        })
+    }
+
+    /// Makes the entry of a normal and gives its shares; none where there is no normal.
+    #[cold]
+    fn make(&self, packed: PackedNormal, entry: &[AtomicU32; 4]) -> Option<u32> {
+        let normal = packed.decode()?;
+        for (word, column) in entry.iter().zip(self.columns) {
+            let product = normal.dot(column) as f32;
+            word.store(product.to_bits(), Ordering::Relaxed);
+        }
+        // At least the ambient share each, so never 0.
+        let shares = self.light.on(normal) | self.light.on(-normal) << 16;
+        entry[3].store(shares, Ordering::Release);
+        Some(shares)
+    }
+}
+
+impl Run {
+    /// Where everything is lit in full.
+    pub(super) const FLAT: Self = Self {
+        across: [0.0; TOGETHER],
+        limit: [0.0; TOGETHER],
+        margin: 0.0,
+    };
+
+    /// The share of sample `i` of these; none where the rule has to decide.
+    #[inline]
+    pub(super) fn share(&self, i: usize, facing: &Facing) -> Option<u32> {
+        let above = facing.along * self.across[i] + facing.base - self.limit[i];
+        if above < -self.margin {
+            Some(facing.front)
+        } else if above > self.margin {
+            Some(facing.back)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Shading;
+    use super::super::shade::is_turned;
+    use super::*;
+    use crate::graph::Placement;
+    use crate::project::{Camera, FrameSetup, SetupOptions};
+
+    #[test]
+    fn shares_are_those_of_the_rule_for_every_normal() {
+        let side = 37u32;
+        let mut undecided = 0u32;
+        for (fov_degrees, target) in [
+            (60.0, DVec3::new(3.0, 2.0, 1.0)),
+            (0.01, DVec3::new(-5.0, 2.0, 9.0)),
+            (170.0, DVec3::new(3.0, -7.0, 1.0)),
+        ] {
+            let camera = Camera {
+                eye: DVec3::new(40.0, -30.0, 25.0),
+                target,
+                up: DVec3::Z,
+                fov_degrees,
+                width: side,
+                height: side,
+            };
+            let options = SetupOptions::default();
+            let setup = FrameSetup::new(&camera, &Placement::default(), 5, &options).unwrap();
+            let sight = Sight::new(&setup);
+            let light = Light::new(Shading::Lambert, sight.axes());
+            let shares = Shares::new(&sight, light);
+            for bits in 0..=u16::MAX {
+                let packed = PackedNormal(bits);
+                let (x, y) = (u32::from(bits) % side, u32::from(bits) / side % side);
+                let down = shares.down(y);
+                let facing = shares.facing(packed, down);
+                assert_eq!(facing.is_none(), packed.is_none());
+                let facing = facing.unwrap_or(Facing::UNKNOWN);
+                let found = shares.run(x, down).share(0, &facing);
+                let Some(normal) = packed.decode() else {
+                    assert_eq!(found, None);
+                    continue;
+                };
+                let turned = is_turned(normal, sight.ray(x, y));
+                let expected = light.on(if turned { -normal } else { normal });
+                undecided += u32::from(found.is_none());
+                assert!(found.is_none_or(|found| found == expected), "{bits:x}");
+            }
+        }
+        // A margin of 1e-5 leaves about so many of each 1e5.
+        assert!(undecided < 40, "{undecided}");
+    }
+
+    #[test]
+    fn flat_is_the_front_and_unknown_is_undecided() {
+        let run = Run::FLAT;
+        assert_eq!(run.share(3, &Facing::FLAT), Some(256));
+        assert_eq!(run.share(3, &Facing::UNKNOWN), None);
+    }
+}
