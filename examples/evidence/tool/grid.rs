@@ -245,8 +245,13 @@ impl Grid {
             text.push('\n');
             if index == 0 {
                 text.push('|');
-                for words in &self.words {
-                    text += if *words { "---|" } else { "--:|" };
+                for (column, words) in self.words.iter().enumerate() {
+                    let named = |row: &Vec<Option<String>>| {
+                        let first = row[column].as_deref().and_then(|cell| cell.chars().next());
+                        first.is_some_and(|c| c.is_alphabetic() || c == '`')
+                    };
+                    let words = *words || self.rows.iter().skip(1).any(named);
+                    text += if words { "---|" } else { "--:|" };
                 }
                 text.push('\n');
             }
@@ -294,4 +299,50 @@ pub(crate) fn cells(line: &str) -> impl Iterator<Item = &str> {
 /// Whether a line is what divides a table's head from its rows.
 pub(crate) fn is_rule(line: &str) -> bool {
     line.contains("--") && line.chars().all(|c| matches!(c, '|' | '-' | ':' | ' '))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_that_differs_is_found() {
+        let page = [
+            "| a | b |",
+            "|---|--:|",
+            "| x | 1,000 |",
+            "| y | - |",
+            "",
+            "<sub>foot</sub>",
+        ];
+        let page = Grid::parse(&page);
+        let row = |cells: [Option<&str>; 2]| cells.map(|c| c.map(str::to_owned)).to_vec();
+        let mut computed = Grid {
+            rows: vec![
+                row([Some("a"), Some("b")]),
+                row([Some("x"), Some("1,000")]),
+                row([Some("y"), None]),
+            ],
+            words: vec![true, false],
+            complete: true,
+        };
+        assert_eq!(computed.differences(&page), [""; 0]);
+        computed.rows[1][1] = Some("1,001".to_owned());
+        let found = computed.differences(&page);
+        assert_eq!(found.len(), 1);
+        assert!(
+            found[0].contains("the page says 1,000, the command 1,001"),
+            "{found:?}"
+        );
+        // What was not computed stays as the page has it.
+        computed.keep(&page);
+        assert_eq!(
+            computed.markdown(),
+            "| a | b |\n|---|--:|\n| x | 1,001 |\n| y | - |\n"
+        );
+        computed.rows.pop();
+        assert_eq!(computed.differences(&page), ["1 rows, the page has 2"]);
+        let turned = computed.transposed();
+        assert_eq!(turned.markdown(), "| a | x |\n|---|--:|\n| b | 1,001 |\n");
+    }
 }

@@ -45,13 +45,7 @@ pub(crate) struct Wanted {
 impl Tool {
     /// Reads the registry.
     pub(crate) fn open(root: &Path, program: &Path) -> Result<Self, String> {
-        let mut registry = Registry::read(&root.join("docs/evidence"))?;
-        if let Some(meshes) = std::env::var_os("SHIFTVOX_MESHES") {
-            let meshes = meshes.to_string_lossy().into_owned();
-            for page in &mut registry.pages {
-                page.vars.insert("meshes".to_owned(), meshes.clone());
-            }
-        }
+        let registry = Registry::read(&root.join("docs/evidence"))?;
         Ok(Self {
             root: root.to_owned(),
             registry,
@@ -264,7 +258,7 @@ impl Tool {
         for (page, block) in blocks {
             let lacks = block.needs.iter().find(|need| match need.as_str() {
                 "valgrind" => !has_valgrind(),
-                _ => !page.vars.contains_key(need.as_str()),
+                _ => runs::meshes().is_none(),
             });
             match lacks {
                 None => possible.push((page, block)),
@@ -306,7 +300,7 @@ impl Tool {
         if page::has_times(block) {
             let times = match page::times_of(old) {
                 Some(times) if !select.times => times,
-                _ => format!("{now}, load {load}"),
+                _ => format!("then, load {load}"),
             };
             foot += &format!(" Times: {times}.");
         }

@@ -119,16 +119,18 @@ pub(crate) fn load() -> String {
     load.split(' ').next().unwrap_or("unknown").to_owned()
 }
 
-/// What a foot says of its times.
+/// What a foot says of its times; those of the same run as its figures are `then, load 0.5`.
 pub(crate) fn times_of(lines: &[&str]) -> Option<String> {
     let foot = foot(lines);
-    let (_, times) = foot.split_once(" Times: ")?;
-    Some(
-        times
-            .trim_end_matches("</sub>")
-            .trim_end_matches('.')
-            .to_owned(),
-    )
+    let (before, times) = foot.split_once(" Times: ")?;
+    let times = times.trim_end_matches("</sub>").trim_end_matches('.');
+    match times.strip_prefix("then, ") {
+        Some(load) => {
+            let (_, figures) = before.split_once(" Figures: ")?;
+            Some(format!("{}, {load}", figures.trim_end_matches('.')))
+        }
+        None => Some(times.to_owned()),
+    }
 }
 
 /// A block's foot in one line.
@@ -155,7 +157,10 @@ pub(crate) fn foot_fault(page: &Page, block: &Block, lines: &[&str]) -> Option<S
             word.len() == 10 && word.starts_with("20") && word.matches('-').count() == 2
         })
     };
-    if !parts.iter().all(dated) {
+    if !parts
+        .iter()
+        .all(|part| part.starts_with("then, ") || dated(part))
+    {
         return Some("its foot has no date".to_owned());
     }
     if has_times(block) && parts.len() != 2 {
@@ -181,4 +186,47 @@ pub(crate) fn wrap(text: &str) -> String {
         width += length;
     }
     wrapped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_of_a_page() {
+        let page = "a\n<!-- evidence: one -->\n| x |\n<!-- end: one -->\nb\n";
+        assert_eq!(blocks(page), Ok(vec![("one".to_owned(), 2..3)]));
+        for wrong in [
+            "<!-- evidence: one -->\n",
+            "<!-- end: one -->\n",
+            "<!-- evidence: one -->\n<!-- end: two -->\n",
+            "<!-- evidence: one -->\n<!-- evidence: two -->\n<!-- end: two -->\n",
+        ] {
+            assert!(blocks(wrong).is_err(), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn lines_end_at_120_columns() {
+        let text = "word ".repeat(100);
+        let wrapped = wrap(text.trim());
+        assert!(wrapped.lines().all(|line| line.len() <= 120));
+        assert_eq!(wrapped.split_whitespace().count(), 100);
+    }
+
+    #[test]
+    fn times_of_a_foot() {
+        let lines = [
+            "| a |",
+            "",
+            "<sub>Remade. Figures: commit 1, 2026-01-01. Times: commit 0,",
+            "2025-01-01.</sub>",
+        ];
+        assert_eq!(times_of(&lines), Some("commit 0, 2025-01-01".to_owned()));
+        let lines = ["<sub>Remade. Figures: commit 1, rustc 1.95.0. Times: then, load 2.5.</sub>"];
+        assert_eq!(
+            times_of(&lines),
+            Some("commit 1, rustc 1.95.0, load 2.5".to_owned())
+        );
+    }
 }

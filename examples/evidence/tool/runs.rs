@@ -10,6 +10,11 @@ use serde_json::{Value, json};
 
 use super::registry::{Run, Vars, substitute};
 
+/// The folder of the meshes that may not ship, for `{meshes}`.
+pub(crate) fn meshes() -> Option<String> {
+    std::env::var("SHIFTVOX_MESHES").ok()
+}
+
 /// A run with all variables in place.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Concrete {
@@ -184,8 +189,8 @@ impl Runs {
         if path.exists() {
             return Ok(());
         }
-        let step = format!("{command} {}", path.display());
-        eprintln!("         `shiftvox {step}`");
+        eprintln!("         `shiftvox {}`", placeholders(command));
+        let step = format!("{command} {}", path.display()).replace("{meshes}", "\u{3}");
         self.step(&step, Command::new(&self.program)).map(|_| ())
     }
 
@@ -199,7 +204,7 @@ impl Runs {
                 let path = self.folder.path().join(file);
                 step = step.replace(&format!("{{file:{file}}}"), &path.display().to_string());
             }
-            let step = doubled_apart(&step);
+            let step = doubled_apart(&step.replace("{meshes}", "\u{3}"));
             if let Some(at) = step.find('{') {
                 return Err(format!("`{step}`: no variable for `{}`", &step[at..]));
             }
@@ -257,6 +262,8 @@ impl Runs {
     }
 
     fn step(&self, step: &str, mut command: Command) -> Result<(String, String), String> {
+        // Only here, so that no page names the folder.
+        let step = &step.replace("\u{3}", &meshes().unwrap_or_default());
         command
             .current_dir(&self.root)
             .args(step.split_whitespace());
