@@ -190,7 +190,7 @@ impl Tool {
         };
         let mut runs = Runs::new(&self.program, &self.root)?;
         let (chosen, skipped) = self.possible(self.chosen(wanted)?);
-        for name in skipped {
+        for name in skipped.iter().filter(|_| select.long) {
             eprintln!("{name}");
         }
         let mut all = BTreeSet::new();

@@ -96,19 +96,18 @@ fn doubled_single(step: &str) -> String {
 
 /// `{size}` as `SIZE`, and files without their folders.
 fn placeholders(step: &str) -> String {
-    let step = doubled_apart(&step.replace("{tmp}/", ""));
-    let mut text = String::new();
-    let mut rest = step.as_str();
-    while let Some((before, after)) = rest.split_once('{') {
-        let (name, behind) = after.split_once('}').unwrap_or((after, ""));
-        text += before;
-        match name.strip_prefix("file:") {
-            Some(file) => text += file,
-            None => text += &name.to_uppercase(),
-        }
-        rest = behind;
+    let mut text = doubled_apart(&step.replace("{tmp}/", ""));
+    // The innermost first.
+    while let Some(from) = text.rfind('{') {
+        let to = text[from..].find('}').map_or(text.len(), |to| from + to);
+        let name = &text[from + 1..to];
+        let shown = match name.strip_prefix("file:") {
+            Some(file) => file.to_owned(),
+            None => name.to_uppercase(),
+        };
+        text.replace_range(from..(to + 1).min(text.len()), &shown);
     }
-    doubled_single(&(text + rest))
+    doubled_single(&text)
 }
 
 /// What was found out, by run.
@@ -282,5 +281,19 @@ impl Runs {
             let last: Vec<&str> = stderr.lines().rev().take(3).collect();
             Err(format!("`shiftvox {step}` failed: {}", last.join(" / ")))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_as_a_reader_types_them() {
+        let step = "render {file:{mesh}.far} --size {size} -o {tmp}/a-{{stem}}.png";
+        assert_eq!(
+            placeholders(step),
+            "render MESH.far --size SIZE -o a-{stem}.png"
+        );
     }
 }
