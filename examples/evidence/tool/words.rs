@@ -169,7 +169,7 @@ mod tests {
             found[0].starts_with("a.md:3: `are from before`"),
             "{found:?}"
         );
-        assert!(found[1].starts_with("a.md:7: a table"), "{found:?}");
+        assert!(found[1].starts_with("a.md:6: a table"), "{found:?}");
         // In a block, words still count.
         assert_eq!(faults("a.md", page, &[5..9, 20..21], &allow).len(), 1);
         let words =
