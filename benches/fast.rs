@@ -1,6 +1,6 @@
 //! How long does the fast engine take for a frame, by instruction set? The
 //! instruction sets are the kernels: the walk is the same.
-//! Recorded results: `docs/performance.md`.
+//! Whole frames: `docs/performance.md`.
 //!
 //! ```text
 //! cargo bench --bench fast

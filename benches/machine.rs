@@ -1,5 +1,5 @@
 //! How long does the scalar machine take for a frame, by picture size, and
-//! what does counting cost? Recorded results: `docs/performance.md`.
+//! what does counting cost? Whole frames: `docs/benchmarks.md`.
 //!
 //! ```text
 //! cargo bench --bench machine
