@@ -85,6 +85,11 @@ pub(super) fn draw_deep<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &
 #[inline(always)]
 fn draw_levels<I: Isa, const DEEP: bool>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
     walk.counters.bricks += 1;
+    if DEEP {
+        brick.parts.prefetch_below(walk.isa, walk.graph);
+    } else {
+        brick.parts.prefetch(walk.isa, walk.graph);
+    }
     let parts_across = if DEEP { 16.0 } else { 4.0 };
     let side = f64::from(walk.view.levels[brick.level as usize].side) / parts_across;
     let place = Place::new(walk.view, brick.centre, side);
@@ -224,8 +229,21 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                 if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(walk, brick, square, hit, pair) {
                     continue;
                 }
-                if walk.blends && !blend::<I, DEEP>(walk, brick, square, hit, pair) {
-                    continue;
+                if walk.blends {
+                    let (is_full, levels) = blend::<I, DEEP>(walk, brick, square, hit, pair);
+                    if !is_full {
+                        // A voxel of several parts is taken once.
+                        let same = match levels {
+                            0 => u64::MAX,
+                            1 => 0xff << (part & 0x38),
+                            _ => 0,
+                        };
+                        parts &= !same;
+                        if !DEEP {
+                            wanted &= !same;
+                        }
+                        continue;
+                    }
                 }
                 drawn |= 1 << bit;
                 walk.hits[count & 63] = hit;
@@ -255,7 +273,12 @@ pub(super) struct Hit {
 impl Hit {
     /// The node, and where in the brick it is.
     #[inline(always)]
-    fn path<I: Isa, const DEEP: bool>(self, walk: &Walk<'_, I>, brick: &Brick, pair: u32) -> (u32, Path) {
+    fn path<I: Isa, const DEEP: bool>(
+        self,
+        walk: &Walk<'_, I>,
+        brick: &Brick,
+        pair: u32,
+    ) -> (u32, Path) {
         let at = u32::from(self.part);
         let (part, block) = if DEEP {
             let number = usize::from(self.block & 63);
@@ -304,7 +327,8 @@ fn show_hits<I: Isa, const DEEP: bool>(
     }
 }
 
-/// Blends what a sample meets: whether that hides all that is behind it.
+/// Blends what a sample meets: whether that hides all that is behind it, and how many levels
+/// below the brick or block it is.
 #[inline(never)]
 fn blend<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
@@ -312,10 +336,11 @@ fn blend<I: Isa, const DEEP: bool>(
     square: &Window,
     hit: Hit,
     pair: u32,
-) -> bool {
+) -> (bool, u32) {
     let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
     let voxel = path.voxel(brick, walk.view.levels[brick.level as usize].side);
-    walk.show([square.left, square.top], 1 << hit.bit, node, voxel) != 0
+    let full = walk.show([square.left, square.top], 1 << hit.bit, node, voxel);
+    (full != 0, path.levels)
 }
 
 /// Whether a sample that is in doubt meets what it may, by the exact rule.
@@ -334,8 +359,11 @@ fn is_hit<I: Isa, const DEEP: bool>(
 /// Puts a block's parts in order.
 #[inline(always)]
 fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, number: usize, octant: u8) {
-    let block = brick.parts.part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
+    let block = brick
+        .parts
+        .part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
     let parts = Parts::of(walk.isa, walk.graph, block.node, false, 0);
+    parts.prefetch(walk.isa, walk.graph);
     walk.blocks.exist[number] = walk.isa.turned_parts(parts.exist, octant);
     walk.blocks.parts[number] = parts;
 }
@@ -388,7 +416,9 @@ pub(super) fn is_covered<I: Isa>(
     walk.counters.exact_samples += 1;
     let [x, y, z, level] = path.voxel(brick, walk.view.levels[brick.level as usize].side);
     let side = walk.view.levels[level as usize].side;
-    let at = [square.left + (bit as i32 & 7), square.top + (bit as i32 >> 3)];
+    let at = [
+        square.left + (bit as i32 & 7),
+        square.top + (bit as i32 >> 3),
+    ];
     walk.exact.covers([x, y, z], side, at)
 }
-

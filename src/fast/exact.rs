@@ -337,8 +337,7 @@ impl Outline {
                     bottom: top + side - 1,
                 }
                 .and(window);
-                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block)
-                {
+                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
                     continue;
                 }
                 let cover = if walk.switches.whole_blocks {

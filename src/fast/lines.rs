@@ -14,15 +14,19 @@
 //! All is turned so that lines run upwards along each axis (`v_k >= 0`). The
 //! unit of length is the side of a part. Errors: `spec/fast.md`.
 
+use super::canvas::Window;
 use super::exact::Exact;
 use super::lanes::{Four, Isa};
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
 use super::view::View;
-use super::canvas::Window;
 
-/// Of what lines' values are made of, the error of their sum: a few steps in
-/// `f32`, 2^-24 each, with room.
-const RELATIVE_ERROR: f32 = 1.0 / (1 << 20) as f32;
+/// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
+/// summed up at most: `spec/fast.md` counts them.
+const STEPS: f32 = 16.0;
+/// Of what lines' values are made of, the error of their sum.
+const RELATIVE_ERROR: f32 = STEPS / (1 << 24) as f32;
+/// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over 2^-20.
+const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Rounding of a direction in `f64`, of what it is summed of.
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 /// Parts' centres are at most this many sides of a part from the node's.
@@ -90,6 +94,8 @@ pub(super) struct Lines<I: Isa> {
     inverse: I::Four,
     /// By how many widths the values of functions that see may be wrong, at most.
     pub(super) error: f32,
+    /// Of that, the rounding.
+    pub(super) rounding: f32,
     /// Whether a function is blind: it tells nothing.
     pub(super) has_blind: bool,
     /// What is nearer to a part's outline than this is in doubt.
@@ -143,6 +149,8 @@ pub(super) enum Meeting {
 pub(super) struct Heading<I: Isa> {
     middle: I::Four,
     spread: I::Four,
+    /// What directions are summed of, at most.
+    size: I::Four,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
     /// Whether lines of the square differ in that, or may.
@@ -167,6 +175,7 @@ impl<I: Isa> Heading<I> {
         Self {
             middle,
             spread,
+            size,
             octant: OCTANTS[middle.signs() as usize & 7],
             is_mixed: spread.sub(middle.abs()).signs() & 7 != 7,
         }
@@ -203,6 +212,12 @@ pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) 
     parts
 }
 
+/// The greatest of three lanes.
+#[inline(always)]
+fn greatest<F: Four>(four: F) -> f32 {
+    four.max(four.next()).max(four.last()).values()[0]
+}
+
 impl<I: Isa> Lines<I> {
     /// The lines of a square that begin in an octant, against a node.
     #[inline(always)]
@@ -228,10 +243,34 @@ impl<I: Isa> Lines<I> {
         let width = next.add(last);
         let inverse = isa.splat(1.0).div(width.max(isa.splat(f32::MIN_POSITIVE)));
         let spread = heading.spread.next().add(heading.spread.last());
-        let spread = if heading.is_mixed { spread.add(spread) } else { spread };
-        let error = spread.mul(inverse).mul(isa.splat(2.0));
+        let spread = if heading.is_mixed {
+            spread.add(spread)
+        } else {
+            spread
+        };
+        let step_x = isa.four(&place.step[0]).flip(pair);
+        let step_y = isa.four(&place.step[1]).flip(pair);
+        let from = [
+            (f64::from(square.left) - place.centre[0]) as f32,
+            (f64::from(square.top) - place.centre[1]) as f32,
+        ];
+        let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
+        // The centre's own rounding in f64, of which the bound takes 16 times 2^-24.
+        let unsure = place.centre.map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
+        let reach_x = isa.splat(from[0].abs() + (square.right - square.left) as f32 + unsure[0]);
+        let reach_y = isa.splat(from[1].abs() + (square.bottom - square.top) as f32 + unsure[1]);
+        let size = step_x.abs().fma(reach_x, step_y.abs().mul(reach_y));
+        let directions = heading.size.next().add(heading.size.last());
+        let doubt = directions
+            .fma(isa.splat(FARTHEST), size)
+            .mul(isa.splat(RELATIVE_ERROR));
+        let rounding = doubt.mul(inverse);
+        let error = spread.mul(inverse).fma(isa.splat(2.0), rounding);
         let half_step = isa.splat(0.5);
-        let shares = last.mul(inverse).fma(isa.splat(SHARE_STEPS), half_step).cells();
+        let shares = last
+            .mul(inverse)
+            .fma(isa.splat(SHARE_STEPS), half_step)
+            .cells();
         let mut tables = [0, 1, 2].map(|j| Strips::table(j, shares[j], 0));
         let mut sees = [1.0; 4];
         let mut has_blind = false;
@@ -249,26 +288,20 @@ impl<I: Isa> Lines<I> {
                 }
             }
         }
-        let inverse = if has_blind { inverse.mul(isa.four(&sees)) } else { inverse };
-        let step_x = isa.four(&place.step[0]).flip(pair);
-        let step_y = isa.four(&place.step[1]).flip(pair);
-        let from = [
-            (f64::from(square.left) - place.centre[0]) as f32,
-            (f64::from(square.top) - place.centre[1]) as f32,
-        ];
-        let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
-        let reach_x = isa.splat(from[0].abs() + 8.0);
-        let reach_y = isa.splat(from[1].abs() + 8.0);
-        let size = step_x.abs().fma(reach_x, step_y.abs().mul(reach_y));
-        let size = width.add(spread).fma(isa.splat(FARTHEST), size);
+        let inverse = if has_blind {
+            inverse.mul(isa.four(&sees))
+        } else {
+            inverse
+        };
         Self {
             direction: [first, columns, rows],
             moment: [moment, step_x, step_y],
             tables,
             inverse,
-            error: error.max(error.next()).max(error.last()).values()[0].min(most),
+            error: greatest(error).min(most),
+            rounding: greatest(rounding),
             has_blind,
-            doubt: size.mul(isa.splat(RELATIVE_ERROR)),
+            doubt,
         }
     }
 
@@ -292,9 +325,15 @@ impl<I: Isa> Lines<I> {
     /// The same in cells of a table.
     #[inline(always)]
     pub(super) fn in_cells(&self, isa: I, widths_per_part: f32) -> [I::Four; 3] {
-        let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH * widths_per_part));
+        let unit = self
+            .inverse
+            .mul(isa.splat(CELLS_PER_WIDTH * widths_per_part));
         let [first, step_x, step_y] = self.moment;
-        [first.fma(unit, isa.splat(MIDDLE)), step_x.mul(unit), step_y.mul(unit)]
+        [
+            first.fma(unit, isa.splat(MIDDLE)),
+            step_x.mul(unit),
+            step_y.mul(unit),
+        ]
     }
 
     /// The line of a sample, its column and row in the square given.
@@ -388,3 +427,144 @@ pub(super) static NO_OFFSET: Offset = Offset {
     next: [0.0; 4],
     last: [0.0; 4],
 };
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fast::lanes::Scalar;
+    use crate::graph::Placement;
+    use crate::project::{Camera, FrameSetup, SetupOptions};
+
+    /// Pseudo-random numbers from 0 to 1.
+    fn numbers() -> impl FnMut() -> f64 {
+        let mut state = 7u64;
+        move || {
+            state = state
+                .wrapping_mul(0x5851_f42d_4c95_7f2d)
+                .wrapping_add(0x1405_7b7e_f767_814f);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    fn view(next: &mut impl FnMut() -> f64) -> Option<(FrameSetup, View)> {
+        let mut point =
+            |size: f64| glam::DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * size;
+        let (eye, target) = (point(300.0), point(80.0));
+        let camera = Camera {
+            eye: eye + 32.0,
+            target: target + 32.0,
+            up: glam::DVec3::Z,
+            fov_degrees: 0.5 + 150.0 * next() * next(),
+            width: 400,
+            height: 300,
+        };
+        let placement = Placement::default();
+        let setup = FrameSetup::new(&camera, &placement, 6, &SetupOptions::default()).ok()?;
+        let view = View::new(&setup)?;
+        Some((setup, view))
+    }
+
+    /// The worst of `|f - truth| / doubt` over lines, parts and functions, of bricks of two levels
+    /// and, about blocks, of four; the truth is computed in `f64`, 2^29 times as fine.
+    #[test]
+    fn values_are_within_a_bound_that_is_of_use() {
+        let mut next = numbers();
+        let isa = Scalar;
+        let mut worst = 0f64;
+        let mut checked = 0;
+        while checked < 200_000 {
+            let Some((setup, view)) = view(&mut next) else {
+                continue;
+            };
+            for _ in 0..50 {
+                let level = 1 + (next() * 3.0) as usize;
+                let side = f64::from(view.levels[level].side);
+                let at =
+                    [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side + side / 2.0);
+                let centre = [0, 1, 2].map(|c| {
+                    let along = |k: usize| setup.edge_clip[k][c] as f64 * at[k];
+                    setup.origin_clip[c] as f64 + along(0) + along(1) + along(2)
+                });
+                if centre[2] - view.levels[level].half_depth <= 0.0 {
+                    continue;
+                }
+                let side = side / 4.0;
+                let place = Place::new(&view, centre, side);
+                let [left, top] = [0, 1].map(|i| {
+                    let spread = (next() - 0.5) * 16.0;
+                    (place.centre[i] + spread).clamp(0.0, 280.0) as i32
+                });
+                if (f64::from(left) - place.centre[0]).abs() > 40.0
+                    || (f64::from(top) - place.centre[1]).abs() > 40.0
+                {
+                    continue;
+                }
+                let square = Window {
+                    left,
+                    top,
+                    right: left + 7,
+                    bottom: top + 7,
+                };
+                let heading = Heading::of(isa, &view, &square);
+                if heading.is_mixed {
+                    continue;
+                }
+                let lines = Lines::new(isa, &view, &place, &heading, &square, heading.octant);
+                for sample in [0, 7, 20, 63] {
+                    let [x, y] = [sample & 7, sample >> 3];
+                    let line = lines.line(isa, [x as f32, y as f32]);
+                    let q = [f64::from(left + x), f64::from(top + y), 1.0];
+                    let v = view.direction.map(|d| d[0] * q[0] + d[1] * q[1] + d[2]);
+                    let p = [
+                        centre[0] * view.root_samples - centre[2] / 2.0,
+                        centre[1] * view.root_samples - centre[2] / 2.0,
+                        centre[2],
+                    ];
+                    let turned = |k: usize| heading.octant >> (2 - k) & 1 == 1;
+                    for part in [0, 21, 42, 63] {
+                        let shift = line.shift(isa, &OFFSETS[part]);
+                        let value = line.moment.sub(shift);
+                        for j in 0..3 {
+                            let (n, l) = ((j + 1) % 3, (j + 2) % 3);
+                            let e = view.edge[j];
+                            let plane = [
+                                p[1] * e[2] - p[2] * e[1],
+                                p[2] * e[0] - p[0] * e[2],
+                                p[0] * e[1] - p[1] * e[0],
+                            ];
+                            let dot: f64 = (0..3).map(|c| plane[c] * q[c]).sum();
+                            let turn = if turned(n) == turned(l) { 1.0 } else { -1.0 };
+                            let moment = dot * view.scale / side * turn;
+                            let offset = &OFFSETS[part];
+                            let truth = moment
+                                - (f64::from(offset.next[j]) * v[l].abs()
+                                    - f64::from(offset.last[j]) * v[n].abs());
+                            let ratio =
+                                (f64::from(value[j]) - truth).abs() / f64::from(lines.doubt[j]);
+                            worst = worst.max(ratio);
+                            checked += 1;
+                        }
+                    }
+                }
+            }
+        }
+        println!("worst deviation: {worst:.4} of the bound");
+        assert!(worst < 1.0, "{worst}");
+        // Far too wide a bound would be of no use.
+        assert!(worst > 0.01, "{worst}");
+    }
+
+    /// The steps that `spec/fast.md` adds up: those of moments, and of the rest.
+    #[test]
+    #[expect(
+        clippy::assertions_on_constants,
+        reason = "the constant is what is tested"
+    )]
+    fn the_bound_is_no_smaller_than_its_derivation() {
+        const MOMENT: f32 = 6.0 + 2.0 + 3.0;
+        const SHIFTS: f32 = 8.0 + 2.0 + 5.0;
+        assert!(STEPS * 0.95 >= MOMENT && STEPS * 0.95 >= SHIFTS);
+        assert!(STEPS * 0.9 < SHIFTS, "a bound with much room hides faults");
+        assert!(FARTHEST >= 7.5 + 0.5);
+    }
+}

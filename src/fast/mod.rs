@@ -343,7 +343,7 @@ fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) ->
 
 /// Draws one band.
 fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
-    let mut blocks = Box::<Blocks>::default();
+    let mut blocks = Blocks::default();
     piece.pixels.clear();
     let fill = Fill::clear(&piece.grid, piece.bounds, piece.fill);
     let mut walk = Walk {

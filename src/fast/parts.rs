@@ -74,7 +74,10 @@ impl Parts {
             && detail == 0
             && !is_last
             && graph.links.is_empty()
-            && let Some(eight) = graph.mask.get(first as usize..).and_then(|m| m.first_chunk())
+            && let Some(eight) = graph
+                .mask
+                .get(first as usize..)
+                .and_then(|m| m.first_chunk())
         {
             let (exist, bytes) = isa.spread(u64::from_le_bytes(*eight), mask);
             // A byte of zeros among those of children: a child without children.
@@ -125,6 +128,23 @@ impl Parts {
     #[inline(always)]
     pub(super) fn are_even(&self) -> bool {
         self.solid == 0 && self.kind != Kind::Solid
+    }
+
+    /// Asks the memory for what [`Parts::part`] reads.
+    #[inline(always)]
+    pub(super) fn prefetch<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
+        isa.prefetch(graph.first, self.first as usize);
+    }
+
+    /// Asks the memory for what parts of these are made of, where nodes lie level by level.
+    #[inline(always)]
+    pub(super) fn prefetch_below<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
+        let first = graph.first.get(self.first as usize).copied().unwrap_or(0) as usize;
+        isa.prefetch(graph.mask, first);
+        isa.prefetch(graph.mask, first + 63);
+        for sixteen in 0..5 {
+            isa.prefetch(graph.first, first + 16 * sixteen);
+        }
     }
 
     /// Whether all parts are one solid node.

@@ -18,6 +18,9 @@ const FINE_SAMPLES: f64 = 0.75;
 /// blocks and tiles at a time (`exact.rs`). Measured.
 const LARGE_SAMPLES: f64 = 24.0;
 
+/// Size, in samples, from which on windows are computed with a margin that nodes can have.
+const TINY_SAMPLES: f64 = 1.0 / 8.0;
+
 /// What nodes of one octree level have in common.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
@@ -35,6 +38,8 @@ pub(super) struct Level {
     pub(super) coarse_depth: f64,
     /// Depth from which on parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
     pub(super) fine_depth: f64,
+    /// Depth from which on a node is tiny ([`TINY_SAMPLES`]).
+    pub(super) tiny_depth: f64,
     /// Depth up to which a node itself is large ([`LARGE_SAMPLES`]).
     pub(super) large_depth: f64,
 }
@@ -83,11 +88,15 @@ impl View {
         }
         let root_samples = libm::ldexp(1.0, setup.levels as i32);
         let clip = setup.edge_clip.map(|e| e.map(|c| c as f64));
-        let edge = clip.map(|[x, y, w]| [x * root_samples - w / 2.0, y * root_samples - w / 2.0, w]);
+        let edge =
+            clip.map(|[x, y, w]| [x * root_samples - w / 2.0, y * root_samples - w / 2.0, w]);
         let middle = [f64::from(setup.width) / 2.0, f64::from(setup.height) / 2.0];
         let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
         let at_middle = |n: [f64; 3]| (n[0] * middle[0] + n[1] * middle[1] + n[2]).abs();
-        let length = normal.map(at_middle).into_iter().fold(f64::MIN_POSITIVE, f64::max);
+        let length = normal
+            .map(at_middle)
+            .into_iter()
+            .fold(f64::MIN_POSITIVE, f64::max);
         let scale = if setup.positive { 1.0 } else { -1.0 } / length;
         let direction = normal.map(|n| n.map(|c| c * scale));
         let column = |i: usize| {
@@ -154,7 +163,13 @@ fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: 
     let corners = |half: f64| -> [[f64; 8]; 3] {
         [0, 1, 2].map(|c| {
             std::array::from_fn(|octant: usize| {
-                let sign = |k: usize| if octant >> (2 - k) & 1 == 1 { half } else { -half };
+                let sign = |k: usize| {
+                    if octant >> (2 - k) & 1 == 1 {
+                        half
+                    } else {
+                        -half
+                    }
+                };
                 (0..3).map(|k| clip[k][c] * sign(k)).sum()
             })
         })
@@ -170,6 +185,7 @@ fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: 
         side: 1i32 << (setup.depth - level),
         coarse_depth: focal * side / 4.0 / COARSE_SAMPLES,
         fine_depth: focal * side / 16.0 / FINE_SAMPLES,
+        tiny_depth: focal * side / TINY_SAMPLES,
         large_depth: focal * side / LARGE_SAMPLES,
     }
 }

@@ -33,7 +33,11 @@ struct ByVoxels<'b> {
 pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
     let is_single = brick.parts.is_single();
     let side = f64::from(walk.view.levels[brick.level as usize].side);
-    let place = Place::new(walk.view, brick.centre, if is_single { side } else { side / 4.0 });
+    let place = Place::new(
+        walk.view,
+        brick.centre,
+        if is_single { side } else { side / 4.0 },
+    );
     walk.counters.bricks += u64::from(!is_single);
     let drawer = ByVoxels {
         brick,
@@ -81,10 +85,15 @@ fn draw_square<I: Isa>(
         return 0;
     }
     // Only a strip's width changes within a square, from which the tables' error is four times as large.
-    let error = lines.error * (0.25 * UNIT) + ROUNDING;
-    let most = (0.5 * UNIT + error) as i16 + 1;
-    let sure = if lines.has_blind { 0 } else { (0.5 * UNIT - error) as i16 };
-    let size = [square.right - square.left, square.bottom - square.top].map(|s| isa.splat(s as f32));
+    let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
+    let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
+    let sure = if lines.has_blind {
+        0
+    } else {
+        (0.5 * UNIT - error) as i16
+    };
+    let size =
+        [square.right - square.left, square.bottom - square.top].map(|s| isa.splat(s as f32));
     let units = lines.in_units(isa, UNIT);
     let largest = isa.splat(LARGEST);
     let pair = u32::from(octant) * 9;
@@ -93,10 +102,16 @@ fn draw_square<I: Isa>(
     while wanted != 0 && left != 0 {
         let number = wanted.trailing_zeros() as usize & 63;
         wanted &= wanted - 1;
-        let offset = if is_single { &NO_OFFSET } else { &OFFSETS[number] };
+        let offset = if is_single {
+            &NO_OFFSET
+        } else {
+            &OFFSETS[number]
+        };
         let values = units.about(isa, offset);
         let [first, step_x, step_y] = values;
-        let reach = step_x.abs().fma(size[0], step_y.abs().fma(size[1], first.abs()));
+        let reach = step_x
+            .abs()
+            .fma(size[0], step_y.abs().fma(size[1], first.abs()));
         let (held, certain) = if largest.sub(reach).signs() & 7 == 0 {
             isa.within(&values, most, sure)
         } else {

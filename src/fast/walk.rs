@@ -98,7 +98,11 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
     let (view, isa) = (walk.view, walk.isa);
     let level = &view.levels[record.level as usize];
     let least_depth = record.centre[2] - level.half_depth;
-    let mask = if record.level == view.depth { 0 } else { walk.graph.mask(record.node) };
+    let mask = if record.level == view.depth {
+        0
+    } else {
+        walk.graph.mask(record.node)
+    };
     let is_near = least_depth <= 0.0;
     if mask == 0 || least_depth >= level.lod_depth {
         walk.counters.skipped_detail += u64::from(mask != 0);
@@ -123,7 +127,8 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
     }
     // Parts that are all solids, and not too large.
     let parts_level = record.level + 2;
-    let are_solid = parts_level >= view.depth || least_depth >= view.levels[parts_level as usize].lod_depth;
+    let are_solid =
+        parts_level >= view.depth || least_depth >= view.levels[parts_level as usize].lod_depth;
     if are_solid && record.centre[2] >= 0.25 * level.large_depth {
         let is_last = record.level + 1 == view.depth;
         let parts = Parts::of(isa, walk.graph, record.node, is_last, detail(view, record));
@@ -157,7 +162,10 @@ fn is_deep(view: &View, record: &Record, least_depth: f64) -> bool {
 /// A node's children that level of detail takes for solids, if they have children.
 #[inline(always)]
 fn detail(view: &View, record: &Record) -> u8 {
-    let (own, below) = (&view.levels[record.level as usize], &view.levels[record.level as usize + 1]);
+    let (own, below) = (
+        &view.levels[record.level as usize],
+        &view.levels[record.level as usize + 1],
+    );
     if record.centre[2] + own.half_depth < below.lod_depth {
         return 0;
     }
@@ -178,7 +186,9 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
     let mask = walk.graph.mask(record.node);
     let half = level.side / 2;
     let nearest = view.nearest_octant(record.min, half);
-    let windows = walk.isa.windows(view, index, &record.centre, &walk.fill.bounds);
+    let windows = walk
+        .isa
+        .windows(view, index, &record.centre, &walk.fill.bounds);
     walk.counters.skipped_absent += u64::from(mask.count_zeros());
     if !walk.switches.absent_children {
         look_at_absent(walk, &windows, !mask);
@@ -226,7 +236,11 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
         let child = Record {
             node,
             level: record.level + 1,
-            min: [record.min[0] + bit(0), record.min[1] + bit(1), record.min[2] + bit(2)],
+            min: [
+                record.min[0] + bit(0),
+                record.min[1] + bit(1),
+                record.min[2] + bit(2),
+            ],
             centre,
         };
         go_on(walk, &child, &window);
@@ -261,7 +275,12 @@ fn is_beside(level: &Level, centre: &[f64; 3]) -> bool {
 
 /// Draws a solid by its planes.
 #[inline(never)]
-fn draw_planes<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window, is_before_eye: bool) {
+fn draw_planes<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    record: &Record,
+    window: &Window,
+    is_before_eye: bool,
+) {
     let side = walk.view.levels[record.level as usize].side;
     let outline = walk.exact.outline(record.min, side, is_before_eye);
     let voxel = voxel_at(record.min, record.level);

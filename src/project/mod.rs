@@ -11,7 +11,6 @@ mod view;
 pub mod viewer;
 
 pub use camera::{Camera, CameraError};
-pub use depths::STRIP_NORMAL_BITS;
 pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats};
 pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 pub use setup::{CageKind, Coverage, FrameSetup, SetupError, SetupOptions};

@@ -16,7 +16,6 @@ use hwmodel::{Format, FormatError};
 use serde::{Deserialize, Serialize};
 
 use super::camera::{Camera, CameraError};
-use super::depths;
 use super::host::{Host, Part, Real, Tally, Untold, lift_all, values};
 use super::reach::{Eye, Quantised, Reach};
 use super::view::{Levels, View};
@@ -211,10 +210,6 @@ pub struct FrameSetup {
     /// By octree level, least depth `W` of a clip-space node with children that
     /// level of detail takes for a solid; `i64::MAX`: none is.
     pub lod_depth: Vec<i64>,
-    /// Fraction bits of strips beyond those that their levels need: 0.
-    pub strip_guard: u32,
-    /// By how much strips are wider than the voxels: `None`, nothing.
-    pub strip_slack: Option<u32>,
     /// Whether no word of a frame with these integers can overflow.
     pub has_headroom: bool,
     /// What a clip-space box is widened by when it is tested against the
@@ -333,8 +328,6 @@ impl FrameSetup {
             near: near.value,
             screen_depth,
             lod_depth,
-            strip_guard: 0,
-            strip_slack: None,
             has_headroom,
             grow_shift: grow_shift(tolerance),
             size_limit: size_limit(by, options, 1.0).unwrap_or_default(),
@@ -369,39 +362,6 @@ impl FrameSetup {
             edge: self.edge_clip.map(|e| lift_all(Untold, e)),
         };
         Reach::of(&view, self.depth).map(|reach| reach.position.value)
-    }
-
-    /// By octree level, least depth `W` of a record whose lattice, under the
-    /// exact rule, deviates from its projection by at most so many samples.
-    #[must_use]
-    pub fn lattice_depths(&self, deviation_px: f64) -> Vec<i64> {
-        let by = Untold;
-        let unit = by.lift(1.0).scaled(-(self.clip_frac as i32));
-        let edges = depths::Edges {
-            edge: self
-                .edge_clip
-                .map(|e| e.map(|c| by.lift(c).to_real() * unit)),
-            root_samples: by.lift(1.0).scaled(self.levels as i32),
-            by,
-        };
-        let levels = Levels {
-            depth: self.depth,
-            bound: self.depth,
-            clip_frac: self.clip_frac,
-            near: by.lift(1),
-        };
-        let allowed = by.lift(deviation_px) - self.lattice_rounding();
-        if allowed <= 0.0 {
-            return vec![i64::MAX; self.depth as usize + 1];
-        }
-        levels.scaled(edges.central_depth(allowed))
-    }
-
-    /// Most, in samples, by which rounding moves an outline of such a lattice.
-    #[must_use]
-    pub fn lattice_rounding(&self) -> f64 {
-        let frac = self.format.frac();
-        depths::lattice_rounding(Untold, frac).value
     }
 
     /// World depth of one unit of `W`.

@@ -3,6 +3,7 @@
 
 mod alpha;
 mod bounds;
+mod certified;
 mod common;
 mod counts;
 mod cycles;

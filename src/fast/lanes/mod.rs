@@ -65,7 +65,8 @@ pub(super) struct Windows {
 impl Windows {
     #[inline(always)]
     pub(super) fn at(&self, octant: u8) -> Window {
-        let [left, top, right, bottom] = [0, 1, 2, 3].map(|i| self.sides[i][usize::from(octant & 7)]);
+        let [left, top, right, bottom] =
+            [0, 1, 2, 3].map(|i| self.sides[i][usize::from(octant & 7)]);
         Window {
             left,
             top,
@@ -79,10 +80,12 @@ impl Windows {
 const WINDOW_MARGIN: f32 = 1.0 / 512.0;
 /// The rounding of `f32`, with room: of positions, and of extents.
 const WINDOW_ROUNDING: f32 = 1.0 / (1 << 21) as f32;
-/// What extents are larger by, for an inverse of 11 bits.
-const WINDOW_SCALE: f32 = 1.0 + 1.0 / 1024.0;
+/// What extents are larger by, for an inverse of 11 bits and their own rounding.
+const WINDOW_SCALE: f32 = 1.0 + 1.0 / 256.0;
+/// What windows in `f64` are wider by, of what they are made of and in samples.
+const TINY_WINDOW_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 /// Columns and rows beyond all pictures.
-const BEYOND: f32 = 40_000.0;
+const BEYOND: f64 = 40_000.0;
 
 /// An instruction set.
 pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
@@ -126,6 +129,9 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
 
     /// Bytes one after the other at the places of a mask's bits, and ones there.
     fn spread(self, bytes: u64, mask: u8) -> (u64, u64);
+
+    /// Asks the memory for an entry that will be read soon, if there is such an entry.
+    fn prefetch<T>(self, entries: &[T], at: usize);
 
     /// Writes a value to rows of eight entries, `width` apart, where samples are.
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32);

@@ -47,7 +47,13 @@ impl Four for [f32; 4] {
     }
     #[inline(always)]
     fn flip(self, signs: Self) -> Self {
-        std::array::from_fn(|i| if signs[i].is_sign_negative() { -self[i] } else { self[i] })
+        std::array::from_fn(|i| {
+            if signs[i].is_sign_negative() {
+                -self[i]
+            } else {
+                self[i]
+            }
+        })
     }
     #[inline(always)]
     fn next(self) -> Self {
@@ -59,7 +65,9 @@ impl Four for [f32; 4] {
     }
     #[inline(always)]
     fn signs(self) -> u32 {
-        (0..4).map(|i| u32::from(self[i].is_sign_negative()) << i).sum()
+        (0..4)
+            .map(|i| u32::from(self[i].is_sign_negative()) << i)
+            .sum()
     }
     #[inline(always)]
     fn cells(self) -> [usize; 3] {
@@ -113,13 +121,13 @@ impl Isa for Scalar {
             }
             let mut side = [0; 4];
             for (axis, c) in [x, y].into_iter().enumerate() {
-                let at = (c * view.root_samples / w - 0.5) as f32;
-                let edges = view.edge.iter().map(|e| (e[axis] as f32 - at * e[2] as f32).abs());
-                let extent = edges.sum::<f32>() * (half / nearest) as f32 * WINDOW_SCALE;
-                let extent = extent + at.abs() * WINDOW_ROUNDING + WINDOW_MARGIN;
+                let at = c * view.root_samples / w - 0.5;
+                let edges = view.edge.iter().map(|e| (e[axis] - at * e[2]).abs());
+                let extent = edges.sum::<f64>() * (half / nearest);
+                let extent = extent + (extent + at.abs() + 1.0) * TINY_WINDOW_MARGIN;
                 let (first, last) = ([band.left, band.top][axis], [band.right, band.bottom][axis]);
-                side[axis] = (at - extent).ceil().max(first as f32).min(BEYOND) as i32;
-                side[axis + 2] = (at + extent).floor().min(last as f32).max(-1.0) as i32;
+                side[axis] = (at - extent).ceil().max(f64::from(first)).min(BEYOND) as i32;
+                side[axis + 2] = (at + extent).floor().min(f64::from(last)).max(-1.0) as i32;
             }
             for (sides, side) in windows.sides.iter_mut().zip(side) {
                 sides[octant] = side;
@@ -175,6 +183,9 @@ impl Isa for Scalar {
         }
         (spread, ones)
     }
+
+    #[inline(always)]
+    fn prefetch<T>(self, _: &[T], _: usize) {}
 
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
         let mut left = samples;

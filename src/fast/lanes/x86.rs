@@ -176,6 +176,9 @@ impl Isa for Avx2 {
     #[inline(always)]
     fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows {
         let (own, below) = (&view.levels[level], &view.levels[level + 1]);
+        if centre[2] > own.tiny_depth {
+            return Scalar.windows(view, level, centre, band);
+        }
         let mut windows = Windows {
             sides: [[0; 8]; 4],
             held: 0,
@@ -267,7 +270,11 @@ impl Isa for Avx2 {
                 _mm256_fmadd_ps(broadcast::<1>(step_x), ramp, broadcast::<1>(first)),
                 _mm256_fmadd_ps(broadcast::<2>(step_x), ramp, broadcast::<2>(first)),
             ];
-            let step = [broadcast::<0>(step_y), broadcast::<1>(step_y), broadcast::<2>(step_y)];
+            let step = [
+                broadcast::<0>(step_y),
+                broadcast::<1>(step_y),
+                broadcast::<2>(step_y),
+            ];
             for row in found.0.chunks_exact_mut(8).take(rows) {
                 let mut low = wanted;
                 let mut high = wanted;
@@ -275,14 +282,20 @@ impl Isa for Avx2 {
                     let cell = _mm256_min_epu32(_mm256_cvttps_epi32(at[j]), last);
                     at[j] = _mm256_add_ps(at[j], step[j]);
                     let table = tables[j].as_ptr().cast();
-                    let (near, far) = (_mm256_castsi256_si128(cell), _mm256_extracti128_si256::<1>(cell));
+                    let (near, far) = (
+                        _mm256_castsi256_si128(cell),
+                        _mm256_extracti128_si256::<1>(cell),
+                    );
                     low = _mm256_and_si256(low, _mm256_i32gather_epi64::<8>(table, near));
                     high = _mm256_and_si256(high, _mm256_i32gather_epi64::<8>(table, far));
                 }
                 let to = row.as_mut_ptr().cast::<__m256i>();
                 _mm256_store_si256(to, low);
                 _mm256_store_si256(to.add(1), high);
-                let (low, high) = (_mm256_cmpeq_epi64(low, zero), _mm256_cmpeq_epi64(high, zero));
+                let (low, high) = (
+                    _mm256_cmpeq_epi64(low, zero),
+                    _mm256_cmpeq_epi64(high, zero),
+                );
                 let low = _mm256_movemask_pd(_mm256_castsi256_pd(low)) as u64;
                 let high = _mm256_movemask_pd(_mm256_castsi256_pd(high)) as u64;
                 // The last row ends up lowest.
@@ -299,7 +312,10 @@ impl Isa for Avx2 {
             let first = _mm_cvtps_epi32(first.0);
             let first = _mm_packs_epi32(first, first);
             let (step_x, step_y) = (_mm_cvtps_epi32(step_x.0), _mm_cvtps_epi32(step_y.0));
-            let (step_x, step_y) = (_mm_packs_epi32(step_x, step_x), _mm_packs_epi32(step_y, step_y));
+            let (step_x, step_y) = (
+                _mm_packs_epi32(step_x, step_x),
+                _mm_packs_epi32(step_y, step_y),
+            );
             // Two rows of eight.
             let columns = _mm256_setr_epi16(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
             let rows = _mm256_setr_epi16(0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1);
@@ -310,7 +326,10 @@ impl Isa for Avx2 {
                     let step_y = _mm256_broadcastw_epi16(_mm_srli_si128::<$bytes>(step_y));
                     let mut at = _mm256_broadcastw_epi16(_mm_srli_si128::<$bytes>(first));
                     at = _mm256_add_epi16(at, _mm256_mullo_epi16(columns, step_x));
-                    at = _mm256_add_epi16(at, _mm256_and_si256(step_y, _mm256_sub_epi16(_mm256_setzero_si256(), rows)));
+                    at = _mm256_add_epi16(
+                        at,
+                        _mm256_and_si256(step_y, _mm256_sub_epi16(_mm256_setzero_si256(), rows)),
+                    );
                     let two_rows = _mm256_add_epi16(step_y, step_y);
                     for worst in &mut worst {
                         *worst = _mm256_max_epu16(*worst, _mm256_abs_epi16(at));
@@ -363,6 +382,13 @@ impl Isa for Avx2 {
             let ones = (places << 8).wrapping_sub(places);
             (_pdep_u64(bytes, ones), ones)
         })
+    }
+
+    #[inline(always)]
+    fn prefetch<T>(self, entries: &[T], at: usize) {
+        // Any address may be asked for; nothing is read.
+        let entry = entries.as_ptr().wrapping_add(at);
+        avx!(_mm_prefetch::<_MM_HINT_T0>(entry.cast()));
     }
 
     #[inline(always)]

@@ -55,7 +55,6 @@ pub const fn operation(step: Step, kind: Kind) -> Option<&'static str> {
         Step::Logic => Some("xor"),
         Step::Divide
         | Step::SquareRoot
-        | Step::CubeRoot
         | Step::Logarithm
         | Step::Tangent
         | Step::Sign

@@ -30,8 +30,6 @@ pub enum Step {
     Divide,
     /// A square root.
     SquareRoot,
-    /// A cube root.
-    CubeRoot,
     /// A logarithm to base 2.
     Logarithm,
     /// A tangent.
@@ -56,12 +54,11 @@ pub enum Step {
 
 impl Step {
     /// All kinds, in the order of their discriminants.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 14] = [
         Self::Add,
         Self::Multiply,
         Self::Divide,
         Self::SquareRoot,
-        Self::CubeRoot,
         Self::Logarithm,
         Self::Tangent,
         Self::Compare,
@@ -82,7 +79,6 @@ impl Step {
             Self::Multiply => "multiply",
             Self::Divide => "divide",
             Self::SquareRoot => "square root",
-            Self::CubeRoot => "cube root",
             Self::Logarithm => "logarithm",
             Self::Tangent => "tangent",
             Self::Compare => "compare",

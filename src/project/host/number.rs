@@ -198,11 +198,6 @@ impl<H: Host> Real<H> {
         self.told(Step::SquareRoot, libm::sqrt(self.value))
     }
 
-    /// Cube root.
-    pub(crate) fn cbrt(self) -> Self {
-        self.told(Step::CubeRoot, libm::cbrt(self.value))
-    }
-
     /// Logarithm to base 2.
     pub(crate) fn log2(self) -> Self {
         self.told(Step::Logarithm, libm::log2(self.value))

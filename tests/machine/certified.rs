@@ -1,0 +1,157 @@
+//! The certified engine: at every sample of many frames, fast equals oracle in
+//! node and voxel, whatever the graph, the camera, the level of detail, the
+//! samples a pixel, the threads and the instruction set.
+//!
+//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of a few million.
+
+use glam::DVec3;
+use shiftvox::fast::{Fast, FastOptions, Instructions};
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::rays::Rays;
+
+use crate::common::{octree, sierpinski, solid};
+use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
+
+/// Samples that are compared unless the environment says otherwise.
+const SAMPLES: u64 = 6_000_000;
+
+/// Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic,
+/// 30 levels deep, and a million voxels from the origin.
+fn graphs() -> Vec<Graph> {
+    let mut graphs: Vec<Graph> = [
+        "gen:terrain,depth=8",
+        "gen:menger,depth=4",
+        "gen:sphere,depth=6",
+        "gen:shell,depth=6",
+        "gen:checker,depth=4",
+        "gen:random,depth=5",
+        "gen:wires,depth=7",
+        "gen:truss,depth=7",
+        "gen:maze,depth=5",
+        "gen:sierpinski,depth=12",
+    ]
+    .map(graph_of_spec)
+    .into();
+    graphs.push(sierpinski(30));
+    graphs.push(solid(3));
+    graphs.push(octree(4, &|[x, y, z]| (x + 2 * y + 3 * z) % 5 == 0));
+    let mut far = graph_of_spec("gen:terrain,depth=6");
+    far.placement.origin_index = [1 << 20, -(1 << 20), 1 << 20];
+    graphs.push(far);
+    graphs
+}
+
+/// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or
+/// in its middle, looking along an axis or at a corner.
+fn camera(graph: &Graph, dice: &mut Dice) -> Option<Camera> {
+    let (corner, side) = cube(graph);
+    let voxel = any_voxel(graph, dice);
+    let size = graph.placement.voxel_size;
+    let halves = DVec3::new(
+        f64::from(dice.below(3)),
+        f64::from(dice.below(3)),
+        f64::from(dice.below(3)),
+    );
+    let eye = match dice.below(6) {
+        0 => voxel + halves * (size / 2.0),
+        1 => voxel + dice.point(-4.0, 4.0) * size,
+        2 => corner + dice.point(0.0, 1.0) * side,
+        3 => corner + dice.point(-30.0, 30.0) * side,
+        _ => corner + dice.point(-1.5, 2.5) * side,
+    };
+    let axis = [DVec3::X, DVec3::Y, DVec3::Z][dice.below(3) as usize];
+    let target = match dice.below(5) {
+        0 => eye + axis,
+        1 => eye - axis,
+        2 => voxel,
+        _ => corner + dice.point(0.0, 1.0) * side,
+    };
+    let fov_degrees = match dice.below(4) {
+        0 => 10f64.powf(dice.between(0.005f64.log10(), 1.0)),
+        1 => dice.between(90.0, 170.0),
+        _ => dice.between(10.0, 90.0),
+    };
+    let up = if (target - eye).normalize_or_zero().z.abs() > 0.9 {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    let camera = Camera {
+        eye,
+        target,
+        up,
+        fov_degrees,
+        width: 8 + dice.below(300),
+        height: 8 + dice.below(300),
+    };
+    camera.axes().ok().map(|_| camera)
+}
+
+#[test]
+fn fast_equals_the_oracle_at_every_sample() {
+    let wanted =
+        std::env::var("SHIFTVOX_SAMPLES").map_or(SAMPLES, |n| n.parse().expect("a number"));
+    let graphs = graphs();
+    let mut dice = Dice::new(16);
+    let (mut compared, mut drawn, mut exact, mut left_over) = (0u64, 0u64, 0u64, 0u64);
+    while compared < wanted {
+        let graph = &graphs[dice.below(graphs.len() as u32) as usize];
+        let Some(camera) = camera(graph, &mut dice) else {
+            continue;
+        };
+        let options = SetupOptions {
+            lod_px: [0.0, 1.0, 0.5, 3.0, 0.1][dice.below(5) as usize],
+            aa_log2: [0, 0, 1, 2][dice.below(4) as usize],
+            ..SetupOptions::default()
+        };
+        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
+            continue;
+        };
+        let mut truth = Frame::new(setup.width, setup.height, false);
+        Rays.render(&graph.view(), &setup, &mut truth)
+            .expect("never fails");
+        let options = FastOptions {
+            threads: 1 + dice.below(4) as usize,
+            instructions: [Instructions::Auto, Instructions::Scalar]
+                [usize::from(dice.below(8) == 0)],
+            ..FastOptions::default()
+        };
+        let mut frame = truth.clone();
+        frame.clear();
+        let stats = Fast::new(options, Box::new(Machine::default()))
+            .render(&graph.view(), &setup, &mut frame)
+            .expect("no overflow");
+        let stat = |name: &str| {
+            stats
+                .iter()
+                .find(|(n, _)| *n == name)
+                .map_or(0, |(_, n)| *n)
+        };
+        if stat("handed_to_machine") > 0 {
+            left_over += 1;
+            continue;
+        }
+        let differing = |(a, b): (&[i32; 4], &[i32; 4])| a != b;
+        let differ = truth.voxel.iter().zip(&frame.voxel).position(differing);
+        assert!(
+            differ.is_none() && truth.node == frame.node,
+            "{camera:?} of {graph_depth} levels, {options:?}, lod {}, aa {}: sample {differ:?}: {:?}, truth {:?}",
+            setup.options.lod_px,
+            setup.options.aa_log2,
+            differ.map(|at| frame.voxel[at]),
+            differ.map(|at| truth.voxel[at]),
+            graph_depth = graph.depth,
+        );
+        compared += truth.node.len() as u64;
+        drawn += truth.drawn() as u64;
+        exact += stat("samples_decided_exactly");
+    }
+    println!(
+        "{compared} samples, {drawn} drawn, {exact} decisions by the exact rule; {left_over} frames left to the machine"
+    );
+    assert!(drawn > compared / 10, "frames that show nothing");
+    assert!(exact > 0, "ties were never met");
+}
