@@ -157,12 +157,12 @@ mod tests {
     fn leave_a_part_out(class: usize, error: f64) -> bool {
         let strips = &*STRIPS;
         let mut left_out = false;
-        for (axis, step) in (0..3).flat_map(|axis| (0..=700u32).map(move |step| (axis, step))) {
-            let share = f64::from(step) / 700.0;
+        for (axis, step) in (0..3).flat_map(|axis| (0..=181u32).map(move |step| (axis, step))) {
+            let share = f64::from(step) / 181.0;
             let steps = (share * f64::from(SHARE_STEPS) + 0.5) as usize;
             let table = Strips::table(axis, steps, class);
-            for place in -260..=260 {
-                let value = f64::from(place) / 100.0;
+            for place in -2600..=2600 {
+                let value = f64::from(place) / 1000.0;
                 let parts = met(axis, share, value);
                 for wrong in [-error, 0.0, error] {
                     let cell = (value + wrong) * f64::from(CELLS_PER_WIDTH) + f64::from(MIDDLE);

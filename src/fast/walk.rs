@@ -13,7 +13,7 @@ use super::bricks::{Brick, Hit};
 use super::canvas::{Fill, Pixels, Window};
 use super::counters::Counters;
 use super::exact::Exact;
-use super::lanes::{Found, Isa};
+use super::lanes::{Found, Isa, Windows};
 use super::parts::{self, Parts};
 use super::switches::Switches;
 use super::view::{Level, View};
@@ -250,9 +250,12 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
 /// Does for children that do not exist what is done for others before their
 /// turn, for who wants to know what leaving them saves.
 #[inline(never)]
-fn look_at_absent<I: Isa>(walk: &Walk<'_, I>, windows: &super::lanes::Windows, absent: u8) {
-    for child in (0..8).filter(|child| (absent & windows.held) >> child & 1 != 0) {
-        std::hint::black_box(walk.fill.is_open(&windows.at(child)));
+fn look_at_absent<I: Isa>(walk: &mut Walk<'_, I>, windows: &Windows, absent: u8) {
+    let held = absent & windows.held & !windows.near;
+    walk.counters.skipped_off_screen += u64::from((absent & !held).count_ones());
+    for child in (0..8).filter(|child| held >> child & 1 != 0) {
+        let is_open = walk.fill.is_open(&windows.at(child));
+        walk.counters.skipped_hidden += u64::from(!is_open);
     }
 }
 

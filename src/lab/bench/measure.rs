@@ -201,8 +201,8 @@ fn fill_in(timing: &mut Timing, measured: Measured, coverage: Option<CoverageErr
     timing.coverage = coverage;
 }
 
-/// The voxels that a candidate sees down to the finest, drawn on all threads:
-/// what pictures are held against, whatever their level of detail.
+/// The voxels that a candidate sees, at the set-up's level of detail, drawn on
+/// all threads: what pictures are held against.
 ///
 /// # Errors
 /// When it does not finish.
@@ -213,7 +213,7 @@ pub(super) fn picture_of(
 ) -> Result<Vec<[i32; 4]>, BenchError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut engine = (candidate.make)(rayon::current_num_threads());
-    let drawn = engine.render(&graph.view(), &setup.without_detail(), &mut frame);
+    let drawn = engine.render(&graph.view(), setup, &mut frame);
     drawn.map_err(|source| BenchError::Engine {
         who: candidate.name.to_owned(),
         source,
