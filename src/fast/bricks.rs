@@ -19,25 +19,9 @@ use super::walk::{Record, Walk, voxel_at};
 
 /// A node that is drawn in one step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Brick {
-    pub(super) level: u32,
-    /// Lowest corner, finest voxels.
-    pub(super) min: [i32; 3],
-    /// Clip vector of the centre.
-    pub(super) centre: [f64; 3],
-    pub(super) parts: Parts,
-}
-
-impl Brick {
-    #[inline(always)]
-    pub(super) fn new(record: &Record, parts: Parts) -> Self {
-        Self {
-            level: record.level,
-            min: record.min,
-            centre: record.centre,
-            parts,
-        }
-    }
+pub(super) struct Brick<'b> {
+    pub(super) record: &'b Record,
+    pub(super) parts: &'b Parts,
 }
 
 /// Column and row of a square's samples.
@@ -66,24 +50,28 @@ pub(super) trait DrawSquare<I: Isa> {
 
 /// Draws squares of a brick of two levels, or of four (`DEEP`).
 struct BySamples<'b, const DEEP: bool> {
-    brick: &'b Brick,
+    brick: Brick<'b>,
     place: Place,
 }
 
 /// Draws a brick of two levels.
 #[inline(always)]
-pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
     draw_levels::<I, false>(walk, brick, window);
 }
 
 /// Draws a brick of four levels.
 #[inline(always)]
-pub(super) fn draw_deep<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+pub(super) fn draw_deep<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
     draw_levels::<I, true>(walk, brick, window);
 }
 
 #[inline(always)]
-fn draw_levels<I: Isa, const DEEP: bool>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+fn draw_levels<I: Isa, const DEEP: bool>(
+    walk: &mut Walk<'_, I>,
+    brick: Brick<'_>,
+    window: &Window,
+) {
     walk.counters.bricks += 1;
     if DEEP {
         brick.parts.prefetch_below(walk.isa, walk.graph);
@@ -91,8 +79,8 @@ fn draw_levels<I: Isa, const DEEP: bool>(walk: &mut Walk<'_, I>, brick: &Brick, 
         brick.parts.prefetch(walk.isa, walk.graph);
     }
     let parts_across = if DEEP { 16.0 } else { 4.0 };
-    let side = f64::from(walk.view.levels[brick.level as usize].side) / parts_across;
-    let place = Place::new(walk.view, brick.centre, side);
+    let side = f64::from(walk.view.levels[brick.record.level as usize].side) / parts_across;
+    let place = Place::new(walk.view, brick.record.centre, side);
     each_square(walk, window, &BySamples::<DEEP> { brick, place });
 }
 
@@ -172,7 +160,7 @@ impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, DEEP> {
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
-    brick: &Brick,
+    brick: Brick<'_>,
     place: &Place,
     square: &Window,
     open: u64,
@@ -186,13 +174,12 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let tables = strips.touched(lines.tables);
     let exist = isa.turned_parts(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
-    let rows = (square.bottom - square.top) as usize + 1;
-    let any = isa.parts_of_samples(tables, &cells, exist, rows, &mut walk.found);
+    let any = isa.parts_of_samples(tables, &cells, exist, open, &mut walk.found);
     let pair = u32::from(octant) * 9;
     let mut ready = 0u64;
     let mut drawn = 0u64;
     let mut count = 0;
-    let mut left = any & open;
+    let mut left = any;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
@@ -276,7 +263,7 @@ impl Hit {
     fn path<I: Isa, const DEEP: bool>(
         self,
         walk: &Walk<'_, I>,
-        brick: &Brick,
+        brick: Brick<'_>,
         pair: u32,
     ) -> (u32, Path) {
         let at = u32::from(self.part);
@@ -301,7 +288,7 @@ impl Hit {
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
-    brick: &Brick,
+    brick: Brick<'_>,
     square: &Window,
     count: usize,
     pair: u32,
@@ -313,7 +300,7 @@ fn show_hits<I: Isa, const DEEP: bool>(
         let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
         nodes[i] = node;
         if walk.pixels.wants_voxels() {
-            let side = walk.view.levels[brick.level as usize].side;
+            let side = walk.view.levels[brick.record.level as usize].side;
             let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
             walk.pixels.voxel[at] = path.voxel(brick, side);
         }
@@ -332,13 +319,13 @@ fn show_hits<I: Isa, const DEEP: bool>(
 #[inline(never)]
 fn blend<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
-    brick: &Brick,
+    brick: Brick<'_>,
     square: &Window,
     hit: Hit,
     pair: u32,
 ) -> (bool, u32) {
     let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
-    let voxel = path.voxel(brick, walk.view.levels[brick.level as usize].side);
+    let voxel = path.voxel(brick, walk.view.levels[brick.record.level as usize].side);
     let full = walk.show([square.left, square.top], 1 << hit.bit, node, voxel);
     (full != 0, path.levels)
 }
@@ -347,7 +334,7 @@ fn blend<I: Isa, const DEEP: bool>(
 #[inline(never)]
 fn is_hit<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
-    brick: &Brick,
+    brick: Brick<'_>,
     square: &Window,
     hit: Hit,
     pair: u32,
@@ -358,7 +345,7 @@ fn is_hit<I: Isa, const DEEP: bool>(
 
 /// Puts a block's parts in order.
 #[inline(always)]
-fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, number: usize, octant: u8) {
+fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
     let block = brick
         .parts
         .part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
@@ -381,8 +368,8 @@ pub(super) struct Path {
 impl Path {
     /// The voxel, as a picture shows it.
     #[inline(never)]
-    pub(super) fn voxel(&self, brick: &Brick, side: i32) -> [i32; 4] {
-        let (mut min, mut side, mut level) = (brick.min, side, brick.level);
+    pub(super) fn voxel(&self, brick: Brick<'_>, side: i32) -> [i32; 4] {
+        let (mut min, mut side, mut level) = (brick.record.min, side, brick.record.level);
         let mut down = |octant: u32| {
             side /= 2;
             level += 1;
@@ -408,13 +395,13 @@ impl Path {
 #[inline(never)]
 pub(super) fn is_covered<I: Isa>(
     walk: &mut Walk<'_, I>,
-    brick: &Brick,
+    brick: Brick<'_>,
     square: &Window,
     bit: usize,
     path: &Path,
 ) -> bool {
     walk.counters.exact_samples += 1;
-    let [x, y, z, level] = path.voxel(brick, walk.view.levels[brick.level as usize].side);
+    let [x, y, z, level] = path.voxel(brick, walk.view.levels[brick.record.level as usize].side);
     let side = walk.view.levels[level as usize].side;
     let at = [
         square.left + (bit as i32 & 7),

@@ -22,7 +22,7 @@ const LARGEST: f32 = 30_000.0;
 
 /// Draws squares voxel by voxel.
 struct ByVoxels<'b> {
-    brick: &'b Brick,
+    brick: Brick<'b>,
     place: Place,
     /// Whether the brick is a solid.
     is_single: bool,
@@ -30,12 +30,12 @@ struct ByVoxels<'b> {
 
 /// Draws a brick voxel by voxel, or a solid.
 #[inline(always)]
-pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: &Brick, window: &Window) {
+pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
     let is_single = brick.parts.is_single();
-    let side = f64::from(walk.view.levels[brick.level as usize].side);
+    let side = f64::from(walk.view.levels[brick.record.level as usize].side);
     let place = Place::new(
         walk.view,
-        brick.centre,
+        brick.record.centre,
         if is_single { side } else { side / 4.0 },
     );
     walk.counters.bricks += u64::from(!is_single);
@@ -112,12 +112,13 @@ fn draw_square<I: Isa>(
         let reach = step_x
             .abs()
             .fma(size[0], step_y.abs().fma(size[1], first.abs()));
-        let (held, certain) = if largest.sub(reach).signs() & 7 == 0 {
-            isa.within(&values, most, sure)
+        let distances = isa.distances(&values);
+        let fit = largest.sub(reach).signs() & 7 == 0;
+        let held = if fit {
+            isa.below(&distances, most)
         } else {
-            (u64::MAX, 0)
-        };
-        let held = held & left;
+            u64::MAX
+        } & left;
         if held == 0 {
             continue;
         }
@@ -127,6 +128,7 @@ fn draw_square<I: Isa>(
             part: number as u32 ^ pair,
             levels: part.levels,
         };
+        let certain = if fit { isa.below(&distances, sure) } else { 0 };
         let mut covered = held & certain;
         let mut doubt = held & !certain;
         while doubt != 0 {
@@ -143,7 +145,7 @@ fn draw_square<I: Isa>(
         if covered != 0 {
             walk.counters.solids += 1;
             let voxel = if walk.pixels.wants_voxels() || walk.view.opacity_eye.is_some() {
-                path.voxel(brick, walk.view.levels[brick.level as usize].side)
+                path.voxel(brick, walk.view.levels[brick.record.level as usize].side)
             } else {
                 [0; 4]
             };

@@ -109,8 +109,8 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
         if is_near || record.centre[2] < level.large_depth || !walk.switches.bricks {
             draw_planes(walk, record, window, !is_near);
         } else {
-            let brick = Brick::new(record, Parts::of_solid(record.node));
-            isa.voxels(walk, &brick, window);
+            let parts = &Parts::of_solid(record.node);
+            isa.voxels(walk, Brick { record, parts }, window);
         }
         return;
     }
@@ -121,7 +121,8 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
     if record.centre[2] > level.fine_depth && is_deep(view, record, least_depth) {
         let parts = Parts::of(isa, walk.graph, record.node, false, 0);
         if parts.are_even() {
-            isa.deep_brick(walk, &Brick::new(record, parts), window);
+            let parts = &parts;
+            isa.deep_brick(walk, Brick { record, parts }, window);
             return;
         }
     }
@@ -134,11 +135,12 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
         let parts = Parts::of(isa, walk.graph, record.node, is_last, detail(view, record));
         // What is blended is taken once, so no voxel may be of several parts.
         if parts.are_even() || view.opacity_eye.is_none() {
-            let brick = Brick::new(record, parts);
+            let parts = &parts;
+            let brick = Brick { record, parts };
             if record.centre[2] < level.coarse_depth {
-                isa.voxels(walk, &brick, window);
+                isa.voxels(walk, brick, window);
             } else {
-                isa.brick(walk, &brick, window);
+                isa.brick(walk, brick, window);
             }
             return;
         }

@@ -90,15 +90,17 @@ const BEYOND: f64 = 40_000.0;
 /// An instruction set.
 pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     type Four: Four;
+    /// A number of 16 bits for each sample of a square.
+    type Distances: Copy;
 
     /// [`walk::turn`] compiled for this set.
     fn walk(self, walk: &mut Walk<'_, Self>, record: &Record);
     /// [`bricks::draw`] compiled for this set.
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window);
+    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
     /// [`bricks::draw_deep`] compiled for this set.
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window);
+    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
     /// [`voxels::draw`] compiled for this set.
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window);
+    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
 
     fn four(self, values: &[f32; 4]) -> Self::Four;
     fn splat(self, value: f32) -> Self::Four;
@@ -107,22 +109,25 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// clip vector is given, in a band. A child's window holds all samples in its box.
     fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows;
 
-    /// By sample of a square's first `rows` rows, which of the `wanted` parts the tables name, in
-    /// `found`; returns the samples that have any, eight bits a row. `cells`: the three functions'
+    /// By open sample of a square, which of the `wanted` parts the tables name, in
+    /// `found`; returns the open samples that have any, eight bits a row. `cells`: the three functions'
     /// values in cells at the first sample, and what a column and a row add.
     fn parts_of_samples(
         self,
         tables: [&Row; 3],
         cells: &[Self::Four; 3],
         wanted: u64,
-        rows: usize,
+        open: u64,
         found: &mut Found,
     ) -> u64;
 
-    /// The samples of a square at which all three functions differ from 0 by less than `most`, eight
-    /// bits a row; and those of them where by less than `sure`. Values, at the first sample and by
-    /// column and row, are rounded to whole numbers; where they leave 16 bits the answer is of no use.
-    fn within(self, values: &[Self::Four; 3], most: i16, sure: i16) -> (u64, u64);
+    /// How far the three functions are from 0 at most, by sample of a square: values, at the first
+    /// sample and by column and row, are rounded to whole numbers; where they leave 16 bits the
+    /// answer is of no use.
+    fn distances(self, values: &[Self::Four; 3]) -> Self::Distances;
+
+    /// The samples at which distances are below a limit, eight bits a row.
+    fn below(self, distances: &Self::Distances, limit: i16) -> u64;
 
     /// [`super::parts::turned_parts`].
     fn turned_parts(self, parts: u64, octant: u8) -> u64;

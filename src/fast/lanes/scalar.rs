@@ -81,17 +81,18 @@ impl Four for [f32; 4] {
 
 impl Isa for Scalar {
     type Four = [f32; 4];
+    type Distances = [i32; 64];
 
     fn walk(self, walk: &mut Walk<'_, Self>, record: &Record) {
         walk::turn(walk, record);
     }
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         bricks::draw(walk, brick, window);
     }
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         bricks::draw_deep(walk, brick, window);
     }
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         voxels::draw(walk, brick, window);
     }
 
@@ -142,11 +143,11 @@ impl Isa for Scalar {
         tables: [&Row; 3],
         cells: &[[f32; 4]; 3],
         wanted: u64,
-        rows: usize,
+        open: u64,
         found: &mut Found,
     ) -> u64 {
         let mut any = 0;
-        for sample in 0..8 * rows.min(8) {
+        for sample in (0..64).filter(|sample| open >> sample & 1 != 0) {
             let (x, y) = ((sample & 7) as f32, (sample >> 3) as f32);
             let [first, step_x, step_y] = *cells;
             let at = step_x.fma([x; 4], step_y.fma([y; 4], first)).cells();
@@ -157,16 +158,20 @@ impl Isa for Scalar {
         any
     }
 
-    fn within(self, values: &[[f32; 4]; 3], most: i16, sure: i16) -> (u64, u64) {
+    fn distances(self, values: &[[f32; 4]; 3]) -> [i32; 64] {
         let [first, step_x, step_y] = values.map(|v| v.map(|c| c.round() as i32));
-        let (mut held, mut certain) = (0, 0);
-        for sample in 0..64 {
-            let at = |j: usize| first[j] + step_x[j] * (sample & 7) + step_y[j] * (sample >> 3);
-            let worst = at(0).abs().max(at(1).abs()).max(at(2).abs());
-            held |= u64::from(worst < i32::from(most)) << sample;
-            certain |= u64::from(worst < i32::from(sure)) << sample;
-        }
-        (held, certain)
+        std::array::from_fn(|sample| {
+            let (x, y) = (sample as i32 & 7, sample as i32 >> 3);
+            let at = |j: usize| (first[j] + step_x[j] * x + step_y[j] * y).abs();
+            at(0).max(at(1)).max(at(2))
+        })
+    }
+
+    fn below(self, distances: &[i32; 64], limit: i16) -> u64 {
+        let bits = distances.iter().enumerate();
+        bits.fold(0, |bits, (sample, &distance)| {
+            bits | u64::from(distance < i32::from(limit)) << sample
+        })
     }
 
     #[inline(always)]

@@ -138,28 +138,29 @@ mod compiled {
         };
     }
     compiled!(walk(record: &Record) = walk::turn);
-    compiled!(brick(brick: &bricks::Brick, window: &Window) = bricks::draw);
-    compiled!(deep_brick(brick: &bricks::Brick, window: &Window) = bricks::draw_deep);
-    compiled!(voxels(brick: &bricks::Brick, window: &Window) = voxels::draw);
+    compiled!(brick(brick: bricks::Brick<'_>, window: &Window) = bricks::draw);
+    compiled!(deep_brick(brick: bricks::Brick<'_>, window: &Window) = bricks::draw_deep);
+    compiled!(voxels(brick: bricks::Brick<'_>, window: &Window) = voxels::draw);
 }
 
 impl Isa for Avx2 {
     type Four = Floats;
+    type Distances = [__m256i; 4];
 
     #[inline(always)]
     fn walk(self, walk: &mut Walk<'_, Self>, record: &Record) {
         avx!(compiled::walk(walk, record));
     }
     #[inline(always)]
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         avx!(compiled::brick(walk, brick, window));
     }
     #[inline(always)]
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         avx!(compiled::deep_brick(walk, brick, window));
     }
     #[inline(always)]
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: &bricks::Brick, window: &Window) {
+    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
         avx!(compiled::voxels(walk, brick, window));
     }
 
@@ -253,7 +254,7 @@ impl Isa for Avx2 {
         tables: [&Row; 3],
         cells: &[Floats; 3],
         wanted: u64,
-        rows: usize,
+        open: u64,
         found: &mut Found,
     ) -> u64 {
         let mut any = 0u64;
@@ -275,7 +276,20 @@ impl Isa for Avx2 {
                 broadcast::<1>(step_y),
                 broadcast::<2>(step_y),
             ];
+            let rows = 8 - open.leading_zeros() as usize / 8;
+            let mut left = open;
             for row in found.0.chunks_exact_mut(8).take(rows) {
+                let is_open = left & 0xff != 0;
+                left >>= 8;
+                if !is_open {
+                    at = [
+                        _mm256_add_ps(at[0], step[0]),
+                        _mm256_add_ps(at[1], step[1]),
+                        _mm256_add_ps(at[2], step[2]),
+                    ];
+                    any <<= 8;
+                    continue;
+                }
                 let mut low = wanted;
                 let mut high = wanted;
                 for j in 0..3 {
@@ -302,11 +316,12 @@ impl Isa for Avx2 {
                 any = any << 8 | (low | high << 4) ^ 0xff;
             }
         }
-        (any << (8 * (8 - rows.clamp(1, 8)))).swap_bytes()
+        let missing = open.leading_zeros() / 8 * 8;
+        (any << (missing & 63)).swap_bytes() & open
     }
 
     #[inline(always)]
-    fn within(self, values: &[Floats; 3], most: i16, sure: i16) -> (u64, u64) {
+    fn distances(self, values: &[Floats; 3]) -> [__m256i; 4] {
         avx!({
             let [first, step_x, step_y] = *values;
             let first = _mm_cvtps_epi32(first.0);
@@ -340,21 +355,25 @@ impl Isa for Avx2 {
             function!(0);
             function!(2);
             function!(4);
-            macro_rules! below {
-                ($limit:expr, $i:literal) => {{
-                    let limit = _mm256_set1_epi16($limit);
-                    let upper = _mm256_cmpgt_epi16(limit, worst[$i]);
-                    let lower = _mm256_cmpgt_epi16(limit, worst[$i + 1]);
+            worst
+        })
+    }
+
+    #[inline(always)]
+    fn below(self, distances: &[__m256i; 4], limit: i16) -> u64 {
+        avx!({
+            let limit = _mm256_set1_epi16(limit);
+            macro_rules! four_rows {
+                ($i:literal) => {{
+                    let upper = _mm256_cmpgt_epi16(limit, distances[$i]);
+                    let lower = _mm256_cmpgt_epi16(limit, distances[$i + 1]);
                     // Rows 0 and 2, 1 and 3: packing goes by halves.
                     let rows = _mm256_packs_epi16(upper, lower);
                     let rows = _mm256_permute4x64_epi64::<0b11_01_10_00>(rows);
                     _mm256_movemask_epi8(rows) as u32 as u64
                 }};
             }
-            (
-                below!(most, 0) | below!(most, 2) << 32,
-                below!(sure, 0) | below!(sure, 2) << 32,
-            )
+            four_rows!(0) | four_rows!(2) << 32
         })
     }
 
