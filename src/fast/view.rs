@@ -9,6 +9,9 @@ use crate::project::{Coverage, FrameSetup, OpacityEye};
 /// Positions, times sixteen, stay below this: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
 
+/// Most of the image root's width over the focal length: fields of view up to about 179.98
+/// degrees. Beyond, the rounding of slopes is more than the engine's margins are for.
+const MOST_WIDTH: f64 = (1 << 13) as f64;
 /// Size, in samples, from which on voxels are drawn one by one
 /// (`voxels.rs`) and not sample by sample (`bricks.rs`). Measured.
 const COARSE_SAMPLES: f64 = 3.0;
@@ -76,7 +79,7 @@ pub(super) struct View {
 
 impl View {
     /// The constants of a frame, or `None` where this engine does not draw
-    /// it: rules other than `exact` and `alpha`, numbers too large, words that may overflow.
+    /// it: rules other than `exact` and `alpha`, numbers too large, views too wide, words that may overflow.
     pub(super) fn new(setup: &FrameSetup) -> Option<Self> {
         let reach = setup.position_reach()?;
         if !setup.options.coverage.draws_outlines()
@@ -103,13 +106,16 @@ impl View {
             let [x, y, z] = [0, 1, 2].map(|k| direction[k][i] as f32);
             [x, y, z, 0.0]
         };
-        let focal = {
+        let focal: f64 = {
             let squares = edge.map(|e| {
                 let x = e[0] - middle[0] * e[2];
                 x * x
             });
             libm::sqrt(squares.iter().sum())
         };
+        if root_samples > MOST_WIDTH * focal {
+            return None;
+        }
         let levels = (0..=setup.depth)
             .map(|level| level_constants(setup, &clip, focal, level))
             .collect();

@@ -155,3 +155,49 @@ fn fast_equals_the_oracle_at_every_sample() {
     assert!(drawn > compared / 10, "frames that show nothing");
     assert!(exact > 0, "ties were never met");
 }
+
+/// One sample whose ray runs along an axis, between four parts: all of its numbers are 0.
+#[test]
+fn a_ray_along_the_line_between_four_parts() {
+    for graph in [
+        solid(2),
+        solid(4),
+        solid(5),
+        octree(4, &|[x, y, z]| (x ^ y ^ z) & 1 == 0),
+    ] {
+        let side = f64::from(1u32 << graph.depth);
+        for (axis, at) in (0..3).flat_map(|axis| [0.25, 0.5, 0.75].map(|at| (axis, at))) {
+            let mut eye = DVec3::splat(side * at);
+            eye[axis] = -side;
+            let mut target = eye;
+            target[axis] = 0.0;
+            let camera = Camera {
+                eye,
+                target,
+                up: if axis == 2 { DVec3::Y } else { DVec3::Z },
+                fov_degrees: 40.0,
+                width: 1,
+                height: 1,
+            };
+            let options = SetupOptions {
+                lod_px: 0.0,
+                ..SetupOptions::default()
+            };
+            let setup =
+                FrameSetup::new(&camera, &graph.placement, graph.depth, &options).expect("a frame");
+            let mut truth = Frame::new(1, 1, false);
+            Rays.render(&graph.view(), &setup, &mut truth)
+                .expect("never fails");
+            let mut frame = truth.clone();
+            Fast::new(FastOptions::default(), Box::new(Machine::default()))
+                .render(&graph.view(), &setup, &mut frame)
+                .expect("no overflow");
+            assert!(
+                truth == frame,
+                "axis {axis} at {at}: {:?} {:?}",
+                frame.voxel,
+                truth.voxel
+            );
+        }
+    }
+}

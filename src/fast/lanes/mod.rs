@@ -52,7 +52,7 @@ pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
 
 /// The windows of a node's eight children, by octant, cut to the band.
 #[derive(Debug, Clone, Copy)]
-#[repr(align(32))]
+#[repr(C, align(32))]
 pub(super) struct Windows {
     /// Left, top, right and bottom.
     pub(super) sides: [[i32; 8]; 4],
@@ -144,5 +144,5 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
 
 /// Parts by sample of a square.
 #[derive(Debug)]
-#[repr(align(32))]
+#[repr(C, align(32))]
 pub(super) struct Found(pub(super) [u64; 64]);
