@@ -13,7 +13,7 @@
 use super::canvas::Window;
 use super::lanes::Isa;
 use super::lines::{Heading, Lines, Meeting, OFFSETS, Place, by_octant};
-use super::parts::Parts;
+use super::parts::{Part, Parts};
 use super::strips::STRIPS;
 use super::walk::{Record, Walk, voxel_at};
 
@@ -49,9 +49,9 @@ pub(super) trait DrawSquare<I: Isa> {
 }
 
 /// Draws squares of a brick of two levels, or of four (`DEEP`).
-struct BySamples<'b, const DEEP: bool> {
+struct BySamples<'b, I: Isa, const DEEP: bool> {
     brick: Brick<'b>,
-    place: Place,
+    place: Place<I>,
 }
 
 /// Draws a brick of two levels.
@@ -73,15 +73,38 @@ fn draw_levels<I: Isa, const DEEP: bool>(
     window: &Window,
 ) {
     walk.counters.bricks += 1;
+    let isa = walk.isa;
+    let level = &walk.view.levels[brick.record.level as usize];
+    // Parts of the brick, and of what lines are counted in.
+    let (parts, units) = (4.0, if DEEP { 16.0 } else { 4.0 });
+    let place = Place::new(
+        isa,
+        walk.view,
+        brick.record.centre,
+        units * level.inverse_side,
+    );
+    let side = [f64::from(level.side) / parts, parts / units];
+    let window = if window.right - window.left > 7 || window.bottom - window.top > 7 {
+        place.window(
+            isa,
+            walk.view,
+            level.half_depth,
+            side,
+            brick.parts.exist,
+            window,
+        )
+    } else {
+        *window
+    };
+    if window.is_empty() {
+        return;
+    }
     if DEEP {
         brick.parts.prefetch_below(walk.isa, walk.graph);
     } else {
         brick.parts.prefetch(walk.isa, walk.graph);
     }
-    let parts_across = if DEEP { 16.0 } else { 4.0 };
-    let side = f64::from(walk.view.levels[brick.record.level as usize].side) / parts_across;
-    let place = Place::new(walk.view, brick.record.centre, side);
-    each_square(walk, window, &BySamples::<DEEP> { brick, place });
+    each_square(walk, &window, &BySamples::<I, DEEP> { brick, place });
 }
 
 /// Takes a window apart into squares with open samples, and those into samples
@@ -142,7 +165,7 @@ fn next_group(groups: &mut [u64; 8]) -> (u64, u8) {
     (0, 0)
 }
 
-impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, DEEP> {
+impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, I, DEEP> {
     #[inline(always)]
     fn draw(
         &self,
@@ -161,7 +184,7 @@ impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, DEEP> {
 fn draw_samples<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
     brick: Brick<'_>,
-    place: &Place,
+    place: &Place<I>,
     square: &Window,
     open: u64,
     heading: &Heading<I>,
@@ -180,6 +203,28 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let mut drawn = 0u64;
     let mut count = 0;
     let mut left = any;
+    if !DEEP && !walk.blends {
+        let mut rest = 0u64;
+        while left != 0 {
+            let bit = left.trailing_zeros() as usize & 63;
+            left &= left - 1;
+            let line = lines.line(isa, SAMPLES[bit]);
+            let parts = walk.found.0[bit];
+            let part = parts.trailing_zeros() as usize & 63;
+            let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
+            walk.hits[count & 63] = Hit {
+                bit: bit as u8,
+                block: 0,
+                part: (part as u32 ^ pair) as u8,
+            };
+            count += usize::from(is_met);
+            drawn |= u64::from(is_met) << bit;
+            let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
+            walk.found.0[bit] = parts;
+            rest |= u64::from((parts != 0) & !is_met) << bit;
+        }
+        left = rest;
+    }
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
@@ -234,6 +279,11 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                 }
                 drawn |= 1 << bit;
                 walk.hits[count & 63] = hit;
+                if DEEP {
+                    let node = hit.part::<I, DEEP>(walk, brick).node;
+                    isa.prefetch(walk.pixels.color, node as usize);
+                    walk.nodes[count & 63] = node;
+                }
                 count += 1;
                 break 'sample;
             }
@@ -258,33 +308,37 @@ pub(super) struct Hit {
 }
 
 impl Hit {
-    /// The node, and where in the brick it is.
+    /// The part.
     #[inline(always)]
+    fn part<I: Isa, const DEEP: bool>(self, walk: &Walk<'_, I>, brick: Brick<'_>) -> Part {
+        let parts = if DEEP {
+            &walk.blocks.parts[usize::from(self.block & 63)]
+        } else {
+            brick.parts
+        };
+        parts.part(walk.graph, u32::from(self.part))
+    }
+
+    /// The node, and where in the brick it is.
+    #[inline(never)]
     fn path<I: Isa, const DEEP: bool>(
         self,
         walk: &Walk<'_, I>,
         brick: Brick<'_>,
         pair: u32,
     ) -> (u32, Path) {
-        let at = u32::from(self.part);
-        let (part, block) = if DEEP {
-            let number = usize::from(self.block & 63);
-            let part = walk.blocks.parts[number].part(walk.graph, at);
-            (part, Some(number as u32 ^ pair))
-        } else {
-            (brick.parts.part(walk.graph, at), None)
-        };
+        let part = self.part::<I, DEEP>(walk, brick);
         let path = Path {
-            block,
-            part: at,
+            block: DEEP.then(|| u32::from(self.block) ^ pair),
+            part: u32::from(self.part),
             levels: part.levels,
         };
         (part.node, path)
     }
 }
 
-/// Shows what was found. Memory is read for all samples before any is written,
-/// so that waiting for one does not hold up the next.
+/// Shows what was found. Memory was asked for before, for all samples, so that waiting for one does not
+/// hold up the next.
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
@@ -294,22 +348,26 @@ fn show_hits<I: Isa, const DEEP: bool>(
     pair: u32,
 ) {
     let first = walk.pixels.at(square.left, square.top);
-    let mut nodes = [0; 64];
-    for i in 0..count.min(64) {
+    let count = count.min(64);
+    for i in 0..count {
         let hit = walk.hits[i];
-        let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
-        nodes[i] = node;
-        if walk.pixels.wants_voxels() {
-            let side = walk.view.levels[brick.record.level as usize].side;
-            let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
-            walk.pixels.voxel[at] = path.voxel(brick, side);
-        }
-    }
-    for i in 0..count.min(64) {
-        let at = first + walk.places[usize::from(walk.hits[i].bit & 63)] as usize;
-        let word = walk.pixels.word(nodes[i]);
+        let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
+        let node = if DEEP {
+            walk.nodes[i]
+        } else {
+            hit.part::<I, DEEP>(walk, brick).node
+        };
+        let word = walk.pixels.word(node);
         if let Some(shown) = walk.pixels.shown.get_mut(at) {
             *shown = word;
+        }
+    }
+    if walk.pixels.wants_voxels() {
+        let side = walk.view.levels[brick.record.level as usize].side;
+        for i in 0..count {
+            let hit = walk.hits[i];
+            let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
+            walk.pixels.voxel[at] = hit.path::<I, DEEP>(walk, brick, pair).1.voxel(brick, side);
         }
     }
 }
@@ -349,10 +407,10 @@ fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, number: usize, octa
     let block = brick
         .parts
         .part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
-    let parts = Parts::of(walk.isa, walk.graph, block.node, false, 0);
+    let parts = &mut walk.blocks.parts[number & 63];
+    parts.read(walk.isa, walk.graph, block.node, false, 0);
     parts.prefetch(walk.isa, walk.graph);
-    walk.blocks.exist[number] = walk.isa.turned_parts(parts.exist, octant);
-    walk.blocks.parts[number] = parts;
+    walk.blocks.exist[number & 63] = walk.isa.turned_parts(parts.exist, octant);
 }
 
 /// Where in a brick a voxel is.

@@ -257,12 +257,10 @@ impl<'p> Fill<'p> {
     /// Marks samples of a tile as drawn, which are open.
     #[inline(always)]
     fn mark_at(&mut self, at: usize, x: i32, y: i32, samples: u64) {
-        if samples == 0 {
-            return;
-        }
         if let Some(tile) = self.part.tiles.get_mut(at) {
             *tile &= !samples;
-            if *tile == 0 {
+            // Without a branch for tiles of which nothing is drawn: those cannot be foretold.
+            if (*tile == 0) & (samples != 0) {
                 let (block, bit) = self.block_of(x, y);
                 self.part.blocks[block] &= !bit;
             }

@@ -16,7 +16,7 @@
 
 use super::canvas::Window;
 use super::exact::Exact;
-use super::lanes::{Four, Isa};
+use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
 use super::view::View;
 
@@ -30,35 +30,84 @@ const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
 /// of numbers up to 2^13 times as large (`View::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
+/// Rounding of [`Place::window`], of what the window is made of: 2^-21 at most.
+const WINDOW_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 /// Parts' centres are at most this many sides of a part from the node's.
 const FARTHEST: f32 = 8.0;
 
 /// A node's centre and edges in the picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct Place<I: Isa> {
     /// Column and row of its centre.
     centre: [f64; 2],
+    /// 1 / its depth.
+    inverse: f64,
     /// What a step of a column, and of a row, adds to the moments, by axis.
-    step: [[f32; 4]; 2],
+    step: [I::Four; 2],
 }
 
-impl Place {
-    /// The place of a node with this clip vector, whose parts have this side in finest voxels.
+impl<I: Isa> Place<I> {
+    /// The place of a node with this clip vector; `inverse_side`: 1 over its parts' side in finest voxels.
     #[inline(always)]
-    pub(super) fn new(view: &View, [x, y, w]: [f64; 3], side: f64) -> Self {
+    pub(super) fn new(isa: I, view: &View, [x, y, w]: [f64; 3], inverse_side: f64) -> Self {
         let inverse = 1.0 / w;
-        let centre = [
-            x * view.root_samples * inverse - 0.5,
-            y * view.root_samples * inverse - 0.5,
-        ];
-        let unit = view.scale * w / side;
-        let mut step = [[0.0; 4]; 2];
-        for j in 0..3 {
-            let [x, y, w] = view.edge[j];
-            step[0][j] = ((centre[1] * w - y) * unit) as f32;
-            step[1][j] = ((x - centre[0] * w) * unit) as f32;
+        let to_samples = view.root_samples * inverse;
+        let centre = [x * to_samples - 0.5, y * to_samples - 0.5];
+        let unit = view.scale * w * inverse_side;
+        Self {
+            centre,
+            inverse,
+            step: isa.steps(&view.edge_columns, centre, unit),
         }
-        Self { centre, step }
+    }
+
+    /// The part of a window in which some of a node's 64 parts may be seen: what is about the box around
+    /// them. `side`: such a part's, in finest voxels; `unit`: the side of [`Place::new`]'s parts, in such sides. The
+    /// node lies before the eye.
+    ///
+    /// A point that lies `t` from the node's centre is seen `t . step` over its depth from
+    /// there, but for constants; the depth is the centre's, or differs by `half_depth` at most.
+    #[inline(always)]
+    pub(super) fn window(
+        &self,
+        isa: I,
+        view: &View,
+        half_depth: f64,
+        [side, unit]: [f64; 2],
+        parts: u64,
+        window: &Window,
+    ) -> Window {
+        let [middle, half] = isa.extent(parts);
+        let [down, across] = self.step;
+        let scale = (side * side * unit * view.inverse_scale * self.inverse * self.inverse) as f32;
+        let share = (half_depth * self.inverse) as f32;
+        let spread = isa.splat(share).div(isa.splat(1.0 - share));
+        // Left and top with their sign turned, right and bottom: outward is upward.
+        let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
+        let [x, y] = self.centre.map(|c| c as f32);
+        let centre = isa.four(&[x, y, x, y]).flip(outward);
+        let along = across.mul(middle).sums(down.mul(middle));
+        let about = across.abs().mul(half).sums(down.abs().mul(half));
+        let along = along.mul(isa.four(&[-scale, scale, scale, -scale]));
+        let about = about.mul(isa.splat(scale.abs()));
+        let reach = along.add(about);
+        let rounding = isa.splat(WINDOW_ROUNDING);
+        let margin = centre
+            .abs()
+            .add(about)
+            .fma(rounding, isa.splat(WINDOW_MARGIN));
+        let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
+        let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
+        let bounds = isa.four(&bounds).flip(outward);
+        // What is not a number leaves the window as it is.
+        let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
+        let [left, top, right, bottom] = end.floor().flip(outward).whole();
+        Window {
+            left,
+            top,
+            right,
+            bottom,
+        }
     }
 }
 
@@ -229,7 +278,7 @@ impl<I: Isa> Lines<I> {
     pub(super) fn new(
         isa: I,
         view: &View,
-        place: &Place,
+        place: &Place<I>,
         heading: &Heading<I>,
         square: &Window,
         octant: u8,
@@ -253,8 +302,8 @@ impl<I: Isa> Lines<I> {
         } else {
             spread
         };
-        let step_x = isa.four(&place.step[0]).flip(pair);
-        let step_y = isa.four(&place.step[1]).flip(pair);
+        let step_x = place.step[0].flip(pair);
+        let step_y = place.step[1].flip(pair);
         let from = [
             (f64::from(square.left) - place.centre[0]) as f32,
             (f64::from(square.top) - place.centre[1]) as f32,
@@ -284,10 +333,10 @@ impl<I: Isa> Lines<I> {
         let mut most = MOST_ERROR[0];
         if isa.splat(most).sub(error).signs() & 7 != 0 {
             // Values are not so good here.
-            most = MOST_ERROR[1];
+            most = MOST_ERROR[MOST_ERROR.len() - 1];
             for (j, error) in error.values().into_iter().enumerate().take(3) {
-                if error <= MOST_ERROR[1] {
-                    tables[j] = Strips::table(j, shares[j], 1);
+                if let Some(class) = MOST_ERROR.iter().position(|&most| error <= most) {
+                    tables[j] = Strips::table(j, shares[j], class);
                 } else {
                     tables[j] = Strips::BLIND;
                     sees[j] = 0.0;
@@ -365,13 +414,21 @@ impl<I: Isa> Lines<I> {
         line.moment.fma(unit, isa.splat(MIDDLE)).cells()
     }
 
+    /// Whether a line certainly meets the part of side 1 whose centre lies at an offset, and whether it may.
+    #[inline(always)]
+    pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
+        let from_centre = line.moment.sub(line.shift(isa, offset));
+        let outside = from_centre.abs().sub(line.half);
+        [
+            outside.add(self.doubt).signs() & 7 == 7,
+            outside.sub(self.doubt).signs() & 7 == 7,
+        ]
+    }
+
     /// Whether a line meets the part of side 1 whose centre lies at an offset.
     #[inline(always)]
     pub(super) fn meets(&self, isa: I, line: &Line<I>, offset: &Offset) -> Meeting {
-        let from_centre = line.moment.sub(line.shift(isa, offset));
-        let outside = from_centre.abs().sub(line.half);
-        let is_inside = outside.add(self.doubt).signs() & 7 == 7;
-        let may_be_inside = outside.sub(self.doubt).signs() & 7 == 7;
+        let [is_inside, may_be_inside] = self.are_inside(isa, line, offset);
         if is_inside != may_be_inside {
             Meeting::Doubt
         } else if is_inside {
@@ -496,7 +553,7 @@ mod tests {
                     continue;
                 }
                 let side = side / 4.0;
-                let place = Place::new(&view, centre, side);
+                let place = Place::new(isa, &view, centre, 1.0 / side);
                 let [left, top] = [0, 1].map(|i| {
                     let spread = (next() - 0.5) * 16.0;
                     (place.centre[i] + spread).clamp(0.0, 280.0) as i32

@@ -359,6 +359,7 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
         counters: Counters::default(),
         found: lanes::Found([0; 64]),
         hits: [bricks::Hit::default(); 64],
+        nodes: [0; 64],
         blocks: &mut blocks,
     };
     walk::start(&mut walk);

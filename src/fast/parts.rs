@@ -68,6 +68,21 @@ impl Parts {
         is_last: bool,
         detail: u8,
     ) -> Self {
+        let mut parts = Self::default();
+        parts.read(isa, graph, node, is_last, detail);
+        parts
+    }
+
+    /// [`Parts::of`], in its place: to move parts there takes longer than to make them.
+    #[inline(always)]
+    pub(super) fn read<I: Isa>(
+        &mut self,
+        isa: I,
+        graph: &GraphView<'_>,
+        node: u32,
+        is_last: bool,
+        detail: u8,
+    ) {
         let at = node as usize;
         if let (Some(&mask), Some(&first)) = (graph.mask.get(at), graph.first.get(at))
             && mask != 0
@@ -83,27 +98,27 @@ impl Parts {
             // A byte of zeros among those of children: a child without children.
             let filled = exist | !bytes;
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
-                return Self {
-                    exist,
-                    first,
-                    node,
-                    mask,
-                    solid: 0,
-                    kind: Kind::Plain,
-                };
+                self.exist = exist;
+                self.first = first;
+                self.node = node;
+                self.mask = mask;
+                self.solid = 0;
+                self.kind = Kind::Plain;
+                return;
             }
         }
-        Self::looked_up(graph, node, is_last, detail)
+        self.look_up_all(graph, node, is_last, detail);
     }
 
-    /// [`Parts::of`], child by child.
+    /// [`Parts::read`], child by child.
     #[inline(never)]
-    fn looked_up(graph: &GraphView<'_>, node: u32, is_last: bool, detail: u8) -> Self {
+    fn look_up_all(&mut self, graph: &GraphView<'_>, node: u32, is_last: bool, detail: u8) {
         let mask = graph.mask(node);
         if mask == 0 {
-            return Self::of_solid(node);
+            *self = Self::of_solid(node);
+            return;
         }
-        let mut parts = Self {
+        *self = Self {
             first: graph.first.get(node as usize).copied().unwrap_or(0),
             node,
             mask,
@@ -116,12 +131,11 @@ impl Parts {
             };
             let mut below = graph.mask(child);
             if is_last || detail >> octant & 1 != 0 || below == 0 {
-                parts.solid |= 1 << octant;
+                self.solid |= 1 << octant;
                 below = u8::MAX;
             }
-            parts.exist |= u64::from(below) << (8 * octant);
+            self.exist |= u64::from(below) << (8 * octant);
         }
-        parts
     }
 
     /// Whether each part is a node of its own.
@@ -184,6 +198,17 @@ impl Parts {
     }
 }
 
+/// Asks the memory for what grandchildren are made of, where nodes lie level by level.
+#[inline(always)]
+pub(super) fn prefetch_below<I: Isa>(isa: I, graph: &GraphView<'_>, child: u32) {
+    let first = graph.first.get(child as usize).copied().unwrap_or(0) as usize;
+    isa.prefetch(graph.mask, first);
+    isa.prefetch(graph.mask, first + 63);
+    for sixteen in 0..5 {
+        isa.prefetch(graph.first, first + 16 * sixteen);
+    }
+}
+
 /// By octant: the bits of a child mask turned, so that bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
     let mut table = [[0u8; 256]; 8];
@@ -235,6 +260,40 @@ pub(super) static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
             i += 1;
         }
         octant += 1;
+    }
+    table
+};
+
+/// By axis, the parts of the four slabs of a node.
+pub(super) static SLABS: [[u64; 4]; 3] = {
+    let mut table = [[0; 4]; 3];
+    let mut part = 0;
+    while part < 64 {
+        let mut axis = 0;
+        while axis < 3 {
+            table[axis][super::strips::along(part, axis)] |= 1 << part;
+            axis += 1;
+        }
+        part += 1;
+    }
+    table
+};
+
+/// By axis and by which of its four slabs are filled: the middle of those from the first to the last,
+/// from the node's centre, and half their extent, in sides of a slab; in the axis' lane.
+pub(super) static EXTENTS: [[[[f32; 4]; 2]; 16]; 3] = {
+    let mut table = [[[[0.0; 4]; 2]; 16]; 3];
+    let mut slabs = 1u32;
+    while slabs < 16 {
+        let first = slabs.trailing_zeros() as f32;
+        let end = 32.0 - slabs.leading_zeros() as f32;
+        let mut axis = 0;
+        while axis < 3 {
+            table[axis][slabs as usize][0][axis] = (first + end) / 2.0 - 2.0;
+            table[axis][slabs as usize][1][axis] = (end - first) / 2.0;
+            axis += 1;
+        }
+        slabs += 1;
     }
     table
 };

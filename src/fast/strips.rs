@@ -40,13 +40,19 @@ pub(super) const CELLS: usize = 128;
 /// The cell of a line through the node's centre.
 pub(super) const MIDDLE: f32 = 64.0;
 
+/// Classes of tables.
+const CLASSES: usize = 3;
 /// Margins that there are tables for, in widths.
-const MARGINS: [f32; 2] = [1.0 / 16.0, 1.0 / 8.0];
+const MARGINS: [f32; CLASSES] = [1.0 / 32.0, 1.0 / 16.0, 1.0 / 8.0];
 /// Of a margin, what the rounding of the share and of the cell's number needs:
 /// at most `3 / 2 SHARE_STEPS`, and 1/512.
 const ROUNDING: f32 = 1.5 / SHARE_STEPS + 1.0 / 512.0;
 /// By how many widths values may be wrong, for each margin.
-pub(super) const MOST_ERROR: [f32; 2] = [MARGINS[0] - ROUNDING, MARGINS[1] - ROUNDING];
+pub(super) const MOST_ERROR: [f32; CLASSES] = [
+    MARGINS[0] - ROUNDING,
+    MARGINS[1] - ROUNDING,
+    MARGINS[2] - ROUNDING,
+];
 
 /// Tables of one margin.
 const PER_MARGIN: usize = 3 * SHARES;

@@ -37,6 +37,8 @@ pub(super) struct Level {
     pub(super) lod_depth: f64,
     /// A node's side, finest voxels.
     pub(super) side: i32,
+    /// 1 / the side: a power of two.
+    pub(super) inverse_side: f64,
     /// Depth up to which a node's parts, a quarter of its side, are coarse ([`COARSE_SAMPLES`]).
     pub(super) coarse_depth: f64,
     /// Depth from which on parts of a sixteenth of its side are fine ([`FINE_SAMPLES`]).
@@ -67,10 +69,14 @@ pub(super) struct View {
     pub(super) direction: [[f64; 3]; 3],
     /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
+    /// [`View::edge`] by coordinate, then by axis.
+    pub(super) edge_columns: [[f64; 4]; 3],
     /// [`View::edge`], rounded.
     pub(super) edge_lanes: [[f32; 3]; 3],
     /// What a product of two edges is scaled by for [`View::direction`].
     pub(super) scale: f64,
+    /// 1 / the scale.
+    pub(super) inverse_scale: f64,
     /// The eye, finest voxels, rounded down.
     pub(super) eye_floor: [i64; 3],
     /// Under the rule that blends.
@@ -133,8 +139,10 @@ impl View {
             edge,
             direction,
             direction_lanes: [column(0), column(1), column(2)],
+            edge_columns: [0, 1, 2].map(|c| [edge[0][c], edge[1][c], edge[2][c], 0.0]),
             edge_lanes: edge.map(|e| e.map(|c| c as f32)),
             scale,
+            inverse_scale: 1.0 / scale,
             eye_floor: setup.eye_floor.map(|c| c.clamp(-1, far + 1)),
             opacity_eye: (setup.options.coverage == Coverage::Alpha).then(|| setup.opacity_eye()),
         })
@@ -189,6 +197,7 @@ fn level_constants(setup: &FrameSetup, clip: &[[f64; 3]; 3], focal: f64, level: 
             w => w as f64,
         },
         side: 1i32 << (setup.depth - level),
+        inverse_side: 1.0 / side,
         coarse_depth: focal * side / 4.0 / COARSE_SAMPLES,
         fine_depth: focal * side / 16.0 / FINE_SAMPLES,
         tiny_depth: focal * side / TINY_SAMPLES,

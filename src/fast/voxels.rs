@@ -21,9 +21,9 @@ const ROUNDING: f32 = 8.5;
 const LARGEST: f32 = 30_000.0;
 
 /// Draws squares voxel by voxel.
-struct ByVoxels<'b> {
+struct ByVoxels<'b, I: Isa> {
     brick: Brick<'b>,
-    place: Place,
+    place: Place<I>,
     /// Whether the brick is a solid.
     is_single: bool,
 }
@@ -32,12 +32,9 @@ struct ByVoxels<'b> {
 #[inline(always)]
 pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
     let is_single = brick.parts.is_single();
-    let side = f64::from(walk.view.levels[brick.record.level as usize].side);
-    let place = Place::new(
-        walk.view,
-        brick.record.centre,
-        if is_single { side } else { side / 4.0 },
-    );
+    let parts = if is_single { 1.0 } else { 4.0 };
+    let inverse_side = parts * walk.view.levels[brick.record.level as usize].inverse_side;
+    let place = Place::new(walk.isa, walk.view, brick.record.centre, inverse_side);
     walk.counters.bricks += u64::from(!is_single);
     let drawer = ByVoxels {
         brick,
@@ -47,7 +44,7 @@ pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Wi
     each_square(walk, window, &drawer);
 }
 
-impl<I: Isa> DrawSquare<I> for ByVoxels<'_> {
+impl<I: Isa> DrawSquare<I> for ByVoxels<'_, I> {
     #[inline(always)]
     fn draw(
         &self,
@@ -68,7 +65,7 @@ fn draw_square<I: Isa>(
         brick,
         place,
         is_single,
-    }: &ByVoxels<'_>,
+    }: &ByVoxels<'_, I>,
     square: &Window,
     open: u64,
     heading: &Heading<I>,

@@ -38,6 +38,8 @@ pub(super) struct Walk<'w, I> {
     pub(super) found: Found,
     /// What its samples show.
     pub(super) hits: [Hit; 64],
+    /// Their nodes.
+    pub(super) nodes: [u32; 64],
     /// The blocks of the brick of four levels that is worked on.
     pub(super) blocks: &'w mut Blocks,
 }
@@ -187,6 +189,15 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
     let level = &view.levels[index];
     let mask = walk.graph.mask(record.node);
     let half = level.side / 2;
+    parts::prefetch_below(
+        walk.isa,
+        walk.graph,
+        walk.graph
+            .first
+            .get(record.node as usize)
+            .copied()
+            .unwrap_or(0),
+    );
     let nearest = view.nearest_octant(record.min, half);
     let windows = walk
         .isa

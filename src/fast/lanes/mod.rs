@@ -48,6 +48,12 @@ pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
     /// Whole parts of the first three, as cells of a table: what is outside is the last one.
     fn cells(self) -> [usize; 3];
     fn values(self) -> [f32; 4];
+    /// Rounded down.
+    fn floor(self) -> Self;
+    /// All lanes' sums: this one's, the other's, and both again.
+    fn sums(self, other: Self) -> Self;
+    /// Whole numbers, of lanes that are whole and small.
+    fn whole(self) -> [i32; 4];
 }
 
 /// The windows of a node's eight children, by octant, cut to the band.
@@ -77,7 +83,7 @@ impl Windows {
 }
 
 /// Beyond the rounding that it is for, what windows are wider by, in samples.
-const WINDOW_MARGIN: f32 = 1.0 / 512.0;
+pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
 /// The rounding of `f32`, with room: of positions, and of extents.
 const WINDOW_ROUNDING: f32 = 1.0 / (1 << 21) as f32;
 /// What extents are larger by, for an inverse of 11 bits and their own rounding.
@@ -85,7 +91,7 @@ const WINDOW_SCALE: f32 = 1.0 + 1.0 / 256.0;
 /// What windows in `f64` are wider by, of what they are made of and in samples.
 const TINY_WINDOW_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
 /// Columns and rows beyond all pictures.
-const BEYOND: f64 = 40_000.0;
+pub(super) const BEYOND: f64 = 40_000.0;
 
 /// An instruction set.
 pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
@@ -128,6 +134,14 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
 
     /// The samples at which distances are below a limit, eight bits a row.
     fn below(self, distances: &Self::Distances, limit: i16) -> u64;
+
+    /// The middle and half the extent, along each axis, of the box around parts of a node: from its centre, in
+    /// sides of a part.
+    fn extent(self, parts: u64) -> [Self::Four; 2];
+
+    /// What a step of a column, and of a row, adds to moments about what lies at `centre`
+    /// (column and row): `edges` by coordinate, times `unit`.
+    fn steps(self, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [Self::Four; 2];
 
     /// [`super::parts::turned_parts`].
     fn turned_parts(self, parts: u64, octant: u8) -> u64;

@@ -1,7 +1,7 @@
 //! Plain Rust: what the steps mean.
 
 use super::*;
-use crate::fast::parts;
+use crate::fast::parts::{self, EXTENTS, SLABS};
 use crate::fast::strips::CELLS;
 
 /// The set that every processor has.
@@ -76,6 +76,19 @@ impl Four for [f32; 4] {
     #[inline(always)]
     fn values(self) -> [f32; 4] {
         self
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        self.map(f32::floor)
+    }
+    #[inline(always)]
+    fn sums(self, other: Self) -> Self {
+        let [a, b] = [self, other].map(|lanes| lanes.iter().sum());
+        [a, b, a, b]
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        self.map(|c| c as i32)
     }
 }
 
@@ -174,7 +187,25 @@ impl Isa for Scalar {
         })
     }
 
-    #[inline(always)]
+    fn extent(self, parts: u64) -> [[f32; 4]; 2] {
+        let mut extent = [[0.0; 4]; 2];
+        for (axis, slabs) in SLABS.iter().enumerate() {
+            let filled = slabs.iter().enumerate();
+            let filled = filled.map(|(i, slab)| usize::from(parts & slab != 0) << i);
+            let [middle, half] = &EXTENTS[axis][filled.sum::<usize>()];
+            extent[0] = extent[0].add(*middle);
+            extent[1] = extent[1].add(*half);
+        }
+        extent
+    }
+
+    fn steps(self, [x, y, w]: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [[f32; 4]; 2] {
+        [
+            std::array::from_fn(|j| ((centre[1] * w[j] - y[j]) * unit) as f32),
+            std::array::from_fn(|j| ((x[j] - centre[0] * w[j]) * unit) as f32),
+        ]
+    }
+
     fn turned_parts(self, parts: u64, octant: u8) -> u64 {
         parts::turned_parts(parts, octant)
     }

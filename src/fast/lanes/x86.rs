@@ -5,7 +5,7 @@
 use std::arch::x86_64::*;
 
 use super::*;
-use crate::fast::parts::TURNED_BYTES;
+use crate::fast::parts::{EXTENTS, SLABS, TURNED_BYTES};
 use crate::fast::strips::CELLS;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
@@ -111,6 +111,29 @@ impl Four for Floats {
         // SAFETY: as above; the store is of the array's four.
         unsafe { _mm_storeu_ps(values.as_mut_ptr(), self.0) };
         values
+    }
+    #[inline(always)]
+    fn floor(self) -> Self {
+        avx!(Self(_mm_floor_ps(self.0)))
+    }
+    #[inline(always)]
+    fn sums(self, other: Self) -> Self {
+        avx!({
+            let pairs = _mm_hadd_ps(self.0, other.0);
+            Self(_mm_hadd_ps(pairs, pairs))
+        })
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 4] {
+        avx!({
+            let whole = _mm_cvttps_epi32(self.0);
+            [
+                _mm_cvtsi128_si32(whole),
+                _mm_extract_epi32::<1>(whole),
+                _mm_extract_epi32::<2>(whole),
+                _mm_extract_epi32::<3>(whole),
+            ]
+        })
     }
 }
 
@@ -378,6 +401,43 @@ impl Isa for Avx2 {
     }
 
     #[inline(always)]
+    fn extent(self, parts: u64) -> [Floats; 2] {
+        let mut extent = [self.splat(0.0); 2];
+        // SAFETY: as above; the loads are of the array's four.
+        unsafe {
+            let parts = _mm256_set1_epi64x(parts as i64);
+            for (axis, slabs) in SLABS.iter().enumerate() {
+                let filled = _mm256_and_si256(parts, _mm256_loadu_si256(slabs.as_ptr().cast()));
+                let empty = _mm256_cmpeq_epi64(filled, _mm256_setzero_si256());
+                let empty = _mm256_movemask_pd(_mm256_castsi256_pd(empty)) as usize;
+                let [middle, half] = &EXTENTS[axis][(empty & 15) ^ 15];
+                extent[0] = extent[0].add(self.four(middle));
+                extent[1] = extent[1].add(self.four(half));
+            }
+        }
+        extent
+    }
+
+    #[inline(always)]
+    fn steps(self, [x, y, w]: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [Floats; 2] {
+        // SAFETY: as above; the loads are of the arrays' four.
+        unsafe {
+            let [x, y, w] = [
+                _mm256_loadu_pd(x.as_ptr()),
+                _mm256_loadu_pd(y.as_ptr()),
+                _mm256_loadu_pd(w.as_ptr()),
+            ];
+            let unit = _mm256_set1_pd(unit);
+            let column = _mm256_fmsub_pd(_mm256_set1_pd(centre[1]), w, y);
+            let row = _mm256_fnmadd_pd(_mm256_set1_pd(centre[0]), w, x);
+            [
+                Floats(_mm256_cvtpd_ps(_mm256_mul_pd(column, unit))),
+                Floats(_mm256_cvtpd_ps(_mm256_mul_pd(row, unit))),
+            ]
+        }
+    }
+
+    #[inline(always)]
     fn turned_parts(self, parts: u64, octant: u8) -> u64 {
         let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
         // SAFETY: as above; the loads are of the arrays' sixteen.
@@ -417,6 +477,17 @@ impl Isa for Avx2 {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let (mut left, mut at) = (samples, first);
+            // All eight rows, drawn or not: how many there are cannot be foretold.
+            if first.saturating_add(7 * width + 8) <= rows.len() {
+                let mut to = rows.as_mut_ptr().add(first);
+                for row in 0..8 {
+                    let row = _mm256_set1_epi32((samples >> (8 * row)) as i32);
+                    let mask = _mm256_cmpeq_epi32(_mm256_and_si256(row, bits), bits);
+                    _mm256_maskstore_epi32(to.cast(), mask, value_lanes);
+                    to = to.wrapping_add(width);
+                }
+                return;
+            }
             while left != 0 {
                 if rows.len().saturating_sub(at) < 8 {
                     return Scalar.put(rows, at, width, left, value);
