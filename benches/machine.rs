@@ -89,7 +89,7 @@ fn paper() -> SetupOptions {
         cage: CageKind::Corners,
         tolerance_px: f64::INFINITY,
         coverage: Coverage::Any,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Any)
     }
 }
 

@@ -441,7 +441,7 @@ pub(super) fn opacity(name: FarOpacityName) -> Opacity {
 
 fn options(args: &DrawArgs<'_>, view: &View) -> ViewOptions {
     ViewOptions {
-        voxel_px: args.engine.rules.lod.unwrap_or(1.0),
+        voxel_px: args.engine.rules.mesh_lod(),
         samples_across: 1 << args.picture.aa_log2(),
         opacity: opacity(args.engine.far_opacity.unwrap_or_default()),
         light: light_of(view, args.picture.shading()),

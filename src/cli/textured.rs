@@ -292,7 +292,7 @@ fn options(args: &DrawArgs<'_>, file: &TexturedFile, view: &View) -> Result<View
             ));
         }
         Erosion::Auto => Detail::Auto {
-            texel_px: args.engine.rules.lod.unwrap_or(1.0),
+            texel_px: args.engine.rules.mesh_lod(),
         },
         Erosion::Level(_) if args.engine.rules.lod.is_some() => {
             return Err(CliError::usage(

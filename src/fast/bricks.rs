@@ -11,9 +11,12 @@
 //! A block's parts are put in order when the first line asks for them.
 
 use super::canvas::Window;
+use super::heading::Samples;
 use super::lanes::Isa;
-use super::lines::{Heading, Lines, Meeting, OFFSETS, Place, by_octant};
+use super::lines::{Lines, Meeting, OFFSETS};
 use super::parts::{Part, Parts};
+use super::place::Place;
+use super::squares::{DrawSquare, SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::walk::{Record, Walk, voxel_at};
 
@@ -22,30 +25,6 @@ use super::walk::{Record, Walk, voxel_at};
 pub(super) struct Brick<'b> {
     pub(super) record: &'b Record,
     pub(super) parts: &'b Parts,
-}
-
-/// Column and row of a square's samples.
-pub(super) static SAMPLES: [[f32; 2]; 64] = {
-    let mut table = [[0.0; 2]; 64];
-    let mut sample = 0;
-    while sample < 64 {
-        table[sample] = [(sample & 7) as f32, (sample >> 3) as f32];
-        sample += 1;
-    }
-    table
-};
-
-/// What draws squares.
-pub(super) trait DrawSquare<I: Isa> {
-    /// Draws open samples of a square whose lines begin in an octant; returns those drawn.
-    fn draw(
-        &self,
-        walk: &mut Walk<'_, I>,
-        square: &Window,
-        open: u64,
-        heading: &Heading<I>,
-        octant: u8,
-    ) -> u64;
 }
 
 /// Draws squares of a brick of two levels, or of four (`DEEP`).
@@ -75,24 +54,12 @@ fn draw_levels<I: Isa, const DEEP: bool>(
     walk.counters.bricks += 1;
     let isa = walk.isa;
     let level = &walk.view.levels[brick.record.level as usize];
-    // Parts of the brick, and of what lines are counted in.
-    let (parts, units) = (4.0, if DEEP { 16.0 } else { 4.0 });
-    let place = Place::new(
-        isa,
-        walk.view,
-        brick.record.centre,
-        units * level.inverse_side,
-    );
-    let side = [f64::from(level.side) / parts, parts / units];
+    let across = if DEEP { 16.0 } else { 4.0 };
+    let place = Place::new(isa, walk.view, level, brick.record.centre, across);
+    // Where there is one square anyway, it would not be worth its time.
     let window = if window.right - window.left > 7 || window.bottom - window.top > 7 {
-        place.window(
-            isa,
-            walk.view,
-            level.half_depth,
-            side,
-            brick.parts.exist,
-            window,
-        )
+        let parts = brick.parts.exist;
+        place.window(isa, walk.view, level, across, parts, window)
     } else {
         *window
     };
@@ -107,124 +74,41 @@ fn draw_levels<I: Isa, const DEEP: bool>(
     each_square(walk, &window, &BySamples::<I, DEEP> { brick, place });
 }
 
-/// Takes a window apart into squares with open samples, and those into samples
-/// whose lines begin in one octant, which nearly always is all.
-#[inline(always)]
-pub(super) fn each_square<I: Isa>(
-    walk: &mut Walk<'_, I>,
-    window: &Window,
-    drawer: &impl DrawSquare<I>,
-) {
-    let mut top = window.top;
-    while top <= window.bottom {
-        let mut left = window.left;
-        while left <= window.right {
-            let square = Window {
-                left,
-                top,
-                right: (left + 7).min(window.right),
-                bottom: (top + 7).min(window.bottom),
-            };
-            let open = walk.fill.open_in_square(&square);
-            if open != 0 {
-                walk.counters.squares += 1;
-                let heading = Heading::of(walk.isa, walk.view, &square);
-                let mut drawn = 0;
-                let mut groups = [0; 8];
-                let (mut group, mut octant) = (open, heading.octant);
-                if heading.is_mixed {
-                    groups = by_octant(walk.view, walk.exact, &square, open);
-                    (group, octant) = next_group(&mut groups);
-                }
-                loop {
-                    drawn |= drawer.draw(walk, &square, group, &heading, octant);
-                    if !heading.is_mixed {
-                        break;
-                    }
-                    (group, octant) = next_group(&mut groups);
-                    if group == 0 {
-                        break;
-                    }
-                }
-                walk.fill.mark_square(&square, drawn);
-            }
-            left += 8;
-        }
-        top += 8;
-    }
-}
-
-/// The first of the groups that is not empty, which is taken, and its number.
-#[inline(always)]
-fn next_group(groups: &mut [u64; 8]) -> (u64, u8) {
-    for (octant, group) in groups.iter_mut().enumerate() {
-        if *group != 0 {
-            return (std::mem::take(group), octant as u8);
-        }
-    }
-    (0, 0)
-}
-
 impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, I, DEEP> {
     #[inline(always)]
-    fn draw(
-        &self,
-        walk: &mut Walk<'_, I>,
-        square: &Window,
-        open: u64,
-        heading: &Heading<I>,
-        octant: u8,
-    ) -> u64 {
-        draw_samples::<I, DEEP>(walk, self.brick, &self.place, square, open, heading, octant)
+    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64 {
+        draw_samples::<I, DEEP>(walk, self, samples)
     }
 }
 
-/// Draws the open samples of a square: returns those drawn.
+/// Draws what samples show: returns those drawn.
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
     walk: &mut Walk<'_, I>,
-    brick: Brick<'_>,
-    place: &Place<I>,
-    square: &Window,
-    open: u64,
-    heading: &Heading<I>,
-    octant: u8,
+    &BySamples { brick, place }: &BySamples<'_, I, DEEP>,
+    samples: &Samples<'_, I>,
 ) -> u64 {
+    let &Samples {
+        square,
+        open,
+        octant,
+        ..
+    } = samples;
     let isa = walk.isa;
     let strips = &*STRIPS;
     walk.counters.samples_tested += u64::from(open.count_ones());
-    let lines = Lines::new(isa, walk.view, place, heading, square, octant);
+    let lines = Lines::new(isa, walk.view, &place, samples);
     let tables = strips.touched(lines.tables);
     let exist = isa.turned_parts(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = isa.parts_of_samples(tables, &cells, exist, open, &mut walk.found);
     let pair = u32::from(octant) * 9;
     let mut ready = 0u64;
-    let mut drawn = 0u64;
-    let mut count = 0;
-    let mut left = any;
+    let (mut drawn, mut left) = (0u64, any);
     if !DEEP && !walk.blends {
-        let mut rest = 0u64;
-        while left != 0 {
-            let bit = left.trailing_zeros() as usize & 63;
-            left &= left - 1;
-            let line = lines.line(isa, SAMPLES[bit]);
-            let parts = walk.found.0[bit];
-            let part = parts.trailing_zeros() as usize & 63;
-            let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
-            walk.hits[count & 63] = Hit {
-                bit: bit as u8,
-                block: 0,
-                part: (part as u32 ^ pair) as u8,
-            };
-            count += usize::from(is_met);
-            drawn |= u64::from(is_met) << bit;
-            let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
-            walk.found.0[bit] = parts;
-            rest |= u64::from((parts != 0) & !is_met) << bit;
-        }
-        left = rest;
+        (drawn, left) = meet_first(walk, &lines, any, pair);
     }
+    let mut count = drawn.count_ones() as usize;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
@@ -294,6 +178,36 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     }
     walk.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
+}
+
+/// The first part that each sample's line may meet: samples that meet it, whose hits come first, and samples that
+/// may meet others. Without a branch: what a line meets cannot be foretold.
+#[inline(always)]
+fn meet_first<I: Isa>(walk: &mut Walk<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
+    let isa = walk.isa;
+    let (mut drawn, mut others) = (0u64, 0u64);
+    let (mut count, mut left) = (0, any);
+    while left != 0 {
+        let bit = left.trailing_zeros() as usize & 63;
+        left &= left - 1;
+        let line = lines.line(isa, SAMPLES[bit]);
+        let parts = walk.found.0[bit];
+        let part = parts.trailing_zeros() as usize & 63;
+        let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
+        // The next hit takes its place if it is none.
+        walk.hits[count & 63] = Hit {
+            bit: bit as u8,
+            block: 0,
+            part: (part as u32 ^ pair) as u8,
+        };
+        count += usize::from(is_met);
+        drawn |= u64::from(is_met) << bit;
+        // Without the first if that is missed for certain.
+        let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
+        walk.found.0[bit] = parts;
+        others |= u64::from((parts != 0) & !is_met) << bit;
+    }
+    (drawn, others)
 }
 
 /// What a sample of a square shows of a brick.

@@ -14,102 +14,16 @@
 //! All is turned so that lines run upwards along each axis (`v_k >= 0`). The
 //! unit of length is the side of a part. Errors: `spec/fast.md`.
 
-use super::canvas::Window;
-use super::exact::Exact;
-use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
+use super::heading::{RELATIVE_ERROR, Samples};
+use super::lanes::{Four, Isa};
+use super::place::Place;
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
 use super::view::View;
 
-/// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
-/// summed up at most: `spec/fast.md` counts them.
-const STEPS: f32 = 18.0;
-/// Of what lines' values are made of, the error of their sum.
-const RELATIVE_ERROR: f32 = STEPS / (1 << 24) as f32;
 /// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
-/// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
-/// of numbers up to 2^13 times as large (`View::new`).
-const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
-/// Rounding of [`Place::window`], of what the window is made of: 2^-21 at most.
-const WINDOW_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 /// Parts' centres are at most this many sides of a part from the node's.
 const FARTHEST: f32 = 8.0;
-
-/// A node's centre and edges in the picture.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Place<I: Isa> {
-    /// Column and row of its centre.
-    centre: [f64; 2],
-    /// 1 / its depth.
-    inverse: f64,
-    /// What a step of a column, and of a row, adds to the moments, by axis.
-    step: [I::Four; 2],
-}
-
-impl<I: Isa> Place<I> {
-    /// The place of a node with this clip vector; `inverse_side`: 1 over its parts' side in finest voxels.
-    #[inline(always)]
-    pub(super) fn new(isa: I, view: &View, [x, y, w]: [f64; 3], inverse_side: f64) -> Self {
-        let inverse = 1.0 / w;
-        let to_samples = view.root_samples * inverse;
-        let centre = [x * to_samples - 0.5, y * to_samples - 0.5];
-        let unit = view.scale * w * inverse_side;
-        Self {
-            centre,
-            inverse,
-            step: isa.steps(&view.edge_columns, centre, unit),
-        }
-    }
-
-    /// The part of a window in which some of a node's 64 parts may be seen: what is about the box around
-    /// them. `side`: such a part's, in finest voxels; `unit`: the side of [`Place::new`]'s parts, in such sides. The
-    /// node lies before the eye.
-    ///
-    /// A point that lies `t` from the node's centre is seen `t . step` over its depth from
-    /// there, but for constants; the depth is the centre's, or differs by `half_depth` at most.
-    #[inline(always)]
-    pub(super) fn window(
-        &self,
-        isa: I,
-        view: &View,
-        half_depth: f64,
-        [side, unit]: [f64; 2],
-        parts: u64,
-        window: &Window,
-    ) -> Window {
-        let [middle, half] = isa.extent(parts);
-        let [down, across] = self.step;
-        let scale = (side * side * unit * view.inverse_scale * self.inverse * self.inverse) as f32;
-        let share = (half_depth * self.inverse) as f32;
-        let spread = isa.splat(share).div(isa.splat(1.0 - share));
-        // Left and top with their sign turned, right and bottom: outward is upward.
-        let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
-        let [x, y] = self.centre.map(|c| c as f32);
-        let centre = isa.four(&[x, y, x, y]).flip(outward);
-        let along = across.mul(middle).sums(down.mul(middle));
-        let about = across.abs().mul(half).sums(down.abs().mul(half));
-        let along = along.mul(isa.four(&[-scale, scale, scale, -scale]));
-        let about = about.mul(isa.splat(scale.abs()));
-        let reach = along.add(about);
-        let rounding = isa.splat(WINDOW_ROUNDING);
-        let margin = centre
-            .abs()
-            .add(about)
-            .fma(rounding, isa.splat(WINDOW_MARGIN));
-        let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
-        let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
-        let bounds = isa.four(&bounds).flip(outward);
-        // What is not a number leaves the window as it is.
-        let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
-        let [left, top, right, bottom] = end.floor().flip(outward).whole();
-        Window {
-            left,
-            top,
-            right,
-            bottom,
-        }
-    }
-}
 
 /// By octant: which signs direction's components have, and products of two of them.
 static SIGNS: [[[f32; 4]; 2]; 8] = {
@@ -194,78 +108,6 @@ pub(super) enum Meeting {
     Doubt,
 }
 
-/// The direction of lines in a square's middle, and by how much it changes from there.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Heading<I: Isa> {
-    middle: I::Four,
-    spread: I::Four,
-    /// What directions are summed of, at most.
-    size: I::Four,
-    /// The octant in which lines begin: a bit for each axis along which they run downwards.
-    pub(super) octant: u8,
-    /// Whether lines of the square differ in that, or may.
-    pub(super) is_mixed: bool,
-}
-
-impl<I: Isa> Heading<I> {
-    #[inline(always)]
-    pub(super) fn of(isa: I, view: &View, square: &Window) -> Self {
-        let [columns, rows, first] = view.direction_lanes.map(|d| isa.four(&d));
-        let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
-        let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
-        let x = isa.splat(square.left as f32).add(half_across);
-        let y = isa.splat(square.top as f32).add(half_down);
-        let middle = columns.fma(x, rows.fma(y, first));
-        // What the sum is made of bounds its rounding.
-        let right = isa.splat((square.right + 1) as f32);
-        let bottom = isa.splat((square.bottom + 1) as f32);
-        let size = columns
-            .abs()
-            .fma(right, rows.abs().fma(bottom, first.abs()));
-        let spread = size.fma(
-            isa.splat(RELATIVE_ERROR),
-            columns.abs().fma(half_across, rows.abs().mul(half_down)),
-        );
-        Self {
-            middle,
-            spread,
-            size,
-            octant: OCTANTS[middle.signs() as usize & 7],
-            is_mixed: spread.sub(middle.abs()).signs() & 7 != 7,
-        }
-    }
-}
-
-/// Octants by signs, which have the x axis in their lowest bit.
-static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
-
-/// The samples of a square whose lines begin in each octant, by each sample's own sign.
-#[inline(never)]
-pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) -> [u64; 8] {
-    let mut parts = [0; 8];
-    let mut left = open;
-    while left != 0 {
-        let bit = left.trailing_zeros() as i32;
-        left &= left - 1;
-        let at = [square.left + (bit & 7), square.top + (bit >> 3)];
-        let [x, y] = at.map(f64::from);
-        let mut octant = 0;
-        for k in 0..3 {
-            let [along_x, along_y, first] = view.direction[k];
-            let value = along_x * x + along_y * y + first;
-            let size = along_x.abs() * x + along_y.abs() * y + first.abs();
-            let is_downwards = if value.abs() > size * DIRECTION_ERROR {
-                value < 0.0
-            } else {
-                exact.runs_downwards(k, at)
-            };
-            octant = octant << 1 | usize::from(is_downwards);
-        }
-        parts[octant] |= 1 << bit;
-    }
-    parts
-}
-
 /// The greatest of three lanes.
 #[inline(always)]
 fn greatest<F: Four>(four: F) -> f32 {
@@ -273,16 +115,15 @@ fn greatest<F: Four>(four: F) -> f32 {
 }
 
 impl<I: Isa> Lines<I> {
-    /// The lines of a square that begin in an octant, against a node.
+    /// The lines of samples, against a node.
     #[inline(always)]
-    pub(super) fn new(
-        isa: I,
-        view: &View,
-        place: &Place<I>,
-        heading: &Heading<I>,
-        square: &Window,
-        octant: u8,
-    ) -> Self {
+    pub(super) fn new(isa: I, view: &View, place: &Place<I>, samples: &Samples<'_, I>) -> Self {
+        let Samples {
+            square,
+            heading,
+            octant,
+            ..
+        } = samples;
         let [turn, pair] = SIGNS[usize::from(octant & 7)].map(|signs| isa.four(&signs));
         let zero = isa.splat(0.0);
         let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
@@ -493,14 +334,16 @@ pub(super) static NO_OFFSET: Offset = Offset {
 };
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+    use crate::fast::canvas::Window;
+    use crate::fast::heading::{Heading, STEPS};
     use crate::fast::lanes::Scalar;
     use crate::graph::Placement;
     use crate::project::{Camera, FrameSetup, SetupOptions};
 
     /// Pseudo-random numbers from 0 to 1.
-    fn numbers() -> impl FnMut() -> f64 {
+    pub(in crate::fast) fn numbers() -> impl FnMut() -> f64 {
         let mut state = 7u64;
         move || {
             state = state
@@ -510,7 +353,8 @@ mod tests {
         }
     }
 
-    fn view(next: &mut impl FnMut() -> f64) -> Option<(FrameSetup, View)> {
+    /// A view of an object of 64 voxels a side, from anywhere.
+    pub(in crate::fast) fn view(next: &mut impl FnMut() -> f64) -> Option<(FrameSetup, View)> {
         let mut point =
             |size: f64| glam::DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * size;
         let (eye, target) = (point(300.0), point(80.0));
@@ -553,7 +397,7 @@ mod tests {
                     continue;
                 }
                 let side = side / 4.0;
-                let place = Place::new(isa, &view, centre, 1.0 / side);
+                let place = Place::new(isa, &view, &view.levels[level], centre, 4.0);
                 let [left, top] = [0, 1].map(|i| {
                     let spread = (next() - 0.5) * 16.0;
                     (place.centre[i] + spread).clamp(0.0, 280.0) as i32
@@ -573,7 +417,13 @@ mod tests {
                 if heading.is_mixed {
                     continue;
                 }
-                let lines = Lines::new(isa, &view, &place, &heading, &square, heading.octant);
+                let samples = Samples {
+                    square: &square,
+                    open: u64::MAX,
+                    heading,
+                    octant: heading.octant,
+                };
+                let lines = Lines::new(isa, &view, &place, &samples);
                 for sample in [0, 7, 20, 63] {
                     let [x, y] = [sample & 7, sample >> 3];
                     let line = lines.line(isa, [x as f32, y as f32]);

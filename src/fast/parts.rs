@@ -198,17 +198,6 @@ impl Parts {
     }
 }
 
-/// Asks the memory for what grandchildren are made of, where nodes lie level by level.
-#[inline(always)]
-pub(super) fn prefetch_below<I: Isa>(isa: I, graph: &GraphView<'_>, child: u32) {
-    let first = graph.first.get(child as usize).copied().unwrap_or(0) as usize;
-    isa.prefetch(graph.mask, first);
-    isa.prefetch(graph.mask, first + 63);
-    for sixteen in 0..5 {
-        isa.prefetch(graph.first, first + 16 * sixteen);
-    }
-}
-
 /// By octant: the bits of a child mask turned, so that bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
     let mut table = [[0u8; 256]; 8];

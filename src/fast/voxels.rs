@@ -5,10 +5,13 @@
 //! (`strips.rs`); then, in order, each part against all samples, in numbers of 16
 //! bits. Samples well inside are drawn, those near the outline are decided one by one.
 
-use super::bricks::{Brick, DrawSquare, Path, SAMPLES, each_square, is_covered};
+use super::bricks::{Brick, Path, is_covered};
 use super::canvas::Window;
+use super::heading::Samples;
 use super::lanes::{Four, Isa};
-use super::lines::{Heading, Lines, Meeting, NO_OFFSET, OFFSETS, Place};
+use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
+use super::place::Place;
+use super::squares::{DrawSquare, SAMPLES, each_square};
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::walk::Walk;
 
@@ -32,9 +35,9 @@ struct ByVoxels<'b, I: Isa> {
 #[inline(always)]
 pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
     let is_single = brick.parts.is_single();
-    let parts = if is_single { 1.0 } else { 4.0 };
-    let inverse_side = parts * walk.view.levels[brick.record.level as usize].inverse_side;
-    let place = Place::new(walk.isa, walk.view, brick.record.centre, inverse_side);
+    let level = &walk.view.levels[brick.record.level as usize];
+    let across = if is_single { 1.0 } else { 4.0 };
+    let place = Place::new(walk.isa, walk.view, level, brick.record.centre, across);
     walk.counters.bricks += u64::from(!is_single);
     let drawer = ByVoxels {
         brick,
@@ -46,33 +49,29 @@ pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Wi
 
 impl<I: Isa> DrawSquare<I> for ByVoxels<'_, I> {
     #[inline(always)]
-    fn draw(
-        &self,
-        walk: &mut Walk<'_, I>,
-        square: &Window,
-        open: u64,
-        heading: &Heading<I>,
-        octant: u8,
-    ) -> u64 {
-        draw_square(walk, self, square, open, heading, octant)
+    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64 {
+        draw_samples(walk, self, samples)
     }
 }
 
 #[inline(always)]
-fn draw_square<I: Isa>(
+fn draw_samples<I: Isa>(
     walk: &mut Walk<'_, I>,
     &ByVoxels {
         brick,
         place,
         is_single,
     }: &ByVoxels<'_, I>,
-    square: &Window,
-    open: u64,
-    heading: &Heading<I>,
-    octant: u8,
+    samples: &Samples<'_, I>,
 ) -> u64 {
+    let &Samples {
+        square,
+        open,
+        octant,
+        ..
+    } = samples;
     let isa = walk.isa;
-    let lines = Lines::new(isa, walk.view, &place, heading, square, octant);
+    let lines = Lines::new(isa, walk.view, &place, samples);
     let mut wanted = if is_single {
         1
     } else {

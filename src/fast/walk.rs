@@ -189,15 +189,6 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
     let level = &view.levels[index];
     let mask = walk.graph.mask(record.node);
     let half = level.side / 2;
-    parts::prefetch_below(
-        walk.isa,
-        walk.graph,
-        walk.graph
-            .first
-            .get(record.node as usize)
-            .copied()
-            .unwrap_or(0),
-    );
     let nearest = view.nearest_octant(record.min, half);
     let windows = walk
         .isa

@@ -207,7 +207,7 @@ fn set_up(camera: &Camera, depth: u32) -> Result<FrameSetup, SetupError> {
         cage: CageKind::Corners,
         tolerance_px: f64::INFINITY,
         coverage: Coverage::Any,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Any)
     };
     FrameSetup::new(camera, &placement, depth, &options)
 }

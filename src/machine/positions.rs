@@ -269,7 +269,7 @@ mod tests {
             cage: CageKind::Corners,
             tolerance_px: f64::INFINITY,
             coverage: Coverage::Any,
-            ..SetupOptions::default()
+            ..SetupOptions::of(Coverage::Any)
         });
         let last = *found(&setup, &[[5, 6, 7, 4]]).last().unwrap();
         // 5, 6, 7 are 0101, 0110, 0111: octants from the top.
@@ -296,7 +296,7 @@ mod tests {
                     coverage,
                     cage,
                     tolerance_px: 0.5,
-                    ..SetupOptions::default()
+                    ..SetupOptions::of(coverage)
                 });
                 let held = *found(&setup, &voxel).last().unwrap();
                 assert_eq!(held.space, Space::Screen, "{coverage:?} {cage:?}");

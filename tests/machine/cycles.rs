@@ -56,7 +56,7 @@ fn any_settings() -> impl Strategy<Value = SetupOptions> {
             tolerance_px: tolerance_of(coverage, tolerance_px),
             coverage,
             lod_px,
-            ..SetupOptions::default()
+            ..SetupOptions::of(coverage)
         }
     })
 }

@@ -61,7 +61,7 @@ proptest! {
     ) {
         let with = |cage| {
             let options = SetupOptions {
-                cage, coverage, lod_px, tolerance_px: 0.0, ..SetupOptions::default()
+                cage, coverage, lod_px, tolerance_px: 0.0, ..SetupOptions::of(coverage)
             };
             let setup = setup(&graph, &camera, &options);
             draw_with(MachineOptions::default(), &graph, &setup).expect("no overflow")
@@ -86,7 +86,7 @@ proptest! {
         // Few fraction bits, so that a solid has few levels below it.
         let frac = (coverage == Coverage::Any).then_some(6);
         let options = SetupOptions {
-            bits: 48, frac, cage, coverage, lod_px, tolerance_px, ..SetupOptions::default()
+            bits: 48, frac, cage, coverage, lod_px, tolerance_px, ..SetupOptions::of(coverage)
         };
         let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
             return Ok(()); // Six bits do not hold every view.
@@ -185,7 +185,7 @@ fn no_holes(
         tolerance_px,
         coverage: Coverage::Center,
         lod_px,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Center)
     };
     let setup = setup(graph, &camera, &options);
     let drawn = draw(graph, &setup);

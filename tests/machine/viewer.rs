@@ -59,7 +59,7 @@ fn trap() -> EngineError {
         frac: Some(14),
         coverage: Coverage::Any,
         tolerance_px: f64::INFINITY,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Any)
     };
     let camera = camera([-3.0, 4.0, 4.0], [4.0, 4.0, 4.0], 64);
     let setup = setup(&graph, &camera, &options);

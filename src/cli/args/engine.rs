@@ -132,8 +132,8 @@ pub struct RuleArgs {
     /// As the paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves. Of --engine far
-    /// and --erosion auto: the largest voxel or texel, above 0 [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with exact,
+    /// else 1]. Of --engine far and --erosion auto: the largest voxel or texel, above 0 [default: 1]
     #[arg(long, value_name = "PX")]
     pub lod: Option<f64>,
     /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
@@ -181,7 +181,7 @@ impl RuleArgs {
             cage: CageKind::Corners,
             tolerance_px: f64::INFINITY,
             coverage: Coverage::Any,
-            ..SetupOptions::default()
+            ..SetupOptions::of(Coverage::Any)
         };
         let coverage = self.coverage.map(|rule| match rule {
             CoverageName::Any => Coverage::Any,
@@ -206,6 +206,12 @@ impl RuleArgs {
             lod_px: self.lod.unwrap_or(base.lod_px),
             aa_log2,
         }
+    }
+
+    /// Pixels of the largest voxel of a .far file, or texel of a .tvx file.
+    #[must_use]
+    pub fn mesh_lod(&self) -> f64 {
+        self.lod.unwrap_or(1.0)
     }
 
     /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
@@ -297,15 +303,17 @@ impl EngineArgs {
         settings.extend(engine.map(|engine| ("engine", word(&engine))));
         let erosion = self.erosion.unwrap_or_default();
         let lod = || ("lod", self.rules.options(0).lod_px.into());
+        let mesh_lod = || ("lod", self.rules.mesh_lod().into());
         match engine {
-            None => settings.push(lod()),
+            // The default is not the same for all.
+            None => settings.extend(self.rules.lod.map(|lod| ("lod", lod.into()))),
             Some(EngineName::Far) => {
-                settings.push(lod());
+                settings.push(mesh_lod());
                 settings.push(("far-opacity", word(&self.far_opacity.unwrap_or_default())));
             }
             Some(EngineName::Textured) => {
                 // The level of a texel's size is what auto finds.
-                settings.extend((erosion == Erosion::Auto).then(lod));
+                settings.extend((erosion == Erosion::Auto).then(mesh_lod));
                 settings.push(("erosion", erosion.to_string().into()));
                 settings.extend(
                     self.erosion_grid

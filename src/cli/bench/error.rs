@@ -259,7 +259,9 @@ fn standard() -> Vec<Choice> {
         let exact = matches!(coverage, CoverageName::Exact);
         let most = if exact { 2 } else { 1 };
         choices.extend((1..=most).map(|aa_log2| Choice { aa_log2, ..default }));
-        choices.extend([0.0, 0.5, 2.0].map(|lod| Choice { lod, ..default }));
+        let lods = [0.0, 0.5, 1.0, 2.0].into_iter();
+        let lods = lods.filter(|&lod| lod != default.lod);
+        choices.extend(lods.map(|lod| Choice { lod, ..default }));
         choices.extend([48, 32, 24, 20, 16].map(|bits| Choice { bits, ..default }));
     }
     choices

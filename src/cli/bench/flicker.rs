@@ -100,7 +100,7 @@ fn options(blends: bool) -> Vec<SetupOptions> {
         coverage: Coverage::Any,
         cage: CageKind::Corners,
         tolerance_px: f64::INFINITY,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Any)
     });
     if blends {
         for (lod_px, aa_log2) in [(1.0, 0), (2.0, 0), (1.0, 1)] {
@@ -108,7 +108,7 @@ fn options(blends: bool) -> Vec<SetupOptions> {
                 coverage: Coverage::Alpha,
                 lod_px,
                 aa_log2,
-                ..SetupOptions::default()
+                ..SetupOptions::of(Coverage::Alpha)
             });
         }
     }

@@ -228,16 +228,16 @@ fn methods<'m>(
     }
     if let [opaque, airy] = made.voxels.as_slice() {
         let rules = [
-            ("voxels center", Coverage::Center, 1.0, 0),
-            ("voxels exact", Coverage::Exact, 1.0, 0),
-            ("voxels exact, 16", Coverage::Exact, 1.0, 2),
-            ("voxels alpha", Coverage::Alpha, 1.0, 0),
-            ("voxels alpha, lod 2", Coverage::Alpha, 2.0, 0),
-            ("voxels alpha, 4", Coverage::Alpha, 1.0, 1),
+            ("voxels center", Coverage::Center, None, 0),
+            ("voxels exact", Coverage::Exact, None, 0),
+            ("voxels exact, 16", Coverage::Exact, None, 2),
+            ("voxels alpha", Coverage::Alpha, None, 0),
+            ("voxels alpha, lod 2", Coverage::Alpha, Some(2.0), 0),
+            ("voxels alpha, 4", Coverage::Alpha, None, 1),
         ];
         for (label, coverage, lod_px, aa_log2) in rules {
             let options = SetupOptions {
-                lod_px,
+                lod_px: lod_px.unwrap_or(coverage.default_lod()),
                 aa_log2,
                 ..SetupOptions::of(coverage)
             };

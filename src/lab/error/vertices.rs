@@ -130,7 +130,7 @@ mod tests {
             cage: CageKind::Corners,
             coverage: Coverage::Any,
             tolerance_px: f64::INFINITY,
-            ..SetupOptions::default()
+            ..SetupOptions::of(Coverage::Any)
         };
         let [exact, paper] = [SetupOptions::default(), paper].map(|options| levels(&options));
         // The root's corners are projected; what is halved from them errs.

@@ -184,7 +184,7 @@ impl Method for VoxelMethod<'_> {
         if let Some(frac) = o.frac {
             name += &format!(" .{frac}");
         }
-        if o.lod_px != 1.0 {
+        if o.lod_px != o.coverage.default_lod() {
             name += &format!(" lod {}", o.lod_px);
         }
         if o.aa_log2 > 0 {

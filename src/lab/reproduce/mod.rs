@@ -123,7 +123,7 @@ pub fn paper_options() -> SetupOptions {
         cage: CageKind::Corners,
         tolerance_px: f64::INFINITY,
         coverage: Coverage::Any,
-        ..SetupOptions::default()
+        ..SetupOptions::of(Coverage::Any)
     }
 }
 

@@ -1,0 +1,110 @@
+//! Where the lines of a square's samples run: their direction, and the octant that they begin in.
+
+use super::canvas::Window;
+use super::exact::Exact;
+use super::lanes::{Four, Isa};
+use super::view::View;
+
+/// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
+/// summed up at most: `spec/fast.md` counts them.
+pub(super) const STEPS: f32 = 18.0;
+/// Of what lines' values are made of, the error of their sum.
+pub(super) const RELATIVE_ERROR: f32 = STEPS / (1 << 24) as f32;
+/// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
+/// of numbers up to 2^13 times as large (`View::new`).
+const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
+
+/// The direction of lines in a square's middle, and by how much it changes from there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Heading<I: Isa> {
+    pub(super) middle: I::Four,
+    pub(super) spread: I::Four,
+    /// What directions are summed of, at most.
+    pub(super) size: I::Four,
+    /// The octant in which lines begin: a bit for each axis along which they run downwards.
+    pub(super) octant: u8,
+    /// Whether lines of the square differ in that, or may.
+    pub(super) is_mixed: bool,
+}
+
+impl<I: Isa> Heading<I> {
+    #[inline(always)]
+    pub(super) fn of(isa: I, view: &View, square: &Window) -> Self {
+        let [columns, rows, first] = view.direction_lanes.map(|d| isa.four(&d));
+        let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
+        let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
+        let x = isa.splat(square.left as f32).add(half_across);
+        let y = isa.splat(square.top as f32).add(half_down);
+        let middle = columns.fma(x, rows.fma(y, first));
+        // What the sum is made of bounds its rounding.
+        let right = isa.splat((square.right + 1) as f32);
+        let bottom = isa.splat((square.bottom + 1) as f32);
+        let size = columns
+            .abs()
+            .fma(right, rows.abs().fma(bottom, first.abs()));
+        let spread = size.fma(
+            isa.splat(RELATIVE_ERROR),
+            columns.abs().fma(half_across, rows.abs().mul(half_down)),
+        );
+        Self {
+            middle,
+            spread,
+            size,
+            octant: OCTANTS[middle.signs() as usize & 7],
+            is_mixed: spread.sub(middle.abs()).signs() & 7 != 7,
+        }
+    }
+}
+
+/// Octants by signs, which have the x axis in their lowest bit.
+static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
+
+/// Open samples of a square whose lines begin in one octant.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Samples<'s, I: Isa> {
+    pub(super) square: &'s Window,
+    /// Which, eight bits a row.
+    pub(super) open: u64,
+    pub(super) heading: Heading<I>,
+    pub(super) octant: u8,
+}
+
+impl<I: Isa> Samples<'_, I> {
+    /// Goes on to the first of the groups that is not empty, and takes it from there.
+    #[inline(always)]
+    pub(super) fn take_group(&mut self, groups: &mut [u64; 8]) -> bool {
+        let first = groups.iter().position(|&group| group != 0);
+        if let Some(octant) = first {
+            self.octant = octant as u8;
+            self.open = std::mem::take(&mut groups[octant]);
+        }
+        first.is_some()
+    }
+}
+
+/// The samples of a square whose lines begin in each octant, by each sample's own sign.
+#[inline(never)]
+pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) -> [u64; 8] {
+    let mut parts = [0; 8];
+    let mut left = open;
+    while left != 0 {
+        let bit = left.trailing_zeros() as i32;
+        left &= left - 1;
+        let at = [square.left + (bit & 7), square.top + (bit >> 3)];
+        let [x, y] = at.map(f64::from);
+        let mut octant = 0;
+        for k in 0..3 {
+            let [along_x, along_y, first] = view.direction[k];
+            let value = along_x * x + along_y * y + first;
+            let size = along_x.abs() * x + along_y.abs() * y + first.abs();
+            let is_downwards = if value.abs() > size * DIRECTION_ERROR {
+                value < 0.0
+            } else {
+                exact.runs_downwards(k, at)
+            };
+            octant = octant << 1 | usize::from(is_downwards);
+        }
+        parts[octant] |= 1 << bit;
+    }
+    parts
+}

@@ -1,0 +1,181 @@
+//! Where a node lies in the picture: its centre, what a step of a sample is to it, and the window about its parts.
+
+use super::canvas::Window;
+use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
+use super::view::{Level, View};
+
+/// Rounding of [`Place::window`], of what the window is made of: 2^-21 at most.
+const WINDOW_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
+
+/// A node's centre and edges in the picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place<I: Isa> {
+    /// Column and row of its centre.
+    pub(super) centre: [f64; 2],
+    /// 1 / its depth.
+    inverse: f64,
+    /// What a step of a column, and of a row, adds to the moments, by axis.
+    pub(super) step: [I::Four; 2],
+}
+
+impl<I: Isa> Place<I> {
+    /// The place of a node of a level with this clip vector. The unit of its steps is the side of `across` parts.
+    #[inline(always)]
+    pub(super) fn new(
+        isa: I,
+        view: &View,
+        level: &Level,
+        [x, y, w]: [f64; 3],
+        across: f64,
+    ) -> Self {
+        let inverse = 1.0 / w;
+        let to_samples = view.root_samples * inverse;
+        let centre = [x * to_samples - 0.5, y * to_samples - 0.5];
+        let unit = view.scale * w * across * level.inverse_side;
+        Self {
+            centre,
+            inverse,
+            step: isa.steps(&view.edge_columns, centre, unit),
+        }
+    }
+
+    /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the node as given to
+    /// [`Place::new`]; it lies before the eye.
+    ///
+    /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth,
+    /// which is at most half a node's from the centre's.
+    #[inline(always)]
+    pub(super) fn window(
+        &self,
+        isa: I,
+        view: &View,
+        level: &Level,
+        across: f64,
+        parts: u64,
+        window: &Window,
+    ) -> Window {
+        let [middle, half] = isa.extent(parts);
+        let [down, right] = self.step;
+        let side = f64::from(level.side);
+        let scale = side * side / (4.0 * across) * view.inverse_scale;
+        let scale = (scale * self.inverse * self.inverse) as f32;
+        let share = (level.half_depth * self.inverse) as f32;
+        let spread = isa.splat(share).div(isa.splat(1.0 - share));
+        // Left and top with their sign turned, right and bottom: outward is upward.
+        let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
+        let [x, y] = self.centre.map(|c| c as f32);
+        let centre = isa.four(&[x, y, x, y]).flip(outward);
+        let along = right.mul(middle).sums(down.mul(middle));
+        let about = right.abs().mul(half).sums(down.abs().mul(half));
+        let along = along.mul(isa.four(&[-scale, scale, scale, -scale]));
+        let about = about.mul(isa.splat(scale.abs()));
+        let reach = along.add(about);
+        let rounding = isa.splat(WINDOW_ROUNDING);
+        let margin = centre
+            .abs()
+            .add(about)
+            .fma(rounding, isa.splat(WINDOW_MARGIN));
+        let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
+        let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
+        let bounds = isa.four(&bounds).flip(outward);
+        // What is not a number leaves the window as it is.
+        let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
+        let [left, top, right, bottom] = end.floor().flip(outward).whole();
+        Window {
+            left,
+            top,
+            right,
+            bottom,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fast::lanes::Scalar;
+    use crate::fast::lines::tests::{numbers, view};
+    use crate::fast::strips::along;
+
+    /// Windows hold the picture of each corner of each part, and are hardly larger.
+    #[test]
+    fn windows_hold_the_parts_and_little_more() {
+        let mut next = numbers();
+        let (mut checked, mut far, mut tight) = (0, 0, 0);
+        while checked < 20_000 {
+            let Some((setup, view)) = view(&mut next) else {
+                continue;
+            };
+            let index = (next() * 4.0) as usize;
+            let level = &view.levels[index];
+            let side = f64::from(level.side);
+            let min = [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side);
+            let clip = |at: [f64; 3]| {
+                [0, 1, 2].map(|c| {
+                    let along = |k: usize| setup.edge_clip[k][c] as f64 * at[k];
+                    setup.origin_clip[c] as f64 + along(0) + along(1) + along(2)
+                })
+            };
+            let centre = clip(min.map(|c| c + side / 2.0));
+            if centre[2] - level.half_depth <= 0.0 {
+                continue;
+            }
+            let parts = (0..1 + (next() * 3.0) as u32)
+                .fold(0, |all, _| all | 1u64 << (next() * 64.0) as u32);
+            let mut ends = [f64::MAX, f64::MAX, f64::MIN, f64::MIN];
+            for part in (0..64).filter(|part| parts >> part & 1 != 0) {
+                for corner in 0..8 {
+                    let at = [0, 1, 2].map(|k| {
+                        let steps = along(part, k) + (corner >> (2 - k) & 1);
+                        min[k] + steps as f64 * side / 4.0
+                    });
+                    let [x, y, w] = clip(at);
+                    let [x, y] = [x, y].map(|c| c * view.root_samples / w - 0.5);
+                    ends = [
+                        ends[0].min(x),
+                        ends[1].min(y),
+                        ends[2].max(x),
+                        ends[3].max(y),
+                    ];
+                }
+            }
+            let bounds = Window {
+                left: 0,
+                top: 0,
+                right: 399,
+                bottom: 299,
+            };
+            let place = Place::new(Scalar, &view, level, centre, 4.0);
+            let window = place.window(Scalar, &view, level, 4.0, parts, &bounds);
+            let [left, top, right, bottom] = [
+                ends[0].ceil().max(0.0),
+                ends[1].ceil().max(0.0),
+                ends[2].floor().min(399.0),
+                ends[3].floor().min(299.0),
+            ];
+            if left > right || top > bottom {
+                continue;
+            }
+            let found = [window.left, window.top, -window.right, -window.bottom].map(f64::from);
+            let least = [left, top, -right, -bottom];
+            assert!(
+                found
+                    .iter()
+                    .zip(least)
+                    .all(|(&found, least)| found <= least),
+                "{window:?} {ends:?}"
+            );
+            // Near the eye parts of a box are at very different depths.
+            if level.half_depth * 16.0 < centre[2] {
+                far += 1;
+                let room = 2.0 + 0.25 * (right - left).max(bottom - top);
+                tight += u32::from((0..4).all(|i| least[i] - found[i] <= room));
+            }
+            checked += 1;
+        }
+        println!(
+            "of {checked} windows {far} are of far nodes, and of those {tight} hardly too large"
+        );
+        assert!(far > 1000 && tight * 10 > far * 9, "{tight} of {far}");
+    }
+}

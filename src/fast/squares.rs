@@ -1,0 +1,71 @@
+//! Windows, square by square: at most 8 x 8 samples, of which some are open.
+
+use super::canvas::Window;
+use super::heading::{Heading, Samples, by_octant};
+use super::lanes::Isa;
+use super::walk::Walk;
+
+/// Column and row of a square's samples.
+pub(super) static SAMPLES: [[f32; 2]; 64] = {
+    let mut table = [[0.0; 2]; 64];
+    let mut sample = 0;
+    while sample < 64 {
+        table[sample] = [(sample & 7) as f32, (sample >> 3) as f32];
+        sample += 1;
+    }
+    table
+};
+
+/// What draws squares.
+pub(super) trait DrawSquare<I: Isa> {
+    /// Draws what samples show; returns those drawn.
+    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64;
+}
+
+/// Takes a window apart into squares with open samples, and those into samples
+/// whose lines begin in one octant, which nearly always is all.
+#[inline(always)]
+pub(super) fn each_square<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    window: &Window,
+    drawer: &impl DrawSquare<I>,
+) {
+    let mut top = window.top;
+    while top <= window.bottom {
+        let mut left = window.left;
+        while left <= window.right {
+            let square = Window {
+                left,
+                top,
+                right: (left + 7).min(window.right),
+                bottom: (top + 7).min(window.bottom),
+            };
+            let open = walk.fill.open_in_square(&square);
+            if open != 0 {
+                walk.counters.squares += 1;
+                let heading = Heading::of(walk.isa, walk.view, &square);
+                let mut samples = Samples {
+                    square: &square,
+                    open,
+                    heading,
+                    octant: heading.octant,
+                };
+                let mut groups = [0; 8];
+                if heading.is_mixed {
+                    groups = by_octant(walk.view, walk.exact, &square, open);
+                    samples.take_group(&mut groups);
+                }
+                let mut drawn = 0;
+                loop {
+                    drawn |= drawer.draw(walk, &samples);
+                    if !heading.is_mixed || !samples.take_group(&mut groups) {
+                        break;
+                    }
+                }
+                walk.fill.mark_square(&square, drawn);
+            }
+            left += 8;
+        }
+        top += 8;
+    }
+}
