@@ -1,22 +1,113 @@
-//! Image-order voxel-graph rendering with nothing but adders and shifts.
+//! Voxel rendering with nothing but adders and shifts.
 //!
-//! See `ARCHITECTURE.md` for the floors and `SPEC.md` for the numeric rules.
+//! `shiftvox` draws voxel files without a GPU, and counts what the same picture would cost a light hardware that has
+//! adders, shifts, logic and compares, and no multiplier, divider or floating point. Its default picture is exact: at
+//! each sample it shows the first voxel on the ray, proved against an oracle in wide integers, the same on every
+//! platform, instruction set and number of threads.
+//!
+//! ```
+//! use shiftvox::{Camera, Renderer, Scene, Voxel};
+//!
+//! // A red voxel in front of a blue one, seen from the front.
+//! let voxel = |y, color| Voxel { index: [0, y, 0], color, normal: None };
+//! let scene = Scene::from_voxels([voxel(0, [255, 0, 0]), voxel(1, [0, 0, 255])])?;
+//! let camera = Camera::fit(&scene).azimuth(0.0).elevation(0.0);
+//! let picture = Renderer::new().render(&scene, &camera, 32, 32)?;
+//! assert_eq!(picture.voxels()[16 * 32 + 16], [0, 0, 0, 1]); // index, and level in the graph
+//! let [red, _, blue, coverage] = picture.rgba()[16 * 32 + 16];
+//! assert!(red > 100 && blue == 0 && coverage == 255);
+//! # #[cfg(feature = "png")]
+//! picture.save_png(std::env::temp_dir().join("red.png"))?;
+//! # Ok::<(), shiftvox::Error>(())
+//! ```
+//!
+//! **Use it** for pictures of voxel files, where there is no GPU or where they must be the same everywhere; to study what
+//! a renderer in hardware would cost; as a reference for another voxel renderer. **Not** for frame rates of a GPU, for
+//! light that bounces, or for scenes that change every frame.
+//!
+//! # What is where
+//!
+//! | | |
+//! |---|---|
+//! | [`Scene`] | opens voxel files and meshes, makes generated scenes, builds voxels of your own |
+//! | [`Camera`] | fitted to a scene, or placed |
+//! | [`Renderer`] | engine ([`EngineKind`]), drawing rule ([`Coverage`]), level of detail, samples a pixel, machine words |
+//! | [`Picture`] | colours, depths, normals, voxels, counters; PNG and NumPy files; a hash |
+//! | [`Engine`] | the engines themselves ([`Fast`], [`Machine`], [`Rays`]), frame after frame without a picture |
+//! | [`hwmodel`] | words that cannot multiply, and the model of cycles, memory, area and energy |
+//!
+//! `examples/` has programs to begin with; the command line does the same and more. The rules are in `SPEC.md`, the
+//! floors of the house in `ARCHITECTURE.md`.
+//!
+//! # Features
+//!
+//! | feature | default | what for |
+//! |---|---|---|
+//! | `png` | yes | [`Picture::save_png`] |
+//! | `mesh` | yes | meshes, Far Voxels and textured voxels |
+//! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
+//! | `cli` | yes | the command line; needs all of them |
+//!
+//! Without them (`default-features = false`) the renderer and its voxel formats are left.
 
-pub mod far;
+mod api;
+
+pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};
+
+pub use fast::{Fast, FastOptions, Instructions, Switches};
+pub use frame::Frame;
+pub use graph::{Graph, GraphView, PackedNormal, Voxel};
+pub use machine::{Machine, MachineOptions, Simulated};
+pub use picture::{Background, Buffer, Shading};
+pub use project::{
+    CageKind, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError, SetupOptions,
+    Stats,
+};
+pub use rays::Rays;
+
+pub use hwmodel;
+
+// The rooms of the house. They are open to tests and tools, may change with every version, and are not
+// part of the library's promise.
+#[doc(hidden)]
 pub mod fast;
+#[doc(hidden)]
 pub mod frame;
+#[doc(hidden)]
 pub mod graph;
-pub mod lab;
+#[doc(hidden)]
 pub mod machine;
-pub mod measure;
-pub mod mesh;
+#[doc(hidden)]
 pub mod picture;
+#[doc(hidden)]
 pub mod project;
+#[doc(hidden)]
 pub mod rays;
-pub mod report;
+#[doc(hidden)]
 pub mod scene;
-pub mod textured;
+#[doc(hidden)]
 pub mod whole;
 
+#[cfg(feature = "mesh")]
+#[doc(hidden)]
+pub mod far;
+#[cfg(feature = "mesh")]
+#[doc(hidden)]
+pub mod mesh;
+#[cfg(feature = "mesh")]
+#[doc(hidden)]
+pub mod textured;
+
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub mod lab;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub mod measure;
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub mod report;
+
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod cli;

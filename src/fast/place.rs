@@ -4,8 +4,12 @@ use super::canvas::Window;
 use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
 use super::view::{Level, View};
 
-/// Rounding of [`Place::window`], of what the window is made of: 2^-21 at most.
-const WINDOW_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
+/// Rounding of [`Place::window`], of what the window is made of: `spec/fast.md`, section 5.
+const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
+
+/// Half a node's depth over its centre's, from which on [`Place::window`] leaves windows as they are: rounding
+/// counts the more the nearer that is to 1.
+const NEAR: f32 = 0.25;
 
 /// A node's centre and edges in the picture.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +44,7 @@ impl<I: Isa> Place<I> {
     }
 
     /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the node as given to
-    /// [`Place::new`]; it lies before the eye.
+    /// [`Place::new`]; it lies before the eye. All of the window where the eye is near ([`NEAR`]).
     ///
     /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth,
     /// which is at most half a node's from the centre's.
@@ -54,12 +58,15 @@ impl<I: Isa> Place<I> {
         parts: u64,
         window: &Window,
     ) -> Window {
-        let [middle, half] = isa.extent(parts);
         let [down, right] = self.step;
+        let share = (level.half_depth * self.inverse) as f32;
+        if share > NEAR {
+            return *window;
+        }
+        let [middle, half] = isa.extent(parts);
         let side = f64::from(level.side);
         let scale = side * side / (4.0 * across) * view.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
-        let share = (level.half_depth * self.inverse) as f32;
         let spread = isa.splat(share).div(isa.splat(1.0 - share));
         // Left and top with their sign turned, right and bottom: outward is upward.
         let outward = isa.four(&[-0.0, -0.0, 0.0, 0.0]);
@@ -70,7 +77,7 @@ impl<I: Isa> Place<I> {
         let along = along.mul(isa.four(&[-scale, scale, scale, -scale]));
         let about = about.mul(isa.splat(scale.abs()));
         let reach = along.add(about);
-        let rounding = isa.splat(WINDOW_ROUNDING);
+        let rounding = isa.splat(BOX_ROUNDING);
         let margin = centre
             .abs()
             .add(about)
@@ -145,8 +152,9 @@ mod tests {
                 right: 399,
                 bottom: 299,
             };
-            let place = Place::new(Scalar, &view, level, centre, 4.0);
-            let window = place.window(Scalar, &view, level, 4.0, parts, &bounds);
+            let across = [4.0, 16.0][checked % 2];
+            let place = Place::new(Scalar, &view, level, centre, across);
+            let window = place.window(Scalar, &view, level, across, parts, &bounds);
             let [left, top, right, bottom] = [
                 ends[0].ceil().max(0.0),
                 ends[1].ceil().max(0.0),

@@ -38,7 +38,7 @@ pub(super) struct Walk<'w, I> {
     pub(super) found: Found,
     /// What its samples show.
     pub(super) hits: [Hit; 64],
-    /// Their nodes.
+    /// Their nodes, of bricks of four levels where nothing is blended.
     pub(super) nodes: [u32; 64],
     /// The blocks of the brick of four levels that is worked on.
     pub(super) blocks: &'w mut Blocks,

@@ -3,6 +3,7 @@
 pub mod camera;
 mod depths;
 pub mod engine;
+pub mod fit;
 pub mod host;
 mod opacity;
 mod reach;

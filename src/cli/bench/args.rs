@@ -60,7 +60,8 @@ pub(super) struct MeasureArgs {
     /// clip to screen space [default: 0.125]; with exact and alpha 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
     tolerance: Option<Tolerance>,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with
+    /// exact, else 1]
     #[arg(long, value_name = "PX")]
     lod: Option<f64>,
     /// As the paper has it: eight corners, screen space at once, coverage any

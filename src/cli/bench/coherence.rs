@@ -29,7 +29,7 @@ pub(super) struct CoherenceArgs {
     /// Pixels: 512 for a square, or 640x360 [default: 1024]
     #[arg(long, value_name = "N|WxH")]
     size: Option<Size>,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5]
     #[arg(long, value_name = "PX")]
     lod: Option<f64>,
     #[command(flatten)]

@@ -472,13 +472,19 @@ impl Isa for Avx2 {
 
     #[inline(always)]
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
-        // SAFETY: as above; what is stored to are eight entries from `at` on, which the slice has.
+        // SAFETY: as above; what is stored to are eight entries from the beginning of a row on, which the slice
+        // has: `end` and the check in the loop.
         unsafe {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let (mut left, mut at) = (samples, first);
             // All eight rows, drawn or not: how many there are cannot be foretold.
-            if first.saturating_add(7 * width + 8) <= rows.len() {
+            // Rows begin at `first + row * width`, and all of their entries are in the slice.
+            let end = width
+                .saturating_mul(7)
+                .saturating_add(first)
+                .saturating_add(8);
+            if end <= rows.len() {
                 let mut to = rows.as_mut_ptr().add(first);
                 for row in 0..8 {
                     let row = _mm256_set1_epi32((samples >> (8 * row)) as i32);

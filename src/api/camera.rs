@@ -1,0 +1,146 @@
+//! Where a picture is seen from.
+
+use glam::DVec3;
+
+use super::Scene;
+use crate::project;
+use crate::project::fit::{Bounds, DEFAULT_FOV, Direction, Up, fit};
+
+/// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's.
+///
+/// ```
+/// # use shiftvox::{Camera, Scene};
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// let from_above = Camera::fit(&scene).azimuth(30.0).elevation(60.0).zoom(1.5);
+/// let inside = Camera::look_at([4.5, 0.5, 4.5], [4.5, 9.0, 4.5]).field_of_view(90.0);
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    place: Place,
+    fov_degrees: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Place {
+    Fitted {
+        bounds: Bounds,
+        up: Up,
+        direction: Direction,
+        zoom: f64,
+    },
+    Placed {
+        eye: DVec3,
+        target: DVec3,
+        up: DVec3,
+    },
+}
+
+impl Camera {
+    /// A camera that sees all of a scene, whatever the picture's size: from the front right and above
+    /// (azimuth 45, elevation 35.264 degrees), with a vertical field of view of 40 degrees.
+    #[must_use]
+    pub fn fit(scene: &Scene) -> Self {
+        Self {
+            place: Place::Fitted {
+                bounds: Bounds::of(scene.graph()),
+                up: scene.up(),
+                direction: Direction::CORNER,
+                zoom: 1.0,
+            },
+            fov_degrees: DEFAULT_FOV,
+        }
+    }
+
+    /// A camera at `eye` that has `target` in the middle of its picture, world units; Z is up.
+    #[must_use]
+    pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
+        Self {
+            place: Place::Placed {
+                eye: eye.into(),
+                target: target.into(),
+                up: DVec3::Z,
+            },
+            fov_degrees: DEFAULT_FOV,
+        }
+    }
+
+    /// Degrees around the up axis: 0 from the front, 90 from the right. Of a fitted camera; a placed one stays.
+    #[must_use]
+    pub fn azimuth(mut self, degrees: f64) -> Self {
+        if let Place::Fitted { direction, .. } = &mut self.place {
+            direction.azimuth = degrees;
+        }
+        self
+    }
+
+    /// Degrees above the horizon. Of a fitted camera; a placed one stays.
+    #[must_use]
+    pub fn elevation(mut self, degrees: f64) -> Self {
+        if let Place::Fitted { direction, .. } = &mut self.place {
+            direction.elevation = degrees;
+        }
+        self
+    }
+
+    /// By how much a fitted camera is nearer than it must be to see all; a placed one stays.
+    #[must_use]
+    pub fn zoom(mut self, factor: f64) -> Self {
+        if let Place::Fitted { zoom, .. } = &mut self.place {
+            *zoom = factor;
+        }
+        self
+    }
+
+    /// Keeps a fitted camera at the same distance from all sides: for turntables.
+    #[must_use]
+    pub fn for_turning(mut self) -> Self {
+        if let Place::Fitted { bounds, up, .. } = &mut self.place {
+            *bounds = bounds.revolved(*up);
+        }
+        self
+    }
+
+    /// Another direction that is seen pointing up, of a placed camera.
+    #[must_use]
+    pub fn up(mut self, direction: [f64; 3]) -> Self {
+        if let Place::Placed { up, .. } = &mut self.place {
+            *up = direction.into();
+        }
+        self
+    }
+
+    /// Vertical field of view, degrees, above 0 and below 180.
+    #[must_use]
+    pub fn field_of_view(mut self, degrees: f64) -> Self {
+        self.fov_degrees = degrees;
+        self
+    }
+
+    /// The camera of a picture of a size, pixels.
+    pub(super) fn of_size(&self, width: u32, height: u32) -> project::Camera {
+        match &self.place {
+            &Place::Placed { eye, target, up } => project::Camera {
+                eye,
+                target,
+                up,
+                fov_degrees: self.fov_degrees,
+                width,
+                height,
+            },
+            Place::Fitted {
+                bounds,
+                up,
+                direction,
+                zoom,
+            } => fit(
+                bounds,
+                *up,
+                *direction,
+                self.fov_degrees,
+                *zoom,
+                (width, height),
+            ),
+        }
+    }
+}

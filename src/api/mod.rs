@@ -1,0 +1,13 @@
+//! The library's front door: a scene, a camera, a renderer, a picture.
+
+mod camera;
+mod error;
+mod picture;
+mod renderer;
+mod scene;
+
+pub use camera::Camera;
+pub use error::Error;
+pub use picture::Picture;
+pub use renderer::{EngineKind, Renderer};
+pub use scene::{Scene, Up};

@@ -1,0 +1,308 @@
+//! How a picture is drawn.
+
+use hwmodel::Overflow;
+use hwmodel::count::Counter;
+use hwmodel::cycles::{Hardware, NoObserver};
+
+use super::{Camera, Error, Picture, Scene};
+use crate::fast::{Fast, FastOptions};
+use crate::frame::Frame;
+use crate::graph::GraphView;
+use crate::machine::{Machine, MachineOptions, Simulated};
+use crate::picture::{Background, Shading, lights, resolve};
+use crate::project::{CageKind, Coverage, Engine, FrameSetup, SetupOptions};
+use crate::rays::Rays;
+
+/// Which engine draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[non_exhaustive]
+pub enum EngineKind {
+    /// On all threads, with vectors where the processor has them.
+    #[default]
+    Fast,
+    /// The paper's loop, in counted words that cannot multiply: the reference of the hardware.
+    Machine,
+    /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others.
+    Rays,
+}
+
+/// Most samples of a picture: about three gigabytes with all buffers.
+const MAX_SAMPLES: u64 = 1 << 27;
+
+/// Draws scenes. Settings are given one after the other; each has a default that is right for a picture.
+///
+/// ```
+/// use shiftvox::{Camera, EngineKind, Renderer, Scene};
+///
+/// let scene = Scene::generate("menger,depth=2")?;
+/// let camera = Camera::fit(&scene);
+/// let fast = Renderer::new().render(&scene, &camera, 64, 64)?;
+/// let oracle = Renderer::new().engine(EngineKind::Rays).render(&scene, &camera, 64, 64)?;
+/// assert_eq!(fast.hash(), oracle.hash());
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Renderer {
+    engine: EngineKind,
+    coverage: Coverage,
+    level_of_detail: Option<f64>,
+    tolerance: Option<f64>,
+    cage: CageKind,
+    samples: u32,
+    bits: u32,
+    frac: Option<u32>,
+    overflow: Overflow,
+    shading: Shading,
+    background: Background,
+    threads: usize,
+    counts_operations: bool,
+}
+
+impl Default for Renderer {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Renderer {
+    /// The fast engine, exact coverage, one sample a pixel, shaded, on all threads.
+    #[must_use]
+    pub fn new() -> Self {
+        let options = SetupOptions::default();
+        Self {
+            engine: EngineKind::default(),
+            coverage: options.coverage,
+            level_of_detail: None,
+            tolerance: None,
+            cage: options.cage,
+            samples: 1,
+            bits: options.bits,
+            frac: options.frac,
+            overflow: Overflow::Trap,
+            shading: Shading::default(),
+            background: Background::default(),
+            threads: 0,
+            counts_operations: false,
+        }
+    }
+
+    /// Which engine draws.
+    #[must_use]
+    pub fn engine(mut self, engine: EngineKind) -> Self {
+        self.engine = engine;
+        self
+    }
+
+    /// Which samples a voxel covers.
+    #[must_use]
+    pub fn coverage(mut self, coverage: Coverage) -> Self {
+        self.coverage = coverage;
+        self
+    }
+
+    /// The size, pixels, up to which nodes are drawn as one voxel; 0: only leaves. By default half a pixel with
+    /// exact coverage, else a pixel.
+    #[must_use]
+    pub fn level_of_detail(mut self, pixels: f64) -> Self {
+        self.level_of_detail = Some(pixels);
+        self
+    }
+
+    /// Samples of a pixel along each axis: 1, 2 or 4.
+    #[must_use]
+    pub fn samples(mut self, along_each_axis: u32) -> Self {
+        self.samples = along_each_axis;
+        self
+    }
+
+    /// The deviation, samples, at which a record may change from clip space to screen space; 0 never, infinity at
+    /// once. Of [`Coverage::Any`] and [`Coverage::Center`]; the other rules take 0.
+    #[must_use]
+    pub fn tolerance(mut self, samples: f64) -> Self {
+        self.tolerance = Some(samples);
+        self
+    }
+
+    /// How a record holds its vertices. Changes what is counted, never the picture.
+    #[must_use]
+    pub fn cage(mut self, cage: CageKind) -> Self {
+        self.cage = cage;
+        self
+    }
+
+    /// Width of a machine word, 16 to 64 bits, and its fraction bits (`None`: as many as the frame has room
+    /// for).
+    #[must_use]
+    pub fn word(mut self, bits: u32, fraction_bits: Option<u32>) -> Self {
+        self.bits = bits;
+        self.frac = fraction_bits;
+        self
+    }
+
+    /// What a result becomes that does not fit its word.
+    #[must_use]
+    pub fn overflow(mut self, overflow: Overflow) -> Self {
+        self.overflow = overflow;
+        self
+    }
+
+    /// As the image-order paper has it: eight corners a record, screen space at once, every pixel touched.
+    #[must_use]
+    pub fn paper(self) -> Self {
+        self.coverage(Coverage::Any)
+            .cage(CageKind::Corners)
+            .tolerance(f64::INFINITY)
+    }
+
+    /// How a voxel's colour depends on where it looks.
+    #[must_use]
+    pub fn shading(mut self, shading: Shading) -> Self {
+        self.shading = shading;
+        self
+    }
+
+    /// What is behind the object.
+    #[must_use]
+    pub fn background(mut self, background: Background) -> Self {
+        self.background = background;
+        self
+    }
+
+    /// Threads of the fast engine; 0: as many as there are.
+    #[must_use]
+    pub fn threads(mut self, threads: usize) -> Self {
+        self.threads = threads;
+        self
+    }
+
+    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`].
+    #[must_use]
+    pub fn count_operations(mut self) -> Self {
+        self.engine = EngineKind::Machine;
+        self.counts_operations = true;
+        self
+    }
+
+    /// Draws a picture of `width` x `height` pixels.
+    ///
+    /// # Errors
+    /// [`Error::Setup`] where camera and settings make no frame, [`Error::Size`] for samples other than 1, 2 and 4
+    /// and for more than 2^27 samples in all, [`Error::Engine`] where a word overflows.
+    pub fn render(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        width: u32,
+        height: u32,
+    ) -> Result<Picture, Error> {
+        let setup = self.set_up(scene, camera, width, height)?;
+        let graph = scene.graph();
+        let light = lights(graph, &setup, self.shading);
+        let view = GraphView {
+            light: &light,
+            ..graph.view()
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let mut operations = None;
+        let counters = match self.engine {
+            EngineKind::Machine if self.counts_operations => {
+                let (stats, counter) =
+                    self.machine()
+                        .render_probed(&view, &setup, &mut frame, Counter::new())?;
+                operations = Some(counter);
+                stats
+            }
+            EngineKind::Machine => self.machine().render(&view, &setup, &mut frame)?,
+            EngineKind::Rays => Rays.render(&view, &setup, &mut frame)?,
+            EngineKind::Fast => {
+                let options = FastOptions {
+                    threads: self.threads,
+                    ..FastOptions::default()
+                };
+                Fast::new(options, Box::new(self.machine())).render(&view, &setup, &mut frame)?
+            }
+        };
+        let buffers = resolve(&frame, graph, &setup, self.shading, self.background)?;
+        Ok(Picture::new(buffers, counters, operations))
+    }
+
+    /// Draws on a simulated hardware: its cycles, what they were spent on, and the machine's counters. Always the
+    /// machine, whatever [`Renderer::engine`] says.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Simulate`] where the hardware's description is not sound or its
+    /// stack overflows.
+    pub fn simulate(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        width: u32,
+        height: u32,
+        hardware: &Hardware,
+    ) -> Result<Simulated, Error> {
+        let setup = self.set_up(scene, camera, width, height)?;
+        let graph = scene.graph();
+        let light = lights(graph, &setup, self.shading);
+        let view = GraphView {
+            light: &light,
+            ..graph.view()
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let mut machine = self.machine();
+        Ok(machine.simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)?)
+    }
+
+    fn machine(&self) -> Machine {
+        Machine::new(MachineOptions {
+            overflow: self.overflow,
+            ..MachineOptions::default()
+        })
+    }
+
+    /// The integers of a frame: what [`Engine`] draws from, for programs that draw frame after frame.
+    ///
+    /// # Errors
+    /// [`Error::Setup`] and [`Error::Size`], as [`Renderer::render`].
+    pub fn set_up(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        width: u32,
+        height: u32,
+    ) -> Result<FrameSetup, Error> {
+        let aa_log2 = match self.samples {
+            1 => 0,
+            2 => 1,
+            4 => 2,
+            other => {
+                return Err(Error::Size(format!(
+                    "a pixel has 1, 2 or 4 samples along each axis, not {other}"
+                )));
+            }
+        };
+        let samples = (u64::from(width) * u64::from(height)) << (2 * aa_log2);
+        if samples > MAX_SAMPLES {
+            return Err(Error::Size(format!(
+                "a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"
+            )));
+        }
+        let defaults = SetupOptions::of(self.coverage);
+        let options = SetupOptions {
+            bits: self.bits,
+            frac: self.frac,
+            cage: self.cage,
+            tolerance_px: self.tolerance.unwrap_or(defaults.tolerance_px),
+            lod_px: self.level_of_detail.unwrap_or(defaults.lod_px),
+            aa_log2,
+            ..defaults
+        };
+        let graph = scene.graph();
+        let camera = camera.of_size(width, height);
+        Ok(FrameSetup::new(
+            &camera,
+            &graph.placement,
+            graph.depth,
+            &options,
+        )?)
+    }
+}

@@ -1,0 +1,142 @@
+//! A scene: a voxel graph, where it lies, and which way is up.
+
+use std::path::Path;
+
+use super::Error;
+use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
+use crate::project::fit::Bounds;
+pub use crate::project::fit::Up;
+use crate::scene::{OpenOptions, open, open_bytes};
+
+/// What a renderer draws: a voxel graph in world coordinates.
+///
+/// World units are those of the file; a voxel of index `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)`
+/// unless the file says another size and place.
+#[derive(Debug)]
+pub struct Scene {
+    graph: Graph,
+    up: Up,
+}
+
+impl Scene {
+    /// Opens a voxel file (`.vox`, `.ply`, `.npy`, `.vxg`), whose format is told by content, or a mesh (`.obj`,
+    /// `.ply`, `.stl`, `.gltf`, `.glb`), which is voxelised at 2^9 voxels along its longest side.
+    ///
+    /// # Errors
+    /// [`Error::Open`] where the file cannot be read, is of no known format, is damaged, or holds more
+    /// voxels than memory does.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
+        let path = path.as_ref().to_string_lossy();
+        let opened = open(&path, &OpenOptions::default(), &Silent)?;
+        let up = if opened.mesh.is_some() { Up::Y } else { Up::Z };
+        Ok(Self {
+            graph: opened.graph,
+            up,
+        })
+    }
+
+    /// Opens a file that is held in memory; errors call it `name`. Meshes find no other files, such as
+    /// materials.
+    ///
+    /// # Errors
+    /// As [`Scene::open`].
+    pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, Error> {
+        let opened = open_bytes(bytes, name, &OpenOptions::default(), &Silent)?;
+        let up = if opened.mesh.is_some() { Up::Y } else { Up::Z };
+        Ok(Self {
+            graph: opened.graph,
+            up,
+        })
+    }
+
+    /// Makes a scene of a generator's specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All
+    /// generators and their parameters: `spec/generators.md`.
+    ///
+    /// # Errors
+    /// [`Error::Open`] where no generator has the name, or its parameters are wrong.
+    pub fn generate(specification: &str) -> Result<Self, Error> {
+        let source = format!("{}{specification}", crate::scene::generate::PREFIX);
+        let opened = open(&source, &OpenOptions::default(), &Silent)?;
+        Ok(Self {
+            graph: opened.graph,
+            up: Up::Z,
+        })
+    }
+
+    /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one counts.
+    ///
+    /// # Errors
+    /// [`Error::Build`] where there is no voxel, or voxels lie more than 2^30 apart.
+    pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
+        let mut builder = Builder::new(BuildOptions::default());
+        for voxel in voxels {
+            builder.push(voxel);
+        }
+        let Placement {
+            world_origin,
+            voxel_size,
+            ..
+        } = Placement::default();
+        let graph = builder.finish((world_origin, voxel_size), &Silent)?;
+        Ok(Self { graph, up: Up::Z })
+    }
+
+    /// The same scene with another axis up, which [`Camera::fit`](super::Camera::fit) follows.
+    #[must_use]
+    pub fn with_up(mut self, up: Up) -> Self {
+        self.up = up;
+        self
+    }
+
+    /// Voxels of the finest level, counted with repetition in graphs that share parts.
+    #[must_use]
+    pub fn voxels(&self) -> u64 {
+        self.graph.voxels
+    }
+
+    /// Levels below the root: the object's cube has `2^depth` finest voxels a side.
+    #[must_use]
+    pub fn depth(&self) -> u32 {
+        self.graph.depth
+    }
+
+    /// Bytes of the graph, in memory or in the file that it is mapped from.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        self.graph.bytes()
+    }
+
+    /// Lowest and highest corner of the box around all voxels, world units.
+    #[must_use]
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        let bounds = Bounds::of(&self.graph);
+        [bounds.low.to_array(), bounds.high.to_array()]
+    }
+
+    /// Writes the scene as a `.vxg` file, which opens without being built. Replaces what is there; the file
+    /// appears whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::WriteGraph`] where the system refuses.
+    pub fn save_vxg(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        Ok(vxg::write(&self.graph, path.as_ref(), true)?)
+    }
+
+    /// The graph, for who drives an engine themselves.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn graph(&self) -> &Graph {
+        &self.graph
+    }
+
+    pub(super) fn up(&self) -> Up {
+        self.up
+    }
+}
+
+impl From<Graph> for Scene {
+    /// A scene of a graph, Z up.
+    fn from(graph: Graph) -> Self {
+        Self { graph, up: Up::Z }
+    }
+}

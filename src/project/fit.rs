@@ -1,0 +1,359 @@
+//! A camera that sees all of an object.
+
+use glam::DVec3;
+
+use super::Camera;
+use crate::graph::Graph;
+
+/// Vertical field of view where none is given, degrees.
+pub const DEFAULT_FOV: f64 = 40.0;
+/// Share of the picture that a fitted object fills at most.
+const FILL: f64 = 0.94;
+/// Nodes looked at to find an object's bounds; beyond it they are only enclosed.
+const MAX_VISITS: u32 = 4_000_000;
+
+/// Which world axis is up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Up {
+    /// +Z, as in voxel files; the front looks towards -Y.
+    Z,
+    /// +Y, as in meshes; the front looks towards +Z.
+    Y,
+}
+
+impl Up {
+    /// The direction that is up.
+    #[must_use]
+    pub fn axis(self) -> DVec3 {
+        match self {
+            Self::Z => DVec3::Z,
+            Self::Y => DVec3::Y,
+        }
+    }
+
+    /// The direction from the object to a viewer in front of it.
+    fn front(self) -> DVec3 {
+        match self {
+            Self::Z => DVec3::NEG_Y,
+            Self::Y => DVec3::Z,
+        }
+    }
+}
+
+/// An axis-aligned box in world units, and points in it that enclose the object.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    /// Lowest corner.
+    pub low: DVec3,
+    /// Highest corner.
+    pub high: DVec3,
+    /// Points whose hull holds all voxels.
+    pub hull: Vec<DVec3>,
+}
+
+impl Bounds {
+    /// The box of a graph's voxels in object coordinates, finest voxels; `None` for an empty graph.
+    ///
+    /// Exact but for graphs with millions of nodes on their outside, whose box
+    /// may then be too large by a few voxels.
+    #[must_use]
+    pub fn in_voxels(graph: &Graph) -> Option<([i64; 3], [i64; 3])> {
+        if graph.is_empty() {
+            return None;
+        }
+        let mut search = Search {
+            graph,
+            low: [i64::MAX; 3],
+            high: [i64::MIN; 3],
+            visits: 0,
+        };
+        search.visit(graph.root, 0, [0; 3]);
+        Some((search.low, search.high))
+    }
+
+    /// The box of a graph's voxels in world units; the unit cube for an empty graph.
+    #[must_use]
+    pub fn of(graph: &Graph) -> Self {
+        let (low, high) = Self::in_voxels(graph).unwrap_or(([0; 3], [1; 3]));
+        let placement = &graph.placement;
+        let world = |corner: [i64; 3]| {
+            let index = |k: usize| (corner[k] + placement.origin_index[k]) as f64;
+            DVec3::from_array(placement.world_origin)
+                + DVec3::new(index(0), index(1), index(2)) * placement.voxel_size
+        };
+        let mut hull: Vec<DVec3> = coarse_corners(graph).into_iter().map(world).collect();
+        let (low, high) = (world(low), world(high));
+        for point in &mut hull {
+            *point = point.clamp(low, high);
+        }
+        Self { low, high, hull }
+    }
+
+    /// A box alone.
+    #[must_use]
+    pub fn of_box(low: DVec3, high: DVec3) -> Self {
+        let corner = |i: u32| {
+            let pick = |bit: u32, k: usize| if i >> bit & 1 == 1 { high[k] } else { low[k] };
+            DVec3::new(pick(2, 0), pick(1, 1), pick(0, 2))
+        };
+        Self {
+            low,
+            high,
+            hull: (0..8).map(corner).collect(),
+        }
+    }
+
+    /// The bounds of the object turned all the way around the up axis, so
+    /// that a fitted distance is the same from all sides.
+    #[must_use]
+    pub fn revolved(&self, up: Up) -> Self {
+        let centre = (self.low + self.high) / 2.0;
+        let axis = up.axis();
+        let side = axis.cross(up.front());
+        let mut rings: Vec<(f64, f64)> = self
+            .hull
+            .iter()
+            .map(|&point| {
+                let offset = point - centre;
+                let height = offset.dot(axis);
+                (height, (offset - axis * height).length())
+            })
+            .collect();
+        rings.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        // The widest of each height stands for the others.
+        rings.dedup_by_key(|ring| ring.0);
+        let turns =
+            (0..RING_POINTS).map(|i| sin_cos(360.0 * f64::from(i) / f64::from(RING_POINTS)));
+        let hull = turns
+            .flat_map(|(sin, cos)| {
+                let outward = up.front() * cos + side * sin;
+                let ring =
+                    move |&(height, radius): &(f64, f64)| centre + axis * height + outward * radius;
+                rings.iter().map(ring).collect::<Vec<_>>()
+            })
+            .collect();
+        Self {
+            hull,
+            ..self.clone()
+        }
+    }
+}
+
+/// Points of a ring around the up axis.
+const RING_POINTS: u32 = 72;
+/// Level of the nodes whose corners enclose an object.
+const HULL_LEVEL: u32 = 5;
+
+/// The corners, in object coordinates, of all nodes at a coarse level.
+fn coarse_corners(graph: &Graph) -> Vec<[i64; 3]> {
+    let view = graph.view();
+    let level = HULL_LEVEL.min(graph.depth);
+    let side = 1i64 << (graph.depth - level);
+    let across = (1usize << level) + 1;
+    let mut is_corner = vec![false; across * across * across];
+    let mut open = vec![(graph.root, 0, [0usize; 3])];
+    while let Some((node, at_level, at)) = open.pop() {
+        let mask = view.mask(node);
+        if at_level == level || mask == 0 {
+            // A leaf above the level has only its own corners.
+            let span = 1usize << (level - at_level);
+            for corner in 0..8usize {
+                let place = |k: usize| at[k] * span + span * (corner >> (2 - k) & 1);
+                is_corner[(place(0) * across + place(1)) * across + place(2)] = true;
+            }
+            continue;
+        }
+        for octant in 0..8u8 {
+            if let Some(child) = view.child(node, octant) {
+                let half = |k: usize| at[k] * 2 + usize::from(octant >> (2 - k) & 1);
+                open.push((child, at_level + 1, [half(0), half(1), half(2)]));
+            }
+        }
+    }
+    (0..is_corner.len())
+        .filter(|&i| is_corner[i])
+        .map(|i| {
+            let place = [i / (across * across), i / across % across, i % across];
+            place.map(|p| p as i64 * side)
+        })
+        .collect()
+}
+
+/// Looks only at nodes that may widen the box.
+struct Search<'g> {
+    graph: &'g Graph,
+    low: [i64; 3],
+    high: [i64; 3],
+    visits: u32,
+}
+
+impl Search<'_> {
+    fn visit(&mut self, node: u32, level: u32, corner: [i64; 3]) {
+        let side = 1i64 << (self.graph.depth - level);
+        let within = (0..3).all(|k| corner[k] >= self.low[k] && corner[k] + side <= self.high[k]);
+        if within {
+            return;
+        }
+        self.visits += 1;
+        let view = self.graph.view();
+        let leaf = level == self.graph.depth || view.mask(node) == 0;
+        if leaf || self.visits > MAX_VISITS {
+            for k in 0..3 {
+                self.low[k] = self.low[k].min(corner[k]);
+                self.high[k] = self.high[k].max(corner[k] + side);
+            }
+            return;
+        }
+        for octant in 0..8u8 {
+            if let Some(child) = view.child(node, octant) {
+                let half = side / 2;
+                let at = |k: usize| corner[k] + half * i64::from(octant >> (2 - k) & 1);
+                self.visit(child, level + 1, [at(0), at(1), at(2)]);
+            }
+        }
+    }
+}
+
+/// Where a viewer stands around an object, degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Direction {
+    /// Around the up axis: 0 from the front, 90 from the right.
+    pub azimuth: f64,
+    /// Above the horizon.
+    pub elevation: f64,
+}
+
+impl Direction {
+    /// From a corner, above: the view of isometric pictures.
+    pub const CORNER: Self = Self {
+        azimuth: 45.0,
+        elevation: 35.264,
+    };
+}
+
+/// The nearest camera in a direction that sees the whole box, then magnified
+/// by `zoom` (the field of view stays, the eye comes nearer).
+#[must_use]
+pub fn fit(
+    bounds: &Bounds,
+    up: Up,
+    direction: Direction,
+    fov_degrees: f64,
+    zoom: f64,
+    (width, height): (u32, u32),
+) -> Camera {
+    let (sin_a, cos_a) = sin_cos(direction.azimuth);
+    let (sin_e, cos_e) = sin_cos(direction.elevation);
+    let right_of_front = up.axis().cross(up.front());
+    let horizontal = up.front() * cos_a + right_of_front * sin_a;
+    let towards_eye = horizontal * cos_e + up.axis() * sin_e;
+    // Rises with the elevation, so it is never along the view axis, not even from above.
+    let camera_up = up.axis() * cos_e - horizontal * sin_e;
+    let camera_right = camera_up.cross(towards_eye);
+
+    let centre = (bounds.low + bounds.high) / 2.0;
+    let slope_up = libm::tan(fov_degrees * (std::f64::consts::PI / 360.0)) * FILL;
+    let slope_right = slope_up * f64::from(width) / f64::from(height);
+    let distance = bounds
+        .hull
+        .iter()
+        .map(|&point| {
+            let offset = point - centre;
+            let across = (offset.dot(camera_right).abs() / slope_right)
+                .max(offset.dot(camera_up).abs() / slope_up);
+            across + offset.dot(towards_eye)
+        })
+        .fold(0.0, f64::max);
+    Camera {
+        eye: tidy(centre + towards_eye * (distance / zoom), distance),
+        target: centre,
+        up: tidy(camera_up, 1.0),
+        fov_degrees,
+        width,
+        height,
+    }
+}
+
+/// Rounds to about six decimal digits of `scale`, so that a printed camera is
+/// short and still reads back as the same numbers.
+fn tidy(point: DVec3, scale: f64) -> DVec3 {
+    let digits = 6 - libm::ceil(libm::log10(scale.max(f64::MIN_POSITIVE))) as i32;
+    let round = |x: f64| -> f64 {
+        // A power of ten up to 22 is exact, so x comes out as the f64 nearest to a short decimal.
+        let rounded = match digits {
+            0..=22 => libm::round(x * power_of_ten(digits)) / power_of_ten(digits),
+            -22..0 => libm::round(x / power_of_ten(-digits)) * power_of_ten(-digits),
+            _ => x,
+        };
+        // Adding zero turns -0 into 0.
+        rounded + 0.0
+    };
+    DVec3::new(round(point.x), round(point.y), round(point.z))
+}
+
+fn power_of_ten(exponent: i32) -> f64 {
+    (0..exponent).fold(1.0, |power, _| power * 10.0)
+}
+
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    let radians = degrees * (std::f64::consts::PI / 180.0);
+    (libm::sin(radians), libm::cos(radians))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cube() -> Bounds {
+        Bounds::of_box(DVec3::splat(0.0), DVec3::splat(10.0))
+    }
+
+    fn eye(azimuth: f64, elevation: f64, up: Up) -> DVec3 {
+        let direction = Direction { azimuth, elevation };
+        let camera = fit(&cube(), up, direction, 40.0, 1.0, (100, 100));
+        (camera.eye - camera.target).normalize()
+    }
+
+    #[test]
+    fn directions() {
+        assert_eq!(eye(0.0, 0.0, Up::Z), DVec3::NEG_Y);
+        assert_eq!(eye(90.0, 0.0, Up::Z), DVec3::X);
+        assert_eq!(eye(0.0, 90.0, Up::Z), DVec3::Z);
+        assert_eq!(eye(0.0, 0.0, Up::Y), DVec3::Z);
+        assert_eq!(eye(90.0, 0.0, Up::Y), DVec3::X);
+    }
+
+    #[test]
+    fn a_revolved_object_is_seen_from_the_same_distance_all_around() {
+        let bounds = Bounds::of_box(DVec3::ZERO, DVec3::new(10.0, 4.0, 7.0)).revolved(Up::Z);
+        let distance = |azimuth: f64| {
+            let direction = Direction {
+                azimuth,
+                elevation: 20.0,
+            };
+            let camera = fit(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
+            (camera.eye - camera.target).length()
+        };
+        for turn in [5.0, 45.0, 90.0, 210.0] {
+            assert!((distance(turn) - distance(0.0)).abs() < 1e-3, "{turn}");
+        }
+    }
+
+    #[test]
+    fn all_corners_are_seen_and_one_is_near_the_edge() {
+        for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0), (10.0, 90.0), (200.0, -60.0)] {
+            let direction = Direction { azimuth, elevation };
+            let camera = fit(&cube(), Up::Z, direction, 40.0, 1.0, (300, 200));
+            let axes = camera.axes().unwrap();
+            let mut most = 0.0f64;
+            for corner in 0..8u32 {
+                let bit = |b: u32| f64::from(corner >> b & 1) * 10.0;
+                let offset = DVec3::new(bit(0), bit(1), bit(2)) - camera.eye;
+                let scale = axes.focal_px / offset.dot(axes.forward);
+                most = most.max((offset.dot(axes.right) * scale / 150.0).abs());
+                most = most.max((offset.dot(axes.up) * scale / 100.0).abs());
+            }
+            assert!((most - FILL).abs() < 1e-3, "{azimuth} {elevation}: {most}");
+        }
+    }
+}
