@@ -54,7 +54,7 @@ mod api;
 
 pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};
 
-pub use fast::{Fast, FastOptions, Instructions, Switches};
+pub use fast::{Declined, Fast, FastOptions, Instructions, Switches};
 pub use frame::Frame;
 pub use graph::{Graph, GraphView, PackedNormal, Voxel};
 pub use machine::{Machine, MachineOptions, Simulated};

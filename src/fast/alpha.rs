@@ -1,11 +1,11 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 12): what the machine
+//! Blending, under the rule `alpha` (`SPEC.md`, section 11): what the machine
 //! has in sums of shifts, in products.
 //!
 //! Which samples a voxel draws, and in which order, is found as under `exact`; a
 //! sample stays open until it is opaque enough.
 
 use super::lanes::Isa;
-use super::walk::Walk;
+use super::state::Walk;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 

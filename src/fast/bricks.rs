@@ -10,22 +10,15 @@
 //! block's parts are the voxels: the same look-ups twice, 4096 voxels a brick.
 //! A block's parts are put in order when the first line asks for them.
 
-use super::canvas::Window;
 use super::heading::Samples;
 use super::lanes::Isa;
 use super::lines::{Lines, Meeting, OFFSETS};
-use super::parts::{Part, Parts};
+use super::parts::Part;
 use super::place::Place;
 use super::squares::{DrawSquare, SAMPLES, each_square};
+use super::state::{Brick, Hit, Walk, voxel_at};
 use super::strips::STRIPS;
-use super::walk::{Record, Walk, voxel_at};
-
-/// A node that is drawn in one step.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Brick<'b> {
-    pub(super) record: &'b Record,
-    pub(super) parts: &'b Parts,
-}
+use super::window::Window;
 
 /// Draws squares of a brick of two levels, or of four (`DEEP`).
 struct BySamples<'b, I: Isa, const DEEP: bool> {
@@ -208,17 +201,6 @@ fn meet_first<I: Isa>(walk: &mut Walk<'_, I>, lines: &Lines<I>, any: u64, pair: 
         others |= u64::from((parts != 0) & !is_met) << bit;
     }
     (drawn, others)
-}
-
-/// What a sample of a square shows of a brick.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Hit {
-    /// The sample.
-    bit: u8,
-    /// The block, in order of occlusion; of bricks of two levels nothing.
-    block: u8,
-    /// The part.
-    part: u8,
 }
 
 impl Hit {

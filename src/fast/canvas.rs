@@ -6,69 +6,8 @@
 //! as in the image quadtree. A square is what is no larger than a tile, anywhere.
 
 use super::lanes::Isa;
+use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window};
 use crate::frame::{Blend, NO_NODE, color_word};
-
-/// Samples along a tile's side, as a power of two.
-pub(super) const TILE_LOG2: u32 = 3;
-/// Samples along a block's side, as a power of two.
-pub(super) const BLOCK_LOG2: u32 = 6;
-/// A tile or block with everything open.
-const ALL: u64 = u64::MAX;
-/// The leftmost samples of a tile's eight rows.
-const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
-
-/// Samples from `left` to `right` and `top` to `bottom`, all included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
-    pub(super) left: i32,
-    pub(super) top: i32,
-    pub(super) right: i32,
-    pub(super) bottom: i32,
-}
-
-impl Window {
-    /// Whether it has no sample.
-    #[inline(always)]
-    pub(super) fn is_empty(&self) -> bool {
-        self.left > self.right || self.top > self.bottom
-    }
-
-    /// What it has in common with another.
-    #[inline(always)]
-    pub(super) fn and(&self, other: &Self) -> Self {
-        Self {
-            left: self.left.max(other.left),
-            top: self.top.max(other.top),
-            right: self.right.min(other.right),
-            bottom: self.bottom.min(other.bottom),
-        }
-    }
-
-    /// The bits of a tile or block that lie in the window. `x`, `y`: the
-    /// window's unit that the word's first bit stands for.
-    #[inline(always)]
-    fn bits(&self, x: i32, y: i32) -> u64 {
-        let left = (self.left - x).max(0) as u32;
-        let right = (self.right - x).min(7) as u32;
-        let top = (self.top - y).max(0) as u32;
-        let bottom = (self.bottom - y).min(7) as u32;
-        // Each is in 0..8, since the word and the window overlap.
-        let row = ((0xffu64 << left) & 0xff) & (0xff >> (7 - right));
-        let rows = (ALL << (8 * top)) & (ALL >> (8 * (7 - bottom)));
-        row.wrapping_mul(LEFT_COLUMN) & rows
-    }
-
-    /// The window in units `2^places` times as large.
-    #[inline(always)]
-    fn coarser(&self, places: u32) -> Self {
-        Self {
-            left: self.left >> places,
-            top: self.top >> places,
-            right: self.right >> places,
-            bottom: self.bottom >> places,
-        }
-    }
-}
 
 /// Which samples of a band of the picture are drawn.
 #[derive(Debug)]

@@ -6,9 +6,7 @@
 //! its side is the sign of `n q`; a zero is decided as the machine does, by the
 //! signs of `n_X` and `n_Y`.
 
-use super::canvas::{BLOCK_LOG2, TILE_LOG2, Window};
-use super::lanes::Isa;
-use super::walk::Walk;
+use super::window::Window;
 use crate::project::FrameSetup;
 
 /// Relative error of a sum of at most nine products of rounded numbers, with
@@ -262,14 +260,14 @@ pub(super) struct Outline {
 
 /// What a window has of a silhouette.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Cover {
+pub(super) enum Cover {
     None,
     Some,
     All,
 }
 
 impl Outline {
-    fn cover(&self, window: &Window) -> Cover {
+    pub(super) fn cover(&self, window: &Window) -> Cover {
         let mut all = true;
         for edges in &self.edges {
             let (mut positive, mut negative, mut open) = (false, false, false);
@@ -300,7 +298,7 @@ impl Outline {
         if all { Cover::All } else { Cover::Some }
     }
 
-    fn covers(&self, exact: &Exact, x: i32, y: i32) -> bool {
+    pub(super) fn covers(&self, exact: &Exact, x: i32, y: i32) -> bool {
         let inside = self.edges.iter().all(|edges| {
             let (mut positive, mut negative) = (false, false);
             for plane in edges {
@@ -315,96 +313,5 @@ impl Outline {
                 .front
                 .as_ref()
                 .is_none_or(|(plane, side)| plane.side_of_sample(exact, x, y) == *side)
-    }
-
-    /// Draws all open samples of a window that the silhouette covers.
-    pub(super) fn draw<I: Isa>(
-        &self,
-        walk: &mut Walk<'_, I>,
-        window: &Window,
-        node: u32,
-        voxel: [i32; 4],
-    ) {
-        walk.counters.solids += 1;
-        let side = 1 << BLOCK_LOG2;
-        for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
-            for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
-                let (left, top) = (x << BLOCK_LOG2, y << BLOCK_LOG2);
-                let block = Window {
-                    left,
-                    top,
-                    right: left + side - 1,
-                    bottom: top + side - 1,
-                }
-                .and(window);
-                if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
-                    continue;
-                }
-                let cover = if walk.switches.whole_blocks {
-                    self.cover(&block)
-                } else {
-                    Cover::Some
-                };
-                if cover != Cover::None {
-                    self.draw_block(walk, &block, cover, node, voxel);
-                }
-            }
-        }
-    }
-
-    fn draw_block<I: Isa>(
-        &self,
-        walk: &mut Walk<'_, I>,
-        block: &Window,
-        cover: Cover,
-        node: u32,
-        voxel: [i32; 4],
-    ) {
-        let side = 1 << TILE_LOG2;
-        for y in block.top >> TILE_LOG2..=block.bottom >> TILE_LOG2 {
-            for x in block.left >> TILE_LOG2..=block.right >> TILE_LOG2 {
-                let open = walk.fill.open_in_tile(x, y, block);
-                if open == 0 {
-                    continue;
-                }
-                let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
-                let tile = Window {
-                    left,
-                    top,
-                    right: left + side - 1,
-                    bottom: top + side - 1,
-                }
-                .and(block);
-                let cover = if cover == Cover::All || !walk.switches.whole_blocks {
-                    cover
-                } else {
-                    self.cover(&tile)
-                };
-                let samples = match cover {
-                    Cover::None => 0,
-                    Cover::All => open,
-                    Cover::Some => {
-                        let mut left_over = open;
-                        let mut covered = 0;
-                        while left_over != 0 {
-                            let bit = left_over.trailing_zeros() as i32;
-                            let sample = left_over & left_over.wrapping_neg();
-                            left_over ^= sample;
-                            walk.counters.exact_samples += 1;
-                            if self.covers(walk.exact, left + (bit & 7), top + (bit >> 3)) {
-                                covered |= sample;
-                            }
-                        }
-                        covered
-                    }
-                };
-                if samples != 0 {
-                    walk.counters.tiles_filled += u64::from(samples == u64::MAX);
-                    let drawn = walk.show([left, top], samples, node, voxel);
-                    walk.counters.samples_drawn += u64::from(drawn.count_ones());
-                    walk.fill.mark_tile(x, y, drawn);
-                }
-            }
-        }
     }
 }

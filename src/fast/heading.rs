@@ -1,9 +1,9 @@
 //! Where the lines of a square's samples run: their direction, and the octant that they begin in.
 
-use super::canvas::Window;
 use super::exact::Exact;
 use super::lanes::{Four, Isa};
 use super::view::View;
+use super::window::Window;
 
 /// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
 /// summed up at most: `spec/fast.md` counts them.

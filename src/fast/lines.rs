@@ -336,9 +336,9 @@ pub(super) static NO_OFFSET: Offset = Offset {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::fast::canvas::Window;
     use crate::fast::heading::{Heading, STEPS};
     use crate::fast::lanes::Scalar;
+    use crate::fast::window::Window;
     use crate::graph::Placement;
     use crate::project::{Camera, FrameSetup, SetupOptions};
 
@@ -368,7 +368,7 @@ pub(super) mod tests {
         };
         let placement = Placement::default();
         let setup = FrameSetup::new(&camera, &placement, 6, &SetupOptions::default()).ok()?;
-        let view = View::new(&setup)?;
+        let view = View::new(&setup).ok()?;
         Some((setup, view))
     }
 

@@ -21,30 +21,37 @@
 mod alpha;
 mod bricks;
 mod canvas;
+mod compiled;
 mod counters;
 mod exact;
 mod heading;
 mod lanes;
 mod lines;
+mod orders;
 mod parts;
 mod place;
+mod planes;
 mod squares;
+mod state;
 mod strips;
 mod switches;
 mod view;
 mod voxels;
 mod walk;
+mod window;
 
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
-use canvas::{BLOCK_LOG2, Fill, FillMemory, FillPart, Grid, Pixels, Window};
+use canvas::{Fill, FillMemory, FillPart, Grid, Pixels};
 use counters::Counters;
 use exact::Exact;
-use lanes::{Isa, Scalar};
+use lanes::Scalar;
+use state::{Blocks, Compiled, Hit, Walk};
 pub use switches::Switches;
+pub use view::Declined;
 use view::View;
-use walk::{Blocks, Walk};
+use window::{BLOCK_LOG2, Window};
 
 /// Which instructions the engine uses. Never changes a bit of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -79,13 +86,14 @@ pub struct Fast {
     prepared: Option<Prepared>,
     /// Counts of the last frame.
     counters: Counters,
+    /// Why it was handed on.
+    declined: Option<Declined>,
 }
 
 /// A frame's constants.
 struct Prepared {
     setup: FrameSetup,
-    /// `None`: not a frame for this engine.
-    view: Option<View>,
+    view: Result<View, Declined>,
     exact: Exact,
 }
 
@@ -108,10 +116,17 @@ impl Fast {
             fill: FillMemory::default(),
             prepared: None,
             counters: Counters::default(),
+            declined: None,
         }
     }
 
-    /// Draws a frame, or says that it does not: `false`. Allocates nothing
+    /// Why the last frame was handed to the fallback, which is many times slower; `None`: it was not.
+    #[must_use]
+    pub fn declined(&self) -> Option<Declined> {
+        self.declined
+    }
+
+    /// Draws a frame; returns `false` if it has to be drawn by the fallback. Allocates nothing
     /// when the set-up is that of the last frame.
     fn draw_fast(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, pixels: Pixels<'_>) -> bool {
         let prepared = match &mut self.prepared {
@@ -122,7 +137,8 @@ impl Fast {
                 exact: Exact::new(setup),
             }),
         };
-        let Some(view) = &prepared.view else {
+        self.declined = prepared.view.as_ref().err().copied();
+        let Ok(view) = &prepared.view else {
             return false;
         };
         let job = Job {
@@ -158,7 +174,23 @@ impl Fast {
     }
 }
 
+impl Fast {
+    /// [`Fast::draw_fast`] of a frame's nodes and voxels.
+    fn draw_frame(&mut self, graph: &GraphView<'_>, setup: &FrameSetup, frame: &mut Frame) -> bool {
+        if frame.records.is_some() {
+            self.declined = Some(Declined::Records);
+            return false;
+        }
+        self.draw_fast(graph, setup, pixels_of(frame))
+    }
+}
+
 impl Engine for Fast {
+    fn note(&self) -> Option<String> {
+        let why = self.declined?;
+        Some(format!("drawn by the machine, which is slower: {why}"))
+    }
+
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
@@ -166,7 +198,7 @@ impl Engine for Fast {
         frame: &mut Frame,
     ) -> Result<(), EngineError> {
         frame.set_blending(setup.options.coverage == Coverage::Alpha);
-        if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
+        if self.draw_frame(graph, setup, frame) {
             return Ok(());
         }
         self.fallback.draw(graph, setup, frame)
@@ -207,7 +239,7 @@ impl Engine for Fast {
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
         frame.set_blending(setup.options.coverage == Coverage::Alpha);
-        if frame.records.is_none() && self.draw_fast(graph, setup, pixels_of(frame)) {
+        if self.draw_frame(graph, setup, frame) {
             return Ok(self.counters.stats());
         }
         let mut stats = self.fallback.render(graph, setup, frame)?;
@@ -328,7 +360,7 @@ impl Piece<'_> {
 }
 
 /// Draws a band after the other, each while others draw the rest.
-fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Counters {
+fn run_bands<I: Compiled>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Counters {
     let rows = piece.block_rows();
     let first = first_band(rows, threads);
     if first == rows {
@@ -345,7 +377,7 @@ fn run_bands<I: Isa>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) ->
 }
 
 /// Draws one band.
-fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
+fn run<I: Compiled>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
     let mut blocks = Blocks::default();
     piece.pixels.clear();
     let fill = Fill::clear(&piece.grid, piece.bounds, piece.fill);
@@ -361,7 +393,7 @@ fn run<I: Isa>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
         pixels: piece.pixels,
         counters: Counters::default(),
         found: lanes::Found([0; 64]),
-        hits: [bricks::Hit::default(); 64],
+        hits: [Hit::default(); 64],
         nodes: [0; 64],
         blocks: &mut blocks,
     };

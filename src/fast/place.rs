@@ -1,8 +1,8 @@
 //! Where a node lies in the picture: its centre, what a step of a sample is to it, and the window about its parts.
 
-use super::canvas::Window;
 use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
 use super::view::{Level, View};
+use super::window::Window;
 
 /// Rounding of [`Place::window`], of what the window is made of: `spec/fast.md`, section 5.
 const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;

@@ -1,9 +1,9 @@
 //! Windows, square by square: at most 8 x 8 samples, of which some are open.
 
-use super::canvas::Window;
 use super::heading::{Heading, Samples, by_octant};
 use super::lanes::Isa;
-use super::walk::Walk;
+use super::state::Walk;
+use super::window::Window;
 
 /// Column and row of a square's samples.
 pub(super) static SAMPLES: [[f32; 2]; 64] = {

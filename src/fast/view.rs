@@ -49,6 +49,27 @@ pub(super) struct Level {
     pub(super) large_depth: f64,
 }
 
+/// Why the fast engine does not draw a frame itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+#[non_exhaustive]
+pub enum Declined {
+    /// Other rules than `exact` and `alpha` are defined by the machine's steps.
+    #[error("the drawing rule is defined by the machine's own steps")]
+    Rule,
+    /// Words may overflow, and what becomes of that is the machine's.
+    #[error("words of this format may overflow in this frame")]
+    Words,
+    /// Positions take more bits than an `f64` has.
+    #[error("positions take more than the 53 bits of a double")]
+    Range,
+    /// Beyond about 179.98 degrees slopes are rounded too much.
+    #[error("the field of view is too wide")]
+    FieldOfView,
+    /// The work of each record was asked for.
+    #[error("records are counted, which only the machine has")]
+    Records,
+}
+
 /// The constants of a frame.
 #[derive(Debug, Clone)]
 pub(super) struct View {
@@ -84,16 +105,20 @@ pub(super) struct View {
 }
 
 impl View {
-    /// The constants of a frame, or `None` where this engine does not draw
-    /// it: rules other than `exact` and `alpha`, numbers too large, views too wide, words that may overflow.
-    pub(super) fn new(setup: &FrameSetup) -> Option<Self> {
-        let reach = setup.position_reach()?;
-        if !setup.options.coverage.draws_outlines()
-            || setup.options.tolerance_px != 0.0
-            || !setup.has_headroom
-            || reach * 16 >= EXACT_LIMIT
-        {
-            return None;
+    /// The constants of a frame.
+    ///
+    /// # Errors
+    /// Why this engine does not draw the frame.
+    pub(super) fn new(setup: &FrameSetup) -> Result<Self, Declined> {
+        if !setup.options.coverage.draws_outlines() || setup.options.tolerance_px != 0.0 {
+            return Err(Declined::Rule);
+        }
+        if !setup.has_headroom {
+            return Err(Declined::Words);
+        }
+        let reach = setup.position_reach().ok_or(Declined::Range)?;
+        if reach * 16 >= EXACT_LIMIT {
+            return Err(Declined::Range);
         }
         let root_samples = libm::ldexp(1.0, setup.levels as i32);
         let clip = setup.edge_clip.map(|e| e.map(|c| c as f64));
@@ -120,7 +145,7 @@ impl View {
             libm::sqrt(squares.iter().sum())
         };
         if root_samples > MOST_WIDTH * focal {
-            return None;
+            return Err(Declined::FieldOfView);
         }
         let levels = (0..=setup.depth)
             .map(|level| level_constants(setup, &clip, focal, level))
@@ -131,7 +156,7 @@ impl View {
             let edges = clip[0][c] + clip[1][c] + clip[2][c];
             setup.origin_clip[c] as f64 + edges * half
         });
-        Some(Self {
+        Ok(Self {
             levels,
             depth: setup.depth,
             centre,

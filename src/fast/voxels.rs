@@ -5,15 +5,15 @@
 //! (`strips.rs`); then, in order, each part against all samples, in numbers of 16
 //! bits. Samples well inside are drawn, those near the outline are decided one by one.
 
-use super::bricks::{Brick, Path, is_covered};
-use super::canvas::Window;
+use super::bricks::{Path, is_covered};
 use super::heading::Samples;
 use super::lanes::{Four, Isa};
 use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
 use super::place::Place;
 use super::squares::{DrawSquare, SAMPLES, each_square};
+use super::state::{Brick, Walk};
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, STRIPS};
-use super::walk::Walk;
+use super::window::Window;
 
 /// Units of a width in numbers of 16 bits.
 const UNIT: f32 = 2048.0;

@@ -9,77 +9,16 @@
 //!
 //! Nodes' clip vectors are exact; windows are wider than the truth by their rounding.
 
-use super::bricks::{Brick, Hit};
-use super::canvas::{Fill, Pixels, Window};
-use super::counters::Counters;
-use super::exact::Exact;
-use super::lanes::{Found, Isa, Windows};
-use super::parts::{self, Parts};
-use super::switches::Switches;
+use super::lanes::Windows;
+use super::orders::turned;
+use super::parts::Parts;
+use super::planes;
+use super::state::{Brick, Compiled, Record, Walk, voxel_at};
 use super::view::{Level, View};
-use crate::graph::GraphView;
-
-/// The walk over one band of the picture.
-#[derive(Debug)]
-pub(super) struct Walk<'w, I> {
-    pub(super) isa: I,
-    pub(super) view: &'w View,
-    pub(super) exact: &'w Exact,
-    pub(super) graph: &'w GraphView<'w>,
-    pub(super) switches: &'w Switches,
-    pub(super) fill: Fill<'w>,
-    pub(super) pixels: Pixels<'w>,
-    pub(super) counters: Counters,
-    /// Whether voxels are blended.
-    pub(super) blends: bool,
-    /// How far a square's samples are from its first one in the picture.
-    pub(super) places: [u32; 64],
-    /// Parts by sample of the square that is worked on.
-    pub(super) found: Found,
-    /// What its samples show.
-    pub(super) hits: [Hit; 64],
-    /// Their nodes, of bricks of four levels where nothing is blended.
-    pub(super) nodes: [u32; 64],
-    /// The blocks of the brick of four levels that is worked on.
-    pub(super) blocks: &'w mut Blocks,
-}
-
-/// The blocks of a brick of four levels: its parts, with theirs.
-#[derive(Debug)]
-pub(super) struct Blocks {
-    /// By number in order of occlusion: parts, in that order too.
-    pub(super) exist: [u64; 64],
-    pub(super) parts: [Parts; 64],
-}
-
-impl Default for Blocks {
-    fn default() -> Self {
-        Self {
-            exist: [0; 64],
-            parts: [Parts::default(); 64],
-        }
-    }
-}
-
-/// A node whose turn has come.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Record {
-    pub(super) node: u32,
-    pub(super) level: u32,
-    /// Lowest corner, finest voxels.
-    pub(super) min: [i32; 3],
-    /// Clip vector (X, Y, W) of the centre.
-    pub(super) centre: [f64; 3],
-}
-
-/// What a picture shows of a voxel: its lowest corner, and its level.
-#[inline(always)]
-pub(super) fn voxel_at(min: [i32; 3], level: u32) -> [i32; 4] {
-    [min[0], min[1], min[2], level as i32]
-}
+use super::window::Window;
 
 /// Looks at the whole object.
-pub(super) fn start<I: Isa>(walk: &mut Walk<'_, I>) {
+pub(super) fn start<I: Compiled>(walk: &mut Walk<'_, I>) {
     let record = Record {
         node: walk.graph.root,
         level: 0,
@@ -96,7 +35,7 @@ pub(super) fn start<I: Isa>(walk: &mut Walk<'_, I>) {
 
 /// Draws a node of which something may be seen in a window, or looks at its children.
 #[inline(always)]
-fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
+fn go_on<I: Compiled>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
     let (view, isa) = (walk.view, walk.isa);
     let level = &view.levels[record.level as usize];
     let least_depth = record.centre[2] - level.half_depth;
@@ -117,7 +56,7 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
         return;
     }
     if is_near || !walk.switches.bricks {
-        isa.walk(walk, record);
+        isa.turn(walk, record);
         return;
     }
     if record.centre[2] > level.fine_depth && is_deep(view, record, least_depth) {
@@ -147,7 +86,7 @@ fn go_on<I: Isa>(walk: &mut Walk<'_, I>, record: &Record, window: &Window) {
             return;
         }
     }
-    isa.walk(walk, record);
+    isa.turn(walk, record);
 }
 
 /// Whether level of detail, and the object, end a node's branches four levels below and not before.
@@ -182,7 +121,7 @@ fn detail(view: &View, record: &Record) -> u8 {
 
 /// A record's turn: its children have theirs, nearest first.
 #[inline(always)]
-pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
+pub(super) fn turn<I: Compiled>(walk: &mut Walk<'_, I>, record: &Record) {
     walk.counters.nodes += 1;
     let view = walk.view;
     let index = record.level as usize;
@@ -203,7 +142,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
         wanted &= windows.held | windows.near;
         walk.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
     }
-    let mut order = parts::turned(wanted, nearest);
+    let mut order = turned(wanted, nearest);
     while order != 0 {
         let child = order.trailing_zeros() as u8 ^ nearest;
         order &= order - 1;
@@ -254,7 +193,7 @@ pub(super) fn turn<I: Isa>(walk: &mut Walk<'_, I>, record: &Record) {
 /// Does for children that do not exist what is done for others before their
 /// turn, for who wants to know what leaving them saves.
 #[inline(never)]
-fn look_at_absent<I: Isa>(walk: &mut Walk<'_, I>, windows: &Windows, absent: u8) {
+fn look_at_absent<I: Compiled>(walk: &mut Walk<'_, I>, windows: &Windows, absent: u8) {
     let held = absent & windows.held & !windows.near;
     walk.counters.skipped_off_screen += u64::from((absent & !held).count_ones());
     for child in (0..8).filter(|child| held >> child & 1 != 0) {
@@ -282,7 +221,7 @@ fn is_beside(level: &Level, centre: &[f64; 3]) -> bool {
 
 /// Draws a solid by its planes.
 #[inline(never)]
-fn draw_planes<I: Isa>(
+fn draw_planes<I: Compiled>(
     walk: &mut Walk<'_, I>,
     record: &Record,
     window: &Window,
@@ -291,5 +230,5 @@ fn draw_planes<I: Isa>(
     let side = walk.view.levels[record.level as usize].side;
     let outline = walk.exact.outline(record.min, side, is_before_eye);
     let voxel = voxel_at(record.min, record.level);
-    outline.draw(walk, window, record.node, voxel);
+    planes::draw(walk, &outline, window, record.node, voxel);
 }

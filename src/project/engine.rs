@@ -15,7 +15,7 @@ pub const OCCLUSION_ORDER: [u8; 8] = [7, 6, 5, 3, 4, 2, 1, 0];
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum EngineError {
     /// A word overflowed under the trap policy.
-    #[error("{0}; use more bits, fewer fraction bits, or --overflow wrap|saturate")]
+    #[error("{0}; use more bits, fewer fraction bits, or another overflow policy (wrap, saturate)")]
     Trap(#[from] Trap),
 }
 
@@ -56,6 +56,11 @@ pub trait Engine {
         Ok(())
     }
 
+    /// What a user should know of how the last frame was drawn, such as that it took a slower way; one sentence.
+    fn note(&self) -> Option<String> {
+        None
+    }
+
     /// Draws into `frame`, which has the size of `setup` and is cleared first.
     ///
     /// # Errors
@@ -69,6 +74,10 @@ pub trait Engine {
 }
 
 impl<E: Engine + ?Sized> Engine for Box<E> {
+    fn note(&self) -> Option<String> {
+        (**self).note()
+    }
+
     fn draw(
         &mut self,
         graph: &GraphView<'_>,

@@ -3,7 +3,7 @@
 //!
 //! An instruction set is a value that can only be had where the processor has
 //! it. Whoever holds one may call its steps. The walk itself is compiled once
-//! for each set ([`Isa::walk`] and the others), so that the steps become a
+//! for each set (`compiled.rs`), so that these steps become a
 //! few instructions in the middle of it and not calls.
 //!
 //! Sets may round differently (AVX2 multiplies and adds in one step). No
@@ -17,12 +17,9 @@ pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::Avx2;
 
-use super::bricks;
-use super::canvas::Window;
 use super::strips::Row;
 use super::view::View;
-use super::voxels;
-use super::walk::{self, Record, Walk};
+use super::window::Window;
 
 /// Four `f32`, of which a fourth is along for the ride.
 pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
@@ -99,15 +96,6 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// A number of 16 bits for each sample of a square.
     type Distances: Copy;
 
-    /// [`walk::turn`] compiled for this set.
-    fn walk(self, walk: &mut Walk<'_, Self>, record: &Record);
-    /// [`bricks::draw`] compiled for this set.
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
-    /// [`bricks::draw_deep`] compiled for this set.
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
-    /// [`voxels::draw`] compiled for this set.
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window);
-
     fn four(self, values: &[f32; 4]) -> Self::Four;
     fn splat(self, value: f32) -> Self::Four;
 
@@ -143,7 +131,7 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// (column and row): `edges` by coordinate, times `unit`.
     fn steps(self, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [Self::Four; 2];
 
-    /// [`super::parts::turned_parts`].
+    /// [`super::orders::turned_parts`].
     fn turned_parts(self, parts: u64, octant: u8) -> u64;
 
     /// Bytes one after the other at the places of a mask's bits, and ones there.

@@ -1,7 +1,7 @@
 //! Plain Rust: what the steps mean.
 
 use super::*;
-use crate::fast::parts::{self, EXTENTS, SLABS};
+use crate::fast::orders::{self, EXTENTS, SLABS};
 use crate::fast::strips::CELLS;
 
 /// The set that every processor has.
@@ -95,19 +95,6 @@ impl Four for [f32; 4] {
 impl Isa for Scalar {
     type Four = [f32; 4];
     type Distances = [i32; 64];
-
-    fn walk(self, walk: &mut Walk<'_, Self>, record: &Record) {
-        walk::turn(walk, record);
-    }
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        bricks::draw(walk, brick, window);
-    }
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        bricks::draw_deep(walk, brick, window);
-    }
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        voxels::draw(walk, brick, window);
-    }
 
     #[inline(always)]
     fn four(self, values: &[f32; 4]) -> [f32; 4] {
@@ -207,7 +194,7 @@ impl Isa for Scalar {
     }
 
     fn turned_parts(self, parts: u64, octant: u8) -> u64 {
-        parts::turned_parts(parts, octant)
+        orders::turned_parts(parts, octant)
     }
 
     fn spread(self, bytes: u64, mask: u8) -> (u64, u64) {

@@ -5,7 +5,7 @@
 use std::arch::x86_64::*;
 
 use super::*;
-use crate::fast::parts::{EXTENTS, SLABS, TURNED_BYTES};
+use crate::fast::orders::{EXTENTS, SLABS, TURNED_BYTES};
 use crate::fast::strips::CELLS;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
@@ -147,45 +147,9 @@ fn broadcast<const LANE: i32>(four: Floats) -> __m256 {
     }))
 }
 
-/// Functions compiled for the set.
-mod compiled {
-    use super::*;
-
-    macro_rules! compiled {
-        ($name:ident($($argument:ident: $type:ty),*) = $body:path) => {
-            #[inline(never)]
-            #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-            pub(super) fn $name(walk: &mut Walk<'_, Avx2>, $($argument: $type),*) {
-                $body(walk, $($argument),*);
-            }
-        };
-    }
-    compiled!(walk(record: &Record) = walk::turn);
-    compiled!(brick(brick: bricks::Brick<'_>, window: &Window) = bricks::draw);
-    compiled!(deep_brick(brick: bricks::Brick<'_>, window: &Window) = bricks::draw_deep);
-    compiled!(voxels(brick: bricks::Brick<'_>, window: &Window) = voxels::draw);
-}
-
 impl Isa for Avx2 {
     type Four = Floats;
     type Distances = [__m256i; 4];
-
-    #[inline(always)]
-    fn walk(self, walk: &mut Walk<'_, Self>, record: &Record) {
-        avx!(compiled::walk(walk, record));
-    }
-    #[inline(always)]
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        avx!(compiled::brick(walk, brick, window));
-    }
-    #[inline(always)]
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        avx!(compiled::deep_brick(walk, brick, window));
-    }
-    #[inline(always)]
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: bricks::Brick<'_>, window: &Window) {
-        avx!(compiled::voxels(walk, brick, window));
-    }
 
     #[inline(always)]
     fn four(self, values: &[f32; 4]) -> Floats {

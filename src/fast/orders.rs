@@ -1,0 +1,92 @@
+//! Tables of octants: masks of children in order of occlusion, and the slabs of a node's 64 parts.
+
+use super::strips::along;
+
+/// By octant: the bits of a child mask turned, so that bit `c` is child `c ^ octant`.
+static TURNED: [[u8; 256]; 8] = {
+    let mut table = [[0u8; 256]; 8];
+    let mut octant = 0;
+    while octant < 8 {
+        let mut mask = 0;
+        while mask < 256 {
+            let mut child = 0;
+            while child < 8 {
+                table[octant][mask] |= ((mask >> (child ^ octant)) as u8 & 1) << child;
+                child += 1;
+            }
+            mask += 1;
+        }
+        octant += 1;
+    }
+    table
+};
+
+/// A child mask turned, so that bit `c` is child `c ^ octant`: with the
+/// nearest octant that is an order of occlusion.
+#[inline(always)]
+pub(super) fn turned(mask: u8, octant: u8) -> u8 {
+    TURNED[usize::from(octant & 7)][usize::from(mask)]
+}
+
+/// The same of 64 parts, both octants of a part turned.
+#[inline(always)]
+pub(super) fn turned_parts(parts: u64, octant: u8) -> u64 {
+    let mut all = 0;
+    for outer in 0..8u8 {
+        let mask = (parts >> (8 * (outer ^ octant & 7))) as u8;
+        all |= u64::from(turned(mask, octant)) << (8 * outer);
+    }
+    all
+}
+
+/// By octant, for lanes of sixteen bytes: the outer octants' order, and a
+/// mask's lower and upper half turned.
+pub(super) static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
+    let mut table = [[[0u8; 16]; 3]; 8];
+    let mut octant = 0;
+    while octant < 8 {
+        let mut i = 0;
+        while i < 16 {
+            table[octant][0][i] = (i as u8 & 7) ^ octant as u8;
+            table[octant][1][i] = TURNED[octant][i];
+            table[octant][2][i] = TURNED[octant][i << 4];
+            i += 1;
+        }
+        octant += 1;
+    }
+    table
+};
+
+/// By axis, the parts of the four slabs of a node.
+pub(super) static SLABS: [[u64; 4]; 3] = {
+    let mut table = [[0; 4]; 3];
+    let mut part = 0;
+    while part < 64 {
+        let mut axis = 0;
+        while axis < 3 {
+            table[axis][along(part, axis)] |= 1 << part;
+            axis += 1;
+        }
+        part += 1;
+    }
+    table
+};
+
+/// By axis and by which of its four slabs are filled: the middle of those from the first to the last,
+/// from the node's centre, and half their extent, in sides of a slab; in the axis' lane.
+pub(super) static EXTENTS: [[[[f32; 4]; 2]; 16]; 3] = {
+    let mut table = [[[[0.0; 4]; 2]; 16]; 3];
+    let mut slabs = 1u32;
+    while slabs < 16 {
+        let first = slabs.trailing_zeros() as f32;
+        let end = 32.0 - slabs.leading_zeros() as f32;
+        let mut axis = 0;
+        while axis < 3 {
+            table[axis][slabs as usize][0][axis] = (first + end) / 2.0 - 2.0;
+            table[axis][slabs as usize][1][axis] = (end - first) / 2.0;
+            axis += 1;
+        }
+        slabs += 1;
+    }
+    table
+};

@@ -1,0 +1,94 @@
+//! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of samples at a time.
+
+use super::exact::{Cover, Outline};
+use super::lanes::Isa;
+use super::state::Walk;
+use super::window::{BLOCK_LOG2, TILE_LOG2, Window};
+
+/// The part of a window in a cell of a grid of `2^log2` samples.
+fn cell_of(x: i32, y: i32, log2: u32, window: &Window) -> Window {
+    let (left, top, side) = (x << log2, y << log2, 1 << log2);
+    Window {
+        left,
+        top,
+        right: left + side - 1,
+        bottom: top + side - 1,
+    }
+    .and(window)
+}
+
+/// Draws all open samples of a window that the silhouette covers.
+pub(super) fn draw<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    outline: &Outline,
+    window: &Window,
+    node: u32,
+    voxel: [i32; 4],
+) {
+    walk.counters.solids += 1;
+    for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
+        for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
+            let block = cell_of(x, y, BLOCK_LOG2, window);
+            if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
+                continue;
+            }
+            let cover = if walk.switches.whole_blocks {
+                outline.cover(&block)
+            } else {
+                Cover::Some
+            };
+            if cover != Cover::None {
+                draw_block(walk, outline, &block, cover, node, voxel);
+            }
+        }
+    }
+}
+
+fn draw_block<I: Isa>(
+    walk: &mut Walk<'_, I>,
+    outline: &Outline,
+    block: &Window,
+    cover: Cover,
+    node: u32,
+    voxel: [i32; 4],
+) {
+    for y in block.top >> TILE_LOG2..=block.bottom >> TILE_LOG2 {
+        for x in block.left >> TILE_LOG2..=block.right >> TILE_LOG2 {
+            let open = walk.fill.open_in_tile(x, y, block);
+            if open == 0 {
+                continue;
+            }
+            let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
+            let tile = cell_of(x, y, TILE_LOG2, block);
+            let cover = if cover == Cover::All || !walk.switches.whole_blocks {
+                cover
+            } else {
+                outline.cover(&tile)
+            };
+            let samples = match cover {
+                Cover::None => 0,
+                Cover::All => open,
+                Cover::Some => {
+                    let mut left_over = open;
+                    let mut covered = 0;
+                    while left_over != 0 {
+                        let bit = left_over.trailing_zeros() as i32;
+                        let sample = left_over & left_over.wrapping_neg();
+                        left_over ^= sample;
+                        walk.counters.exact_samples += 1;
+                        if outline.covers(walk.exact, left + (bit & 7), top + (bit >> 3)) {
+                            covered |= sample;
+                        }
+                    }
+                    covered
+                }
+            };
+            if samples != 0 {
+                walk.counters.tiles_filled += u64::from(samples == u64::MAX);
+                let drawn = walk.show([left, top], samples, node, voxel);
+                walk.counters.samples_drawn += u64::from(drawn.count_ones());
+                walk.fill.mark_tile(x, y, drawn);
+            }
+        }
+    }
+}
