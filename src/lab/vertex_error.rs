@@ -359,7 +359,7 @@ fn short(px: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::machine::vertices::screen_corners;
+    use crate::machine::{Cage, cages_along};
 
     /// Way down to a cell of the finest lattice.
     fn path(depth: u32, cell: [usize; 3]) -> Vec<u8> {
@@ -382,11 +382,19 @@ mod tests {
                 let lattice = Lattice::projected(&setup, exact_levels)
                     .expect("a cube before the eye")
                     .halved(DEPTH - exact_levels);
+                let mut changing = setup.clone();
+                changing.screen_depth[..exact_levels as usize].fill(i64::MAX);
                 for cell in lattice_points(7) {
                     let cell = cell.map(|c| c as usize);
                     let way = path(DEPTH, cell);
-                    let corners = screen_corners(&setup, exact_levels, &way)
-                        .expect("a record that may change");
+                    let cages = cages_along(&changing, &way).expect("no overflow");
+                    let changed = &cages[exact_levels as usize..];
+                    let [Cage::Screen(_), ..] = changed else {
+                        panic!("a record that may change: {cages:?}");
+                    };
+                    let [.., Cage::Screen(corners)] = changed else {
+                        panic!("{cages:?}");
+                    };
                     for corner in 0..8 {
                         let [x, y, z] = [0, 1, 2].map(|k| cell[k] + (corner >> (2 - k) & 1));
                         let vertex = lattice.vertices[(x * 9 + y) * 9 + z];

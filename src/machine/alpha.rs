@@ -1,32 +1,30 @@
 //! Blending, under the rule `alpha` (`SPEC.md`, section 11): how much of its
 //! outline a voxel covers, and what that adds to a sample.
 //!
-//! A voxel is seen from three sides at most, and the share that each has in
-//! its outline is that of the way to it along that axis; it counts by the
-//! square of the cosine, for that is without bias over all directions. Quotients
-//! of few bits, made for each voxel that is drawn.
-//! With the opacities of the three sides they make the voxel's weight; a
-//! sample takes of each voxel that weight times what it still lets through.
-//! Products are sums of shifts over the bits of a number of nine.
+//! At most three sides of a voxel are seen. The share of each is the eye's
+//! distance along its axis over the sum of the three, in sixteenths; it counts by
+//! the square of its cosine, which is unbiased over all directions. Both are
+//! quotients of few bits, computed for each voxel that is drawn. Counts and
+//! opacities of the three sides give the voxel's weight, and a sample takes that
+//! weight times the light that it still lets through. Products are sums of
+//! shifts over the at most nine bits of one factor.
 
 use hwmodel::{Datapath, Memory, Narrow, Probe, Short, Stage, Word};
 
-use super::lattice::Lattice;
-use super::record::Record;
-use super::taps::{Block, LEVEL_BITS};
-use super::walk::Walk;
+use super::blocks::{Block, LEVEL_BITS};
+use super::constants::BlendEye;
+use super::record::Cube;
 use crate::frame::Blend;
 use crate::graph::Opacity;
-use crate::project::host::Host;
-use crate::project::{ALL_LEFT, FrameSetup, OPAQUE_ENOUGH, SEEN_SHARE, SHARES};
+use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, SEEN_SHARE, SHARES};
 
 /// Bits of a share of a direction, 0 to 16.
 const SHARE_BITS: u32 = 5;
-/// Bits of a weight, and of what a sample lets through: 0 to 256.
+/// Bits of a weight, and of the part of light that a sample lets through: 0 to 256.
 const WEIGHT_BITS: u32 = 9;
-/// Bits of a product of two of those but for the weight of all.
+/// Bits of a weight times a part of light, with a half added.
 const PRODUCT_BITS: u32 = 17;
-/// Bits of a colour in linear light, weighed, and of its sum.
+/// Bits of a colour in linear light times a share, and of the sum of those.
 const LIGHT_BITS: u32 = 24;
 /// Bits of a colour in linear light.
 const COLOR_BITS: u32 = 16;
@@ -35,34 +33,18 @@ const OPACITY_BITS: u32 = 4;
 /// The weight of a voxel that lets nothing through.
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
-/// The frame's constants of blending.
+/// How a voxel's three sides are seen.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct BlendEye {
-    shift: u32,
-    at: [Word; 3],
-}
-
-impl BlendEye {
-    /// Loads them: host work, of which `by` is told.
-    pub(super) fn load<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
-        let eye = setup.opacity_eye_by(by);
-        Self {
-            shift: eye.shift,
-            at: eye.at.map(|c| dp.load(c)),
-        }
-    }
-}
-
-/// By axis, what a side counts for, in sixteenths of an outline, and whether
-/// its share of the outline is large enough for a full side to hide all.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Aim {
+struct Aim {
+    /// By axis, sixteenths of the outline that the side counts for.
     counts: [Narrow; 3],
+    /// By axis, whether the side's share is so large that the side, if it is
+    /// opaque, hides everything behind the voxel.
     is_seen: [bool; 3],
 }
 
 impl Aim {
-    /// Seen from the eye, of a voxel between two corners.
+    /// Of a voxel between two corners.
     fn new<P: Probe>(
         dp: &mut Datapath<P>,
         eye: &BlendEye,
@@ -81,7 +63,7 @@ impl Aim {
         });
         let two = dp.add(along[0], along[1]);
         let all = dp.add(two, along[2]);
-        // An eye at the centre sees nothing; it must not divide by it either.
+        // An eye at the centre sees no side; the divisor must not be zero.
         let all = dp.max(all, Word::from_host(1));
         let sixteen = Word::from_host(SHARES);
         let x = sixteenths_of(dp, along[0], all);
@@ -105,8 +87,8 @@ impl Aim {
         Self { counts, is_seen }
     }
 
-    /// A voxel's weight, 0 to 256, of its opacities from the three sides that
-    /// the eye is on.
+    /// A voxel's weight, 0 to 256. `high`: by axis, whether the eye is on the
+    /// side of the greater coordinate.
     fn weight<P: Probe>(&self, dp: &mut Datapath<P>, opacity: Opacity, high: [bool; 3]) -> Narrow {
         let mut weight = Narrow::ZERO;
         let mut is_whole = false;
@@ -133,7 +115,7 @@ impl Aim {
     }
 }
 
-/// Narrow numbers on the wires of a block's border.
+/// Narrow numbers at the border of a block.
 #[inline(always)]
 fn wires<const N: usize>(numbers: [Narrow; N], bits: u32) -> [Short; N] {
     numbers.map(|number| Short::narrow(number, bits))
@@ -156,11 +138,10 @@ fn sixteenths_of<P: Probe>(dp: &mut Datapath<P>, a: Word, all: Word) -> Word {
 }
 
 /// The square root of the sum of three squares, to the nearest whole number:
-/// 9 to 16, for numbers that are 16 together.
+/// 9 to 16, for numbers whose sum is 16.
 fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
     let two = dp.add_narrow(WEIGHT_BITS, x, y);
     let all = dp.add_narrow(WEIGHT_BITS, two, z);
-    // Half way between a number and the next, squared, less a quarter.
     let mut length = Narrow::from_host(LEAST_LENGTH);
     for (longer, half_way) in (LEAST_LENGTH + 1..).zip(HALF_WAYS) {
         let is_less = dp.le_narrow(WEIGHT_BITS, all, Narrow::from_host(half_way));
@@ -170,7 +151,8 @@ fn length_of<P: Probe>(dp: &mut Datapath<P>, [x, y, z]: [Narrow; 3]) -> Narrow {
 }
 
 const LEAST_LENGTH: u32 = 9;
-/// `n (n + 1)` of 9 to 15: a sum above has a root above `n + 1/2`.
+/// `n (n + 1)` for `n` from 9 to 15, which is `(n + 1/2)^2 - 1/4`: the root of a
+/// greater whole number is above `n + 1/2`.
 const HALF_WAYS: [u32; 7] = [90, 110, 132, 156, 182, 210, 240];
 
 /// A square of at most 256 over a length that is no less than its root, to the
@@ -190,7 +172,7 @@ fn quotient_of<P: Probe>(dp: &mut Datapath<P>, square: Narrow, length: Narrow) -
     dp.narrowed(rounded, SHARE_BITS)
 }
 
-/// `sum + a times b`, over the `of` bits of `b`.
+/// `sum` plus `a` times `b`, by adding over the `of` bits of `b`.
 fn plus_product<P: Probe>(
     dp: &mut Datapath<P>,
     bits: u32,
@@ -208,25 +190,49 @@ fn plus_product<P: Probe>(
     sum
 }
 
-/// What a voxel adds to samples.
+/// What a voxel adds to each sample that it is drawn at.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ink {
     weight: Narrow,
+    /// Linear light, 0 to 65535 a channel.
     light: [Narrow; 3],
 }
 
-/// What became of a sample that took a voxel.
+/// The state of a sample after it took a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Taken {
-    /// Whether it is the first that the sample took.
+    /// Whether the voxel is the first that the sample took.
     pub(super) is_first: bool,
-    /// Whether the sample is opaque enough by now.
+    /// Whether the sample is opaque enough.
     pub(super) is_full: bool,
 }
 
 impl Ink {
-    /// Adds a voxel to what a sample has so far.
-    pub(super) fn take<P: Probe>(
+    /// Of a voxel with these opacities and this light; `None` if its weight is
+    /// zero and it adds nothing. `eye_floor`: the eye in the units of `cube`.
+    pub(super) fn of_voxel<P: Probe>(
+        dp: &mut Datapath<P>,
+        eye: &BlendEye,
+        eye_floor: &[Word; 3],
+        cube: &Cube,
+        opacity: Opacity,
+        light: [u16; 3],
+    ) -> Option<Self> {
+        dp.stage(Stage::Blend);
+        dp.read(Memory::Attribute, u64::from(cube.node));
+        let aim = Aim::new(dp, eye, &cube.min, &cube.max);
+        let high = std::array::from_fn(|k| {
+            let centre = dp.midpoint(cube.min[k], cube.max[k]);
+            !dp.lt(eye_floor[k], centre)
+        });
+        let weight = aim.weight(dp, opacity, high);
+        let light = light.map(|channel| Narrow::from_host(u32::from(channel)));
+        let is_seen = !dp.le_narrow(WEIGHT_BITS, weight, Narrow::ZERO);
+        is_seen.then_some(Self { weight, light })
+    }
+
+    /// Adds the voxel to sample number `at`.
+    pub(super) fn add_to<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         at: u64,
@@ -265,30 +271,5 @@ impl Ink {
         );
         dp.write(Memory::Accumulator, at);
         Taken { is_first, is_full }
-    }
-}
-
-impl<P: Probe, L: Lattice> Walk<'_, P, L> {
-    /// Makes what a solid that is drawn adds to samples, under the rule that
-    /// blends. Whether there is anything to draw.
-    pub(super) fn take_up_ink(&mut self, record: &Record<L>) -> bool {
-        let Some(eye) = &self.constants.blend_eye else {
-            return true;
-        };
-        let dp = &mut self.dp;
-        dp.stage(Stage::Blend);
-        dp.read(Memory::Attribute, u64::from(record.node));
-        let aim = Aim::new(dp, eye, &record.min, &record.max);
-        let high = std::array::from_fn(|k| {
-            let centre = dp.midpoint(record.min[k], record.max[k]);
-            !dp.lt(self.constants.eye_floor[k], centre)
-        });
-        let weight = aim.weight(dp, self.graph.opacity_of(record.node), high);
-        let light = self.graph.light_of(record.node);
-        let light = light.map(|channel| Narrow::from_host(u32::from(channel)));
-        let is_seen = !dp.le_narrow(WEIGHT_BITS, weight, Narrow::ZERO);
-        dp.stage(Stage::Draw);
-        self.canvas.ink = Some(Ink { weight, light });
-        is_seen
     }
 }

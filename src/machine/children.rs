@@ -1,26 +1,24 @@
-//! A record's children: their order, their vertices, and which of them are
-//! pushed (paper, 3.2 and 3.4).
+//! Subdivision: a record's children, in order, their vertices, and which of
+//! them are pushed (paper, 3.2 and 3.4).
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
-use super::fit;
+use super::blocks::Block;
 use super::lattice::Lattice;
 use super::planes;
-use super::record::{Clip, Planes, Pose, Record, Screen};
-use super::taps::Block;
-use super::walk::Walk;
+use super::record::{Clip, Cube, Place, Planes, Pose, Record};
+use super::state::State;
+use super::watch::Watch;
 use crate::project::Coverage;
 
-impl<P: Probe, L: Lattice> Walk<'_, P, L> {
-    /// Makes a record's children and pushes those that are seen.
+impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+    /// Makes a record's children and pushes those that can be seen.
     pub(super) fn subdivide(&mut self, record: &Record<L>) {
         self.counts.subdivided += 1;
+        let cube = &record.cube;
         self.dp.stage(Stage::Centre);
-        let centre: [Word; 3] =
-            std::array::from_fn(|k| self.dp.midpoint(record.min[k], record.max[k]));
-
-        self.dp
-            .tap(Block::Centre, &(record.min, record.max), &centre);
+        let centre: [Word; 3] = std::array::from_fn(|k| self.dp.midpoint(cube.min[k], cube.max[k]));
+        self.dp.tap(Block::Centre, &(cube.min, cube.max), &centre);
 
         self.dp.stage(Stage::Order);
         let octant = (0..3).fold(0u8, |bits, k| {
@@ -42,36 +40,37 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
 
         self.dp.stage(Stage::VertexPool);
         let dp = &mut self.dp;
+        let place = record.place;
         match &record.pose {
             Pose::Clip(clip, planes) => {
                 let x = pool(dp, &clip.x);
                 let y = pool(dp, &clip.y);
                 let w = pool(dp, &clip.w);
-                self.push_children(record, order, &centre, |walk, octant, child| {
-                    walk.push_in_clip_space(octant, (&x, &y, &w), planes, &child);
+                self.push_children(cube, order, &centre, |state, octant, child| {
+                    state.push_clip_child(octant, (&x, &y, &w), planes, child, place)
                 });
             }
             Pose::Screen(screen) => {
                 let x = pool(dp, &screen.x);
                 let y = pool(dp, &screen.y);
-                self.push_children(record, order, &centre, |walk, octant, child| {
-                    walk.push_in_screen_space(octant, &x, &y, &child);
+                self.push_children(cube, order, &centre, |state, octant, child| {
+                    state.push_screen_child(octant, &x, &y, child, place)
                 });
             }
         }
     }
 
-    /// Has `push` push the children that there are, the farthest first. It is
-    /// told the octant, and what makes a record of the child's vertices.
+    /// Pushes the children that exist, the farthest first. `push`, given the
+    /// child's octant and cube, returns whether the child was pushed.
     #[inline(always)]
-    fn push_children<'r>(
+    fn push_children(
         &mut self,
-        parent: &'r Record<L>,
+        parent: &Cube,
         order: [u8; 8],
-        centre: &'r [Word; 3],
-        mut push: impl FnMut(&mut Self, u8, Child<'r, L>),
+        centre: &[Word; 3],
+        mut push: impl FnMut(&mut Self, u8, Cube) -> bool,
     ) {
-        for &octant in order.iter().rev() {
+        for (rank, octant) in (0..8u8).zip(order).rev() {
             let node = if parent.solid {
                 Some(parent.node)
             } else {
@@ -90,61 +89,67 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
                 &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
                 &(min, max),
             );
-            let child = Child {
-                parent,
-                node,
+            let level = parent.level + 1;
+            let child = Cube {
                 min,
                 max,
+                node,
+                level,
+                voxel_level: if parent.solid {
+                    parent.voxel_level
+                } else {
+                    level
+                },
+                solid: parent.solid,
             };
-            push(self, octant, child);
+            if push(self, octant, child) {
+                self.watch.pushed(rank);
+            }
         }
     }
 
-    /// Pushes a child whose vertices are in clip space, if it is seen. The
-    /// pools are those of its parent.
-    fn push_in_clip_space(
+    /// Pushes a child in clip space, if it can be seen. The pools and planes are
+    /// its parent's.
+    fn push_clip_child(
         &mut self,
         octant: u8,
         (x, y, w): (&L::Pool, &L::Pool, &L::Pool),
         planes: &Planes,
-        child: &Child<'_, L>,
-    ) {
+        child: Cube,
+        parent_place: Place,
+    ) -> bool {
         let of_child = |pool| L::child(pool, octant as usize);
         let (x, y, w) = (of_child(x), of_child(y), of_child(w));
         let (w_min, w_max) = w.span(&mut self.dp);
         self.dp.tap(Block::ChildSpan, &w, &(w_min, w_max));
         let planes = if self.constants.coverage == Coverage::Exact {
             self.dp.stage(Stage::VertexPool);
-            let level = child.parent.level;
-            planes::of_child(&mut self.dp, &self.constants, planes, level, octant)
+            let parent_level = child.level - 1;
+            planes::of_child(&mut self.dp, &self.constants, planes, parent_level, octant)
         } else {
             *planes
         };
         let clip = Clip { x, y, w, w_min };
-        self.push_if_seen(child.record(Pose::Clip(clip, planes)), w_max);
+        self.push_clip(child, parent_place, clip, planes, w_max)
     }
 
-    /// The same in screen space.
+    /// Pushes a child in screen space, if it can be seen.
     #[inline(always)]
-    fn push_in_screen_space(&mut self, octant: u8, x: &L::Pool, y: &L::Pool, child: &Child<'_, L>) {
-        // Wires, so taken from the pool again below: most children are
-        // rejected, and need not be kept until then.
-        let of_child = |pool| L::child(pool, octant as usize);
-        let mut span = |lattice: L| {
+    fn push_screen_child(
+        &mut self,
+        octant: u8,
+        x: &L::Pool,
+        y: &L::Pool,
+        child: Cube,
+        parent_place: Place,
+    ) -> bool {
+        let lattices = || [x, y].map(|pool| L::child(pool, octant as usize));
+        let spans = lattices().map(|lattice| {
             let span = lattice.span(&mut self.dp);
             self.dp.tap(Block::ChildSpan, &lattice, &span);
             span
-        };
-        let spans = [span(of_child(x)), span(of_child(y))];
-        let fill = self.canvas.seen_by_fit(self.options.reject_filled);
-        let place = child.parent.place();
-        let found = fit::screen(&mut self.dp, &self.constants, &fill, &place, &spans);
-        let screen = Screen {
-            x: of_child(x),
-            y: of_child(y),
-            spans,
-        };
-        self.push_at(child.record(Pose::Screen(screen)), found);
+        });
+        self.push_screen(child, parent_place, spans, lattices)
     }
 }
 
@@ -156,36 +161,4 @@ fn pool<P: Probe, L: Lattice>(dp: &mut Datapath<P>, lattice: &L) -> L::Pool {
         dp.tap(Block::VertexPool, lattice, &L::all(&pool));
     }
     pool
-}
-
-/// A child, but for its vertices.
-struct Child<'p, L> {
-    parent: &'p Record<L>,
-    node: u32,
-    min: [Word; 3],
-    max: [Word; 3],
-}
-
-impl<L> Child<'_, L> {
-    /// Its record, at the quadtree node of its parent.
-    #[inline(always)]
-    fn record(&self, pose: Pose<L>) -> Record<L> {
-        let parent = self.parent;
-        let level = parent.level + 1;
-        Record {
-            min: self.min,
-            max: self.max,
-            node: self.node,
-            level,
-            voxel_level: if parent.solid {
-                parent.voxel_level
-            } else {
-                level
-            },
-            solid: parent.solid,
-            quad: parent.quad,
-            inside: parent.inside,
-            pose,
-        }
-    }
 }

@@ -1,9 +1,11 @@
 //! The frame's constants as machine words, loaded before the first record.
+//!
+//! This is the only module of the machine that multiplies, once for a frame
+//! and on the host; every load checks that the constant fits its word.
 
-use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
+use hwmodel::{Datapath, Probe, WideWord, Word};
 
-use super::alpha::BlendEye;
-use crate::project::host::{Host, Num, Part, Tally, Untold, cross, lift_all};
+use crate::project::host::{Host, Num, Part, Untold, cross, lift_all};
 use crate::project::setup::ShiftSum;
 use crate::project::{Coverage, FrameSetup};
 
@@ -12,63 +14,92 @@ use crate::project::{Coverage, FrameSetup};
 pub(super) enum Margin {
     /// As it is: half-open boxes.
     Plain,
-    /// Widened by `2^-shift` samples on each side, closed: what the change
-    /// to screen space may add.
+    /// Widened by `2^-shift` samples on each side, closed: as much as the
+    /// change to screen space may add.
     Grow(i32),
-    /// Quadrants count only where the box holds one of their sample points:
-    /// narrowed by half a sample on each side, closed. Of the rules that draw
-    /// outlines alone, which never leave clip space.
+    /// Narrowed by half a sample on each side, closed: a quadrant counts only
+    /// if the box holds one of its sample points. Only under the rules that draw
+    /// outlines, which never leave clip space.
     Gap,
 }
 
-/// Size, in units of the last place of a screen position, up to which a
-/// record is a solid whatever it has below it: rounded midpoints do not part
-/// vertices that are so near to each other.
+/// Size, in units of the last place of a screen position, up to which a record
+/// is drawn as a solid whatever is below it: vertices so near to each other are
+/// not parted by rounded midpoints.
 const LEAST_SIZE: i64 = 4;
 
-/// Records across the near plane are dropped once they span less depth than
-/// this part of the near plane's, as a shift.
+/// Records across the near plane are dropped once the depth that they span is
+/// less than the near plane's, shifted right by this.
 const NEAR_CROSSING_SHIFT: u32 = 6;
+
+/// The eye, as the directions to voxels are taken from it where they blend.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BlendEye {
+    /// Places by which coordinates are shifted right first.
+    pub(super) shift: u32,
+    /// The eye in object space, rounded down, shifted.
+    pub(super) at: [Word; 3],
+}
+
+impl BlendEye {
+    fn load<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
+        let eye = setup.opacity_eye_by(by);
+        Self {
+            shift: eye.shift,
+            at: eye.at.map(|c| dp.load(c)),
+        }
+    }
+}
 
 /// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
-    /// Which samples a voxel draws; whether it is blended is `blend_eye`'s to say.
+    /// Which samples a voxel covers; `Exact` also where voxels are blended.
     pub(super) coverage: Coverage,
-    /// Under the rule that blends.
+    /// `Some` where voxels are blended.
     pub(super) blend_eye: Option<BlendEye>,
     /// Level of the samples in the image quadtree.
     pub(super) levels: u32,
     /// Octree level of the finest voxels.
     pub(super) depth: u32,
-    /// Levels below.
+    /// Levels below them to which a solid may be subdivided.
     pub(super) sub_levels: u32,
+    /// The deepest level of a record.
     pub(super) level_bound: u32,
     /// Fraction bits of screen positions.
     pub(super) screen_frac: u32,
     /// Places to the left, then to the right, by which a number of half
     /// samples becomes a screen position: one less than `screen_frac`.
     pub(super) half_sample_places: [u32; 2],
+    /// Whether the tolerance is a number of samples, not infinite.
     pub(super) finite_tolerance: bool,
     pub(super) margin: Margin,
-    /// Like `margin`, for tests that never leave gaps (edges of the picture).
+    /// As [`Margin::Grow`], for the picture's edges, where boxes are never
+    /// narrowed.
     pub(super) grow: Option<i32>,
+    /// Samples that a voxel drawn at its centre may span.
     pub(super) size_limit: ShiftSum,
+    /// Samples up to which a node is taken for a solid; `None`: never.
     pub(super) lod_limit: Option<ShiftSum>,
     /// `size_limit` and `lod_limit` in screen units, at least [`LEAST_SIZE`].
     pub(super) size_limit_screen: Word,
     pub(super) lod_limit_screen: Word,
     pub(super) least_size_screen: Word,
+    /// Depth of the near plane.
     pub(super) near: Word,
     /// Depth that a record across the near plane must span to be subdivided.
     pub(super) near_crossing: Word,
-    /// By level; `None`: never.
+    /// By level, least depth of a record that may change to screen space;
+    /// `None`: none may.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a clip-space node that is a solid by level of
-    /// detail; `None`: none is.
+    /// By level, least depth of a clip-space node that is taken for a solid by
+    /// level of detail; `None`: none is.
     pub(super) lod_depth: Vec<Option<Word>>,
+    /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded
+    /// down and up, and brought to just beyond the object if it is far away.
     pub(super) eye_floor: [Word; 3],
     pub(super) eye_ceil: [Word; 3],
+    /// Whether the edges' clip vectors, as columns, have a positive determinant.
     pub(super) positive: bool,
     /// `a` and `b` of the planes perpendicular to the three axes.
     pub(super) axis_ab: [[WideWord; 2]; 3],
@@ -82,21 +113,18 @@ pub(super) struct Constants {
     pub(super) edges: [[Word; 3]; 3],
 }
 
-/// Counts what the host does to load a frame into the machine's words.
-pub fn count_load(setup: &FrameSetup, tally: &Tally) {
-    let mut dp = Datapath::new(setup.format, Overflow::default(), NoProbe);
-    Constants::load_by(&mut dp, setup, tally);
-}
-
 impl Constants {
-    /// Loads a frame. This is host work: it multiplies, once for a frame, and
-    /// no probe sees it; the loads check that everything fits its word.
+    /// Loads a frame; no probe sees it.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         Self::load_by(dp, setup, Untold)
     }
 
-    /// The same; `by` is told of all that the host does.
-    fn load_by<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
+    /// The same; `by` counts what the host does.
+    pub(super) fn load_by<P: Probe, H: Host>(
+        dp: &mut Datapath<P>,
+        setup: &FrameSetup,
+        by: H,
+    ) -> Self {
         by.enter(Part::Words);
         let options = &setup.options;
         let exact = options.coverage.draws_outlines();
@@ -118,7 +146,7 @@ impl Constants {
             };
             depths.iter().map(depth).collect()
         };
-        // Beyond the object all eyes compare alike, so a far one is brought near.
+        // All eyes beyond the object compare alike, so a far one is brought near.
         let far = by.lift(1i64) << (setup.depth + setup.sub_levels);
         let beyond = (far + 1).value;
         let eye =
@@ -138,7 +166,7 @@ impl Constants {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let mut plane = |a: [Num<H, i64>; 3], b: [Num<H, i64>; 3]| {
-                    // Beyond 64 bits it is cut to the nearest, which no format
+                    // Beyond 64 bits it is clamped to a number that no format
                     // holds, so that the load overflows as it must.
                     cross(a.map(Num::widened), b.map(Num::widened))
                         .map(|c| dp.load_wide(c.clamped_to_i64().value))

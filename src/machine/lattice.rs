@@ -1,9 +1,10 @@
-//! One coordinate of a voxel's eight projected vertices, held in either of
-//! two ways: eight corners (the paper) or one corner and three edges.
+//! One coordinate of a cage, that is of a voxel's eight projected vertices,
+//! held in either of two ways: eight corners (the paper) or one corner and
+//! three edges.
 //!
-//! A lattice says how its children's values follow from its own by adds and
-//! shifts, and between which values all its vertices lie. Two lattices make a
-//! cage in screen space (x, y), three in clip space (X, Y, W).
+//! A lattice gives its children's lattices by adds and shifts, and the least
+//! and the greatest of its vertices. A cage is two lattices in screen space (x,
+//! y), three in clip space (X, Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
@@ -13,17 +14,17 @@ pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
-    /// The children's vertices, as [`Self::pool`] has made them.
+    /// All numbers of the children's lattices.
     type Pool: Copy;
 
-    /// All numbers of the children's lattices; their vertices lie between this
-    /// lattice's.
+    /// Computes the children's numbers. The children's vertices lie between
+    /// this lattice's least and greatest.
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
 
-    /// The lattice of one child: wires.
+    /// The lattice of one child, selected from the pool: wires, no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
-    /// The children's lattices, in Morton order: wires.
+    /// The children's lattices, in Morton order, selected from the pool.
     fn all(pool: &Self::Pool) -> [Self; 8] {
         std::array::from_fn(|octant| Self::child(pool, octant))
     }
@@ -45,16 +46,16 @@ pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
-    /// `f` applied to each number that makes up the lattice; `f` is linear.
+    /// `f`, which must be linear, applied to each number of the lattice.
     fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
 
-    /// `f` applied to each pair of numbers; `f` is linear.
+    /// `f`, which must be linear, applied to each pair of numbers.
     fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
 
     /// All vertices moved by `by`.
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
 
-    /// The lattice of the vertices' quotients `x / w`, as `divide` makes them.
+    /// The lattice of the vertices' quotients `x / w`, computed by `divide`.
     fn project<P: Probe>(
         dp: &mut Datapath<P>,
         x: &Self,
@@ -86,13 +87,6 @@ impl Wires for Corners {
     }
 }
 
-#[cfg(test)]
-impl Corners {
-    pub(super) fn corners(&self) -> [Word; 8] {
-        self.0
-    }
-}
-
 impl Lattice for Corners {
     type Pool = [Word; 27];
 
@@ -100,9 +94,10 @@ impl Lattice for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 lattice made
-    /// axis by axis, 4 midpoints along x, 6 along y, 9 along z. The order is
-    /// normative: rounding makes others differ in the last bit.
+    /// The paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the
+    /// eight children, by 4 midpoints along x, then 6 along y, then 9 along z.
+    /// The order is normative: midpoints are rounded down, so that another order
+    /// differs in the last bit.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 27] {
         // pool[9 * i + 3 * j + k], i, j, k in 0..3 along x, y, z.
@@ -134,7 +129,8 @@ impl Lattice for Corners {
 
     #[inline]
     fn child(pool: &[Word; 27], octant: usize) -> Self {
-        // Where the child's lowest corner is; the limit saves the checks.
+        // Index of the child's lowest corner. Masked, so that no bounds check
+        // is left.
         const LOWEST: [u8; 8] = [0, 1, 3, 4, 9, 10, 12, 13];
         let low = usize::from(LOWEST[octant & 7]);
         Self(std::array::from_fn(|corner| {
@@ -194,28 +190,27 @@ impl Lattice for Corners {
 
 /// One corner and the three edges that leave it along x, y, z.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Frame {
+pub(super) struct CornerAndEdges {
     corner: Word,
     edges: [Word; 3],
 }
 
-impl Wires for Frame {
+impl Wires for CornerAndEdges {
     fn show(&self, to: &mut Vec<Signal>) {
         (self.corner, self.edges).show(to);
     }
 }
 
-impl Lattice for Frame {
-    /// The children's corners, and the edges that they share.
+impl Lattice for CornerAndEdges {
+    /// The children's lowest corners, and the edges that they share.
     type Pool = ([Word; 8], [Word; 3]);
 
     fn from_frame<P: Probe>(_: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
         Self { corner, edges }
     }
 
-    /// Edges are halved towards zero (the sign bit is added before the
-    /// shift), so that children never leave their parent; seven adds make the
-    /// eight corners.
+    /// Halves edges towards zero (the sign bit is added before the shift), so
+    /// that children never leave their parent; seven adds give the eight corners.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
         let edges = self.edges.map(|edge| {
@@ -287,7 +282,7 @@ impl Lattice for Frame {
         }
     }
 
-    /// Four of the eight vertices are projected; the others follow.
+    /// Divides for four of the eight vertices; the edges are differences.
     fn project<P: Probe>(
         dp: &mut Datapath<P>,
         x: &Self,

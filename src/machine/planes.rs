@@ -1,39 +1,39 @@
-//! Silhouettes in clip space, exact (`SPEC.md`, "Exact coverage").
+//! Silhouettes of cubes in clip space, exact (`SPEC.md`, "Exact coverage").
 //!
-//! A ray meets a cube's inside exactly if for each axis j, of the four edges
-//! along j, some pass on either side of it. The plane through the eye and the
-//! edge from `A` along `e_j` has the normal `A x e_j`; moving the edge by
-//! another edge adds a constant of the object. So the planes go down the
-//! octree by shifts and adds of constants, and down the quadtree by
-//! `c' = 2c + bx a + by b`.
+//! A ray meets the inside of a cube if and only if for each axis j the four
+//! edges along j do not all pass on one side of it. The plane through the eye
+//! and the edge from `A` along `e_j` has the normal `A x e_j`; moving the edge
+//! by another edge adds a constant of the object. So children's planes follow by
+//! shifts and adds of constants, and planes relative to a quadrant by
+//! `c' = 2c + bx a + by b` (`bx`, `by`: the quadrant's column and row).
 
 use hwmodel::{Datapath, Probe, Short, WideWord, Word};
 
+use super::blocks::{Block, LEVEL_BITS};
 use super::constants::Constants;
-use super::fit::rebased;
-use super::record::Planes;
-use super::taps::{Block, LEVEL_BITS};
+use super::record::{Cube, Planes};
 
-/// On which side of a plane all samples of a node are.
+/// Side of a plane on which all samples of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Side {
-    /// Not all on one.
+    /// On both, or not known yet.
     Both,
     Positive,
     Negative,
-    /// The plane is none: the edge's line holds the eye. It counts for neither.
+    /// On neither: a degenerate edge, whose line holds the eye and spans no
+    /// plane with it.
     Nowhere,
 }
 
 impl Side {
-    /// On two wires: 0 both, 1 positive, 2 negative, 3 nowhere.
+    /// Encoded in two bits: 0 both, 1 positive, 2 negative, 3 nowhere.
     #[inline]
     fn wires(self) -> Short {
         Short::unsigned(self as u8, 2)
     }
 }
 
-/// `a x + b y + c` over a node, `x` and `y` from 0 to 1.
+/// The function `a x + b y + c` over a node, `x` and `y` from 0 to 1.
 #[derive(Debug, Clone, Copy)]
 struct Plane {
     ab: [WideWord; 2],
@@ -71,7 +71,7 @@ impl Plane {
         let low = dp.add(self.c, self.least);
         let high = dp.add(self.c, self.greatest);
         if !dp.is_negative(low) {
-            // Zero at most on the node's border, unless the function is constant.
+            // Zero on the node's border at most, unless the function is constant.
             self.side = if dp.is_zero(low) && dp.is_zero(high) {
                 Side::Nowhere
             } else {
@@ -86,8 +86,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle; on the plane itself, of a point right
-    /// of it by an infinitesimal, and below by one infinitely smaller.
+    /// The side of the node's middle. If that is on the plane: of a point right
+    /// of it by an infinitesimal and below it by one infinitely smaller.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -104,18 +104,19 @@ impl Plane {
         Side::Nowhere
     }
 
-    fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
+    /// Relative to a quadrant of the node.
+    fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
         if self.side != Side::Both {
             return *self;
         }
         Self {
-            c: rebased(dp, self.ab, self.c, quadrant),
+            c: constant_in_quadrant(dp, self.ab, self.c, quadrant),
             ..*self
         }
     }
 }
 
-/// What is known of a quadtree node.
+/// How much of a quadtree node a silhouette covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     /// No sample of the node is covered.
@@ -127,52 +128,46 @@ pub(super) enum Cover {
 }
 
 impl Cover {
-    /// On two wires: 0 outside, 1 mixed, 2 covered.
+    /// Encoded in two bits: 0 none, 1 some, 2 all.
     #[inline]
-    pub(super) fn wires(self) -> Short {
+    fn wires(self) -> Short {
         Short::unsigned(self as u8, 2)
     }
 }
 
-/// The silhouette of a cube in clip space, relative to a quadtree node. It is
-/// carried down the image quadtree: whole quadrants are accepted or refused,
-/// samples decided by their centres.
+/// The silhouette of a cube, relative to a quadtree node. It is taken down the
+/// image quadtree: whole quadrants are covered or not, samples are decided by
+/// their centres.
 #[derive(Debug, Clone)]
 pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
-    /// For a cube beside or behind the eye: a plane perpendicular to an axis,
-    /// and the side of it on which rays reach the cube and not its mirror
+    /// Of a cube that is not wholly before the eye: a plane perpendicular to an
+    /// axis, and the side of it on which rays reach the cube and not its mirror
     /// image behind the eye.
     front: Option<(Plane, Side)>,
 }
 
-/// A cube as the silhouette needs it.
-pub(super) struct Cube<'a> {
-    pub(super) planes: &'a Planes,
-    /// Octree level, at most that of the finest voxels.
-    pub(super) level: u32,
-    pub(super) min: [Word; 3],
-    pub(super) max: [Word; 3],
-    /// Whether all of it lies before the eye.
-    pub(super) before_eye: bool,
-}
-
 impl Silhouette {
+    /// Of a cube whose level is at most that of the finest voxels, with its
+    /// planes. `w_min`: the least depth of its vertices.
     pub(super) fn new<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
-        cube: &Cube<'_>,
+        cube: &Cube,
+        planes: &Planes,
+        w_min: Word,
     ) -> Self {
+        let is_before_eye = dp.is_positive(w_min);
         let side_shift = constants.depth - cube.level;
         // By axis: what an edge's plane gains when the edge moves one side along it.
         let across = [0, 1, 2].map(|l| {
-            let axis = axis_plane(constants, cube.planes, l);
+            let axis = axis_plane(constants, planes, l);
             axis.map(|v| dp.shl(v, side_shift))
         });
         let edges = [0, 1, 2].map(|j| {
             let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-            let here = cube.planes.edge[j];
+            let here = planes.edge[j];
             // (A + E_k) x e_j = A x e_j - E_j x e_k, and E_l x e_j = E_k-plane.
             let moved_k = combine(dp, here, across[l], false);
             let moved_l = combine(dp, here, across[k], true);
@@ -180,30 +175,31 @@ impl Silhouette {
             [here, moved_k, moved_l, moved_both]
         });
         let side = Short::unsigned(side_shift, LEVEL_BITS);
-        let axes = (constants.axis_ab, cube.planes.axis_c);
-        dp.tap(Block::CubePlanes, &(cube.planes.edge, axes, side), &edges);
+        let axes = (constants.axis_ab, planes.axis_c);
+        dp.tap(Block::CubePlanes, &(planes.edge, axes, side), &edges);
         let edges = edges.map(|planes| planes.map(|plane| Plane::new(dp, plane)));
-        let front = if cube.before_eye {
+        let front = if is_before_eye {
             None
         } else {
-            Self::front(dp, constants, cube)
+            Self::front(dp, constants, cube, planes)
         };
         Self { edges, front }
     }
 
-    /// The half of the rays that reach a cube which does not hold the eye:
-    /// along an axis on which the eye is outside it, rays go towards it.
+    /// The half of the rays that can reach a cube: those towards it along an
+    /// axis on which the eye is outside it. `None` for a cube that holds the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
-        cube: &Cube<'_>,
+        cube: &Cube,
+        planes: &Planes,
     ) -> Option<(Plane, Side)> {
         let mut front = None;
         for axis in 0..3 {
             let upwards = dp.le(constants.eye_ceil[axis], cube.min[axis]);
             let downwards = dp.le(cube.max[axis], constants.eye_floor[axis]);
             if upwards || downwards {
-                let plane = Plane::new(dp, axis_plane(constants, cube.planes, axis));
+                let plane = Plane::new(dp, axis_plane(constants, planes, axis));
                 let side = if upwards == constants.positive {
                     Side::Positive
                 } else {
@@ -223,7 +219,8 @@ impl Silhouette {
         front.map(|(_, plane, side)| (plane, side))
     }
 
-    /// What the sides of all planes come to, as far as they are found.
+    /// Finds the sides of all planes as far as they can be, and the cover that
+    /// follows from them.
     fn resolve<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let mut all = true;
         for edges in &mut self.edges {
@@ -251,31 +248,9 @@ impl Silhouette {
         }
         if all { Cover::All } else { Cover::Some }
     }
-}
 
-fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord; 3] {
-    let [a, b] = constants.axis_ab[axis];
-    [a, b, planes.axis_c[axis]]
-}
-
-fn combine<P: Probe>(
-    dp: &mut Datapath<P>,
-    a: [WideWord; 3],
-    b: [WideWord; 3],
-    add: bool,
-) -> [WideWord; 3] {
-    std::array::from_fn(|i| {
-        if add {
-            dp.add(a[i], b[i])
-        } else {
-            dp.sub(a[i], b[i])
-        }
-    })
-}
-
-impl Silhouette {
-    /// What the node, `below` levels above the samples, has of the
-    /// silhouette; never [`Cover::Some`] for a sample (`below` = 0).
+    /// The cover of the node, `below` levels above the samples; never
+    /// [`Cover::Some`] for a sample (`below` = 0).
     #[inline]
     pub(super) fn cover<P: Probe>(&mut self, dp: &mut Datapath<P>, below: u32) -> Cover {
         let cover = self.resolve(dp, below);
@@ -291,21 +266,42 @@ impl Silhouette {
     }
 
     /// The silhouette relative to a quadrant (`y << 1 | x`) of the node.
-    pub(super) fn quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
+    pub(super) fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8) -> Self {
         Self {
             edges: std::array::from_fn(|j| {
-                std::array::from_fn(|e| self.edges[j][e].quadrant(dp, quadrant))
+                std::array::from_fn(|e| self.edges[j][e].in_quadrant(dp, quadrant))
             }),
             front: self
                 .front
-                .as_ref()
-                .map(|(plane, side)| (plane.quadrant(dp, quadrant), *side)),
+                .map(|(plane, side)| (plane.in_quadrant(dp, quadrant), side)),
         }
     }
 }
 
-/// The planes of a child, from its parent's: half a side along each axis of
-/// which the child's octant has the bit.
+/// The plane through the eye that is perpendicular to an axis.
+fn axis_plane(constants: &Constants, planes: &Planes, axis: usize) -> [WideWord; 3] {
+    let [a, b] = constants.axis_ab[axis];
+    [a, b, planes.axis_c[axis]]
+}
+
+/// The sum of two planes' coefficients, or their difference.
+fn combine<P: Probe>(
+    dp: &mut Datapath<P>,
+    a: [WideWord; 3],
+    b: [WideWord; 3],
+    add: bool,
+) -> [WideWord; 3] {
+    std::array::from_fn(|i| {
+        if add {
+            dp.add(a[i], b[i])
+        } else {
+            dp.sub(a[i], b[i])
+        }
+    })
+}
+
+/// The planes of a child, from its parent's: moved by half a side along each
+/// axis whose bit the child's octant has.
 pub(super) fn of_child<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -333,4 +329,40 @@ pub(super) fn of_child<P: Probe>(
         &planes.edge,
     );
     planes
+}
+
+/// Makes planes relative to a quadrant of their node.
+pub(super) fn move_to_quadrant<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    planes: &mut Planes,
+    quadrant: u8,
+) {
+    for [a, b, c] in &mut planes.edge {
+        *c = constant_in_quadrant(dp, [*a, *b], *c, quadrant);
+    }
+    for (c, &ab) in planes.axis_c.iter_mut().zip(&constants.axis_ab) {
+        *c = constant_in_quadrant(dp, ab, *c, quadrant);
+    }
+}
+
+/// The constant of `a x + b y + c` in a quadrant's own coordinates, where the
+/// function is doubled: `2c`, plus `a` in the right half, plus `b` in the lower.
+#[inline]
+fn constant_in_quadrant<P: Probe>(
+    dp: &mut Datapath<P>,
+    [a, b]: [WideWord; 2],
+    c: WideWord,
+    quadrant: u8,
+) -> WideWord {
+    let mut to = dp.shl(c, 1);
+    if quadrant & 1 != 0 {
+        to = dp.add(to, a);
+    }
+    if quadrant & 2 != 0 {
+        to = dp.add(to, b);
+    }
+    let quadrant = Short::unsigned(quadrant, 2);
+    dp.tap(Block::PlaneQuadrant, &([a, b], c, quadrant), &to);
+    to
 }

@@ -2,20 +2,21 @@
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
+use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
 use super::constants::Constants;
-use super::fit::sum_of_shifts;
 use super::lattice::Lattice;
-use super::record::{Clip, Record, Screen};
-use super::taps::{Block, LEVEL_BITS, NODE_BITS};
+use super::record::{Clip, Place, Screen};
+use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
 use crate::project::setup::ShiftSum;
 
-/// Whether a clip-space voxel is at most `limit` samples wide and high.
+/// Whether a clip-space cage is at most `limit` samples wide and high, in a node
+/// `below` levels above the samples.
 ///
 /// An edge `E` moves a vertex at `x` (0 to 1 across the node) by
-/// `(E_X - x E_W) / W`, so the sum over the edges of the greater of `|E_X|`
-/// and `|E_X - E_W|` over the least `W` bounds the size. Conservative: a few
-/// voxels just within the limit are taken for larger.
+/// `(E_X - x E_W) / W`, so the sum over the edges of the greater of `|E_X|` and
+/// `|E_X - E_W|`, divided by the least `W`, bounds the size. Conservative: a few
+/// cages just within the limit are taken for larger.
 pub(super) fn clip_at_most<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
@@ -45,12 +46,14 @@ pub(super) fn clip_at_most<P: Probe, L: Lattice>(
     })
 }
 
+/// `|a|`.
 fn magnitude<P: Probe>(dp: &mut Datapath<P>, a: Word) -> Word {
     let negated = dp.neg(a);
     dp.max(a, negated)
 }
 
-/// Whether a screen-space voxel's box is at most `limit` wide and high.
+/// Whether a screen-space box is at most `limit` wide and high, in units of
+/// screen positions.
 #[inline]
 pub(super) fn screen_at_most<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
@@ -66,12 +69,12 @@ pub(super) fn screen_at_most<P: Probe, L: Lattice>(
     fits(screen.spans[0]) && fits(screen.spans[1])
 }
 
-/// The sample that holds a clip-space voxel's centre, by bisection from its
-/// quadtree node on; `None` outside the picture's root.
+/// The sample that holds the centre of a clip-space cage, whose depth is `w`, by
+/// bisection from its quadtree node on; `None` outside the picture's root.
 pub(super) fn clip_sample<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    record: &Record<L>,
+    place: Place,
     clip: &Clip<L>,
     w: Word,
 ) -> Option<QuadNode> {
@@ -79,14 +82,14 @@ pub(super) fn clip_sample<P: Probe, L: Lattice>(
     let mut y = clip.y.centre(dp);
     dp.tap(Block::CageCentre, &clip.x, &x);
     dp.tap(Block::CageCentre, &clip.y, &y);
-    if !record.inside {
+    if !place.inside {
         for v in [x, y] {
             if dp.is_negative(v) || !dp.lt(v, w) {
                 return None;
             }
         }
     }
-    let mut quad = record.quad;
+    let mut quad = place.quad;
     while quad.level < constants.levels {
         let mut half = |v: &mut Word| {
             let doubled = dp.shl(*v, 1);
@@ -104,37 +107,37 @@ pub(super) fn clip_sample<P: Probe, L: Lattice>(
     Some(quad)
 }
 
-/// The sample that holds a screen-space voxel's centre: its integer bits.
+/// The sample that holds the centre of a screen-space cage: its integer bits.
 /// `None` outside the picture's root.
 pub(super) fn screen_sample<P: Probe, L: Lattice>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    record: &Record<L>,
+    place: Place,
     screen: &Screen<L>,
 ) -> Option<QuadNode> {
-    let below = constants.levels - record.quad.level;
+    let below = constants.levels - place.quad.level;
     let mut column = |lattice: &L, node: u32| {
         let centre = lattice.centre(dp);
         dp.tap(Block::CageCentre, lattice, &centre);
         let position = dp.shr(centre, constants.screen_frac);
         let first = Word::from_host(i64::from(node) << below);
         let last = Word::from_host((i64::from(node + 1) << below) - 1);
-        if !record.inside && (dp.lt(position, first) || dp.lt(last, position)) {
+        if !place.inside && (dp.lt(position, first) || dp.lt(last, position)) {
             return None;
         }
         // A box of no size may lie on its node's far edge, and a word that
-        // overflowed anywhere.
+        // wrapped or saturated may be anywhere.
         let position = dp.min(position, last);
         let position = dp.max(position, first);
-        let place = (
+        let node = (
             Short::unsigned(node, NODE_BITS),
             Short::unsigned(below, LEVEL_BITS),
         );
-        dp.tap(Block::CentreSample, &(centre, place), &position);
+        dp.tap(Block::CentreSample, &(centre, node), &position);
         Some(position.to_host() as u32)
     };
-    let x = column(&screen.x, record.quad.x)?;
-    let y = column(&screen.y, record.quad.y)?;
+    let x = column(&screen.x, place.quad.x)?;
+    let y = column(&screen.y, place.quad.y)?;
     Some(QuadNode {
         level: constants.levels,
         x,

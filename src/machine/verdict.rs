@@ -1,31 +1,34 @@
-//! What becomes of a record: the drawing rules (`SPEC.md`, "Drawing rules").
+//! The drawing rules: whether a record is drawn, dropped or subdivided
+//! (`SPEC.md`, "Drawing rules").
 
 use hwmodel::Probe;
 
+use super::blocks::Block;
 use super::lattice::Lattice;
 use super::record::{Pose, Record};
 use super::size;
-use super::taps::Block;
-use super::walk::Walk;
+use super::state::State;
+use super::watch::Watch;
 use crate::project::Coverage;
 
-/// What becomes of a record.
+/// What is to be done with a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Draw at the sample of the centre.
+    /// Draw it at the sample of its centre (`any`, `center`).
     DrawCentre,
-    /// Draw at every sample that the box overlaps.
+    /// Draw it at every sample that its box overlaps (`any`).
     DrawBox,
-    /// Draw every sample in the silhouette.
+    /// Draw it at every sample in its silhouette (the rules that draw outlines).
     DrawSolid,
     /// Nothing of it can be seen.
     Drop,
-    /// Go on with its children.
+    /// Push its children.
     Subdivide,
 }
 
-impl<P: Probe, L: Lattice> Walk<'_, P, L> {
-    /// What is to become of a record. May find it solid by level of detail.
+impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+    /// Applies the frame's drawing rule to a record, and level of detail, which
+    /// may make it solid.
     pub(super) fn verdict(&mut self, record: &mut Record<L>) -> Verdict {
         if self.constants.coverage == Coverage::Exact {
             return self.verdict_exact(record);
@@ -39,7 +42,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         } else {
             self.verdict_center(record)
         };
-        let at_bound = record.level >= self.constants.level_bound || any && self.is_least(record);
+        let at_bound =
+            record.cube.level >= self.constants.level_bound || any && self.is_least(record);
         if verdict == Verdict::Subdivide && at_bound {
             self.counts.at_bound += 1;
             return match (any, self.crosses_near(record)) {
@@ -51,18 +55,19 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
     }
 
     /// Whether a record no larger than a sample lies across a bisector, where
-    /// the fit stops, with all samples that it overlaps drawn. Without this
-    /// test, all parts of a solid along a bisector would live until both
-    /// sides of it are full.
+    /// the fit stops, and all samples that it overlaps are drawn. Without this
+    /// test all parts of a solid along a bisector would be kept until both sides
+    /// of it are full.
     pub(super) fn is_hidden(&mut self, record: &Record<L>) -> bool {
-        self.is_rejecting()
-            && record.quad.level < self.constants.levels
+        self.options.reject_filled
+            && record.place.quad.level < self.constants.levels
             && !self.crosses_near(record)
             && self.is_at_most_a_sample(record)
-            && self.first_open(record).is_none()
+            && self.first_undrawn(record).is_none()
     }
 
-    /// Whether a record lies across the near plane and hardly beyond it.
+    /// Whether a record lies across the near plane and spans so little depth
+    /// that it is dropped.
     fn is_sliver_at_near(&mut self, record: &Record<L>) -> bool {
         let Pose::Clip(clip, _) = &record.pose else {
             return false;
@@ -75,7 +80,8 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         self.dp.lt(span, self.constants.near_crossing)
     }
 
-    /// Whether screen positions cannot part a record's vertices any more.
+    /// Whether a record is so small that rounded screen positions do not part
+    /// its vertices.
     fn is_least(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
             Pose::Clip(..) => false,
@@ -85,69 +91,67 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         }
     }
 
-    /// The paper's rule: a box within one sample is drawn there.
+    /// `any`, the paper's rule: a box within one sample is drawn there.
     fn verdict_any(&mut self, record: &mut Record<L>) -> Verdict {
-        self.take_for_solid(record);
-        let one = record.quad.level == self.constants.levels && record.inside;
+        self.apply_level_of_detail(record);
+        let one = record.place.quad.level == self.constants.levels && record.place.inside;
         if !one || self.crosses_near(record) {
             return Verdict::Subdivide;
         }
-        // Within one sample, a level of detail of one sample or more is met.
+        // A box within one sample meets a level of detail of one sample or more.
         let coarse = self
             .constants
             .lod_limit
             .as_ref()
             .is_some_and(|limit| limit.value() >= self.constants.size_limit.value());
-        if record.solid || coarse {
+        if record.cube.solid || coarse {
             Verdict::DrawBox
         } else {
             Verdict::Subdivide
         }
     }
 
-    /// A voxel no larger than a sample is drawn at the sample of its centre.
+    /// `center`: a voxel no larger than a sample is drawn at the sample of its
+    /// centre.
     fn verdict_center(&mut self, record: &mut Record<L>) -> Verdict {
-        self.take_for_solid(record);
-        if record.solid && !self.crosses_near(record) && self.is_at_most_a_sample(record) {
+        self.apply_level_of_detail(record);
+        if record.cube.solid && !self.crosses_near(record) && self.is_at_most_a_sample(record) {
             Verdict::DrawCentre
         } else {
             Verdict::Subdivide
         }
     }
 
-    /// A solid, by nature or by level of detail, is drawn by its silhouette.
+    /// `exact` and `alpha`: a leaf, or a node taken for one by level of detail,
+    /// is drawn by its silhouette.
     fn verdict_exact(&mut self, record: &mut Record<L>) -> Verdict {
-        self.take_for_solid(record);
-        if record.solid {
+        self.apply_level_of_detail(record);
+        if record.cube.solid {
             Verdict::DrawSolid
         } else {
             Verdict::Subdivide
         }
     }
 
-    /// Level of detail: a node with children that is small enough is a solid.
+    /// Level of detail: makes a node with children solid if it is small enough.
     #[inline(always)]
-    fn take_for_solid(&mut self, record: &mut Record<L>) {
-        if record.solid {
+    fn apply_level_of_detail(&mut self, record: &mut Record<L>) {
+        if record.cube.solid {
             return;
         }
         let c = &self.constants;
-        record.solid = match &record.pose {
-            Pose::Clip(clip, _) => c
-                .lod_depth
-                .get(record.level as usize)
-                .copied()
-                .flatten()
-                .is_some_and(|least| {
-                    let solid = self.dp.le(least, clip.w_min);
-                    self.dp
-                        .tap(Block::DetailDepth, &(clip.w_min, least), &solid);
-                    solid
-                }),
+        record.cube.solid = match &record.pose {
+            Pose::Clip(clip, _) => c.lod_depth[record.cube.level as usize].is_some_and(|least| {
+                let solid = self.dp.le(least, clip.w_min);
+                self.dp
+                    .tap(Block::DetailDepth, &(clip.w_min, least), &solid);
+                solid
+            }),
             Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.lod_limit_screen),
         };
     }
 
+    /// Whether a part of a record is before the near plane.
     fn crosses_near(&mut self, record: &Record<L>) -> bool {
         match &record.pose {
             Pose::Clip(clip, _) => self.dp.lt(clip.w_min, self.constants.near),
@@ -161,7 +165,7 @@ impl<P: Probe, L: Lattice> Walk<'_, P, L> {
         let c = &self.constants;
         match &record.pose {
             Pose::Clip(clip, _) => {
-                let below = c.levels - record.quad.level;
+                let below = c.levels - record.place.quad.level;
                 size::clip_at_most(&mut self.dp, clip, &c.size_limit, below)
             }
             Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.size_limit_screen),

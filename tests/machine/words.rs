@@ -25,7 +25,7 @@ const fn allowed(file: &'static str, line: &'static str, reason: &'static str) -
     Allowed { file, line, reason }
 }
 
-const TO_HOST: [Allowed; 7] = [
+const TO_HOST: [Allowed; 6] = [
     allowed(
         "alpha.rs",
         "*sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host();",
@@ -42,24 +42,19 @@ const TO_HOST: [Allowed; 7] = [
         CONSTANT,
     ),
     allowed(
+        "instruments/descent.rs",
+        "let mut vertices = |lattice: L| lattice.vertices(dp).map(Word::to_host);",
+        "vertices read by an experiment; nothing of it goes back",
+    ),
+    allowed(
+        "record_loop.rs",
+        "let voxel = min.to_host() >> self.constants.sub_levels;",
+        "the voxel's number in the picture: what is shown, not what is computed with",
+    ),
+    allowed(
         "size.rs",
         "Some(position.to_host() as u32)",
         "a finished sample position becomes an address",
-    ),
-    allowed(
-        "vertices.rs",
-        "let host = |vertices: [Word; 8]| vertices.map(Word::to_host);",
-        FOR_CHECKS,
-    ),
-    allowed(
-        "vertices.rs",
-        "Some(vertices.map(|lattice| lattice.corners().map(Word::to_host)))",
-        FOR_CHECKS,
-    ),
-    allowed(
-        "walk.rs",
-        "let voxel = min.to_host() >> self.constants.sub_levels;",
-        "the voxel's number in the picture: what is shown, not what is computed with",
     ),
 ];
 
@@ -79,12 +74,20 @@ const SHOWN: [Allowed; 8] = [
         "its corner and its edges",
     ),
     allowed(
-        "mutants.rs",
+        "instruments/mutants.rs",
         "use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};",
         "for the lines below",
     ),
-    allowed("mutants.rs", SHOW, "an injured lattice is its words too"),
-    allowed("mutants.rs", "self.0.show(to);", "those of the lattice"),
+    allowed(
+        "instruments/mutants.rs",
+        SHOW,
+        "an injured lattice is its words too",
+    ),
+    allowed(
+        "instruments/mutants.rs",
+        "self.0.show(to);",
+        "those of the lattice",
+    ),
 ];
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
@@ -96,21 +99,25 @@ const PRODUCTS: [Allowed; 12] = [
         INDEX,
     ),
     allowed(
-        "draw.rs",
+        "canvas.rs",
         "let at = sample.y as usize * self.frame.width as usize + sample.x as usize;",
         "where a sample lies in the host's memory",
     ),
     allowed(
-        "draw.rs",
+        "heat.rs",
         "let (x, y) = ((at % width) as u32, (at / width) as u32);",
         HEAT,
     ),
     allowed(
-        "draw.rs",
+        "heat.rs",
         "let samples = f64::from(1u32 << below) * f64::from(1u32 << below);",
         HEAT,
     ),
-    allowed("draw.rs", "f64::from(heat[quad.address()]) / samples", HEAT),
+    allowed(
+        "heat.rs",
+        "f64::from(self.records[quad.address()]) / samples",
+        HEAT,
+    ),
     allowed("lattice.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
     allowed("lattice.rs", "let at = 3 * j + k;", INDEX),
     allowed("lattice.rs", "let at = 9 * i + k;", INDEX),
@@ -131,13 +138,13 @@ const PRODUCTS: [Allowed; 12] = [
 /// Lines that name the host's arithmetic, which multiplies.
 const HOST: [Allowed; 6] = [
     allowed(
-        "alpha.rs",
-        "use crate::project::host::Host;",
-        "to hand it on",
+        "instruments/load.rs",
+        "use crate::project::host::Tally;",
+        "it counts what the host does",
     ),
     allowed(
         "constants.rs",
-        "use crate::project::host::{Host, Num, Part, Tally, Untold, cross, lift_all};",
+        "use crate::project::host::{Host, Num, Part, Untold, cross, lift_all};",
         "for the lines below",
     ),
     allowed(
@@ -164,36 +171,42 @@ const HOST: [Allowed; 6] = [
 
 const CONSTANT: &str = "a constant of the frame, made by the host before the first record";
 const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
-const FOR_CHECKS: &str = "vertices shown to an experiment; nothing of it goes back";
 const INDEX: &str = "which wire, known when the machine is built";
 const HEAT: &str = "the heat map: measured by the host after the last record";
 
-/// A window on the machine for experiments, in real numbers. The machine must
-/// not look back through it: see `nobody_computes_with_what_the_window_shows`.
-const WINDOW: &str = "positions.rs";
+/// The only file that computes with the machine's numbers in another way, for
+/// measurements. Nothing of it may reach the machine: see
+/// `the_machine_does_not_know_its_instruments`.
+const MEASURES: &str = "instruments/positions.rs";
 
-/// The machine's sources but the window.
+/// The machine's sources and its instruments', without [`MEASURES`].
 fn sources() -> Vec<(String, String)> {
     let mut sources = all_sources();
-    sources.retain(|(file, _)| file != WINDOW);
+    sources.retain(|(file, _)| file != MEASURES);
     sources
 }
 
 fn all_sources() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/machine");
-    let mut sources: Vec<_> = fs::read_dir(&folder)
-        .expect("the machine's folder")
-        .map(|entry| entry.expect("an entry").path())
-        .map(|path| {
-            let is_source = path.extension().is_some_and(|e| e == "rs");
-            assert!(is_source, "{} is not looked at", path.display());
-            let name = path.file_name().expect("a name").to_string_lossy();
-            let text = fs::read_to_string(&path).expect("a source");
-            (name.into_owned(), text)
-        })
-        .collect();
+    let mut sources = sources_in(&folder, "");
+    sources.extend(sources_in(&folder.join("instruments"), "instruments/"));
     sources.sort();
     sources
+}
+
+fn sources_in(folder: &Path, prefix: &str) -> Vec<(String, String)> {
+    fs::read_dir(folder)
+        .expect("a folder of sources")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| !path.ends_with("machine/instruments"))
+        .map(|path| {
+            let is_source = path.extension().is_some_and(|e| e == "rs");
+            assert!(is_source, "{} is not read", path.display());
+            let name = path.file_name().expect("a name").to_string_lossy();
+            let text = fs::read_to_string(&path).expect("a source");
+            (format!("{prefix}{name}"), text)
+        })
+        .collect()
 }
 
 /// Lines of code that hold what `is_wanted` looks for: file and line, without
@@ -281,20 +294,24 @@ fn words_are_shown_and_not_taken_back() {
     check(&lines(&sources(), is_shown), &SHOWN);
 }
 
+/// Only `mod.rs` names the instruments, to hand them on; nothing of the machine
+/// imports `mod.rs`, its instruments or an upper room.
 #[test]
-fn nobody_computes_with_what_the_window_shows() {
-    assert!(all_sources().iter().any(|(file, _)| file == WINDOW));
-    let mentions = lines(&sources(), |line| {
-        line.contains("positions::")
-            || line.contains("mod positions")
-            || line.contains("visit_positions")
-    });
-    let expected = [
-        "mod positions;",
-        "pub use positions::{Positions, Space, visit_positions};",
-    ];
-    let expected = expected.map(|line| ("mod.rs".to_owned(), line.to_owned()));
-    assert_eq!(mentions, expected);
+fn the_machine_does_not_know_its_instruments() {
+    let sources = all_sources();
+    assert!(sources.iter().any(|(file, _)| file == MEASURES));
+    for (file, line) in lines(&sources, |line| line.contains("instruments")) {
+        assert_eq!(file, "mod.rs", "{line}");
+    }
+    let is_upwards = |line: &str| {
+        let named = ["crate::lab", "crate::cli", "crate::fast", "crate::rays"];
+        named.iter().any(|name| line.contains(name))
+    };
+    assert_eq!(lines(&sources, is_upwards), []);
+    let through_mod = |line: &str| line.contains("crate::machine") || line.contains("super::{");
+    for (file, line) in lines(&sources, through_mod) {
+        assert!(file.starts_with("instruments/"), "{file}: {line}");
+    }
 }
 
 #[test]

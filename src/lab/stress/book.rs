@@ -2,7 +2,7 @@
 //! that multiply and divide. It is written from the specification and shares
 //! nothing with the machine but the recorded integers of a frame.
 
-use crate::machine::vertices::Held;
+use crate::machine::Cage;
 use crate::project::{CageKind, FrameSetup};
 
 /// What the book says of a voxel on the way down.
@@ -69,10 +69,10 @@ impl<'s> Book<'s> {
 
     /// What a voxel is held as that changed `changed` levels below the root,
     /// or not at all. `None` for a change that may not be.
-    pub(super) fn held(&self, path: &[u8], changed: Option<usize>) -> Option<Held> {
+    pub(super) fn held(&self, path: &[u8], changed: Option<usize>) -> Option<Cage> {
         let narrow = |values: [Wide; 8]| values.map(|v| i64::try_from(v).unwrap_or(i64::MAX));
         let Some(changed) = changed else {
-            return Some(Held::Clip(self.clip(path).map(narrow)));
+            return Some(Cage::Clip(self.clip(path).map(narrow)));
         };
         let (to, below) = path.split_at(changed);
         let projected = self.projected(to)?;
@@ -80,7 +80,7 @@ impl<'s> Book<'s> {
             CageKind::Corners => corners_below,
             CageKind::Frame => frame_below,
         };
-        Some(Held::Screen(projected.map(|p| narrow(by_cage(p, below)))))
+        Some(Cage::Screen(projected.map(|p| narrow(by_cage(p, below)))))
     }
 }
 

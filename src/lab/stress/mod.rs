@@ -7,6 +7,8 @@
 mod book;
 pub mod case;
 mod check;
+#[cfg(test)]
+mod mutants;
 pub mod scene;
 mod shrink;
 pub(crate) mod subject;

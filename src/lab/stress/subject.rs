@@ -1,14 +1,13 @@
-//! What is put under stress: the machine, or in tests one with an injury.
+//! What is put under stress: the machine, or in tests one with an error.
 
 use hwmodel::Trap;
 
 use crate::frame::Frame;
 use crate::graph::GraphView;
-use crate::machine::vertices::{self, Held};
-use crate::machine::{Machine, MachineOptions};
+use crate::machine::{self, Cage, Machine, MachineOptions};
 use crate::project::{EngineError, FrameSetup, Stats};
 
-/// A renderer whose pictures and vertices can be looked at.
+/// A renderer whose pictures and vertices can be checked.
 pub(crate) trait Subject: Sync {
     /// Draws a frame with at most so many records: `None` where that is not enough.
     fn draw(
@@ -19,9 +18,9 @@ pub(crate) trait Subject: Sync {
         most_records: u64,
     ) -> Result<Option<Stats>, EngineError>;
 
-    /// The voxels on a way down from the root, with it, as
-    /// [`vertices::follow`] has them.
-    fn follow(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Held>, Trap>;
+    /// The cages of the voxels on a way down from the root, as
+    /// [`machine::cages_along`].
+    fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
 }
 
 /// The machine as it is.
@@ -39,7 +38,7 @@ impl Subject for Product {
         Machine::new(MachineOptions::default()).render_within(graph, setup, frame, most_records)
     }
 
-    fn follow(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Held>, Trap> {
-        vertices::follow(setup, path)
+    fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+        machine::cages_along(setup, path)
     }
 }

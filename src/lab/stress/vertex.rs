@@ -6,7 +6,7 @@ use glam::DVec3;
 use super::book::Book;
 use super::subject::Subject;
 use crate::lab::bounds::{Bounds, Cube, Space, Widths};
-use crate::machine::vertices::Held;
+use crate::machine::Cage;
 use crate::project::{CageKind, FrameSetup};
 
 /// How vertices are held, for tables.
@@ -94,13 +94,13 @@ pub(super) fn look(
 ) {
     // A trap here is a trap of the frame too, or of a root that leaves the
     // picture by far: of no use.
-    let Ok(way) = subject.follow(setup, path) else {
+    let Ok(way) = subject.cages_along(setup, path) else {
         return;
     };
     let book = Book::new(setup);
     let mut changed: Option<usize> = None;
     for (level, held) in way.iter().enumerate() {
-        if changed.is_none() && !matches!(held, Held::Clip(_)) {
+        if changed.is_none() && !matches!(held, Cage::Clip(_)) {
             changed = Some(level);
             let (is, least) = book.change_depths(&path[..level]);
             if is < least && found.not_by_the_book.is_none() {
@@ -136,7 +136,7 @@ fn measure(
     book: &Book<'_>,
     path: &[u8],
     changed: Option<usize>,
-    held: &Held,
+    held: &Cage,
     found: &mut Vertices,
 ) {
     let voxel = cube(book, setup, path);
@@ -144,9 +144,9 @@ fn measure(
     let top = cube(book, setup, &path[..changed.unwrap_or(path.len())]);
     let root = libm::ldexp(1.0, setup.levels as i32);
     let (hold, space) = match (held, setup.options.cage) {
-        (Held::Clip(_), _) => (Hold::Clip, Space::Clip),
-        (Held::Screen(_), CageKind::Corners) => (Hold::Corners, Space::Corners(top)),
-        (Held::Screen(_), CageKind::Frame) => (Hold::Frame, Space::Frame(top)),
+        (Cage::Clip(_), _) => (Hold::Clip, Space::Clip),
+        (Cage::Screen(_), CageKind::Corners) => (Hold::Corners, Space::Corners(top)),
+        (Cage::Screen(_), CageKind::Frame) => (Hold::Frame, Space::Frame(top)),
     };
     let size = [setup.width, setup.height].map(f64::from);
     for vertex in 0..8usize {
@@ -174,7 +174,7 @@ fn measure(
             }
         };
         match held {
-            Held::Clip([x, y, w]) => {
+            Cage::Clip([x, y, w]) => {
                 for (c, x) in [x, y].into_iter().enumerate() {
                     let is = x[vertex] as f64 / w[vertex] as f64 * root;
                     // Behind the eye once it is rounded: the bound is then infinite.
@@ -183,7 +183,7 @@ fn measure(
                     }
                 }
             }
-            Held::Screen(positions) => {
+            Cage::Screen(positions) => {
                 for (c, x) in positions.iter().enumerate() {
                     let is = libm::ldexp(x[vertex] as f64, -(setup.format.frac() as i32));
                     note((is - truth[c]).abs(), bound[c]);

@@ -1,11 +1,25 @@
-//! The blocks whose borders a probe can tap: what a designer would build, and
-//! test, each alone. `shiftvox model --vectors` writes what crosses them.
+//! The blocks of the machine: what a designer would build, and test, each
+//! alone. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
+//! `shiftvox model --vectors` writes what crosses their borders.
 
-/// A block of the machine that works without memory: its outputs follow from
-/// its inputs and the frame's constants.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Block {
+macro_rules! blocks {
+    ($($(#[$doc:meta])* $name:ident,)*) => {
+        /// A block of the machine that works without memory: its outputs follow
+        /// from its inputs and the frame's constants.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[repr(u8)]
+        pub enum Block {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl Block {
+            /// All blocks, in the order of their numbers.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+        }
+    };
+}
+
+blocks! {
     /// Is the quadtree node full?
     Filled,
     /// May a record's depth change to screen space?
@@ -84,50 +98,6 @@ pub enum Block {
     BlendSample,
 }
 
-impl Block {
-    /// All blocks, in the order of their numbers.
-    pub const ALL: [Self; 38] = [
-        Self::Filled,
-        Self::ChangeDepth,
-        Self::ChangeGuard,
-        Self::ToScreenDivide,
-        Self::DetailDepth,
-        Self::SizeLimit,
-        Self::SizeClip,
-        Self::SizeScreen,
-        Self::Centre,
-        Self::OctantOrder,
-        Self::VertexPool,
-        Self::ChildPlanes,
-        Self::ChildCorners,
-        Self::ChildSpan,
-        Self::MarginGrow,
-        Self::MarginGap,
-        Self::BorderClip,
-        Self::BisectorClip,
-        Self::NearNode,
-        Self::HalfClip,
-        Self::PlaneQuadrant,
-        Self::BorderScreen,
-        Self::BisectorScreen,
-        Self::Quadrants,
-        Self::NodeChoice,
-        Self::CageCentre,
-        Self::CentreHalf,
-        Self::CentreSample,
-        Self::CubePlanes,
-        Self::CubeFront,
-        Self::PlaneSide,
-        Self::PlaneCover,
-        Self::FillUpdate,
-        Self::BlendWay,
-        Self::BlendShares,
-        Self::BlendCounts,
-        Self::BlendWeight,
-        Self::BlendSample,
-    ];
-}
-
 impl From<Block> for u32 {
     fn from(block: Block) -> Self {
         block as Self
@@ -140,15 +110,3 @@ pub(super) const LEVEL_BITS: u32 = 6;
 pub(super) const PLACES_BITS: u32 = 8;
 /// Wires of a quadtree node's row or column.
 pub(super) const NODE_BITS: u32 = 20;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_places_in_the_list() {
-        for (number, &block) in (0u32..).zip(&Block::ALL) {
-            assert_eq!(u32::from(block), number);
-        }
-    }
-}

@@ -1,17 +1,8 @@
-//! Where the machine holds a voxel's vertices: a window for measurements.
-//!
-//! The way from the root to some voxels is walked with the machine's own
-//! arithmetic, without a picture: each record in the quadtree's root, changed
-//! to screen space where the set-up lets it change.
+//! Where the machine holds the vertices of many voxels, in real numbers: for
+//! measurements of error.
 
-use hwmodel::{Datapath, NoProbe, Overflow, Word};
-
-use super::constants::Constants;
-use super::fit::Place;
-use super::lattice::{Corners, Frame, Lattice};
-use super::record::{Clip, Screen};
-use super::to_screen;
-use crate::frame::QuadNode;
+use super::descent::{Cage, Descent, Held};
+use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
 use crate::project::{CageKind, FrameSetup};
 
 /// How a record holds its vertices.
@@ -37,9 +28,8 @@ pub struct Positions {
     pub samples: [Option<[f64; 2]>; 8],
 }
 
-/// Tells `visit` of the records of some voxels and of all their ancestors,
-/// each once. Voxels are given as in a frame: lowest corner in finest voxels,
-/// and level.
+/// Calls `visit` for some voxels and all their ancestors, each once. Voxels are
+/// given as in a frame: lowest corner in finest voxels, and level.
 /// Returns whether all arithmetic stayed within its words.
 pub fn visit_positions(
     setup: &FrameSetup,
@@ -50,12 +40,26 @@ pub fn visit_positions(
     ways.sort_unstable();
     ways.dedup();
     match setup.options.cage {
-        CageKind::Corners => Descent::<Corners>::run(setup, &ways, visit),
-        CageKind::Frame => Descent::<Frame>::run(setup, &ways, visit),
+        CageKind::Corners => visit_as::<Corners>(setup, &ways, visit),
+        CageKind::Frame => visit_as::<CornerAndEdges>(setup, &ways, visit),
     }
 }
 
-/// The way from the root to a voxel: octants, three bits each from bit 93 downwards.
+fn visit_as<L: Lattice>(
+    setup: &FrameSetup,
+    ways: &[Way],
+    visit: &mut dyn FnMut(&Positions),
+) -> bool {
+    let (descent, root) = Descent::new::<L>(setup);
+    let mut visitor = Visitor {
+        descent,
+        setup,
+        visit,
+    };
+    visitor.node(0, [0; 3], root, ways).is_some()
+}
+
+/// The way from the root to a voxel: octants, three bits each from bit 92 downwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Way {
     octants: u128,
@@ -83,133 +87,67 @@ impl Way {
     }
 }
 
-enum Held<L> {
-    Clip(Clip<L>),
-    Screen(Screen<L>),
-}
-
-struct Descent<'v, L> {
-    dp: Datapath<NoProbe>,
-    constants: Constants,
+struct Visitor<'v> {
+    descent: Descent,
     setup: &'v FrameSetup,
     visit: &'v mut dyn FnMut(&Positions),
-    lattice: std::marker::PhantomData<L>,
 }
 
-const PLACE: Place = Place {
-    quad: QuadNode::ROOT,
-    inside: false,
-};
-
-impl<'v, L: Lattice> Descent<'v, L> {
-    fn run(setup: &'v FrameSetup, ways: &[Way], visit: &'v mut dyn FnMut(&Positions)) -> bool {
-        let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
-        let constants = Constants::load(&mut dp, setup);
-        let mut lattice =
-            |c: usize| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]);
-        let (x, y, w) = (lattice(0), lattice(1), lattice(2));
-        let (w_min, _) = w.span(&mut dp);
-        let mut descent = Self {
-            dp,
-            constants,
-            setup,
-            visit,
-            lattice: std::marker::PhantomData,
-        };
-        descent.node(0, [0; 3], Held::Clip(Clip { x, y, w, w_min }), ways);
-        descent.dp.trap().is_none()
-    }
-
-    /// A record, and those below it on the ways.
-    fn node(&mut self, level: u32, corner: [i64; 3], held: Held<L>, ways: &[Way]) {
-        if ways.is_empty() || self.dp.trap().is_some() {
-            return;
+impl Visitor<'_> {
+    /// Visits a voxel and those below it on the ways. `None` if a word
+    /// overflowed.
+    fn node<L: Lattice>(
+        &mut self,
+        level: u32,
+        corner: [i64; 3],
+        held: Held<L>,
+        ways: &[Way],
+    ) -> Option<()> {
+        if ways.is_empty() {
+            return Some(());
         }
-        let held = self.changed(level, held);
-        let positions = Positions {
+        let held = self.descent.arrive(level, held);
+        let cage = self.descent.vertices(held).ok()?;
+        let samples = self.samples(&cage);
+        (self.visit)(&Positions {
             level,
             corner,
-            space: match held {
-                Held::Clip(_) => Space::Clip,
-                Held::Screen(_) => Space::Screen,
+            space: match cage {
+                Cage::Clip(_) => Space::Clip,
+                Cage::Screen(_) => Space::Screen,
             },
-            samples: self.samples(&held),
-        };
-        if self.dp.trap().is_none() {
-            (self.visit)(&positions);
-        }
+            samples,
+        });
         let deeper = |way: &Way| way.level > level;
         if level >= self.setup.depth || !ways.iter().any(deeper) {
-            return;
+            return Some(());
         }
-        let children = self.children(held);
         let side = 1i64 << (self.setup.depth - level - 1);
-        for (octant, child) in children.into_iter().enumerate() {
+        for (octant, child) in self.descent.children(held).into_iter().enumerate() {
             let below: Vec<Way> = ways
                 .iter()
                 .copied()
                 .filter(|way| deeper(way) && way.octant(level) == octant)
                 .collect();
             let axis = |k: usize| corner[k] + side * (octant as i64 >> (2 - k) & 1);
-            self.node(level + 1, [axis(0), axis(1), axis(2)], child, &below);
+            self.node(level + 1, [axis(0), axis(1), axis(2)], child, &below)?;
         }
+        Some(())
     }
 
-    /// A record as it is after its turn began.
-    fn changed(&mut self, level: u32, held: Held<L>) -> Held<L> {
-        let Held::Clip(clip) = held else { return held };
-        if !to_screen::may_change(&mut self.dp, &self.constants, level, &PLACE, &clip) {
-            return Held::Clip(clip);
-        }
-        Held::Screen(to_screen::change(
-            &mut self.dp,
-            &self.constants,
-            &PLACE,
-            &clip,
-        ))
-    }
-
-    fn children(&mut self, held: Held<L>) -> [Held<L>; 8] {
-        let dp = &mut self.dp;
-        match held {
-            Held::Clip(clip) => {
-                let [x, y, w] = [clip.x, clip.y, clip.w].map(|lattice| lattice.children(dp));
-                std::array::from_fn(|i| {
-                    let (w_min, _) = w[i].span(dp);
-                    let (x, y, w) = (x[i], y[i], w[i]);
-                    Held::Clip(Clip { x, y, w, w_min })
-                })
-            }
-            Held::Screen(screen) => {
-                let [x, y] = [screen.x, screen.y].map(|lattice| lattice.children(dp));
-                std::array::from_fn(|i| {
-                    Held::Screen(Screen {
-                        x: x[i],
-                        y: y[i],
-                        ..screen
-                    })
-                })
-            }
-        }
-    }
-
-    fn samples(&mut self, held: &Held<L>) -> [Option<[f64; 2]>; 8] {
-        let dp = &mut self.dp;
-        let number = |word: Word| word.to_host() as f64;
-        match held {
-            Held::Clip(clip) => {
+    fn samples(&self, cage: &Cage) -> [Option<[f64; 2]>; 8] {
+        match cage {
+            Cage::Clip([x, y, w]) => {
                 let root = libm::ldexp(1.0, self.setup.levels as i32);
-                let [x, y, w] = [clip.x, clip.y, clip.w].map(|lattice| lattice.vertices(dp));
                 std::array::from_fn(|i| {
-                    let depth = number(w[i]);
-                    let at = [x[i], y[i]].map(|c| number(c) / depth * root);
+                    let depth = w[i] as f64;
+                    let at = [x[i], y[i]].map(|c| c as f64 / depth * root);
                     (depth > 0.0).then_some(at)
                 })
             }
-            Held::Screen(screen) => {
+            Cage::Screen([x, y]) => {
                 let unit = libm::ldexp(1.0, -(self.setup.format.frac() as i32));
-                let (x, y) = (screen.x.vertices(dp), screen.y.vertices(dp));
-                std::array::from_fn(|i| Some([x[i], y[i]].map(|c| number(c) * unit)))
+                std::array::from_fn(|i| Some([x[i], y[i]].map(|c| c as f64 * unit)))
             }
         }
     }
@@ -221,7 +159,7 @@ mod tests {
 
     use super::*;
     use crate::graph::Placement;
-    use crate::machine::vertices::screen_corners;
+    use crate::machine::cages_along;
     use crate::project::{Camera, Coverage, SetupOptions};
 
     const DEPTH: u32 = 4;
@@ -273,7 +211,10 @@ mod tests {
         });
         let last = *found(&setup, &[[5, 6, 7, 4]]).last().unwrap();
         // 5, 6, 7 are 0101, 0110, 0111: octants from the top.
-        let expected = screen_corners(&setup, 0, &[0, 7, 3, 5]).unwrap();
+        let cages = cages_along(&setup, &[0, 7, 3, 5]).unwrap();
+        let Some(Cage::Screen(expected)) = cages.last() else {
+            panic!("{cages:?}");
+        };
         for corner in 0..8 {
             let expected = [0, 1].map(|c| expected[c][corner] as f64 / 65536.0);
             assert_eq!(last.samples[corner], Some(expected));

@@ -5,15 +5,30 @@
 use hwmodel::{Datapath, Memory, Probe, Stage};
 
 use super::constants::Constants;
-use super::fit::{self, Fill};
 use super::lattice::Lattice;
-use super::record::{Clip, Spans};
-use crate::frame::QuadNode;
+use super::quadrants;
+use super::record::{Clip, Pose, Record, Spans};
+use super::state::State;
+use super::watch::Watch;
 use crate::frame::quadtree::FULL;
+use crate::frame::{FillVectors, QuadNode};
 
-/// A voxel's box in the image, relative to a quadtree node.
-pub(super) trait ImageBox: Copy {
-    /// What the test of a node leaves for its quadrants.
+impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+    /// The first sample of a record's box that is not drawn yet.
+    #[inline]
+    pub(super) fn first_undrawn(&mut self, record: &Record<L>) -> Option<QuadNode> {
+        let fill = &*self.canvas.fill;
+        let (dp, constants, quad) = (&mut self.dp, &self.constants, record.place.quad);
+        match &record.pose {
+            Pose::Clip(clip, _) => first(dp, constants, fill, quad, *clip),
+            Pose::Screen(screen) => first_inlined(dp, constants, fill, quad, screen.spans),
+        }
+    }
+}
+
+/// A box in the image, relative to a quadtree node.
+trait ImageBox: Copy {
+    /// Results of the test of a node that its quadrants use.
     type Tested: Copy;
 
     /// The quadrants of `quad` that the box overlaps.
@@ -33,21 +48,19 @@ pub(super) trait ImageBox: Copy {
     ) -> Self;
 }
 
-/// The first sample of `quad` that a box overlaps and that is not drawn yet:
-/// [`first`] without a call, for boxes that are small.
+/// As [`first`], inlined into the caller: faster for small boxes.
 #[inline(always)]
-pub(super) fn first_in_place<P: Probe, B: ImageBox>(
+fn first_inlined<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &Fill<'_>,
+    fill: &FillVectors,
     mut quad: QuadNode,
     mut of: B,
 ) -> Option<QuadNode> {
     dp.stage(Stage::QuadtreeFit);
     loop {
-        let address = quad.address();
-        dp.read(Memory::FillVector, address as u64);
-        let open = !fill.vectors[address] & FULL;
+        dp.read(Memory::FillVector, quad.address() as u64);
+        let open = !fill.vector(quad) & FULL;
         if quad.level == constants.levels {
             return (open != 0).then_some(quad);
         }
@@ -73,14 +86,14 @@ pub(super) fn first_in_place<P: Probe, B: ImageBox>(
 }
 
 /// The first sample of `quad` that a box overlaps and that is not drawn yet.
-pub(super) fn first<P: Probe, B: ImageBox>(
+fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &Fill<'_>,
+    fill: &FillVectors,
     quad: QuadNode,
     of: B,
 ) -> Option<QuadNode> {
-    first_in_place(dp, constants, fill, quad, of)
+    first_inlined(dp, constants, fill, quad, of)
 }
 
 impl<L: Lattice> ImageBox for Clip<L> {
@@ -92,15 +105,15 @@ impl<L: Lattice> ImageBox for Clip<L> {
         constants: &Constants,
         quad: QuadNode,
     ) -> (u8, [L; 2]) {
-        fit::clip_quadrants(dp, constants, quad, self)
+        quadrants::of_clip(dp, constants, quad, self)
     }
 
     fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, far: [L; 2]) -> Self {
-        fit::clip_in_quadrant(dp, self, quadrant, far)
+        quadrants::clip_in_quadrant(dp, self, quadrant, far)
     }
 }
 
-/// Positions in the picture, which are the same in every node.
+/// Screen positions are those in the picture, the same for every node.
 impl ImageBox for Spans {
     type Tested = ();
 
@@ -111,7 +124,7 @@ impl ImageBox for Spans {
         constants: &Constants,
         quad: QuadNode,
     ) -> (u8, ()) {
-        (fit::screen_quadrants(dp, constants, quad, self), ())
+        (quadrants::of_screen(dp, constants, quad, self), ())
     }
 
     #[inline]

@@ -1,0 +1,176 @@
+//! The picture in the making: draws samples and updates the fill vectors
+//! (paper, 3.3).
+
+use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+
+use super::alpha::Ink;
+use super::blocks::Block;
+use super::planes::{Cover, Silhouette};
+use crate::frame::quadtree::FULL;
+use crate::frame::{FillVectors, Frame, QuadNode};
+
+/// What a record shows at the samples where it is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Paint {
+    /// Octree node.
+    pub(super) node: u32,
+    /// The voxel's lowest corner in finest voxels, and its level.
+    pub(super) voxel: [i32; 4],
+    /// What it adds to a sample, where voxels are blended; `None`: it is opaque.
+    pub(super) ink: Option<Ink>,
+}
+
+/// The picture, the fill vectors, and counts of what was drawn.
+#[derive(Debug)]
+pub(super) struct Canvas<'f> {
+    pub(super) fill: &'f mut FillVectors,
+    frame: &'f mut Frame,
+    /// Samples drawn.
+    pub(super) drawn: u64,
+    /// Voxels added to samples, where voxels are blended.
+    pub(super) blended: u64,
+    /// Draws of samples that were full before.
+    pub(super) occluded: u64,
+}
+
+impl<'f> Canvas<'f> {
+    pub(super) fn new(fill: &'f mut FillVectors, frame: &'f mut Frame) -> Self {
+        Self {
+            fill,
+            frame,
+            drawn: 0,
+            blended: 0,
+            occluded: 0,
+        }
+    }
+
+    /// Draws one sample, unless it is full already.
+    #[inline]
+    pub(super) fn draw<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode, paint: &Paint) {
+        dp.stage(Stage::Draw);
+        let address = sample.address();
+        dp.read(Memory::FillVector, address as u64);
+        let vector = self.fill.vector(sample);
+        if dp.and_bits(4, vector, FULL) == FULL {
+            self.occluded += 1;
+            return;
+        }
+        let at = sample.y as usize * self.frame.width as usize + sample.x as usize;
+        if let Some(ink) = &paint.ink {
+            if !self.blend(dp, at, ink, paint) {
+                return;
+            }
+        } else {
+            dp.read(Memory::Attribute, u64::from(paint.node));
+            self.put(dp, at, paint);
+        }
+        self.mark_full(dp, sample);
+    }
+
+    /// Sets a sample's fill vector, and in each ancestor the bit of a quadrant
+    /// that is full with it.
+    #[inline(always)]
+    fn mark_full<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
+        dp.stage(Stage::FillUpdate);
+        let mut quad = sample;
+        let mut bits = FULL;
+        loop {
+            dp.write(Memory::FillVector, quad.address() as u64);
+            let before = self.fill.vector(quad);
+            let vector = self.fill.set(quad, bits);
+            dp.tap(
+                Block::FillUpdate,
+                &(Short::unsigned(before, 4), Short::unsigned(bits, 4)),
+                &(Short::unsigned(vector, 4), vector == FULL),
+            );
+            if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
+                break;
+            }
+            bits = 1 << quad.in_parent();
+            quad = QuadNode {
+                level: quad.level - 1,
+                x: quad.x >> 1,
+                y: quad.y >> 1,
+            };
+            dp.read(Memory::FillVector, quad.address() as u64);
+            dp.or_bits(4, self.fill.vector(quad), bits);
+        }
+    }
+
+    /// Writes node and voxel to sample number `at`.
+    #[inline(always)]
+    fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, paint: &Paint) {
+        dp.write(Memory::Pixel, at as u64);
+        self.frame.node[at] = paint.node;
+        // Empty in a frame of nodes alone.
+        if let Some(to) = self.frame.voxel.get_mut(at) {
+            *to = paint.voxel;
+        }
+        self.drawn += 1;
+    }
+
+    /// Blends a voxel into sample number `at`, which shows the first voxel that
+    /// it takes. Returns whether the sample is opaque enough.
+    fn blend<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        at: usize,
+        ink: &Ink,
+        paint: &Paint,
+    ) -> bool {
+        let Some(blend) = &mut self.frame.blend else {
+            unreachable!("the engine makes room for blending before the first record");
+        };
+        let taken = ink.add_to(dp, at as u64, &mut blend[at]);
+        self.blended += 1;
+        if taken.is_first {
+            dp.stage(Stage::Draw);
+            self.put(dp, at, paint);
+        }
+        taken.is_full
+    }
+
+    /// Draws all samples of `quad` inside a silhouette that are not full yet.
+    pub(super) fn draw_silhouette<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        mut silhouette: Silhouette,
+        paint: &Paint,
+    ) {
+        dp.stage(Stage::Draw);
+        let below = self.fill.levels() - quad.level;
+        match silhouette.cover(dp, below) {
+            Cover::None => {}
+            Cover::All => self.draw_all(dp, quad, paint),
+            Cover::Some => {
+                for quadrant in self.open_quadrants(dp, quad) {
+                    let inner = silhouette.in_quadrant(dp, quadrant);
+                    self.draw_silhouette(dp, quad.quadrant(quadrant), inner, paint);
+                }
+            }
+        }
+    }
+
+    /// Draws all samples of a node that are not full yet.
+    fn draw_all<P: Probe>(&mut self, dp: &mut Datapath<P>, quad: QuadNode, paint: &Paint) {
+        if quad.level == self.fill.levels() {
+            self.draw(dp, quad, paint);
+            return;
+        }
+        for quadrant in self.open_quadrants(dp, quad) {
+            self.draw_all(dp, quad.quadrant(quadrant), paint);
+        }
+    }
+
+    /// The quadrants of a node that are not full.
+    fn open_quadrants<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+    ) -> impl Iterator<Item = u8> + use<P> {
+        dp.read(Memory::FillVector, quad.address() as u64);
+        let open = dp.xor_bits(4, self.fill.vector(quad), FULL);
+        (0..4).filter(move |quadrant| open >> quadrant & 1 != 0)
+    }
+}

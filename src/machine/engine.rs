@@ -1,0 +1,134 @@
+//! The scalar engine: frames drawn by the record loop.
+
+use hwmodel::{NoProbe, Probe};
+
+use super::heat::Heat;
+use super::lattice::{CornerAndEdges, Corners, Lattice};
+use super::options::MachineOptions;
+use super::state::State;
+use crate::frame::{FillVectors, Frame};
+use crate::graph::GraphView;
+use crate::project::{CageKind, Coverage, Engine, EngineError, FrameSetup, Stats};
+
+/// The scalar engine.
+#[derive(Debug, Default)]
+pub struct Machine {
+    pub(super) options: MachineOptions,
+    fill: Option<SizedFill>,
+}
+
+/// Fill vectors, kept from frame to frame, and the size that they are for.
+#[derive(Debug)]
+struct SizedFill {
+    /// Level of the samples, samples across and down.
+    size: (u32, u32, u32),
+    vectors: FillVectors,
+}
+
+impl Machine {
+    /// A machine that works as `options` say.
+    #[must_use]
+    pub fn new(options: MachineOptions) -> Self {
+        Self {
+            options,
+            fill: None,
+        }
+    }
+
+    /// Draws a frame while `probe` watches; see [`Engine::render`].
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub fn render_probed<P: Probe>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        probe: P,
+    ) -> Result<(Stats, P), EngineError> {
+        let drawn = self.run(graph, setup, frame, probe, u64::MAX)?;
+        Ok(drawn.unwrap_or_else(|| unreachable!("no frame has 2^64 records")))
+    }
+
+    /// Draws a frame of at most `most_records` records; if it has more, returns
+    /// `None`, and the frame's contents are of no use. Every frame ends
+    /// (`SPEC.md`, "Termination"): this is for checks of that.
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub fn render_within(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        most_records: u64,
+    ) -> Result<Option<Stats>, EngineError> {
+        let drawn = self.run(graph, setup, frame, NoProbe, most_records)?;
+        Ok(drawn.map(|(stats, _)| stats))
+    }
+
+    fn run<P: Probe>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        probe: P,
+        most: u64,
+    ) -> Result<Option<(Stats, P)>, EngineError> {
+        match setup.options.cage {
+            CageKind::Corners => self.run_as::<P, Corners>(graph, setup, frame, probe, most),
+            CageKind::Frame => self.run_as::<P, CornerAndEdges>(graph, setup, frame, probe, most),
+        }
+    }
+
+    /// Draws a frame in cages of lattice `L`, in at most `most` records.
+    pub(super) fn run_as<P: Probe, L: Lattice>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        probe: P,
+        most: u64,
+    ) -> Result<Option<(Stats, P)>, EngineError> {
+        let options = self.options;
+        let heat = frame.records.is_some().then(|| Heat::new(setup.levels));
+        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, heat);
+        if !state.draw_object(most)? {
+            return Ok(None);
+        }
+        let (stats, probe, heat) = state.finish();
+        if let (Some(heat), Some(shares)) = (heat, &mut frame.records) {
+            heat.write_shares(frame.width, shares);
+        }
+        Ok(Some((stats, probe)))
+    }
+
+    /// Clears a frame, and makes fill vectors of its size with nothing drawn.
+    pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
+        frame.clear();
+        frame.set_blending(setup.options.coverage == Coverage::Alpha);
+        let size = (setup.levels, setup.width, setup.height);
+        if self.fill.as_ref().is_some_and(|kept| kept.size != size) {
+            self.fill = None;
+        }
+        let kept = self.fill.get_or_insert_with(|| SizedFill {
+            size,
+            vectors: FillVectors::new(setup.levels, setup.width, setup.height),
+        });
+        kept.vectors.clear();
+        &mut kept.vectors
+    }
+}
+
+impl Engine for Machine {
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        self.render_probed(graph, setup, frame, NoProbe)
+            .map(|(stats, _)| stats)
+    }
+}

@@ -1,0 +1,99 @@
+//! Cages on the way down the octree, without a picture: computed by the
+//! machine's own steps, in the root of the quadtree.
+
+use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
+
+use crate::machine::constants::Constants;
+use crate::machine::lattice::Lattice;
+use crate::machine::record::{Clip, Place, Screen};
+use crate::machine::to_screen;
+use crate::project::FrameSetup;
+
+/// The eight vertices of a voxel, in Morton order, as the machine holds them
+/// relative to the whole picture, in units of the last place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a few exist at a time, one for each level"
+)]
+pub(crate) enum Cage {
+    /// X, Y, W.
+    Clip([[i64; 8]; 3]),
+    /// x and y, in screen units.
+    Screen([[i64; 8]; 2]),
+}
+
+/// A cage in lattices.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Held<L> {
+    /// X, Y, W.
+    Clip([L; 3]),
+    /// x and y.
+    Screen([L; 2]),
+}
+
+/// Goes down an octree.
+pub(super) struct Descent {
+    dp: Datapath<NoProbe>,
+    constants: Constants,
+}
+
+impl Descent {
+    /// A descent, and the root's cage, which has not arrived yet.
+    pub(super) fn new<L: Lattice>(setup: &FrameSetup) -> (Self, Held<L>) {
+        let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
+        let constants = Constants::load(&mut dp, setup);
+        let root =
+            [0, 1, 2].map(|c| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]));
+        (Self { dp, constants }, Held::Clip(root))
+    }
+
+    /// The cage of a voxel of level `level`, changed to screen space where the
+    /// machine lets a record change.
+    pub(super) fn arrive<L: Lattice>(&mut self, level: u32, held: Held<L>) -> Held<L> {
+        let Held::Clip([x, y, w]) = held else {
+            return held;
+        };
+        let (dp, constants) = (&mut self.dp, &self.constants);
+        let (w_min, _) = w.span(dp);
+        let clip = Clip { x, y, w, w_min };
+        if to_screen::may_change(dp, constants, level, Place::ROOT, &clip) {
+            let Screen { x, y, .. } = to_screen::change(dp, constants, Place::ROOT, &clip);
+            Held::Screen([x, y])
+        } else {
+            held
+        }
+    }
+
+    /// The cages of the eight children, in Morton order.
+    pub(super) fn children<L: Lattice>(&mut self, held: Held<L>) -> [Held<L>; 8] {
+        let dp = &mut self.dp;
+        match held {
+            Held::Clip(lattices) => {
+                let children = lattices.map(|lattice| lattice.children(dp));
+                std::array::from_fn(|i| Held::Clip(children.map(|of| of[i])))
+            }
+            Held::Screen(lattices) => {
+                let children = lattices.map(|lattice| lattice.children(dp));
+                std::array::from_fn(|i| Held::Screen(children.map(|of| of[i])))
+            }
+        }
+    }
+
+    /// A cage's vertices.
+    ///
+    /// # Errors
+    /// If a word has overflowed on the way.
+    pub(super) fn vertices<L: Lattice>(&mut self, held: Held<L>) -> Result<Cage, Trap> {
+        let dp = &mut self.dp;
+        let mut vertices = |lattice: L| lattice.vertices(dp).map(Word::to_host);
+        let cage = match held {
+            Held::Clip(lattices) => Cage::Clip(lattices.map(&mut vertices)),
+            Held::Screen(lattices) => Cage::Screen(lattices.map(&mut vertices)),
+        };
+        match self.dp.trap() {
+            Some(trap) => Err(trap),
+            None => Ok(cage),
+        }
+    }
+}

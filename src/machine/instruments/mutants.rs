@@ -1,0 +1,204 @@
+//! Machines with one error each, for tests of the checks that must find it.
+//! The record loop is generic over its lattice, so the product has no code for
+//! this.
+
+use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
+
+use super::vertices::{Cage, cages_as};
+use crate::frame::Frame;
+use crate::graph::GraphView;
+use crate::machine::engine::Machine;
+use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use crate::machine::options::MachineOptions;
+use crate::project::{CageKind, EngineError, FrameSetup, Stats};
+
+/// An error built into the machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Injury {
+    /// One unit of the last place too much in one child, cages of a corner and
+    /// edges only.
+    UlpInFrames,
+    /// The same in one child, cages of corners only.
+    UlpInCorners,
+    /// Edges halved down instead of towards zero.
+    HalvesDown,
+    /// Midpoints rounded up.
+    MidpointsUp,
+    /// Quotients rounded up.
+    QuotientsUp,
+    /// Two neighbours of the order array swapped.
+    OrderSwapped,
+    /// The order array backwards: farthest first.
+    OrderReversed,
+    /// No record is too near to be drawn, or to change to screen space at once.
+    NearSkipped,
+}
+
+const ULP: u8 = 0;
+const HALVES_DOWN: u8 = 1;
+const MIDPOINTS_UP: u8 = 2;
+const QUOTIENTS_UP: u8 = 3;
+
+/// A lattice with an injury.
+#[derive(Debug, Clone, Copy)]
+struct Hurt<L, const INJURY: u8>(L);
+
+impl<L: Wires, const INJURY: u8> Wires for Hurt<L, INJURY> {
+    fn show(&self, to: &mut Vec<Signal>) {
+        self.0.show(to);
+    }
+}
+
+impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
+    type Pool = [L; 8];
+
+    fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
+        Self(L::from_frame(dp, corner, edges))
+    }
+
+    fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
+        let one = Word::from_host(1);
+        let mut children = self.0.children(dp);
+        match INJURY {
+            ULP => children[5] = children[5].moved(dp, one),
+            HALVES_DOWN => {
+                let corner = self.0.vertices(dp)[0];
+                let edges = self.0.edges(dp).map(|edge| dp.shr(edge, 1));
+                let whole = L::from_frame(dp, corner, edges);
+                let corners = whole.vertices(dp);
+                children = corners.map(|corner| L::from_frame(dp, corner, edges));
+            }
+            MIDPOINTS_UP => {
+                // -floor((-a - b) / 2) is the midpoint rounded up.
+                let negative = self.0.map(|a| dp.neg(a));
+                let halved = negative.children(dp);
+                children = halved.map(|child| child.map(|a| dp.neg(a)));
+            }
+            _ => {}
+        }
+        children
+    }
+
+    fn child(pool: &[L; 8], octant: usize) -> Self {
+        Self(pool[octant])
+    }
+
+    fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
+        self.0.span(dp)
+    }
+
+    fn centre<P: Probe>(&self, dp: &mut Datapath<P>) -> Word {
+        self.0.centre(dp)
+    }
+
+    fn vertices<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 8] {
+        self.0.vertices(dp)
+    }
+
+    fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3] {
+        self.0.edges(dp)
+    }
+
+    fn map(&self, f: impl FnMut(Word) -> Word) -> Self {
+        Self(self.0.map(f))
+    }
+
+    fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self {
+        Self(self.0.zip(&other.0, f))
+    }
+
+    fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
+        Self(self.0.moved(dp, by))
+    }
+
+    fn project<P: Probe>(
+        dp: &mut Datapath<P>,
+        x: &Self,
+        w: &Self,
+        mut divide: impl FnMut(&mut Datapath<P>, Word, Word) -> Word,
+    ) -> Self {
+        let one = Word::from_host(1);
+        Self(L::project(dp, &x.0, &w.0, |dp, x, w| {
+            let quotient = divide(dp, x, w);
+            if INJURY == QUOTIENTS_UP {
+                dp.add(quotient, one)
+            } else {
+                quotient
+            }
+        }))
+    }
+}
+
+/// Evaluates an expression with the lattice that an injured machine has for a
+/// set-up's cage.
+macro_rules! with_lattice {
+    ($injury:expr, $setup:expr, $lattice:ident => $body:expr) => {{
+        macro_rules! with {
+            ($of:ty) => {{
+                type $lattice = $of;
+                $body
+            }};
+        }
+        match ($injury, $setup.options.cage) {
+            (Injury::UlpInFrames, CageKind::Frame) => with!(Hurt<CornerAndEdges, ULP>),
+            (Injury::UlpInCorners, CageKind::Corners) => with!(Hurt<Corners, ULP>),
+            (Injury::HalvesDown, CageKind::Frame) => with!(Hurt<CornerAndEdges, HALVES_DOWN>),
+            (Injury::MidpointsUp, CageKind::Corners) => with!(Hurt<Corners, MIDPOINTS_UP>),
+            (Injury::QuotientsUp, CageKind::Frame) => with!(Hurt<CornerAndEdges, QUOTIENTS_UP>),
+            (_, CageKind::Corners) => with!(Corners),
+            (_, CageKind::Frame) => with!(CornerAndEdges),
+        }
+    }};
+}
+
+/// A machine with an injury.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Mutant(pub(crate) Injury);
+
+impl Mutant {
+    /// The frame as the injured machine takes it.
+    fn setup(&self, setup: &FrameSetup) -> FrameSetup {
+        let mut setup = setup.clone();
+        if self.0 == Injury::NearSkipped {
+            // Nothing of the object lies so far behind the eye.
+            let reach = setup.position_reach().unwrap_or(i128::MAX);
+            let behind_all = i64::try_from(-reach).unwrap_or(i64::MIN);
+            for depth in &mut setup.screen_depth {
+                if *depth == setup.near {
+                    *depth = behind_all;
+                }
+            }
+            setup.near = behind_all;
+        }
+        setup
+    }
+
+    /// Draws a frame of at most `most_records` records, as
+    /// [`Machine::render_within`].
+    pub(crate) fn draw(
+        &self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        most_records: u64,
+    ) -> Result<Option<Stats>, EngineError> {
+        let mut options = MachineOptions::default();
+        match self.0 {
+            Injury::OrderSwapped => options.order.swap(1, 7),
+            Injury::OrderReversed => options.order.reverse(),
+            _ => {}
+        }
+        let mut machine = Machine::new(options);
+        let setup = &self.setup(setup);
+        let drawn = with_lattice!(self.0, setup, L => {
+            machine.run_as::<_, L>(graph, setup, frame, NoProbe, most_records)?
+        });
+        Ok(drawn.map(|(stats, _)| stats))
+    }
+
+    /// As [`cages_along`](super::cages_along).
+    pub(crate) fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+        let setup = &self.setup(setup);
+        with_lattice!(self.0, setup, L => cages_as::<L>(setup, path))
+    }
+}

@@ -1,0 +1,228 @@
+//! The machine as a workload of the cycle model: one turn at a time, in an
+//! order that a scheduler chooses.
+//!
+//! The children that a turn pushes go to the scheduler instead of a stack, each
+//! with its rank in the occlusion order and its quadtree node. Fill vectors are
+//! shared: a turn finds them as the turns before it left them.
+
+use hwmodel::Trap;
+use hwmodel::cycles::{
+    self, Child, CycleReport, Hardware, HardwareError, Observer, Region, TurnLog,
+};
+use serde::Serialize;
+
+use crate::frame::{Frame, QuadNode};
+use crate::graph::GraphView;
+use crate::machine::engine::Machine;
+use crate::machine::heat::Heat;
+use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use crate::machine::record::Record;
+use crate::machine::state::State;
+use crate::machine::watch::Watch;
+use crate::project::{CageKind, EngineError, FrameSetup, Stats};
+
+/// The results of a simulated frame.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Simulated {
+    /// Cycles, and how they were spent.
+    pub cycles: CycleReport,
+    /// The machine's counts of the frame, without the stack's depth.
+    pub counts: Stats,
+}
+
+/// Why a simulation ended early.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimulateError {
+    /// The machine could not finish the frame.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The hardware's description is not sound.
+    #[error(transparent)]
+    Hardware(#[from] HardwareError),
+    /// A stack was full, on hardware that does not spill.
+    #[error(
+        "record {record} leaves more records than the {entries} entries of lane {lane}'s \
+         stack hold; give it more, or set overflow = \"spill\""
+    )]
+    StackOverflow {
+        /// The record, in the order of turns, from 0.
+        record: u64,
+        /// The lane.
+        lane: u32,
+        /// Entries of its stack.
+        entries: u32,
+    },
+}
+
+impl From<cycles::SimulationError<Trap>> for SimulateError {
+    fn from(error: cycles::SimulationError<Trap>) -> Self {
+        match error {
+            cycles::SimulationError::Workload(trap) => Self::Engine(trap.into()),
+            cycles::SimulationError::Hardware(error) => Self::Hardware(error),
+            cycles::SimulationError::StackOverflow {
+                record,
+                lane,
+                entries,
+            } => Self::StackOverflow {
+                record,
+                lane,
+                entries,
+            },
+        }
+    }
+}
+
+impl Machine {
+    /// Draws a frame on a simulated hardware: each record has its turn in the
+    /// cycle in which `hardware` gets to it, and finds the fill vectors as they
+    /// are by then.
+    ///
+    /// Under [`Independence::None`] and [`Image`] the machine does exactly
+    /// what it does serially, whatever the hardware. Under [`Classes`] and
+    /// [`Both`] the picture is the same if no two children of one class draw the
+    /// same sample, as under the exact rule.
+    ///
+    /// [`Independence::None`]: hwmodel::cycles::Independence::None
+    /// [`Image`]: hwmodel::cycles::Independence::Image
+    /// [`Classes`]: hwmodel::cycles::Independence::Classes
+    /// [`Both`]: hwmodel::cycles::Independence::Both
+    ///
+    /// # Errors
+    /// When the hardware's description is not sound, a word overflows under
+    /// the trap policy, or a stack that does not spill is full.
+    pub fn simulate<O: Observer>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        hardware: &Hardware,
+        observer: &mut O,
+    ) -> Result<Simulated, SimulateError> {
+        match setup.options.cage {
+            CageKind::Corners => {
+                self.simulate_as::<Corners, O>(graph, setup, frame, hardware, observer)
+            }
+            CageKind::Frame => {
+                self.simulate_as::<CornerAndEdges, O>(graph, setup, frame, hardware, observer)
+            }
+        }
+    }
+
+    fn simulate_as<L: Lattice, O: Observer>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        hardware: &Hardware,
+        observer: &mut O,
+    ) -> Result<Simulated, SimulateError> {
+        hardware.check()?;
+        let options = self.options;
+        let watch = Ranks {
+            heat: frame.records.is_some().then(|| Heat::new(setup.levels)),
+            pushed: Vec::new(),
+        };
+        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let log = TurnLog::new(hardware);
+        let mut steps = Steps {
+            state: State::<_, L, _>::new(options, graph, setup, canvas, log, watch),
+            waiting: Vec::new(),
+            free: Vec::new(),
+        };
+        let cycles = cycles::simulate(hardware, &mut steps, observer)?;
+        let (mut counts, _, watch) = steps.state.finish();
+        counts.retain(|(name, _)| *name != "deepest_stack");
+        if let (Some(heat), Some(shares)) = (watch.heat, &mut frame.records) {
+            heat.write_shares(frame.width, shares);
+        }
+        Ok(Simulated { cycles, counts })
+    }
+}
+
+/// Notes the ranks of the children on the stack.
+struct Ranks {
+    heat: Option<Heat>,
+    pushed: Vec<u8>,
+}
+
+impl Watch for Ranks {
+    fn turn(&mut self, quad: QuadNode) {
+        self.heat.turn(quad);
+    }
+
+    fn pushed(&mut self, rank: u8) {
+        self.pushed.push(rank);
+    }
+}
+
+/// The machine, and the records that wait for their turn.
+struct Steps<'a, L> {
+    state: State<'a, TurnLog, L, Ranks>,
+    /// Records by the scheduler's number of them.
+    waiting: Vec<Record<L>>,
+    /// Numbers of records that are not in use.
+    free: Vec<u32>,
+}
+
+impl<L: Lattice> Steps<'_, L> {
+    /// Hands the records on the stack to the scheduler, nearest first: the last
+    /// that was pushed.
+    fn hand_over(&mut self, children: &mut Vec<Child>) {
+        while let Some(record) = self.state.stack.pop() {
+            let Some(place) = self.state.watch.pushed.pop() else {
+                unreachable!("every record on the stack was pushed as a child");
+            };
+            let quad = record.place.quad;
+            let region = Region {
+                level: quad.level,
+                x: quad.x,
+                y: quad.y,
+            };
+            let item = if let Some(at) = self.free.pop() {
+                self.waiting[at as usize] = record;
+                at
+            } else {
+                self.waiting.push(record);
+                (self.waiting.len() - 1) as u32
+            };
+            children.push(Child {
+                item,
+                place,
+                region,
+            });
+        }
+    }
+
+    fn trap(&self) -> Result<(), Trap> {
+        self.state.dp.trap().map_or(Ok(()), Err)
+    }
+}
+
+impl<L: Lattice> cycles::Workload for Steps<'_, L> {
+    type Error = Trap;
+
+    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
+        self.state.push_object();
+        self.trap()?;
+        if !self.state.stack.is_empty() {
+            // The object has no siblings: any rank will do.
+            self.state.watch.pushed(0);
+        }
+        self.hand_over(children);
+        Ok(())
+    }
+
+    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
+        let record = self.waiting[item as usize];
+        self.free.push(item);
+        self.state.stack.push(record);
+        self.state.turn();
+        self.trap()?;
+        self.hand_over(children);
+        Ok(())
+    }
+
+    fn log(&mut self) -> &mut TurnLog {
+        self.state.dp.probe_mut()
+    }
+}

@@ -1,0 +1,38 @@
+//! The machine's vertices on one way down the octree: for checks.
+
+use hwmodel::Trap;
+
+pub(crate) use super::descent::Cage;
+use super::descent::Descent;
+use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use crate::project::{CageKind, FrameSetup};
+
+/// The cages of the voxels on the way that `path` leads from the root, octant
+/// by octant, the root's first, as [`FrameSetup::options`] has them. Each is
+/// changed to screen space where the machine would let its record change.
+///
+/// # Errors
+/// If a word overflows. The machine has these vertices relative to a node of the
+/// quadtree, where they are never larger.
+pub(crate) fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+    match setup.options.cage {
+        CageKind::Corners => cages_as::<Corners>(setup, path),
+        CageKind::Frame => cages_as::<CornerAndEdges>(setup, path),
+    }
+}
+
+/// As [`cages_along`], in any lattice.
+///
+/// # Errors
+/// If a word overflows.
+pub(super) fn cages_as<L: Lattice>(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+    let (mut descent, root) = Descent::new::<L>(setup);
+    let mut held = descent.arrive(0, root);
+    let mut cages = vec![descent.vertices(held)?];
+    for (level, &octant) in (1..).zip(path) {
+        let child = descent.children(held)[usize::from(octant)];
+        held = descent.arrive(level, child);
+        cages.push(descent.vertices(held)?);
+    }
+    Ok(cages)
+}

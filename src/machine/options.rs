@@ -1,0 +1,28 @@
+//! How the machine works, apart from what a frame asks for.
+
+use hwmodel::Overflow;
+
+use crate::project::OCCLUSION_ORDER;
+
+/// How the machine works, apart from what the picture asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MachineOptions {
+    /// What a result that does not fit its word becomes.
+    pub overflow: Overflow,
+    /// Whether records whose quadrants are all full are rejected. The picture
+    /// is the same either way.
+    pub reject_filled: bool,
+    /// Children by octant, nearest first, for octant 000; only tests use
+    /// another array than [`OCCLUSION_ORDER`].
+    pub order: [u8; 8],
+}
+
+impl Default for MachineOptions {
+    fn default() -> Self {
+        Self {
+            overflow: Overflow::Trap,
+            reject_filled: true,
+            order: OCCLUSION_ORDER,
+        }
+    }
+}

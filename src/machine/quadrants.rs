@@ -1,0 +1,233 @@
+//! Which quadrants of a quadtree node a box overlaps: the box against the
+//! node's two bisectors (paper, 3.5).
+//!
+//! In clip space `x` runs from 0 to `w` across the node, so the sign of
+//! `2x - w` is the side of the bisector, and `2x - w` is `x` relative to the far
+//! half, `2x` relative to the near one. In screen space positions are those in
+//! the whole picture, and are compared with the bisector's.
+
+use hwmodel::{Datapath, Probe, Short, Word};
+
+use super::blocks::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
+use super::constants::{Constants, Margin};
+use super::lattice::Lattice;
+use super::record::{Clip, Spans};
+use super::shifts::margin;
+use crate::frame::QuadNode;
+use crate::frame::quadtree::FULL;
+
+/// The halves that a box overlaps along one axis.
+#[derive(Clone, Copy)]
+struct Halves {
+    low: bool,
+    high: bool,
+}
+
+/// The quadrants (bit `y << 1 | x`) in the given halves along x and y. In
+/// hardware four gates on the comparators' outputs, counted with the 4-bit "and"
+/// that follows.
+#[inline(always)]
+fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
+    // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
+    const QUADRANTS: [u8; 16] = {
+        let mut of = [0; 16];
+        let mut halves = 0;
+        while halves < 16 {
+            let across = [0, 0b0101, 0b1010, FULL][halves & 3];
+            let down = [0, 0b0011, 0b1100, FULL][halves >> 2];
+            of[halves] = across & down;
+            halves += 1;
+        }
+        of
+    };
+    let bits = [x.low, x.high, y.low, y.high].map(usize::from);
+    let both = QUADRANTS[bits[0] | bits[1] << 1 | bits[2] << 2 | bits[3] << 3];
+    dp.tap(
+        Block::Quadrants,
+        &(x.low, x.high, y.low, y.high),
+        &Short::unsigned(both, 4),
+    );
+    both
+}
+
+/// The quadrants of its node that a clip-space box overlaps, and its x and y
+/// relative to the far halves, for [`clip_in_quadrant`].
+pub(super) fn of_clip<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    clip: &Clip<L>,
+) -> (u8, [L; 2]) {
+    let below = constants.levels - quad.level;
+    let (far_x, x) = bisect(dp, constants, below, &clip.x, &clip.w);
+    let (far_y, y) = bisect(dp, constants, below, &clip.y, &clip.w);
+    (quadrants(dp, x, y), [far_x, far_y])
+}
+
+/// Clip-space vertices relative to a quadrant of their node: `far`, which
+/// [`of_clip`] returned, in a far half, doubled in a near one.
+pub(super) fn clip_in_quadrant<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    clip: &Clip<L>,
+    quadrant: u8,
+    far: [L; 2],
+) -> Clip<L> {
+    let mut half = |is_far: bool, near: &L, far: L| {
+        if is_far {
+            far
+        } else {
+            near.map(|x| dp.shl(x, 1))
+        }
+    };
+    Clip {
+        x: half(quadrant & 1 != 0, &clip.x, far[0]),
+        y: half(quadrant & 2 != 0, &clip.y, far[1]),
+        ..*clip
+    }
+}
+
+/// The quadrants of a node that a screen-space box overlaps.
+#[inline(always)]
+pub(super) fn of_screen<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    quad: QuadNode,
+    spans: &Spans,
+) -> u8 {
+    let below = constants.levels - quad.level;
+    let x = screen_halves(dp, constants, below, quad.x, spans[0]);
+    let y = screen_halves(dp, constants, below, quad.y, spans[1]);
+    quadrants(dp, x, y)
+}
+
+/// `2x - w` of a clip-space cage, and the halves of the node, `below` levels
+/// above the samples, that its box overlaps.
+fn bisect<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    below: u32,
+    x: &L,
+    w: &L,
+) -> (L, Halves) {
+    let relative = x.zip(w, |x, w| {
+        let doubled = dp.shl(x, 1);
+        dp.sub(doubled, w)
+    });
+    let below = below as i32;
+    let halves = match &constants.margin {
+        Margin::Plain => {
+            let (low, high) = relative.span(dp);
+            let low = dp.is_negative(low);
+            let high = dp.is_positive(high) || !low;
+            let halves = Halves { low, high };
+            let none = w.map(|_| Word::ZERO);
+            tap_bisector(dp, (x, w, &none), (false, false), &relative, halves);
+            halves
+        }
+        &Margin::Grow(grow) => {
+            let margin = margins(dp, w, grow + below - 1);
+            let halves = closed(dp, &relative, &margin);
+            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
+            halves
+        }
+        Margin::Gap if below > 0 => {
+            // Half a sample, negative: the box is narrowed.
+            let margin = w.map(|w| {
+                let sample = dp.shr(w, below.unsigned_abs());
+                dp.neg(sample)
+            });
+            let node = Short::unsigned(below.unsigned_abs(), LEVEL_BITS);
+            dp.tap(Block::MarginGap, &(w, node), &margin);
+            let halves = closed(dp, &relative, &margin);
+            tap_bisector(dp, (x, w, &margin), (true, false), &relative, halves);
+            halves
+        }
+        Margin::Gap => {
+            // A sample has one sample point, in its middle: the box holds it if
+            // it overlaps both closed halves.
+            let span = relative.span(dp);
+            let halves = closed_halves(dp, span);
+            let margin = w.map(|_| Word::ZERO);
+            let both = halves.low && halves.high;
+            let halves = Halves {
+                low: both,
+                high: both,
+            };
+            tap_bisector(dp, (x, w, &margin), (true, true), &relative, halves);
+            halves
+        }
+    };
+    (relative, halves)
+}
+
+/// Reports the test of a clip-space box against a bisector. `kind`: whether
+/// the comparisons are closed, and whether both halves must hold the sample.
+#[inline(always)]
+fn tap_bisector<P: Probe, L: Lattice>(
+    dp: &mut Datapath<P>,
+    box_and_margin: (&L, &L, &L),
+    kind: (bool, bool),
+    relative: &L,
+    halves: Halves,
+) {
+    dp.tap(
+        Block::BisectorClip,
+        &(box_and_margin, kind),
+        &(relative, halves.low, halves.high),
+    );
+}
+
+/// The margin `w / 2^places` of each vertex of a cage.
+pub(super) fn margins<P: Probe, L: Lattice>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
+    let margins = w.map(|w| margin(dp, w, places));
+    let places = Short::signed(places, PLACES_BITS);
+    dp.tap(Block::MarginGrow, &(w, places), &margins);
+    margins
+}
+
+/// The closed halves that a box, widened by `margin`, overlaps.
+fn closed<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L, margin: &L) -> Halves {
+    let lowered = relative.zip(margin, |v, m| dp.sub(v, m));
+    let raised = relative.zip(margin, |v, m| dp.add(v, m));
+    let (low, _) = lowered.span(dp);
+    let (_, high) = raised.span(dp);
+    closed_halves(dp, (low, high))
+}
+
+/// The closed halves that a range overlaps, 0 being the bisector.
+fn closed_halves<P: Probe>(dp: &mut Datapath<P>, (low, high): (Word, Word)) -> Halves {
+    Halves {
+        low: !dp.is_positive(low),
+        high: !dp.is_negative(high),
+    }
+}
+
+/// The half-open halves that a screen-space box overlaps: its margin is in its
+/// positions already.
+#[inline(always)]
+fn screen_halves<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    below: u32,
+    column: u32,
+    (low, high): (Word, Word),
+) -> Halves {
+    let [left, right] = constants.half_sample_places;
+    // The node's middle is at `2 column + 1` halves of its width.
+    let middle = Word::from_host(i64::from(column << 1 | 1) << (below + left) >> right);
+    let in_low = dp.lt(low, middle);
+    let halves = Halves {
+        low: in_low,
+        high: dp.lt(middle, high) || !in_low,
+    };
+    let node = (
+        Short::unsigned(column, NODE_BITS),
+        Short::unsigned(below, LEVEL_BITS),
+    );
+    dp.tap(
+        Block::BisectorScreen,
+        &(low, high, node),
+        &(halves.low, halves.high),
+    );
+    halves
+}

@@ -1,0 +1,201 @@
+//! The record loop (paper, 3.1 to 3.6): see the machine's page.
+
+use hwmodel::{Memory, Probe, Short, Stage};
+
+use super::alpha::Ink;
+use super::blocks::Block;
+use super::canvas::Paint;
+use super::lattice::Lattice;
+use super::planes::Silhouette;
+use super::record::{Pose, Record};
+use super::size;
+use super::state::State;
+use super::to_screen;
+use super::verdict::Verdict;
+use super::watch::Watch;
+use crate::frame::quadtree::FULL;
+use crate::project::EngineError;
+
+/// What is left to do of a record.
+enum Left {
+    /// Nothing: it is drawn, hidden or dropped.
+    Nothing,
+    /// To push its children.
+    Children,
+}
+
+impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+    /// Draws the object in at most `most_records` turns. Returns whether that
+    /// was enough.
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub(super) fn draw_object(&mut self, most_records: u64) -> Result<bool, EngineError> {
+        self.push_object();
+        while !self.stack.is_empty() {
+            if self.counts.records >= most_records {
+                return Ok(false);
+            }
+            self.turn();
+            self.check_trap()?;
+        }
+        self.check_trap()?;
+        Ok(true)
+    }
+
+    fn check_trap(&self) -> Result<(), EngineError> {
+        match self.dp.trap() {
+            Some(trap) => Err(trap.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the top record off the stack and does all that is to be done with
+    /// it; its children are on the stack afterwards.
+    pub(super) fn turn(&mut self) {
+        // The stack is moved out of `self`, so that a record is worked on where
+        // it lies: most have no children to push, and only the others are copied.
+        let mut stack = std::mem::take(&mut self.stack);
+        let Some(address) = stack.len().checked_sub(1) else {
+            unreachable!("a turn is a record's, and the stack is empty");
+        };
+        let left = self.draw_or_drop(&mut stack[address], address as u64);
+        let record = match left {
+            Left::Nothing => None,
+            Left::Children => Some(stack[address]),
+        };
+        stack.truncate(address);
+        self.stack = stack;
+        if let Some(parent) = record {
+            self.subdivide(&parent);
+        }
+    }
+
+    /// Draws a record or drops it, unless its children are needed to decide what
+    /// is seen of it. `address`: the record's, on the stack.
+    #[inline(always)]
+    fn draw_or_drop(&mut self, record: &mut Record<L>, address: u64) -> Left {
+        self.dp.begin_record(self.counts.records, record.cube.level);
+        self.counts.records += 1;
+        self.watch.turn(record.place.quad);
+        self.dp.stage(Stage::Pop);
+        self.dp.read(Memory::Stack, address);
+
+        self.dp.stage(Stage::Filled);
+        if self.options.reject_filled {
+            let address = record.place.quad.address();
+            self.dp.read(Memory::FillVector, address as u64);
+            let vector = self.canvas.fill.vector(record.place.quad);
+            let full = self.dp.and_bits(4, vector, FULL) == FULL;
+            self.dp
+                .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
+            if full {
+                self.counts.already_full += 1;
+                return Left::Nothing;
+            }
+        }
+
+        self.change_to_screen(record);
+
+        self.dp.stage(Stage::OnePixel);
+        let cube = &mut record.cube;
+        if !cube.solid {
+            self.dp.read(Memory::Node, u64::from(cube.node));
+            cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;
+        }
+        match self.verdict(record) {
+            Verdict::DrawCentre => self.draw_centre(record),
+            Verdict::DrawBox => self.draw_box(record),
+            Verdict::DrawSolid => self.draw_solid(record),
+            Verdict::Drop => {}
+            Verdict::Subdivide if self.is_hidden(record) => self.counts.hidden += 1,
+            Verdict::Subdivide => return Left::Children,
+        }
+        Left::Nothing
+    }
+
+    /// Changes a record from clip space to screen space, if it may.
+    #[inline(always)]
+    fn change_to_screen(&mut self, record: &mut Record<L>) {
+        let Pose::Clip(clip, _) = &record.pose else {
+            return;
+        };
+        let (dp, constants, place) = (&mut self.dp, &self.constants, record.place);
+        if to_screen::may_change(dp, constants, record.cube.level, place, clip) {
+            self.counts.changed_to_screen += 1;
+            record.pose = Pose::Screen(to_screen::change(dp, constants, place, clip));
+        }
+    }
+
+    /// Draws a record at every sample that its box overlaps.
+    fn draw_box(&mut self, record: &Record<L>) {
+        let paint = self.paint(record, None);
+        while let Some(sample) = self.first_undrawn(record) {
+            self.canvas.draw(&mut self.dp, sample, &paint);
+        }
+    }
+
+    /// Draws a record at the sample that holds its centre, if that is in the
+    /// picture and not before the near plane.
+    fn draw_centre(&mut self, record: &Record<L>) {
+        self.dp.stage(Stage::Draw);
+        let (dp, constants, place) = (&mut self.dp, &self.constants, record.place);
+        let sample = match &record.pose {
+            Pose::Clip(clip, _) => {
+                let w = clip.w.centre(dp);
+                dp.tap(Block::CageCentre, &clip.w, &w);
+                if dp.lt(w, constants.near) {
+                    return;
+                }
+                size::clip_sample(dp, constants, place, clip, w)
+            }
+            Pose::Screen(screen) => size::screen_sample(dp, constants, place, screen),
+        };
+        if let Some(sample) = sample {
+            let paint = self.paint(record, None);
+            self.canvas.draw(&mut self.dp, sample, &paint);
+        }
+    }
+
+    /// Draws a solid by its silhouette.
+    fn draw_solid(&mut self, record: &Record<L>) {
+        let Pose::Clip(clip, planes) = &record.pose else {
+            unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
+        };
+        self.counts.solids += 1;
+        self.dp.stage(Stage::Draw);
+        let cube = &record.cube;
+        let mut ink = None;
+        if let Some(eye) = &self.constants.blend_eye {
+            let (opacity, light) = (
+                self.graph.opacity_of(cube.node),
+                self.graph.light_of(cube.node),
+            );
+            let eye_floor = &self.constants.eye_floor;
+            ink = Ink::of_voxel(&mut self.dp, eye, eye_floor, cube, opacity, light);
+            self.dp.stage(Stage::Draw);
+            if ink.is_none() {
+                return;
+            }
+        }
+        let paint = self.paint(record, ink);
+        let silhouette = Silhouette::new(&mut self.dp, &self.constants, cube, planes, clip.w_min);
+        self.canvas
+            .draw_silhouette(&mut self.dp, record.place.quad, silhouette, &paint);
+    }
+
+    /// What a record shows where it is drawn: the voxel that it is a part of.
+    fn paint(&self, record: &Record<L>, ink: Option<Ink>) -> Paint {
+        let cube = &record.cube;
+        let side_log2 = self.constants.depth - cube.voxel_level;
+        let [x, y, z] = cube.min.map(|min| {
+            let voxel = min.to_host() >> self.constants.sub_levels;
+            (voxel >> side_log2 << side_log2) as i32
+        });
+        Paint {
+            node: cube.node,
+            voxel: [x, y, z, cube.voxel_level as i32],
+            ink,
+        }
+    }
+}

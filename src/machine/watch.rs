@@ -1,0 +1,40 @@
+//! Watching the machine, record by record.
+//!
+//! Single operations, accesses to memory and what crosses the borders of blocks
+//! are reported to an [`hwmodel::Probe`]; what the record loop does with whole
+//! records is reported to a [`Watch`].
+
+use crate::frame::QuadNode;
+
+/// Is told what happens to records. Every method does nothing by default, so
+/// that nothing is left of the calls where nobody watches: `()`.
+pub(super) trait Watch {
+    /// The turn of a record begins, whose quadtree node is `quad`.
+    fn turn(&mut self, quad: QuadNode) {
+        let _ = quad;
+    }
+
+    /// A child was pushed. `rank`: its place among the eight children in the
+    /// occlusion order, 0 (nearest) to 7.
+    fn pushed(&mut self, rank: u8) {
+        let _ = rank;
+    }
+}
+
+impl Watch for () {}
+
+impl<W: Watch> Watch for Option<W> {
+    #[inline(always)]
+    fn turn(&mut self, quad: QuadNode) {
+        if let Some(watch) = self {
+            watch.turn(quad);
+        }
+    }
+
+    #[inline(always)]
+    fn pushed(&mut self, rank: u8) {
+        if let Some(watch) = self {
+            watch.pushed(rank);
+        }
+    }
+}
