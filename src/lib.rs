@@ -2,6 +2,7 @@
 //!
 //! See `ARCHITECTURE.md` for the floors and `SPEC.md` for the numeric rules.
 
+pub mod drawing;
 pub mod far;
 pub mod fast;
 pub mod frame;

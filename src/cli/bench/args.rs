@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use crate::cli::args::{CameraArgs, CoverageName, RuleArgs, SceneArgs, Size, Tolerance};
+use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::bench::{Candidate, Scan, Schedule};
-use crate::project::SetupOptions;
 use crate::project::camera::MAX_SIDE;
+use crate::project::{Coverage, SetupOptions};
 
 /// Most pixels of a picture: two gigabytes of samples.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -55,7 +55,7 @@ pub(super) struct MeasureArgs {
     engines: Vec<String>,
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    coverage: Option<CoverageName>,
+    coverage: Option<Coverage>,
     /// Of --coverage any and center: largest deviation in pixels at which a record may change from
     /// clip to screen space [default: 0.125]; with exact and alpha 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]

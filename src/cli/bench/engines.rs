@@ -5,8 +5,7 @@ use serde_json::json;
 use super::args::SceneBenchArgs;
 use super::context::Context;
 use super::export::{self, Results};
-use super::{subjects, thread_counts};
-use crate::cli::args::ThreadCounts;
+use super::subjects;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::cli::{engines, report};
@@ -18,7 +17,7 @@ const DEFAULT_SIDE: u32 = 1024;
 pub(super) fn run(
     args: &SceneBenchArgs,
     from_config: Vec<String>,
-    threads: Option<&ThreadCounts>,
+    threads: &[usize],
     console: &Console,
 ) -> Result<(), CliError> {
     export::check(&args.export)?;
@@ -28,10 +27,9 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let threads = thread_counts(threads);
     let plan = Plan {
         sizes: &sizes,
-        threads: &threads,
+        threads,
         options,
         candidates: &candidates,
         reference: Some(&engines::REFERENCE),

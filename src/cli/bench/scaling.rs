@@ -6,8 +6,8 @@ use serde_json::json;
 use super::args::{ExportArgs, MeasureArgs, check_sizes, squares};
 use super::context::Context;
 use super::export::{self, Results};
-use super::{subjects, thread_counts};
-use crate::cli::args::{CameraArgs, SceneArgs, ThreadCounts};
+use super::subjects;
+use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::cli::{engines, report};
@@ -74,7 +74,7 @@ fn voxel_count(text: &str) -> Result<u64, String> {
 pub(super) fn run(
     args: &ScalingArgs,
     from_config: Vec<String>,
-    threads: Option<&ThreadCounts>,
+    threads: &[usize],
     console: &Console,
 ) -> Result<(), CliError> {
     export::check(&args.export)?;
@@ -89,10 +89,9 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let threads = thread_counts(threads);
     let mut plan = Plan {
         sizes: &picture_sizes,
-        threads: &threads,
+        threads,
         options,
         candidates: &candidates,
         reference: None,

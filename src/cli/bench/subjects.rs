@@ -5,12 +5,11 @@ use glam::DVec3;
 use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::cli::fit::Bounds;
+use crate::cli::scenes;
 use crate::cli::scenes::Scene;
-use crate::cli::{render, scenes};
 use crate::graph::Store;
 use crate::lab::bench::Subject;
-use crate::project::Camera;
+use crate::project::{Bounds, Camera};
 
 /// What stands for the bundled scene.
 pub(in crate::cli) const BUNDLED: &str = "bundled";
@@ -93,7 +92,7 @@ pub(in crate::cli) fn open(
     let scene = if name == BUNDLED {
         scenes::demo(console.progress())?
     } else {
-        render::open(name, scene_args, console)?
+        scenes::open(name, scene_args, console)?
     };
     let standard = standard_camera(name, &scene).filter(|_| camera.settings().is_empty());
     let camera = standard.unwrap_or_else(|| {

@@ -15,7 +15,7 @@ use crate::cli::report;
 use crate::lab::model::{cost, heat, plots, record, statistics, tables};
 use crate::picture::{png, store};
 use crate::report::plot::Panel;
-use crate::report::{Cell, Table, plot};
+use crate::report::{Cell, Table, grouped, plot};
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
@@ -294,10 +294,6 @@ fn host_in_words(found: &Findings) -> String {
 fn samples(count: u64) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{} sample{plural}", grouped(count))
-}
-
-fn grouped(count: u64) -> String {
-    Cell::from(count).for_people()
 }
 
 /// The tables that are printed.
