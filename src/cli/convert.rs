@@ -7,8 +7,8 @@ use clap::Args;
 use super::args::{Memory, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::export::Conversion;
-use super::{export, far, report, scenes, textured};
+use super::scene_files::Conversion;
+use super::{far, report, scene_files, scenes, textured};
 use crate::far::view::Opacity;
 use crate::graph::{BuildOptions, ExternalOptions};
 use crate::picture::store;
@@ -148,8 +148,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         return build_outside_memory(args, memory, console);
     }
     let scene = scenes::open(&args.input, &args.scene, console)?;
-    let written = export::write(&scene, &args.output, args.force, console.progress())?;
-    export::tell("convert", &args.input, &args.output, &written, console)
+    let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
+    scene_files::tell("convert", &args.input, &args.output, &written, console)
 }
 
 fn build_outside_memory(
@@ -175,7 +175,7 @@ fn build_outside_memory(
         memory: memory.bytes,
         temporary: args.temp.as_deref().unwrap_or(beside).to_owned(),
     };
-    let (written, report) = export::build_file(
+    let (written, report) = scene_files::build_file(
         &args.input,
         &args.scene,
         external,
@@ -192,7 +192,7 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    export::tell("convert", &args.input, &args.output, &written, console)
+    scene_files::tell("convert", &args.input, &args.output, &written, console)
 }
 
 #[cfg(test)]

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::export::Conversion;
 use super::report::{self, grouped};
+use super::scene_files::Conversion;
 use super::scenes;
 use crate::drawing::milliseconds_since;
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};

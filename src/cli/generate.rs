@@ -7,7 +7,7 @@ use clap::Args;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::{export, scenes};
+use super::{scene_files, scenes};
 use crate::picture::store;
 use crate::scene::Source;
 
@@ -33,6 +33,6 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
         format!("gen:{}", args.spec)
     };
     let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
-    let written = export::write(&scene, &args.output, args.force, console.progress())?;
-    export::tell("generate", &spec, &args.output, &written, console)
+    let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
+    scene_files::tell("generate", &spec, &args.output, &written, console)
 }

@@ -3,11 +3,11 @@
 use serde_json::json;
 
 use super::args::{MeasureArgs, SceneBenchArgs};
-use super::context::Context;
-use super::export::{self, Results};
-use super::subjects;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Candidate, Family, Harness, ablation as experiment};
 

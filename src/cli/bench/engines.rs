@@ -3,11 +3,11 @@
 use serde_json::json;
 
 use super::args::SceneBenchArgs;
-use super::context::Context;
-use super::export::{self, Results};
-use super::subjects;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Harness, Plan, engines as experiment, measure};
 

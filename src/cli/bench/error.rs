@@ -3,15 +3,16 @@
 use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, check_sizes};
-use super::context::Context;
-use super::export::{self, Results};
+use super::args::check_sizes;
 use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
-use super::subjects;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
 use crate::lab::error::{self as experiment, Look, Method, Plan, SceneErrors, VoxelMethod};

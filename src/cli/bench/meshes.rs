@@ -5,10 +5,10 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 
-use super::subjects::BUNDLED;
 use crate::cli::args::SceneArgs;
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::subjects::BUNDLED;
 use crate::cli::scenes;
 use crate::drawing::milliseconds_since;
 use crate::far::blend::Blend;

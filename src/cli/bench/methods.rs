@@ -6,15 +6,15 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::args::ExportArgs;
-use super::context::Context;
 use super::error::reference_size;
-use super::export::{self, Results};
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
 use crate::cli::{engines, report, scenes};
 use crate::drawing::{bounds_of_mesh, milliseconds_since};
 use crate::far::view::Opacity;

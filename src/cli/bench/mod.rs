@@ -1,18 +1,15 @@
-//! `bench`: the experiments, one file each, and what they share.
+//! `bench`: the experiments, one file each.
 
 mod ablation;
-pub(super) mod args;
+mod args;
 mod coherence;
-pub(super) mod context;
 mod engines;
 mod error;
-pub(super) mod export;
 mod flicker;
 mod meshes;
 mod methods;
 mod picture_export;
 mod scaling;
-pub(super) mod subjects;
 mod vertex_error;
 mod walk;
 

@@ -3,13 +3,14 @@
 use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, MeasureArgs, check_sizes, squares};
-use super::context::Context;
-use super::export::{self, Results};
-use super::subjects;
+use super::args::{MeasureArgs, check_sizes, squares};
 use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::scaling::{self as experiment, Growing, Growth};
 use crate::lab::bench::{Harness, Plan, Scan, measure};

@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::Args;
 use serde_json::json;
 
-use super::args::ExportArgs;
-use super::export::{self, Results};
 use crate::cli::args::{DataBudget, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
 use crate::drawing::resident;
 use crate::far::FarFile;

@@ -52,12 +52,12 @@ impl Standpoint {
 }
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(super) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+pub(in crate::cli) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
     names_or(given, from_config, &DEFAULT)
 }
 
 /// The same with other scenes where none is named.
-pub(super) fn names_or(
+pub(in crate::cli) fn names_or(
     given: &[String],
     from_config: Vec<String>,
     default: &[&str],
@@ -72,7 +72,7 @@ pub(super) fn names_or(
 }
 
 /// A scene's name as part of a file's: letters, digits, and hyphens between them.
-pub(super) fn file_stem(name: &str) -> String {
+pub(in crate::cli) fn file_stem(name: &str) -> String {
     let name = name.strip_prefix("gen:").unwrap_or(name);
     let letters = |c: char| !c.is_ascii_alphanumeric();
     let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
