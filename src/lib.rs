@@ -90,6 +90,9 @@ pub mod whole;
 
 #[cfg(feature = "mesh")]
 #[doc(hidden)]
+pub mod drawing;
+#[cfg(feature = "mesh")]
+#[doc(hidden)]
 pub mod far;
 #[cfg(feature = "mesh")]
 #[doc(hidden)]

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Scene;
 use crate::project;
-use crate::project::fit::{Bounds, DEFAULT_FOV, Direction, Up, fit};
+use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 
 /// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's.
 ///
@@ -133,7 +133,7 @@ impl Camera {
                 up,
                 direction,
                 zoom,
-            } => fit(
+            } => fit_camera(
                 bounds,
                 *up,
                 *direction,

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::Error;
 use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
-use crate::project::fit::Bounds;
-pub use crate::project::fit::Up;
+use crate::project::Bounds;
+pub use crate::project::Up;
 use crate::scene::{OpenOptions, open, open_bytes};
 
 /// What a renderer draws: a voxel graph in world coordinates.

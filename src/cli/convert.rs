@@ -2,50 +2,31 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
-use serde_json::json;
+use clap::Args;
 
-use super::args::{FarOpacityName, Memory, SceneArgs};
+use super::args::{Memory, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::render::open;
-use super::scenes::Written;
-use super::{far, report, scenes, textured};
+use super::scene_files::Conversion;
+use super::{far, report, scene_files, scenes, textured};
+use crate::far::view::Opacity;
 use crate::graph::{BuildOptions, ExternalOptions};
 use crate::picture::store;
 use crate::textured::Element;
-
-/// Which voxels an erosion takes away.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum ElementName {
-    /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
-    Cube,
-    /// Those with an empty cell at one of their six sides.
-    Sides,
-}
-
-impl ElementName {
-    pub(super) fn element(self) -> Element {
-        match self {
-            Self::Cube => Element::Cube,
-            Self::Sides => Element::Sides,
-        }
-    }
-}
 
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
     /// Scene to read, told by its content
     #[arg(value_name = "IN")]
-    pub(super) input: String,
+    input: String,
     /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
     /// .far (far voxels) or .tvx (textured voxels)
     #[arg(value_name = "OUT")]
-    pub(super) output: PathBuf,
+    output: PathBuf,
     /// Replace a file that exists
     #[arg(long)]
-    pub(super) force: bool,
+    force: bool,
     /// Build a .vxg outside memory, taking at most this much of it: 512M, 2G; 64M at the least
     #[arg(long, value_name = "SIZE")]
     memory: Option<Memory>,
@@ -54,29 +35,29 @@ pub struct ConvertArgs {
     temp: Option<PathBuf>,
     /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each that is seen]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
-    pub(super) rays: Option<u64>,
+    rays: Option<u64>,
     /// Of .far: nodes with fewer triangles are leaves [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
-    pub(super) leaf_triangles: Option<u32>,
+    leaf_triangles: Option<u32>,
     /// Of .far: voxels along a node's longest side [default: 64]. Of .tvx: cells along each axis, an
     /// even number, or several such as 4,8,16,32: a file with a grid of each [default: 16]
     #[arg(long, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(2..=255))]
-    pub(super) grid: Vec<u32>,
+    grid: Vec<u32>,
     /// Of .tvx: texels along the side of a voxel's face [default: 16]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
-    pub(super) texels: Option<u32>,
+    texels: Option<u32>,
     /// Of .tvx: which voxels an erosion takes away [default: sides]
     #[arg(long, value_enum, value_name = "ELEMENT")]
-    pub(super) element: Option<ElementName>,
+    element: Option<Element>,
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
-    pub(super) instances: Option<u32>,
+    instances: Option<u32>,
     /// Of .far: what opacities are stored for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
-    pub(super) far_opacity: Option<FarOpacityName>,
+    far_opacity: Option<Opacity>,
     #[command(flatten)]
-    pub(super) scene: SceneArgs,
+    scene: SceneArgs,
 }
 
 impl ConvertArgs {
@@ -86,6 +67,39 @@ impl ConvertArgs {
             || self.leaf_triangles.is_some()
             || self.instances.is_some()
             || self.far_opacity.is_some()
+    }
+
+    fn conversion(&self) -> Conversion<'_> {
+        Conversion {
+            input: &self.input,
+            output: &self.output,
+            force: self.force,
+            scene: &self.scene,
+        }
+    }
+
+    fn far_options(&self) -> crate::far::BuildOptions {
+        let defaults = crate::far::BuildOptions::default();
+        crate::far::BuildOptions {
+            rays: self.rays,
+            leaf_triangles: self.leaf_triangles.unwrap_or(defaults.leaf_triangles),
+            grid: self.grid.first().copied().unwrap_or(defaults.grid),
+            opacity: self.far_opacity.unwrap_or_default(),
+            ..defaults
+        }
+    }
+
+    fn textured_options(&self) -> crate::textured::BuildOptions {
+        let defaults = crate::textured::BuildOptions::default();
+        crate::textured::BuildOptions {
+            grids: if self.grid.is_empty() {
+                defaults.grids
+            } else {
+                self.grid.clone()
+            },
+            texels: self.texels.unwrap_or(defaults.texels),
+            element: self.element.unwrap_or(defaults.element),
+        }
     }
 }
 
@@ -102,7 +116,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
                  --rays, --leaf-triangles, --instances and --far-opacity are for .far files",
             ));
         }
-        return textured::convert(args, console);
+        return textured::convert(&args.conversion(), &args.textured_options(), console);
     }
     if is_ending("far") {
         if args.grid.len() > 1 {
@@ -113,7 +127,12 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
                 "--memory is for .vxg files; a .far is built in memory",
             ));
         }
-        return far::convert(args, console);
+        return far::convert(
+            &args.conversion(),
+            &args.far_options(),
+            args.instances,
+            console,
+        );
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
@@ -128,9 +147,9 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return build_outside_memory(args, memory, console);
     }
-    let scene = open(&args.input, &args.scene, console)?;
-    let written = scenes::write(&scene, &args.output, args.force, console.progress())?;
-    tell("convert", &args.input, &args.output, &written, console)
+    let scene = scenes::open(&args.input, &args.scene, console)?;
+    let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
+    scene_files::tell("convert", &args.input, &args.output, &written, console)
 }
 
 fn build_outside_memory(
@@ -156,7 +175,7 @@ fn build_outside_memory(
         memory: memory.bytes,
         temporary: args.temp.as_deref().unwrap_or(beside).to_owned(),
     };
-    let (written, report) = scenes::build_file(
+    let (written, report) = scene_files::build_file(
         &args.input,
         &args.scene,
         external,
@@ -173,42 +192,12 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    tell("convert", &args.input, &args.output, &written, console)
-}
-
-/// Says what was written.
-pub(super) fn tell(
-    verb: &str,
-    input: &str,
-    output: &Path,
-    written: &Written,
-    console: &Console,
-) -> Result<(), CliError> {
-    for warning in &written.warnings {
-        console.note(format!("{}: {warning}", output.display()));
-    }
-    console.note(format!(
-        "{}: {} voxels, {} bytes",
-        output.display(),
-        report::grouped(written.voxels),
-        report::grouped(written.bytes)
-    ));
-    if console.json {
-        let fields = json!({
-            "input": input,
-            "output": output,
-            "voxels": written.voxels,
-            "bytes": written.bytes,
-            "warnings": written.warnings,
-        });
-        console.document(&report::document(verb, fields))?;
-    }
-    Ok(())
+    scene_files::tell("convert", &args.input, &args.output, &written, console)
 }
 
 #[cfg(test)]
 mod tests {
-    use clap::Command;
+    use clap::{Command, ValueEnum};
 
     use super::*;
     use crate::{far, textured};
@@ -230,13 +219,9 @@ mod tests {
         states("grid", &of_far.grid.to_string());
         states("grid", &of_tvx.grids[0].to_string());
         states("texels", &of_tvx.texels.to_string());
-        let elements = ElementName::value_variants().iter();
-        for name in elements.filter(|name| name.element() == of_tvx.element) {
-            states("element", name.to_possible_value().unwrap().get_name());
-        }
-        let opacities = FarOpacityName::value_variants().iter();
-        for name in opacities.filter(|&&name| super::far::opacity(name) == of_far.opacity) {
-            states("far_opacity", name.to_possible_value().unwrap().get_name());
-        }
+        let element = of_tvx.element.to_possible_value().unwrap();
+        states("element", element.get_name());
+        let opacity = of_far.opacity.to_possible_value().unwrap();
+        states("far_opacity", opacity.get_name());
     }
 }

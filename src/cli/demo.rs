@@ -4,12 +4,12 @@ use std::path::Path;
 
 use serde_json::json;
 
-use super::args::{CameraArgs, EngineArgs, PictureArgs, Size, camera_line};
+use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
-use super::drawing::draw;
-use super::error::CliError;
-use super::fit::Bounds;
+use super::error::{CliError, Kind};
+use super::methods::{self, DrawArgs};
 use super::{engines, outputs, report, scenes};
+use crate::drawing::Drawable;
 use crate::picture;
 
 /// The demo's own picture: the only file that it replaces without being told to.
@@ -27,25 +27,34 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
         ..PictureArgs::default()
     };
     let engine_args = EngineArgs::default();
-    let bounds = Bounds::of(&scene.graph);
     let view = CameraArgs {
         azimuth: Some(30.0),
         elevation: Some(14.0),
         ..CameraArgs::default()
     };
-    let camera = view.camera(&bounds, scene.up, (SIDE, SIDE), 0.0);
-    let drawing = draw(&scene, &camera, &engine_args, &picture_args, 1, true)?;
-    let (drawn, rows) = drawing.shown()?;
-    let counter = engines::count_operations(&engine_args, &scene.graph.view(), &drawn.setup)?;
-    outputs::write(&drawn.pixels, &rows, Path::new(PICTURE), &[], true)?;
-    let hash = picture::hash_rows(&rows)?;
+    let draw_args = DrawArgs {
+        engine: &engine_args,
+        picture: &picture_args,
+        scene: &SceneArgs::default(),
+        memory: None,
+        is_hashed: true,
+    };
+    let mut drawing = methods::of_graph(&scene, &draw_args)?;
+    let camera = view.camera(&drawing.bounds(), scene.up, (SIDE, SIDE), 0.0);
+    drawing.draw(&camera, 1)?;
+    let setup = drawing.setup(&camera)?;
+    let shown = drawing.shown()?;
+    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+    let counter = engines::count_operations(&engine_args, &scene.graph.view(), &setup)?;
+    outputs::write(&shown, Path::new(PICTURE), &[], true)?;
+    let hash = picture::hash_rows(&shown.buffers)?;
     if console.json {
-        let mut result = report::drawn(&scene, &camera, drawn, Some(&hash));
+        let mut result = report::drawn(&scene.source, scene.load_ms, &camera, &shown, Some(&hash));
         result["output"] = json!(PICTURE);
         result["operations"] = json!(counter.ops());
         return console.document(&report::document("demo", result));
     }
-    let time = drawn.times_ms.first().copied().unwrap_or(0.0);
+    let time = shown.times_ms.first().copied().unwrap_or(0.0);
     console.data(format!(
         "{} voxels in {} nodes, {SIDE} x {SIDE} pixels, drawn in {time:.1} ms\n\n{}\n\n\
          {} operations, none of them a multiplication or a division; widest word {} bits\n\

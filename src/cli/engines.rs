@@ -14,11 +14,14 @@ use crate::machine::{Machine, MachineOptions};
 use crate::project::{Coverage, Engine, EngineError, FrameSetup};
 use crate::rays::Rays;
 
-/// The engine of a name.
+/// What makes the engine that the flags name, as often as one is needed.
+pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine>>;
+
+/// Makers of the engines of voxels.
 ///
 /// # Errors
-/// When this build does not have it.
-pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
+/// When this processor or this build does not have it, or it does not draw voxels.
+pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
     let instructions = match args.isa {
         Isa::Auto => Instructions::Auto,
         Isa::Scalar => Instructions::Scalar,
@@ -41,14 +44,20 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
                 instructions,
                 ..FastOptions::default()
             };
-            Ok(Box::new(Fast::new(options, Box::new(machine(args)))))
+            let of_machine = machine_options(args);
+            Ok(Box::new(move || {
+                Box::new(Fast::new(options, Box::new(Machine::new(of_machine))))
+            }))
         }
-        EngineName::Machine => Ok(Box::new(machine(args))),
+        EngineName::Machine => {
+            let options = machine_options(args);
+            Ok(Box::new(move || Box::new(Machine::new(options))))
+        }
         EngineName::Rays if args.rules.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
             "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
         )
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
-        EngineName::Rays => Ok(Box::new(Rays)),
+        EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
         EngineName::Far => Err(CliError::usage(
             "--engine far draws a .far file, and only render and turntable do",
         )
@@ -60,11 +69,11 @@ pub(super) fn engine(args: &EngineArgs) -> Result<Box<dyn Engine>, CliError> {
     }
 }
 
-fn machine(args: &EngineArgs) -> Machine {
-    Machine::new(MachineOptions {
+fn machine_options(args: &EngineArgs) -> MachineOptions {
+    MachineOptions {
         overflow: args.rules.overflow(),
         ..MachineOptions::default()
-    })
+    }
 }
 
 /// Draws one frame on the machine and counts its operations.
@@ -77,7 +86,12 @@ pub(super) fn count_operations(
     setup: &FrameSetup,
 ) -> Result<Counter, CliError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let (_, counter) = machine(args).render_probed(graph, setup, &mut frame, Counter::new())?;
+    let (_, counter) = Machine::new(machine_options(args)).render_probed(
+        graph,
+        setup,
+        &mut frame,
+        Counter::new(),
+    )?;
     Ok(counter)
 }
 

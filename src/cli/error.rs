@@ -1,13 +1,20 @@
 //! What can go wrong, and which exit code says so.
 
-use std::convert::Infallible;
 use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
+use crate::drawing::DrawError;
+use crate::graph::ExternalError;
+use crate::graph::file::FileError;
+use crate::lab::bench::BenchError;
+use crate::mesh::MeshError;
 use crate::picture::ResolveError;
 use crate::picture::store::StoreError;
 use crate::project::{EngineError, SetupError};
+use crate::report::plot::PlotError;
+use crate::scene::{OpenError, SceneError};
+use crate::{far, textured};
 
 /// The kinds of failure that a script can tell apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -141,12 +148,6 @@ impl From<EngineError> for CliError {
     }
 }
 
-impl From<Infallible> for CliError {
-    fn from(never: Infallible) -> Self {
-        match never {}
-    }
-}
-
 impl From<ResolveError> for CliError {
     fn from(error: ResolveError) -> Self {
         let kind = match error {
@@ -165,5 +166,138 @@ impl From<io::Error> for CliError {
             _ => Kind::Run,
         };
         Self::new(kind, format!("cannot write to stdout: {error}"))
+    }
+}
+
+impl From<OpenError> for CliError {
+    fn from(error: OpenError) -> Self {
+        let written = matches!(
+            error,
+            OpenError::External {
+                error: ExternalError::Temporary { .. } | ExternalError::Write(_),
+                ..
+            }
+        );
+        let kind = if error.is_limit() {
+            Kind::Limit
+        } else if written {
+            Kind::Run
+        } else {
+            Kind::Input
+        };
+        let failure = Self::new(kind, &error);
+        match error {
+            OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => Self::input(format!(
+                "{file}: this is a {kind} file: render and turntable draw it, info tells of it"
+            ))
+            .advise("for anything else take the mesh that it was made of"),
+            OpenError::Mesh(MeshError::Io { .. }) | OpenError::Scene(SceneError::Io { .. }) => {
+                failure.advise("scenes are files or generators such as gen:terrain,depth=10,seed=1")
+            }
+            OpenError::TooMany { voxels, .. } if voxels >= u64::from(u32::MAX) => {
+                failure.advise("ask for fewer levels: a graph has less than 2^32 nodes")
+            }
+            OpenError::TooMany { .. } => failure.advise(
+                "build it outside memory: shiftvox convert SCENE OUT.vxg --memory 2G; then draw OUT.vxg",
+            ),
+            OpenError::External {
+                error: ExternalError::Temporary { .. },
+                ..
+            } => failure.advise("choose a folder with more room with --temp"),
+            _ => failure,
+        }
+    }
+}
+
+impl From<SceneError> for CliError {
+    fn from(error: SceneError) -> Self {
+        OpenError::from(error).into()
+    }
+}
+
+impl From<FileError> for CliError {
+    fn from(error: FileError) -> Self {
+        Self::input(error)
+    }
+}
+
+impl From<far::BuildError> for CliError {
+    fn from(error: far::BuildError) -> Self {
+        let kind = match error {
+            far::BuildError::Empty | far::BuildError::Range => Kind::Input,
+            far::BuildError::TooMany(_) => Kind::Limit,
+            far::BuildError::Option(_) => Kind::Usage,
+        };
+        Self::new(kind, error)
+    }
+}
+
+impl From<far::view::ViewError> for CliError {
+    fn from(error: far::view::ViewError) -> Self {
+        match error {
+            far::view::ViewError::File(error) => error.into(),
+            far::view::ViewError::Raster(_)
+            | far::view::ViewError::VoxelSize(_)
+            | far::view::ViewError::Samples(_) => Self::usage(error),
+        }
+    }
+}
+
+impl From<textured::BuildError> for CliError {
+    fn from(error: textured::BuildError) -> Self {
+        let kind = match error {
+            textured::BuildError::Empty | textured::BuildError::Range => Kind::Input,
+            textured::BuildError::TooMany(_) => Kind::Limit,
+            textured::BuildError::Grid { .. } | textured::BuildError::Grids => Kind::Usage,
+        };
+        Self::new(kind, error)
+    }
+}
+
+impl From<textured::view::ViewError> for CliError {
+    fn from(error: textured::view::ViewError) -> Self {
+        match error {
+            textured::view::ViewError::File(error) => error.into(),
+            textured::view::ViewError::Raster(_)
+            | textured::view::ViewError::Grid(..)
+            | textured::view::ViewError::TexelSize(_) => Self::usage(error),
+        }
+    }
+}
+
+impl From<DrawError> for CliError {
+    fn from(error: DrawError) -> Self {
+        let message = error.to_string();
+        match error {
+            DrawError::TooLarge(_) => Self::new(Kind::Limit, message)
+                .advise("ask for a smaller --size, or fewer samples with --aa"),
+            DrawError::Setup(error) => error.into(),
+            DrawError::Engine(error) => error.into(),
+            DrawError::Resolve(error) => error.into(),
+            DrawError::Far(error) => error.into(),
+            DrawError::Textured(error) => error.into(),
+            DrawError::NoGrid { has, .. } => {
+                let has: Vec<String> = has.iter().map(u32::to_string).collect();
+                Self::usage(message).advise(format!("it has grids of {}", has.join(", ")))
+            }
+            DrawError::Camera(_) | DrawError::Samples(_) => Self::usage(message),
+            DrawError::Raster(_) => Self::new(Kind::Run, message),
+        }
+    }
+}
+
+impl From<BenchError> for CliError {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Engine { who, source } => Self::from(source).at(who),
+            BenchError::Setup(error) => error.into(),
+            BenchError::Picture(_) | BenchError::Threads { .. } => Self::new(Kind::Run, error),
+        }
+    }
+}
+
+impl From<PlotError> for CliError {
+    fn from(error: PlotError) -> Self {
+        Self::new(Kind::Run, error)
     }
 }

@@ -1,4 +1,4 @@
-//! Far voxels on the command line: `convert`, `info` and `render` of `.far` files.
+//! `.far` files on the command line: `convert` and `info`.
 
 use std::path::Path;
 use std::time::Instant;
@@ -6,83 +6,48 @@ use std::time::Instant;
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 
-use super::args::{Aov, EngineName, FarOpacityName};
 use super::console::Console;
-use super::convert::ConvertArgs;
-use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
-use super::fit::{Bounds, Up};
-use super::mesh_view::{self, Counted, DrawArgs, FileEngine, MeshFile, Use, background, view};
 use super::report::{self, grouped};
+use super::scene_files::Conversion;
+use super::scenes;
+use crate::drawing::milliseconds_since;
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
-use crate::far::store::{is_far, write_to};
-use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
+use crate::far::store::write_to;
 use crate::far::{BuildError, BuildOptions, FarFile, build};
-use crate::lab::mesh_view::{light_of, picture_of_far};
 use crate::mesh::Instances;
-use crate::mesh::raster::View;
 use crate::picture::store;
-use crate::project::Camera;
+use crate::project::Up;
 use crate::scene::available_memory;
 
-impl From<BuildError> for CliError {
-    fn from(error: BuildError) -> Self {
-        let kind = match error {
-            BuildError::Empty | BuildError::Range => Kind::Input,
-            BuildError::TooMany(_) => Kind::Limit,
-            BuildError::Option(_) => Kind::Usage,
-        };
-        Self::new(kind, error)
-    }
-}
-
-impl From<ViewError> for CliError {
-    fn from(error: ViewError) -> Self {
-        match error {
-            ViewError::File(error) => error.into(),
-            ViewError::Raster(_) | ViewError::VoxelSize(_) | ViewError::Samples(_) => {
-                Self::usage(error)
-            }
-        }
-    }
-}
-
-/// Whether a scene's name is that of a `.far` file, told by its content.
-pub(super) fn is_far_file(name: &str) -> bool {
-    mesh_view::begins(name, is_far)
-}
-
 /// Builds far voxels of a mesh and writes them.
-pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
-    let (mesh, up) = mesh_view::open(&args.input, &args.scene, console)?;
-    let defaults = BuildOptions::default();
-    let options = BuildOptions {
-        rays: args.rays,
-        leaf_triangles: args.leaf_triangles.unwrap_or(defaults.leaf_triangles),
-        grid: args.grid.first().copied().unwrap_or(defaults.grid),
-        opacity: opacity(args.far_opacity.unwrap_or_default()),
-        ..defaults
-    };
+pub(super) fn convert(
+    of: &Conversion<'_>,
+    options: &BuildOptions,
+    instances: Option<u32>,
+    console: &Console,
+) -> Result<(), CliError> {
+    let (mesh, up) = scenes::open_mesh(of.input, of.scene, console)?;
     let started = Instant::now();
-    let triangles = mesh.triangles().len() as u64 * u64::from(args.instances.unwrap_or(1));
-    check_room(triangles).map_err(|e| e.at(&args.input))?;
-    let built = match args.instances {
-        None => build(&mesh, &options, console.progress()),
+    let triangles = mesh.triangles().len() as u64 * u64::from(instances.unwrap_or(1));
+    check_room(triangles).map_err(|e| e.at(of.input))?;
+    let built = match instances {
+        None => build(&mesh, options, console.progress()),
         Some(count) => {
             let places = in_rows(mesh.bounds(), up, count);
             let fleet = Instances::new(mesh, places);
-            build(&fleet, &options, console.progress())
+            build(&fleet, options, console.progress())
         }
     };
-    let mut data = built.map_err(|e| CliError::from(e).at(&args.input))?;
+    let mut data = built.map_err(|e| CliError::from(e).at(of.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    store::write_with(&args.output, args.force, |file| write_to(&data, file))?;
-    let file = FarFile::open(&args.output)?;
+    store::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    let file = FarFile::open(of.output)?;
     let facts = Facts::of(&file);
     console.note(format!(
         "{}: {} triangles, {} nodes, {} voxels, {} rays, {} bytes, built in {:.1} s",
-        args.output.display(),
+        of.output.display(),
         grouped(triangles),
         grouped(file.nodes().len() as u64),
         grouped(facts.kept),
@@ -91,9 +56,9 @@ pub(super) fn convert(args: &ConvertArgs, console: &Console) -> Result<(), CliEr
         build_ms / 1e3
     ));
     if console.json {
-        let mut fields = facts.describe(&file, &args.input);
-        fields["input"] = json!(args.input);
-        fields["output"] = json!(args.output);
+        let mut fields = facts.describe(&file, of.input);
+        fields["input"] = json!(of.input);
+        fields["output"] = json!(of.output);
         fields["build_ms"] = json!(build_ms);
         console.document(&report::document("convert", fields))?;
     }
@@ -366,102 +331,4 @@ impl Facts {
             report::table(head, rows.collect())
         )
     }
-}
-
-pub(super) const ENGINE: FileEngine = FileEngine {
-    engine: EngineName::Far,
-    name: "far",
-    ending: ".far",
-    buffers: &[Aov::Depth, Aov::Node, Aov::Color],
-    flags: &["far-opacity"],
-    is_file: is_far_file,
-    with_file,
-};
-
-fn with_file(path: &Path, args: DrawArgs<'_>, then: Use<'_>) -> Result<(), CliError> {
-    let file = match args.memory {
-        Some(memory) => FarFile::open_within(path, memory.bytes)?,
-        None => FarFile::open(path)?,
-    };
-    let viewer = FarViewer::new(&file);
-    then(&mut Open {
-        file: &file,
-        viewer,
-        args,
-    })
-}
-
-/// An open `.far` file.
-struct Open<'f> {
-    file: &'f FarFile,
-    viewer: FarViewer<'f>,
-    args: DrawArgs<'f>,
-}
-
-impl MeshFile for Open<'_> {
-    fn bounds(&self) -> Bounds {
-        let (low, high) = self.file.bounds();
-        Bounds::of_box(low, high)
-    }
-
-    fn up(&self) -> Up {
-        if self.file.y_up() { Up::Y } else { Up::Z }
-    }
-
-    fn draw(&mut self, camera: &Camera) -> Result<Counted, CliError> {
-        let view = view(camera, self.file.bounds())?;
-        let options = options(&self.args, &view);
-        let (drawn, counts) = self.viewer.draw(&view, &options)?;
-        Ok((picture_of_far(drawn), counters(&counts)))
-    }
-
-    fn memory(&self) -> Option<Value> {
-        Some(json!(resident(self.file)))
-    }
-}
-
-/// What a budget of memory came to.
-pub(super) fn resident(file: &FarFile) -> Option<Value> {
-    let resident = file.resident()?;
-    Some(json!({
-        "bytes": resident.bytes,
-        "most_bytes": resident.most_bytes,
-        "nodes_released": resident.released,
-    }))
-}
-
-/// What a flag says of opacities.
-pub(super) fn opacity(name: FarOpacityName) -> Opacity {
-    match name {
-        FarOpacityName::None => Opacity::None,
-        FarOpacityName::Scalar => Opacity::Scalar,
-        FarOpacityName::Six => Opacity::Six,
-    }
-}
-
-fn options(args: &DrawArgs<'_>, view: &View) -> ViewOptions {
-    ViewOptions {
-        voxel_px: args.engine.rules.mesh_lod(),
-        samples_across: 1 << args.picture.aa_log2(),
-        opacity: opacity(args.engine.far_opacity.unwrap_or_default()),
-        light: light_of(view, args.picture.shading()),
-        background: background(args.picture.background),
-        ..ViewOptions::default()
-    }
-}
-
-fn counters(counts: &Counts) -> Vec<(&'static str, Value)> {
-    let counters = [
-        ("nodes_visited", counts.visited),
-        ("nodes_outside", counts.outside),
-        ("voxel_nodes", counts.voxel_nodes),
-        ("leaves", counts.leaves),
-        ("nodes_hidden", counts.hidden),
-        ("queries", counts.queries),
-        ("opaque_voxels", counts.opaque_voxels),
-        ("transparent_voxels", counts.transparent_voxels),
-        ("triangles", counts.triangles),
-        ("drawn_twice", counts.drawn_twice),
-    ];
-    counters.map(|(name, count)| (name, count.into())).to_vec()
 }

@@ -7,8 +7,9 @@ use clap::Args;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
-use super::{convert, render, scenes};
+use super::{scene_files, scenes};
 use crate::picture::store;
+use crate::scene::Source;
 
 /// Arguments of `generate`.
 #[derive(Debug, Args)]
@@ -26,12 +27,12 @@ pub struct GenerateArgs {
 
 pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
     store::check_free(&args.output, args.force)?;
-    let spec = if scenes::is_spec(&args.spec) {
+    let spec = if Source::is_generated(&args.spec) {
         args.spec.clone()
     } else {
         format!("gen:{}", args.spec)
     };
-    let scene = render::open(&spec, &SceneArgs::default(), console)?;
-    let written = scenes::write(&scene, &args.output, args.force, console.progress())?;
-    convert::tell("generate", &spec, &args.output, &written, console)
+    let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
+    let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
+    scene_files::tell("generate", &spec, &args.output, &written, console)
 }

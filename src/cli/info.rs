@@ -1,17 +1,19 @@
 //! `info`: what is in a scene.
 
+use std::time::Instant;
+
 use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{CameraArgs, SceneArgs, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::fit::Bounds;
-use super::render::{choose_scenes, open};
 use super::report::{self, grouped};
 use super::scenes::{self, Scene};
 use super::{far, textured};
-use crate::graph::{Graph, Opacity, sixteenths};
+use crate::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
+use crate::project::Bounds;
+use crate::scene::{FileKind, Source};
 
 /// Arguments of `info`.
 #[derive(Debug, Args)]
@@ -32,32 +34,13 @@ pub(super) fn run(
     from_config: Vec<String>,
     console: &Console,
 ) -> Result<(), CliError> {
-    let names = choose_scenes(&args.scenes, from_config)?;
+    let names = scenes::choose(&args.scenes, from_config)?;
     let mut results = Vec::new();
     let mut first_failure = None;
     for name in &names {
-        let is_textured = textured::is_textured_file(name);
-        if is_textured || far::is_far_file(name) {
-            let told = if is_textured {
-                textured::info(name, args.levels, console)
-            } else {
-                far::info(name, console)
-            };
-            match told {
-                Ok(Some(described)) => results.push(described),
-                Ok(None) => {}
-                Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
-                Err(error) => {
-                    console.error(&error);
-                    results.push(json!({ "scene": name, "error": error.message }));
-                    first_failure.get_or_insert(error.kind);
-                }
-            }
-            continue;
-        }
-        match open(name, &args.scene, console) {
-            Ok(scene) if console.json => results.push(describe(&scene)),
-            Ok(scene) => console.data(tell(&scene, names.len() > 1))?,
+        match of_one(name, args, names.len() > 1, console) {
+            Ok(Some(described)) => results.push(described),
+            Ok(None) => {}
             Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
             Err(error) => {
                 console.error(&error);
@@ -75,6 +58,29 @@ pub(super) fn run(
             kind,
             "not all scenes could be read; see above",
         )),
+    }
+}
+
+/// Tells what is in a scene; as JSON, to be printed with that of others, if that is asked for.
+fn of_one(
+    name: &str,
+    args: &InfoArgs,
+    several: bool,
+    console: &Console,
+) -> Result<Option<Value>, CliError> {
+    let started = Instant::now();
+    let source = Source::find(name)?;
+    match source.kind() {
+        Some(FileKind::Far) => far::info(name, console),
+        Some(FileKind::Tvx) => textured::info(name, args.levels, console),
+        _ => {
+            let scene = scenes::open_source(source, name, &args.scene, started, console)?;
+            if console.json {
+                return Ok(Some(describe(&scene)));
+            }
+            console.data(tell(&scene, several))?;
+            Ok(None)
+        }
     }
 }
 
@@ -100,9 +106,9 @@ impl Facts {
         Self {
             low: file(low),
             high: file(high),
-            levels: scenes::levels(graph),
+            levels: levels(graph),
             bytes: graph.bytes(),
-            gains: scenes::merge_gains(graph),
+            gains: merge_gains(graph),
             colors: distinct_leaf_colors(graph),
             camera_line: camera_line(&camera),
         }
@@ -265,4 +271,40 @@ fn distinct_leaf_colors(graph: &Graph) -> usize {
         }
     }
     seen.iter().map(|word| word.count_ones() as usize).sum()
+}
+
+/// Nodes of each level: stored ones, and how many a plain tree would have.
+fn levels(graph: &Graph) -> Vec<(u64, u128)> {
+    use std::collections::HashMap;
+    let view = graph.view();
+    if graph.is_level_ordered() && graph.links.is_empty() {
+        let nodes = graph.nodes_per_level();
+        return nodes.into_iter().map(|n| (n, u128::from(n))).collect();
+    }
+    let mut current = HashMap::from([(graph.root, 1u128)]);
+    let mut levels = Vec::new();
+    for _ in 0..=graph.depth {
+        if graph.is_empty() || current.is_empty() {
+            break;
+        }
+        let times = current
+            .values()
+            .fold(0u128, |sum, &n| sum.saturating_add(n));
+        levels.push((current.len() as u64, times));
+        let mut below: HashMap<u32, u128> = HashMap::new();
+        for (&node, &times) in &current {
+            for child in (0..8).filter_map(|octant| view.child(node, octant)) {
+                let sum = below.entry(child).or_default();
+                *sum = sum.saturating_add(times);
+            }
+        }
+        current = below;
+    }
+    levels
+}
+
+/// How much smaller the graph gets when equal subtrees are merged: all nodes
+/// over those left, with attributes and by shape alone.
+fn merge_gains(graph: &Graph) -> [f64; 2] {
+    [MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain())
 }

@@ -2,10 +2,9 @@
 
 use std::io::{self, Write};
 
-use clap::{Args, CommandFactory};
+use clap::{Args, Command};
 use clap_complete::Shell;
 
-use super::Cli;
 use super::error::CliError;
 
 /// The shell to complete in.
@@ -23,14 +22,13 @@ pub(super) struct ManArgs {
     verb: Option<String>,
 }
 
-pub(super) fn completions(args: &CompletionsArgs) -> Result<(), CliError> {
+pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> Result<(), CliError> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "shiftvox", &mut script);
+    clap_complete::generate(args.shell, &mut command, "shiftvox", &mut script);
     print(&script)
 }
 
-pub(super) fn man(args: &ManArgs) -> Result<(), CliError> {
-    let mut command = Cli::command();
+pub(super) fn man(args: &ManArgs, mut command: Command) -> Result<(), CliError> {
     command.build();
     if let Some(verb) = &args.verb {
         command = command

@@ -1,6 +1,8 @@
 //! The command line: one file per verb, and what verbs share.
 //!
-//! stdout is data, stderr everything else. Nothing here computes.
+//! stdout is data, stderr everything else. Nothing here computes. Imports go one way: `error`, `console`
+//! and `args` are at the bottom; above them `scenes` and `engines`, which open scenes and make engines;
+//! above those `methods`, which finds who draws a scene; then the verbs; this file is the top.
 
 pub mod args;
 mod bench;
@@ -9,20 +11,20 @@ mod config;
 mod console;
 pub mod convert;
 mod demo;
-mod drawing;
 mod engines;
 pub mod error;
+mod experiment;
 mod far;
-pub mod fit;
 pub mod generate;
 pub mod info;
 mod manual;
-mod mesh_view;
+mod methods;
 mod model;
 mod outputs;
 pub mod render;
 mod report;
 mod reproduce;
+mod scene_files;
 mod scenes;
 mod signals;
 mod stress;
@@ -33,7 +35,7 @@ pub mod turntable;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-use clap::{ArgAction, Parser, Subcommand};
+use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use console::Console;
 use error::{CliError, Kind};
@@ -180,7 +182,7 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
         Some(Verb::Stress(args)) => stress::run(&args, scenes, &console),
         Some(Verb::Reproduce(args)) => reproduce::run(&args, &console),
-        Some(Verb::Completions(args)) => manual::completions(&args),
-        Some(Verb::Man(args)) => manual::man(&args),
+        Some(Verb::Completions(args)) => manual::completions(&args, Cli::command()),
+        Some(Verb::Man(args)) => manual::man(&args, Cli::command()),
     }
 }

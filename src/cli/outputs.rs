@@ -3,19 +3,19 @@
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::args::{Aov, Setting};
+use super::args::Setting;
 use super::error::CliError;
-use crate::picture::png::Pixels;
+use crate::drawing::{Buffers, Shown};
 use crate::picture::{Buffer, Rows, npy, store};
 
 /// The file of a buffer: `{out stem}.{aov}.npy` beside the picture.
-pub(super) fn aov_path(picture: &Path, aov: Aov) -> PathBuf {
-    picture.with_extension(format!("{}.npy", aov.name()))
+pub(super) fn buffer_path(picture: &Path, buffer: Buffer) -> PathBuf {
+    picture.with_extension(format!("{}.npy", buffer.name()))
 }
 
 /// All files that a picture and its buffers become.
-pub(super) fn paths(picture: &Path, aovs: &[Aov]) -> Vec<PathBuf> {
-    let beside = aovs.iter().map(|&aov| aov_path(picture, aov));
+pub(super) fn paths(picture: &Path, buffers: &[Buffer]) -> Vec<PathBuf> {
+    let beside = buffers.iter().map(|&buffer| buffer_path(picture, buffer));
     std::iter::once(picture.to_owned()).chain(beside).collect()
 }
 
@@ -39,38 +39,31 @@ pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     )
 }
 
-/// Writes a picture's colours, and of its rows the buffers that are asked for.
-pub(super) fn write<R: Rows>(
-    pixels: &Pixels,
-    picture: &R,
+/// Writes a picture's colours, and the buffers that are asked for.
+pub(super) fn write(
+    shown: &Shown<'_>,
     path: &Path,
-    aovs: &[Aov],
+    buffers: &[Buffer],
     force: bool,
-) -> Result<(), CliError>
-where
-    CliError: From<R::Error>,
-{
+) -> Result<(), CliError> {
     store::write_with(path, force, |file| {
         let mut file = BufWriter::new(file);
-        pixels.write(&mut file).map_err(io::Error::other)?;
+        shown.pixels.write(&mut file).map_err(io::Error::other)?;
         file.flush()
     })?;
-    for &aov in aovs {
-        write_buffer(picture, aov.buffer(), &aov_path(path, aov), force)?;
+    for &buffer in buffers {
+        write_buffer(&shown.buffers, buffer, &buffer_path(path, buffer), force)?;
     }
     Ok(())
 }
 
 /// Writes a buffer as it is made.
-fn write_buffer<R: Rows>(
-    picture: &R,
+fn write_buffer(
+    picture: &Buffers<'_>,
     buffer: Buffer,
     path: &Path,
     force: bool,
-) -> Result<(), CliError>
-where
-    CliError: From<R::Error>,
-{
+) -> Result<(), CliError> {
     let (width, height) = picture.size();
     let mut shape = vec![height as usize, width as usize];
     if buffer.entries() > 1 {
@@ -124,7 +117,7 @@ mod tests {
 
     #[test]
     fn buffers_stand_beside_the_picture() {
-        let found = paths(Path::new("a/b.c.png"), &[Aov::Depth]);
+        let found = paths(Path::new("a/b.c.png"), &[Buffer::Depth]);
         assert_eq!(
             found,
             [Path::new("a/b.c.png"), Path::new("a/b.c.depth.npy")]

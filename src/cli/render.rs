@@ -6,15 +6,14 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{
-    CameraArgs, DataBudget, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting, camera_line,
-    camera_settings,
+    CameraArgs, DataBudget, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
+    camera_line, camera_settings,
 };
 use super::console::Console;
-use super::drawing::{Drawn, draw, min_median_max};
 use super::error::{CliError, Kind};
-use super::fit::Bounds;
-use super::scenes::Scene;
-use super::{mesh_view, outputs, report, scenes};
+use super::methods::{self, DrawArgs};
+use super::{outputs, report, scenes};
+use crate::drawing::Shown;
 use crate::picture;
 use crate::project::Camera;
 
@@ -69,23 +68,25 @@ pub(super) fn run(
     from_config: Vec<String>,
     console: &Console,
 ) -> Result<(), CliError> {
-    let names = choose_scenes(&args.scenes, from_config)?;
+    let names = scenes::choose(&args.scenes, from_config)?;
     check(args, names.len())?;
     check_distinct(args, &names)?;
     let mut results = Vec::new();
-    let mut resolved = None;
+    let (mut resolved, mut engines) = (None, Vec::new());
     let mut first_failure: Option<CliError> = None;
     let mut failed = 0;
     for name in &names {
         match render_one(args, name, names.len(), console) {
-            Ok((camera, result)) => {
+            Ok((camera, engine, result)) => {
                 resolved = Some(camera);
+                engines.push(engine);
                 results.push(result);
             }
             Err(error) if names.len() == 1 || error.kind == Kind::Pipe => return Err(error),
             Err(error) => {
                 console.error(&error);
                 failed += 1;
+                engines.push(args.engine.engine.unwrap_or_default());
                 results.push(json!({ "scene": name, "error": error.message }));
                 first_failure.get_or_insert(error);
             }
@@ -98,7 +99,7 @@ pub(super) fn run(
     if let Some(outdir) = &args.out.outdir {
         // Scenes have one camera only where the user gave it or there is one scene.
         let one = resolved.filter(|_| names.len() == 1);
-        let settings = settings(args, names.clone(), one.as_ref());
+        let settings = settings(args, names.clone(), &engines, one.as_ref());
         outputs::write_record(outdir, settings, &document, args.out.force)?;
     }
     match first_failure {
@@ -108,23 +109,6 @@ pub(super) fn run(
             format!("{failed} of {} scenes failed; see above", names.len()),
         )),
     }
-}
-
-/// Scenes of the command line, or else of the configuration file.
-pub(super) fn choose_scenes(
-    given: &[String],
-    from_config: Vec<String>,
-) -> Result<Vec<String>, CliError> {
-    let names = if given.is_empty() {
-        from_config
-    } else {
-        given.to_vec()
-    };
-    if names.is_empty() {
-        return Err(CliError::usage("no scene was given")
-            .advise("name a file or a generator such as gen:terrain,depth=10,seed=1"));
-    }
-    Ok(names)
 }
 
 fn check(args: &RenderArgs, scenes: usize) -> Result<(), CliError> {
@@ -187,66 +171,54 @@ fn output_path(args: &RenderArgs, stem: &str) -> Option<PathBuf> {
     }
 }
 
+/// Draws a scene, writes its picture and says what is asked for: `of` is the number of scenes.
 fn render_one(
     args: &RenderArgs,
     name: &str,
     of: usize,
     console: &Console,
-) -> Result<(Camera, Value), CliError> {
-    if let Some(engine) = mesh_view::engine_of(name, args.engine.engine) {
-        let output = output_path(args, &scenes::stem(name));
-        return engine.render_one(args, name, of, output.as_deref(), console);
-    }
-    if args.memory.is_some() {
-        return Err(CliError::usage("--memory is for .far files"));
-    }
-    args.engine.check_of_voxels().map_err(CliError::usage)?;
-    let scene = open(name, &args.engine.rules.scene_args(&args.scene), console)?;
-    let output = output_path(args, &scene.stem);
+) -> Result<(Camera, EngineName, Value), CliError> {
+    // What is recorded has its hash.
+    let expects = args.expect_hash.is_some() || args.out.outdir.is_some();
+    let is_hashed = args.hash || expects || console.json;
+    let draw_args = DrawArgs {
+        engine: &args.engine,
+        picture: &args.picture,
+        scene: &args.scene,
+        memory: args.memory,
+        is_hashed,
+    };
+    let opened = methods::open(name, &draw_args, console)?;
+    let output = output_path(args, &scenes::stem(name));
     if let Some(path) = &output {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
     }
-    let bounds = Bounds::of(&scene.graph);
-    let camera = args
-        .camera
-        .camera(&bounds, scene.up, args.picture.size(), 0.0);
+    let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
+    let up = args.scene.up_or(drawable.up());
+    let size = args.picture.size();
+    let camera = args.camera.camera(&drawable.bounds(), up, size, 0.0);
     if args.print_camera && !console.json {
         console.data(camera_line(&camera))?;
     }
-    let is_hashed = args.hash || args.expect_hash.is_some() || console.json;
-    let drawing = draw(
-        &scene,
-        &camera,
-        &args.engine,
-        &args.picture,
-        args.repeat,
-        is_hashed,
-    )
-    .map_err(|e| e.at(name))?;
-    let (drawn, rows) = drawing.shown()?;
+    let at_scene = |error| CliError::from(error).at(name);
+    drawable.draw(&camera, args.repeat).map_err(at_scene)?;
+    let shown = drawable.shown().map_err(at_scene)?;
+    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
     let hash = match is_hashed {
-        true => Some(picture::hash_rows(&rows).map_err(|e| CliError::from(e).at(name))?),
+        true => Some(picture::hash_rows(&shown.buffers).map_err(|e| CliError::from(e).at(name))?),
         false => None,
     };
-    if args.hash && !console.json {
-        let hash = hash.as_deref().unwrap_or_default();
-        let line = if of > 1 {
+    if let Some(hash) = hash.as_deref().filter(|_| args.hash && !console.json) {
+        console.data(if of > 1 {
             format!("{hash}  {name}")
         } else {
             hash.to_owned()
-        };
-        console.data(line)?;
+        })?;
     }
     if let Some(path) = &output {
-        outputs::write(
-            &drawn.pixels,
-            &rows,
-            path,
-            &args.picture.aov,
-            args.out.force,
-        )?;
+        outputs::write(&shown, path, &args.picture.aov, args.out.force)?;
     }
-    tell(&scene, drawn, output.as_deref(), args.repeat, console)?;
+    tell(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
         && !expected.eq_ignore_ascii_case(found)
     {
@@ -255,74 +227,53 @@ fn render_one(
             format!("{name}: the picture's hash is {found}, expected {expected}"),
         ));
     }
-    let mut result = report::drawn(&scene, &camera, drawn, hash.as_deref());
+    let mut result = report::drawn(name, opened.load_ms, &camera, &shown, hash.as_deref());
     result["output"] = json!(output);
-    Ok((camera, result))
+    Ok((camera, opened.engine, result))
 }
 
-/// Opens a scene and tells its warnings.
-pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
-    let scene = scenes::open(name, args, console.progress())?;
-    for warning in &scene.warnings {
-        console.note(format!("{name}: {warning}"));
-    }
-    if let Some(mesh) = &scene.mesh {
-        let said = if args.depth.is_some() {
-            ""
-        } else {
-            ", the default; --depth says another"
-        };
-        console.note(format!(
-            "{name}: {} triangles voxelised with {} levels{said}: {} voxels in {:.1} ms",
-            report::grouped(mesh.triangles),
-            mesh.depth,
-            report::grouped(scene.graph.voxels),
-            mesh.voxelize_ms
-        ));
-    }
-    console.detail(format!(
-        "{name}: {} voxels, {} nodes, {} levels, read and built in {:.1} ms",
-        report::grouped(scene.graph.voxels),
-        report::grouped(scene.graph.len() as u64),
-        scene.graph.depth,
-        scene.load_ms
-    ));
-    Ok(scene)
-}
-
+/// Says how long drawing took, and in detail what was counted.
 fn tell(
-    scene: &Scene,
-    drawn: &Drawn,
+    name: &str,
+    shown: &Shown<'_>,
     output: Option<&Path>,
     repeat: u32,
     console: &Console,
 ) -> Result<(), CliError> {
-    let (min, median, max) = min_median_max(&drawn.times_ms);
+    let (min, median, max) = report::min_median_max(shown.times_ms);
+    let counters = shown.counters.iter();
+    let counters = counters.map(|(name, count)| [(*name).to_owned(), report::figure(count)]);
     if repeat > 1 && !console.json {
-        let mut rows = vec![
-            vec!["runs".to_owned(), repeat.to_string()],
-            vec!["min ms".to_owned(), format!("{min:.3}")],
-            vec!["median ms".to_owned(), format!("{median:.3}")],
-            vec!["max ms".to_owned(), format!("{max:.3}")],
+        let ms = |name: &str, ms: f64| [name.to_owned(), format!("{ms:.3}")];
+        let times = [
+            ["runs".to_owned(), repeat.to_string()],
+            ms("min ms", min),
+            ms("median ms", median),
+            ms("max ms", max),
         ];
-        let pages = report::page_counters(scene);
-        let counters = drawn.stats.iter().chain(&pages);
-        rows.extend(counters.map(|&(name, count)| vec![name.to_owned(), report::grouped(count)]));
-        let head = vec![scene.source.clone(), "one frame".to_owned()];
-        console.data(report::table(head, rows))?;
+        let rows = times.into_iter().chain(counters.clone()).map(Vec::from);
+        let head = vec![name.to_owned(), "one frame".to_owned()];
+        console.data(report::table(head, rows.collect()))?;
     }
     if let Some(path) = output {
         console.note(format!("{}: drawn in {median:.1} ms", path.display()));
     }
-    for (name, count) in drawn.stats.iter().chain(&report::page_counters(scene)) {
-        console.detail(format!("  {name}: {}", report::grouped(*count)));
+    for [name, count] in counters {
+        console.detail(format!("  {name}: {count}"));
     }
     Ok(())
 }
 
 /// The resolved settings of a run.
-fn settings(args: &RenderArgs, names: Vec<String>, camera: Option<&Camera>) -> Vec<Setting> {
-    let engine = mesh_view::one_engine(&names, args.engine.engine);
+fn settings(
+    args: &RenderArgs,
+    names: Vec<String>,
+    engines: &[EngineName],
+    camera: Option<&Camera>,
+) -> Vec<Setting> {
+    // One for all scenes, or none.
+    let engine = engines.first().copied();
+    let engine = engine.filter(|first| engines.iter().all(|engine| engine == first));
     let mut settings = vec![("scene", names.into())];
     if let Some(output) = &args.output {
         settings.push(("output", output.to_string_lossy().into_owned().into()));

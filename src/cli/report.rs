@@ -7,9 +7,9 @@ use hwmodel::{Memory, OpClass, Stage};
 use serde_json::{Value, json};
 
 use super::args::camera_line;
-use super::drawing::{Drawn, min_median_max};
-use super::scenes::Scene;
+use crate::drawing::{Figures, Shown};
 use crate::project::Camera;
+pub(super) use crate::report::grouped;
 
 /// Version of every JSON document: raised when a field changes its meaning or goes.
 pub(super) const SCHEMA_VERSION: u32 = 1;
@@ -39,44 +39,58 @@ pub(super) fn camera(camera: &Camera) -> Value {
 }
 
 /// What drawing one scene took.
-pub(super) fn drawn(scene: &Scene, at: &Camera, drawn: &Drawn, hash: Option<&str>) -> Value {
-    let (min, median, max) = min_median_max(&drawn.times_ms);
-    let mut counters: serde_json::Map<String, Value> = drawn
-        .stats
-        .iter()
-        .map(|&(name, count)| (name.to_owned(), count.into()))
-        .collect();
-    for (name, count) in page_counters(scene) {
-        counters.insert(name.to_owned(), count.into());
-    }
-    json!({
-        "scene": scene.source,
-        "width": drawn.pixels.size().0,
-        "height": drawn.pixels.size().1,
-        "pixels_drawn": drawn.pixels_drawn,
+pub(super) fn drawn(
+    name: &str,
+    load_ms: f64,
+    at: &Camera,
+    shown: &Shown<'_>,
+    hash: Option<&str>,
+) -> Value {
+    let (min, median, max) = min_median_max(shown.times_ms);
+    let (width, height) = shown.pixels.size();
+    let map = |figures: &Figures| -> serde_json::Map<String, Value> {
+        let named = figures.iter().cloned();
+        named
+            .map(|(name, value)| (name.to_owned(), value))
+            .collect()
+    };
+    let mut result = json!({
+        "scene": name,
+        "width": width,
+        "height": height,
+        "pixels_drawn": shown.pixels_drawn,
         "camera": camera(at),
-        "word": {
-            "bits": drawn.setup.format.bits(),
-            "screen_fraction_bits": drawn.setup.format.frac(),
-            "clip_fraction_bits": drawn.setup.clip_frac,
-        },
-        "load_ms": scene.load_ms,
-        "render_ms": { "runs": drawn.times_ms.len(), "min": min, "median": median, "max": max },
-        "resolve_ms": drawn.resolve_ms,
-        "counters": counters,
+        "load_ms": load_ms,
+        "render_ms": { "runs": shown.times_ms.len(), "min": min, "median": median, "max": max },
+        "counters": map(&shown.counters),
         "hash": hash,
-    })
+    });
+    if let Value::Object(result) = &mut result {
+        result.extend(map(&shown.details));
+    }
+    result
 }
 
-/// Pages of a mapped scene: all, and those in memory by now. None of others.
-pub(super) fn page_counters(scene: &Scene) -> Vec<(&'static str, u64)> {
-    let pages = scene.graph.mapped_pages();
-    pages.map_or_else(Vec::new, |pages| {
-        vec![
-            ("pages_mapped", pages.mapped),
-            ("pages_resident", pages.resident),
-        ]
-    })
+/// A figure for people.
+pub(super) fn figure(value: &Value) -> String {
+    value.as_u64().map_or_else(|| value.to_string(), grouped)
+}
+
+/// Least, middle and greatest of some times; zeros for none. The middle of an
+/// even number of times is the mean of two.
+pub(super) fn min_median_max(times: &[f64]) -> (f64, f64, f64) {
+    let mut sorted = times.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let (Some(&min), Some(&max)) = (sorted.first(), sorted.last()) else {
+        return (0.0, 0.0, 0.0);
+    };
+    let half = sorted.len() / 2;
+    let median = if sorted.len() % 2 == 1 {
+        sorted[half]
+    } else {
+        (sorted[half - 1] + sorted[half]) / 2.0
+    };
+    (min, median, max)
 }
 
 /// A table in plain text, first column left, the others right.
@@ -137,34 +151,16 @@ pub(super) fn counts(counter: &Counter) -> String {
     format!("{operations}\n\n{accesses}")
 }
 
-/// A number with its digits in groups of three.
-pub(super) fn grouped(number: impl Into<u128>) -> String {
-    let digits = number.into().to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at) % 3 == 0 {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use hwmodel::{Place, Probe};
 
     #[test]
-    fn groups_of_digits() {
-        for (number, text) in [
-            (0u64, "0"),
-            (999, "999"),
-            (1000, "1,000"),
-            (1_234_567, "1,234,567"),
-        ] {
-            assert_eq!(grouped(number), text);
-        }
+    fn order_statistics() {
+        assert_eq!(min_median_max(&[3.0, 1.0, 2.0]), (1.0, 2.0, 3.0));
+        assert_eq!(min_median_max(&[4.0, 1.0, 2.0, 3.0]), (1.0, 2.5, 4.0));
+        assert_eq!(min_median_max(&[]), (0.0, 0.0, 0.0));
     }
 
     #[test]

@@ -7,11 +7,11 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::args::{CameraArgs, SceneArgs};
-use super::bench::context::Context;
-use super::bench::subjects;
 use super::console::Console;
 use super::engines;
 use super::error::{CliError, Kind};
+use super::experiment::context::Context;
+use super::experiment::subjects;
 use super::report;
 use crate::lab::bench::{Harness, Subject, ablation};
 use crate::lab::reproduce::{

@@ -5,11 +5,10 @@ use std::path::PathBuf;
 use clap::Args;
 use serde_json::json;
 
-use super::bench::args::ExportArgs;
-use super::bench::context::Context;
-use super::bench::export::{self, Results};
 use super::console::Console;
 use super::error::{CliError, Kind};
+use super::experiment::context::Context;
+use super::experiment::export::{self, ExportArgs, Results};
 use super::report;
 use crate::lab::stress::{
     self, Case, End, Findings, Hold, Outcome, Plan, Scene, panels, rows, summary, tables,

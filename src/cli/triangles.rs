@@ -5,21 +5,16 @@ use std::time::Instant;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use glam::DVec3;
 use serde_json::json;
 
 use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
-use super::drawing::milliseconds_since;
 use super::error::{CliError, Kind};
-use super::fit::Bounds;
-use super::mesh_view::{self, background};
-use super::{outputs, report};
-use crate::lab::mesh_view::light_of;
-use crate::mesh::Mesh;
-use crate::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
+use super::{outputs, report, scenes};
+use crate::drawing::{Drawable, TrianglesDrawing, TrianglesLook, milliseconds_since};
+use crate::mesh::raster::{Pattern, Samples};
 use crate::picture::npy::{self, Array, Values};
-use crate::picture::{Background, Shading, png, store};
+use crate::picture::{Background, Buffer, Shading, store};
 
 /// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -87,30 +82,28 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         store::check_free(&path, args.force)?;
     }
     let started = Instant::now();
-    let (mesh, up) = mesh_view::open(&args.mesh, &args.scene, console)?;
+    let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
     let load_ms = milliseconds_since(started);
     let size = args.size.map_or((512, 512), |s| (s.width, s.height));
-    let camera = args.camera.camera(&bounds(&mesh), up, size, 0.0);
-    let run_error = |e: &dyn std::fmt::Display| {
-        CliError::new(Kind::Run, format!("{}: {e}", args.output.display()))
+    let look = args.look()?;
+    let mut drawing = TrianglesDrawing::new(&mesh, up, look, console.progress());
+    let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
+    let at_output = |error| CliError::from(error).at(args.output.display());
+    drawing.draw(&camera, 1).map_err(at_output)?;
+    let shown = drawing.shown().map_err(at_output)?;
+    let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+    let draw_ms = shown.times_ms[0];
+    let of_picture: &[Buffer] = match args.aov.contains(&BufferName::Depth) {
+        true => &[Buffer::Depth],
+        false => &[],
     };
-    let view = mesh_view::view(&camera, mesh.bounds())?;
-    let options = args.options(&view).map_err(|e| run_error(&e))?;
-    let started = Instant::now();
-    let picture =
-        raster::draw(&mesh, &view, &options, console.progress()).map_err(|e| run_error(&e))?;
-    let draw_ms = milliseconds_since(started);
-    let bytes = png::encode(picture.width, picture.height, &picture.rgba);
-    store::write(&args.output, &bytes.map_err(|e| run_error(&e))?, args.force)?;
-    for (path, values) in args.paths().into_iter().skip(1).zip(&args.aov) {
-        let values = match values {
-            BufferName::Depth => picture.depth.clone(),
-            BufferName::Coverage => picture.coverage.clone(),
-        };
+    outputs::write(&shown, &args.output, of_picture, args.force)?;
+    if args.aov.contains(&BufferName::Coverage) {
         let array = Array {
-            shape: vec![picture.height as usize, picture.width as usize],
-            values: Values::F32(values),
+            shape: vec![size.1 as usize, size.0 as usize],
+            values: Values::F32(drawing.coverage().to_vec()),
         };
+        let path = args.output.with_extension("coverage.npy");
         store::write(&path, &npy::encode(&array), args.force)?;
     }
     console.note(format!(
@@ -124,7 +117,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
             "mesh": args.mesh,
             "output": args.output,
             "triangles": mesh.triangles().len(),
-            "samples": options.samples.per_pixel(),
+            "samples": look.samples.per_pixel(),
             "camera": camera_line(&camera),
             "load_ms": load_ms,
             "draw_ms": draw_ms,
@@ -146,33 +139,21 @@ impl TrianglesArgs {
         std::iter::once(self.output.clone()).chain(beside).collect()
     }
 
-    fn options(&self, view: &View) -> Result<RasterOptions, raster::SamplesError> {
+    fn look(&self) -> Result<TrianglesLook, CliError> {
         let pattern = match self.pattern {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
-        let shading = if self.flat {
-            Shading::Flat
-        } else {
-            Shading::Lambert
-        };
-        Ok(RasterOptions {
-            // The flag takes these numbers only.
-            samples: Samples::new(self.samples.parse().unwrap_or(16), pattern)?,
-            light: light_of(view, shading),
-            background: background(self.background),
+        // The flag takes numbers of samples only that there are.
+        let samples = self.samples.parse().unwrap_or(16);
+        Ok(TrianglesLook {
+            samples: Samples::new(samples, pattern).map_err(CliError::usage)?,
+            shading: if self.flat {
+                Shading::Flat
+            } else {
+                Shading::Lambert
+            },
+            background: self.background.unwrap_or_default(),
         })
-    }
-}
-
-/// The mesh's box and its vertices, for a fitted camera.
-pub(super) fn bounds(mesh: &Mesh) -> Bounds {
-    let (low, high) = mesh.bounds();
-    let points = mesh.triangles().iter().flatten();
-    let hull = points.map(|&i| DVec3::from_array(mesh.positions()[i as usize].map(f64::from)));
-    Bounds {
-        low,
-        high,
-        hull: hull.collect(),
     }
 }

@@ -1,22 +1,19 @@
 //! `turntable`: many frames around a scene in one process.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::args::{CameraArgs, EngineArgs, OutputArgs, PictureArgs, SceneArgs, Setting};
+use super::args::{
+    CameraArgs, EngineArgs, EngineName, OutputArgs, PictureArgs, SceneArgs, Setting,
+};
 use super::console::Console;
-use super::drawing::{Drawing, milliseconds_since, min_median_max};
-use super::error::CliError;
-use super::fit::{Bounds, Up};
-use super::mesh_view::{self, DrawArgs, FileEngine, MeshDrawn};
-use super::render::{choose_scenes, open};
-use super::{outputs, report};
-use crate::picture::png::Pixels;
-use crate::picture::{self, Rows};
-use crate::project::Camera;
+use super::error::{CliError, Kind};
+use super::methods::{self, DrawArgs};
+use super::{outputs, report, scenes};
+use crate::drawing::Shown;
+use crate::picture;
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]
@@ -61,7 +58,7 @@ pub(super) fn run(
     console: &Console,
 ) -> Result<(), CliError> {
     let given: Vec<String> = args.scene_name.iter().cloned().collect();
-    let names = choose_scenes(&given, from_config)?;
+    let names = scenes::choose(&given, from_config)?;
     let [name] = names.as_slice() else {
         return Err(CliError::usage("a turntable shows one scene"));
     };
@@ -81,21 +78,15 @@ pub(super) fn run(
     if let Some(outdir) = &args.out.outdir {
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
     }
-    let mut turn = Turn {
-        args,
-        name,
-        paths: &paths,
-        times_ms: Vec::new(),
-        results: Vec::new(),
-    };
-    match mesh_view::engine_of(name, args.engine.engine) {
-        Some(engine) => turn.file(engine, console)?,
-        None => turn.scene(console)?,
-    }
-    let (min, median, max) = min_median_max(&turn.times_ms);
+    let Turn {
+        engine,
+        times_ms,
+        results,
+    } = draw(args, name, &paths, console)?;
+    let (min, median, max) = report::min_median_max(&times_ms);
     let document = report::document(
         "turntable",
-        json!({ "frames": turn.results, "render_ms": { "min": min, "median": median, "max": max } }),
+        json!({ "frames": results, "render_ms": { "min": min, "median": median, "max": max } }),
     );
     if console.json {
         console.document(&document)?;
@@ -105,153 +96,96 @@ pub(super) fn run(
         args.frames
     ));
     if let Some(outdir) = &args.out.outdir {
-        outputs::write_record(outdir, settings(args, names), &document, args.out.force)?;
+        outputs::write_record(
+            outdir,
+            settings(args, names, engine),
+            &document,
+            args.out.force,
+        )?;
     }
     Ok(())
 }
 
-/// The frames of a turn, as they are drawn.
-struct Turn<'t> {
-    args: &'t TurntableArgs,
-    name: &'t str,
-    paths: &'t [PathBuf],
+/// The frames of a turn, drawn.
+struct Turn {
+    engine: EngineName,
     times_ms: Vec<f64>,
     results: Vec<Value>,
 }
 
-impl Turn<'_> {
-    /// Draws a voxel scene.
-    fn scene(&mut self, console: &Console) -> Result<(), CliError> {
-        let args = self.args;
-        args.engine.check_of_voxels().map_err(CliError::usage)?;
-        let scene = open(
-            self.name,
-            &args.engine.rules.scene_args(&args.scene),
-            console,
-        )?;
-        let mut drawing = Drawing::new(
-            &scene,
-            &args.engine,
-            &args.picture,
-            args.hash || console.json,
-        )
-        .map_err(|e| e.at(self.name))?;
-        let bounds = Bounds::of(&scene.graph);
-        self.frames(&bounds, scene.up, console, |camera, keeper| {
-            drawing.draw(camera)?;
-            let (drawn, rows) = drawing.shown()?;
-            let hash = keeper.keep(&drawn.pixels, &rows)?;
-            let times_ms = drawn.times_ms.clone();
-            Ok((
-                times_ms,
-                report::drawn(&scene, camera, drawn, hash.as_deref()),
+/// Draws all frames and writes them.
+fn draw(
+    args: &TurntableArgs,
+    name: &str,
+    paths: &[PathBuf],
+    console: &Console,
+) -> Result<Turn, CliError> {
+    let draw_args = DrawArgs {
+        engine: &args.engine,
+        picture: &args.picture,
+        scene: &args.scene,
+        memory: None,
+        is_hashed: args.hash || console.json,
+    };
+    let opened = methods::open(name, &draw_args, console)?;
+    let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
+    let up = args.scene.up_or(drawable.up());
+    // One distance for all frames, so that the object does not breathe.
+    let bounds = drawable.bounds().revolved(up);
+    let mut turn = Turn {
+        engine: opened.engine,
+        times_ms: Vec::new(),
+        results: Vec::new(),
+    };
+    console.progress().begin("drawing", u64::from(args.frames));
+    for (frame, path) in paths.iter().enumerate() {
+        let degrees = 360.0 * frame as f64 / f64::from(args.frames);
+        let size = args.picture.size();
+        let camera = args.camera.camera(&bounds, up, size, degrees);
+        let result = (|| {
+            drawable.draw(&camera, 1)?;
+            let shown = drawable.shown()?;
+            let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
+            let hash = keep(args, &shown, path, console)?;
+            turn.times_ms.extend(shown.times_ms);
+            let load_ms = opened.load_ms;
+            Ok::<_, CliError>(report::drawn(
+                name,
+                load_ms,
+                &camera,
+                &shown,
+                hash.as_deref(),
             ))
-        })
+        })();
+        let mut result = result.map_err(|e| e.at(format!("{name}, frame {frame}")))?;
+        result["output"] = json!(path);
+        turn.results.push(result);
+        console.progress().advance(1);
     }
-
-    /// Draws a file that an engine of its own draws.
-    fn file(&mut self, engine: &FileEngine, console: &Console) -> Result<(), CliError> {
-        let args = self.args;
-        let draw_args = DrawArgs {
-            engine: &args.engine,
-            picture: &args.picture,
-            scene: &args.scene,
-            memory: None,
-        };
-        let started = Instant::now();
-        let name = self.name;
-        engine.open(name, draw_args, &mut |file| {
-            let load_ms = milliseconds_since(started);
-            let up = args.scene.up_or(file.up());
-            self.frames(&file.bounds(), up, console, |camera, keeper| {
-                let started = Instant::now();
-                let (picture, counters) = file.draw(camera)?;
-                let times_ms = vec![milliseconds_since(started)];
-                let pixels = Pixels::new(picture.width, picture.height, picture.rgba.clone());
-                let hash = keeper.keep(&pixels, &picture)?;
-                let drawn = MeshDrawn {
-                    name,
-                    engine: engine.name,
-                    camera,
-                    picture: &picture,
-                    load_ms,
-                    times_ms: &times_ms,
-                    counters,
-                    memory: file.memory(),
-                };
-                let result = drawn.describe(hash.as_deref());
-                Ok((times_ms, result))
-            })
-        })
-    }
-
-    /// Has all frames drawn by `draw`, which is handed a camera and what keeps a picture.
-    /// It gives times and what to say of the frame.
-    fn frames(
-        &mut self,
-        bounds: &Bounds,
-        up: Up,
-        console: &Console,
-        mut draw: impl FnMut(&Camera, &Keeper<'_>) -> Result<(Vec<f64>, Value), CliError>,
-    ) -> Result<(), CliError> {
-        let args = self.args;
-        // One distance for all frames, so that the object does not breathe.
-        let bounds = bounds.revolved(up);
-        console.progress().begin("drawing", u64::from(args.frames));
-        for (frame, path) in self.paths.iter().enumerate() {
-            let turn = 360.0 * frame as f64 / f64::from(args.frames);
-            let size = args.picture.size();
-            let camera = args.camera.camera(&bounds, up, size, turn);
-            let keeper = Keeper {
-                args,
-                path,
-                console,
-            };
-            let (times_ms, mut result) = draw(&camera, &keeper)
-                .map_err(|e| e.at(format!("{}, frame {frame}", self.name)))?;
-            self.times_ms.extend(times_ms);
-            result["output"] = json!(path);
-            self.results.push(result);
-            console.progress().advance(1);
-        }
-        console.progress().end();
-        Ok(())
-    }
+    console.progress().end();
+    Ok(turn)
 }
 
-/// Keeps a frame's picture.
-struct Keeper<'k> {
-    args: &'k TurntableArgs,
-    path: &'k Path,
-    console: &'k Console,
-}
-
-impl Keeper<'_> {
-    /// Writes a picture; gives its hash where that is wanted.
-    fn keep<R: Rows>(&self, pixels: &Pixels, picture: &R) -> Result<Option<String>, CliError>
-    where
-        CliError: From<R::Error>,
-    {
-        let Self {
-            args,
-            path,
-            console,
-        } = self;
-        outputs::write(pixels, picture, path, &args.picture.aov, args.out.force)?;
-        if !args.hash && !console.json {
-            return Ok(None);
-        }
-        let hash = picture::hash_rows(picture)?;
-        if args.hash && !console.json {
-            console.data(format!("{hash}  {}", path.display()))?;
-        }
-        Ok(Some(hash))
+/// Writes a frame's picture; gives its hash where that is wanted.
+fn keep(
+    args: &TurntableArgs,
+    shown: &Shown<'_>,
+    path: &Path,
+    console: &Console,
+) -> Result<Option<String>, CliError> {
+    outputs::write(shown, path, &args.picture.aov, args.out.force)?;
+    if !args.hash && !console.json {
+        return Ok(None);
     }
+    let hash = picture::hash_rows(&shown.buffers)?;
+    if args.hash && !console.json {
+        console.data(format!("{hash}  {}", path.display()))?;
+    }
+    Ok(Some(hash))
 }
 
-fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
+fn settings(args: &TurntableArgs, names: Vec<String>, engine: EngineName) -> Vec<Setting> {
     let output = args.output.to_string_lossy().into_owned();
-    let engine = mesh_view::one_engine(&names, args.engine.engine);
     let mut settings: Vec<Setting> = vec![
         ("scene", names.into()),
         ("output", output.into()),
@@ -259,7 +193,7 @@ fn settings(args: &TurntableArgs, names: Vec<String>) -> Vec<Setting> {
     ];
     settings.extend(args.camera.settings());
     settings.extend(args.picture.settings());
-    settings.extend(args.engine.settings(engine));
+    settings.extend(args.engine.settings(Some(engine)));
     settings.extend(args.scene.settings());
     settings
 }

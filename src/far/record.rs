@@ -29,12 +29,17 @@ pub enum OpacityKind {
 
 /// What opacities are used for: when a file is built, or when it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Opacity {
-    /// Every voxel is opaque: the method without anti-aliasing.
+    /// Every voxel is opaque: without anti-aliasing.
     None,
-    /// One number a voxel: hits over hits and passes of all directions.
+    /// One number a voxel: hits over rays, of all directions.
+    ///
+    /// Rays that hit, over rays that hit or pass.
     Scalar,
-    /// A number for each main direction, where they differ.
+    /// A number for each main direction.
+    ///
+    /// Only where they differ.
     #[default]
     Six,
 }

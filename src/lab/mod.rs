@@ -6,7 +6,6 @@ pub mod bounds;
 pub mod error;
 pub mod flicker;
 pub mod float_rays;
-pub mod mesh_view;
 pub mod methods;
 pub mod model;
 pub mod reproduce;

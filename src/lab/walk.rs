@@ -7,11 +7,11 @@
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
+use crate::drawing::mesh_view::{light_of, view_of};
 use crate::far::FarFile;
 use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::lab::bench::Clock;
 use crate::lab::error::Look;
-use crate::lab::mesh_view::{light_of, view_of};
 use crate::lab::methods::opacity_in_words;
 use crate::project::Camera;
 #[cfg(feature = "cli")]

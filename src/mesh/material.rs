@@ -4,11 +4,12 @@ use std::sync::LazyLock;
 
 /// How the numbers of a colour in a file are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum ColorSpace {
     /// As shown on a screen.
     #[default]
     Srgb,
-    /// In proportion to light.
+    /// In proportion to light, as Blender writes them.
     Linear,
 }
 

@@ -7,11 +7,13 @@ use glam::DVec3;
 
 /// How a voxel's colour depends on where it looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Shading {
-    /// Not at all: the colour as the file has it.
+    /// Colours as the file has them.
     Flat,
-    /// Lambert's law under a key light that moves with the camera, over an
-    /// ambient floor.
+    /// A key light that moves with the camera, over an ambient floor.
+    ///
+    /// By Lambert's law.
     #[default]
     Lambert,
 }
@@ -28,6 +30,17 @@ pub enum Background {
 impl Default for Background {
     fn default() -> Self {
         Self::Color([236, 239, 244])
+    }
+}
+
+impl Background {
+    /// The colour, sRGB; `None` of transparent pixels.
+    #[must_use]
+    pub fn color(self) -> Option<[u8; 3]> {
+        match self {
+            Self::None => None,
+            Self::Color(color) => Some(color),
+        }
     }
 }
 

@@ -10,6 +10,7 @@ mod lights;
 mod linear;
 pub mod npy;
 mod paint;
+mod pixels;
 #[cfg(feature = "png")]
 pub mod png;
 mod resolve;
@@ -23,6 +24,7 @@ pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
 pub use hash::{hash, hash_rows};
 pub use lights::lights;
 pub(crate) use linear::Linear;
+pub use pixels::Pixels;
 pub use resolve::{ResolveError, Resolver, resolve};
 pub use rows::{Buffer, Rows};
 pub use shade::Shader;

@@ -5,6 +5,8 @@ use std::io::{BufRead, Cursor, Seek, Write};
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder, ImageError, ImageReader, Limits};
 
+pub use super::pixels::Pixels;
+
 /// Colours of a picture, without anything else.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
@@ -19,56 +21,7 @@ pub struct Image {
 /// Most pixels a side that are read.
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
-/// Colours of a picture as a PNG file has them: without an alpha channel where
-/// all pixels are opaque.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Pixels {
-    width: u32,
-    height: u32,
-    /// Red, green, blue, and alpha if there is one, row by row from the top left.
-    bytes: Vec<u8>,
-    has_alpha: bool,
-}
-
 impl Pixels {
-    /// Opaque pixels.
-    #[must_use]
-    pub fn opaque(width: u32, height: u32, rgb: Vec<[u8; 3]>) -> Self {
-        Self {
-            width,
-            height,
-            bytes: rgb.into_flattened(),
-            has_alpha: false,
-        }
-    }
-
-    /// Pixels that may be opaque.
-    #[must_use]
-    pub fn new(width: u32, height: u32, rgba: Vec<[u8; 4]>) -> Self {
-        let has_alpha = rgba.iter().any(|pixel| pixel[3] != 255);
-        let mut bytes = rgba.into_flattened();
-        if !has_alpha {
-            // In place: a second buffer would be as large as the picture.
-            let pixels = bytes.len() / 4;
-            for pixel in 1..pixels {
-                bytes.copy_within(4 * pixel..4 * pixel + 3, 3 * pixel);
-            }
-            bytes.truncate(3 * pixels);
-        }
-        Self {
-            width,
-            height,
-            bytes,
-            has_alpha,
-        }
-    }
-
-    /// Pixels across and down.
-    #[must_use]
-    pub fn size(&self) -> (u32, u32) {
-        (self.width, self.height)
-    }
-
     /// Writes a PNG file's bytes.
     ///
     /// # Errors

@@ -10,22 +10,48 @@ use super::npy::Values;
 
 /// A buffer of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Buffer {
-    /// [`Picture::rgba`].
-    Color,
+    /// View-axis depth, world units; inf where nothing is seen.
+    ///
     /// [`Picture::depth`].
     Depth,
+    /// Unit normal in world directions.
+    ///
     /// [`Picture::normal`].
     Normal,
+    /// File index of the voxel seen, and its level; level -1 where nothing is seen.
+    ///
     /// [`Picture::voxel`].
     Voxel,
+    /// Graph node; -1 where nothing is seen.
+    ///
     /// [`Picture::node`].
     Node,
+    /// Records worked on for the pixel.
+    ///
     /// [`Picture::records`]; zeros where they were not counted.
     Records,
+    /// Colour and alpha.
+    ///
+    /// [`Picture::rgba`].
+    Color,
 }
 
 impl Buffer {
+    /// The name in names of files and of flags.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Depth => "depth",
+            Self::Normal => "normal",
+            Self::Voxel => "voxel",
+            Self::Node => "node",
+            Self::Records => "records",
+            Self::Color => "color",
+        }
+    }
+
     /// Numbers of a pixel.
     #[must_use]
     pub fn entries(self) -> usize {

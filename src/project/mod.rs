@@ -3,7 +3,7 @@
 pub mod camera;
 mod depths;
 pub mod engine;
-pub mod fit;
+mod fit_camera;
 pub mod host;
 mod opacity;
 mod reach;
@@ -13,6 +13,7 @@ pub mod viewer;
 
 pub use camera::{Camera, CameraError};
 pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats};
+pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 pub use setup::{CageKind, Coverage, FrameSetup, SetupError, SetupOptions};
 pub use viewer::{Contents, Viewer};

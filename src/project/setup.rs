@@ -39,10 +39,13 @@ pub const SCREEN_GUARD_SHIFT: u32 = 3;
 /// How a record holds its projected vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum CageKind {
-    /// Eight corners in Morton order (the paper).
+    /// Eight corners (the paper).
+    ///
+    /// In Morton order.
     Corners,
-    /// One corner and three edge vectors.
+    /// One corner and three edges.
     #[default]
     Frame,
 }
@@ -50,15 +53,24 @@ pub enum CageKind {
 /// Which pixels a voxel draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Coverage {
     /// The pixel in which its whole box lies (the paper).
     Any,
-    /// The pixel that holds its centre, once it is no larger than a pixel.
+    /// The pixel that holds its centre.
+    ///
+    /// Larger voxels are split until they are no larger than a pixel.
     Center,
-    /// Every pixel whose centre lies inside its silhouette.
+    /// Every pixel whose centre lies inside its outline.
     #[default]
     Exact,
-    /// As `Exact`, each voxel with its opacity, blended front to back.
+    /// As `Exact`, each voxel with its six opacities, blended front to back.
+    #[cfg_attr(
+        feature = "cli",
+        value(
+            help = "As exact, each voxel with its six opacities (--opacities), blended front to back"
+        )
+    )]
     Alpha,
 }
 

@@ -7,4 +7,4 @@ pub mod html;
 pub mod plot;
 pub mod table;
 
-pub use table::{Cell, Table};
+pub use table::{Cell, Table, grouped};

@@ -164,8 +164,10 @@ fn quoted(field: &str) -> String {
     }
 }
 
-fn grouped(count: u64) -> String {
-    let digits = count.to_string();
+/// A number with its digits in groups of three.
+#[must_use]
+pub fn grouped(number: impl Into<u128>) -> String {
+    let digits = number.into().to_string();
     let mut text = String::new();
     for (at, digit) in digits.chars().enumerate() {
         if at > 0 && (digits.len() - at).is_multiple_of(3) {
@@ -190,6 +192,18 @@ mod tests {
             .push(row("gen:menger,depth=2", 12.345, Some(1_234_567)));
         table.rows.push(row("a \"b\" | c", 0.5, None));
         table
+    }
+
+    #[test]
+    fn groups_of_digits() {
+        for (number, text) in [
+            (0u64, "0"),
+            (999, "999"),
+            (1000, "1,000"),
+            (1_234_567, "1,234,567"),
+        ] {
+            assert_eq!(grouped(number), text);
+        }
     }
 
     #[test]

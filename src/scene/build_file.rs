@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::generate::{self, Spec};
-use super::mesh::{From as MeshFrom, MeshSummary, Ready};
+use super::generate::Spec;
+use super::mesh::{MeshSummary, Ready};
 use super::open::{OpenError, OpenOptions};
-use super::{SceneInfo, read_voxels};
+use super::{FileKind, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
+use crate::mesh::SameFolder;
 
 /// A `.vxg` file that was built.
 #[derive(Debug)]
@@ -48,39 +49,39 @@ pub fn build_file(
     let mut info = None;
     let mut mesh = None;
     let mut placement = ([0.0; 3], 1.0);
-    if source.starts_with(generate::PREFIX) {
-        let spec = Spec::parse(source)?;
-        if let Some(graph) = spec.linked() {
-            vxg::write(&graph, output, overwrite)?;
-            return Ok(BuiltFile {
-                voxels: graph.voxels,
-                bytes: std::fs::metadata(output).map_or(0, |file| file.len()),
-                info,
-                mesh: None,
-                report: None,
-            });
-        }
-        let least = spec.least_voxels();
-        if least >= u64::from(u32::MAX) {
-            return Err(failed(BuildError::TooMany(least).into()));
-        }
-        spec.voxels(&mut |voxel| builder.push(voxel), progress);
-    } else {
-        let path = Path::new(source);
-        let sink = &mut |voxel| builder.push(voxel);
-        match read_voxels(path, &options.read, sink, progress) {
-            Ok(found) => info = Some(found),
-            Err(error) => {
-                let file = MeshFrom::File(path);
-                let ready = Ready::after(error, &file, source, &options.mesh, progress)?;
-                // The mesh's share; nothing was pushed yet.
-                let mut external = external;
-                external.memory = external.memory.saturating_sub(ready.bytes());
-                builder = ExternalBuilder::new(external);
-                placement = ready.placement();
-                let (found, summary) = ready.voxels(&mut |v| builder.push(v), progress);
-                (info, mesh) = (Some(found), Some(summary));
+    match Source::find(source)? {
+        Source::Generated(spec) => {
+            let spec = Spec::parse(&spec)?;
+            if let Some(graph) = spec.linked() {
+                vxg::write(&graph, output, overwrite)?;
+                return Ok(BuiltFile {
+                    voxels: graph.voxels,
+                    bytes: std::fs::metadata(output).map_or(0, |file| file.len()),
+                    info,
+                    mesh: None,
+                    report: None,
+                });
             }
+            let least = spec.least_voxels();
+            if least >= u64::from(u32::MAX) {
+                return Err(failed(BuildError::TooMany(least).into()));
+            }
+            spec.voxels(&mut |voxel| builder.push(voxel), progress);
+        }
+        Source::File(file) if file.kind().is_some_and(FileKind::is_mesh) => {
+            let beside = SameFolder::of(file.path());
+            let ready = Ready::read(file, &beside, &options.mesh, progress)?;
+            // The mesh's share; nothing was pushed yet.
+            let mut external = external;
+            external.memory = external.memory.saturating_sub(ready.bytes());
+            builder = ExternalBuilder::new(external);
+            placement = ready.placement();
+            let (found, summary) = ready.voxels(&mut |v| builder.push(v), progress);
+            (info, mesh) = (Some(found), Some(summary));
+        }
+        Source::File(file) => {
+            let sink = &mut |voxel| builder.push(voxel);
+            info = Some(file.read_voxels(&options.read, sink, progress)?);
         }
     }
     let report = builder

@@ -1,14 +1,15 @@
-//! Which format a file has, told from its first bytes and never from its name.
+//! Which format a file has, found from its content: the only detector of the program.
+//!
+//! A file's name counts in one case alone, a binary STL that was cut short ([`detect_named`]).
 
 use std::fmt;
-
 use std::path::Path;
 
 use crate::graph::vxg;
 use crate::mesh::is_binary_stl;
 
 /// How many bytes of a file [`detect`] should be given, where there are so many.
-pub const DETECT_BYTES: usize = 4096;
+pub(super) const DETECT_BYTES: usize = 4096;
 
 /// The formats that are told apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -16,8 +17,11 @@ pub const DETECT_BYTES: usize = 4096;
 pub enum FileKind {
     /// MagicaVoxel or VoxelShop model.
     Vox,
-    /// PLY: a cloud of voxel indices, or a mesh where it has faces.
+    /// PLY: a cloud of voxel indices. [`detect`] cannot see the faces of a mesh and says this of both;
+    /// [`SceneFile`](super::SceneFile) reads the header and tells them apart.
     Ply,
+    /// PLY with faces: a mesh.
+    PlyMesh,
     /// A numpy array of voxel indices.
     Npy,
     /// A voxel graph of this program.
@@ -30,6 +34,10 @@ pub enum FileKind {
     Glb,
     /// Stereolithography mesh (the binary form is known by its length).
     Stl,
+    /// Far voxels, built of a mesh.
+    Far,
+    /// Textured voxels, built of a mesh.
+    Tvx,
 }
 
 impl FileKind {
@@ -39,10 +47,19 @@ impl FileKind {
         matches!(self, Self::Vox | Self::Ply | Self::Npy)
     }
 
-    /// Whether files of this kind hold meshes. A `.ply` does if it has faces.
+    /// Whether files of this kind hold triangles.
     #[must_use]
     pub fn is_mesh(self) -> bool {
-        matches!(self, Self::Obj | Self::Gltf | Self::Glb | Self::Stl)
+        matches!(
+            self,
+            Self::PlyMesh | Self::Obj | Self::Gltf | Self::Glb | Self::Stl
+        )
+    }
+
+    /// Whether files of this kind were built of a mesh for one method, which alone draws them.
+    #[must_use]
+    pub fn is_built_of_mesh(self) -> bool {
+        matches!(self, Self::Far | Self::Tvx)
     }
 }
 
@@ -50,13 +67,15 @@ impl fmt::Display for FileKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Vox => ".vox",
-            Self::Ply => ".ply",
+            Self::Ply | Self::PlyMesh => ".ply",
             Self::Npy => ".npy",
             Self::Vxg => ".vxg",
             Self::Obj => ".obj",
             Self::Gltf => ".gltf",
             Self::Glb => ".glb",
             Self::Stl => ".stl",
+            Self::Far => ".far",
+            Self::Tvx => ".tvx",
         })
     }
 }
@@ -67,13 +86,16 @@ impl fmt::Display for FileKind {
 /// not recognised, since its first 80 bytes are free: see [`detect_with_length`].
 #[must_use]
 pub fn detect(prefix: &[u8]) -> Option<FileKind> {
-    let marks: [(&[u8], FileKind); 6] = [
+    let marks: [(&[u8], FileKind); 8] = [
         (b"VOX ", FileKind::Vox),
         (b"\x93NUMPY", FileKind::Npy),
         (b"glTF", FileKind::Glb),
         (b"ply\n", FileKind::Ply),
         (b"ply\r", FileKind::Ply),
         (b"solid", FileKind::Stl),
+        // Written by floors above this one, whose tests compare them.
+        (b"\x89FAR\r\n\x1a\n", FileKind::Far),
+        (b"\x89TVX\r\n\x1a\n", FileKind::Tvx),
     ];
     if let Some((_, kind)) = marks.iter().find(|(mark, _)| prefix.starts_with(mark)) {
         return Some(*kind);
@@ -92,7 +114,7 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
 
 /// As [`detect`], with the length of the file: that is how a binary STL is known.
 #[must_use]
-pub fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind> {
+pub(super) fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind> {
     match detect(prefix) {
         // A binary one may begin with the word of a text.
         None | Some(FileKind::Stl) if is_binary_stl(prefix, length) => Some(FileKind::Stl),
@@ -103,7 +125,7 @@ pub fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind> {
 /// As [`detect_with_length`]; of what begins like no known format a name that ends in `.stl` is
 /// believed: nothing else tells a binary STL that was cut short, and its reader says what is missing.
 #[must_use]
-pub fn detect_named(prefix: &[u8], length: u64, name: &Path) -> Option<FileKind> {
+pub(super) fn detect_named(prefix: &[u8], length: u64, name: &Path) -> Option<FileKind> {
     let is_stl = name
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("stl"));

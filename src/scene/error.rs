@@ -49,6 +49,14 @@ pub enum SceneError {
         /// The file, as the user named it.
         file: String,
     },
+    /// The file was built of a mesh for one method.
+    #[error("{file}: this is a {kind} file, which has neither voxels nor triangles to be read")]
+    BuiltOfMesh {
+        /// The file, as the user named it.
+        file: String,
+        /// Which format it is.
+        kind: FileKind,
+    },
     /// The content begins like none of the known formats.
     #[error(
         "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") .vxg (\"\\x89VXG\"), or a mesh (.obj, .ply, .stl, .gltf, .glb); formats are told by content, so renaming the file does not help"
@@ -134,8 +142,6 @@ pub(crate) enum Problem {
     Invalid(Box<Fault>),
     /// See [`SceneError::Limit`].
     Limit(Box<Fault>),
-    /// See [`SceneError::Mesh`].
-    Mesh(FileKind),
     /// Reading failed.
     Read(std::io::Error),
 }
@@ -158,10 +164,6 @@ impl Problem {
                 file.clone_into(&mut fault.file);
                 SceneError::Limit(fault)
             }
-            Self::Mesh(kind) => SceneError::Mesh {
-                file: file.to_owned(),
-                kind,
-            },
             Self::Read(source) => SceneError::Io {
                 file: file.to_owned(),
                 action: "read the file",

@@ -1,16 +1,16 @@
 //! Meshes as scenes: read, voxelised, placed where the file has them.
 
+use std::io::{Read, Seek};
 use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
 
-use super::error::printable;
 use super::open::OpenError;
-use super::{DETECT_BYTES, FileKind, SceneError, SceneInfo, detect_named};
+use super::{FileKind, SceneError, SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
-use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshError, MeshFormat, SameFolder};
+use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshFormat, SameFolder};
 
 /// How a mesh becomes a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,28 +69,9 @@ pub fn read_mesh(
     options: &LoadOptions,
     progress: &dyn Progress,
 ) -> Result<(Mesh, bool), OpenError> {
-    let name = path.display().to_string();
-    let bytes = file_bytes(path)?;
-    let beginning = &bytes[..bytes.len().min(DETECT_BYTES)];
-    let kind = match detect_named(beginning, bytes.len() as u64, path) {
-        Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
-        Some(kind) => return Err(SceneError::NotMesh { file: name, kind }.into()),
-        None => {
-            let begins = printable(beginning);
-            return Err(SceneError::Unknown { file: name, begins }.into());
-        }
-    };
-    let beside = SameFolder::of(path);
-    let mesh = read_bytes(&bytes, kind, &name, &beside, options, progress)?;
+    let file = SceneFile::open(path)?;
+    let (mesh, kind) = read(file, &SameFolder::of(path), options, progress)?;
     Ok((mesh, is_y_up(kind)))
-}
-
-fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
-    std::fs::read(path).map_err(|source| MeshError::Io {
-        file: path.display().to_string(),
-        action: "read the file",
-        source,
-    })
 }
 
 /// Whether +Y is up, by the custom of the format.
@@ -98,23 +79,31 @@ fn is_y_up(kind: FileKind) -> bool {
     kind != FileKind::Stl
 }
 
-/// Reads a mesh that is in memory.
-fn read_bytes(
-    bytes: &[u8],
-    kind: FileKind,
-    name: &str,
+/// Reads a mesh; `beside` finds the other files that it names.
+fn read<R: Read + Seek>(
+    file: SceneFile<R>,
     beside: &dyn Beside,
     options: &LoadOptions,
     progress: &dyn Progress,
-) -> Result<Mesh, MeshError> {
-    let format = match kind {
-        FileKind::Ply => MeshFormat::Ply,
-        FileKind::Stl => MeshFormat::Stl,
-        FileKind::Gltf => MeshFormat::Gltf,
-        FileKind::Glb => MeshFormat::Glb,
-        _ => MeshFormat::Obj,
+) -> Result<(Mesh, FileKind), OpenError> {
+    let (format, kind) = match file.kind() {
+        Some(kind @ FileKind::PlyMesh) => (MeshFormat::Ply, kind),
+        Some(kind @ FileKind::Stl) => (MeshFormat::Stl, kind),
+        Some(kind @ FileKind::Gltf) => (MeshFormat::Gltf, kind),
+        Some(kind @ FileKind::Glb) => (MeshFormat::Glb, kind),
+        Some(kind @ FileKind::Obj) => (MeshFormat::Obj, kind),
+        // Its reader says that there are no faces, or what is wrong with the header.
+        Some(kind @ FileKind::Ply) => (MeshFormat::Ply, kind),
+        _ => {
+            return Err(file
+                .refused(|file, kind| SceneError::NotMesh { file, kind })
+                .into());
+        }
     };
-    mesh::read(bytes, format, name, beside, options, progress)
+    let name = file.name();
+    let bytes = file.bytes()?;
+    let mesh = mesh::read(&bytes, format, &name, beside, options, progress)?;
+    Ok((mesh, kind))
 }
 
 /// A mesh that is ready to be voxelised.
@@ -125,41 +114,20 @@ pub(super) struct Ready {
     load_ms: f64,
 }
 
-/// Where a mesh's bytes come from.
-pub(super) enum From<'a> {
-    File(&'a Path),
-    Memory(&'a [u8], &'a dyn Beside),
-}
-
 impl Ready {
-    /// Reads a mesh and lays the grid around it. That the file is a mesh is
-    /// known from the error of reading it as voxels; any other error stays.
-    pub(super) fn after(
-        error: SceneError,
-        source: &From<'_>,
-        name: &str,
+    /// Reads a mesh and lays the grid around it.
+    pub(super) fn read<R: Read + Seek>(
+        file: SceneFile<R>,
+        beside: &dyn Beside,
         options: &MeshOptions,
         progress: &dyn Progress,
     ) -> Result<Self, OpenError> {
-        let SceneError::Mesh { kind, .. } = error else {
-            return Err(error.into());
-        };
         let started = Instant::now();
-        let mesh = match source {
-            From::File(path) => {
-                let bytes = file_bytes(path)?;
-                let beside = SameFolder::of(path);
-                read_bytes(&bytes, kind, name, &beside, &options.load, progress)?
-            }
-            From::Memory(bytes, beside) => {
-                read_bytes(bytes, kind, name, *beside, &options.load, progress)?
-            }
-        };
+        let source_name = file.name();
+        let (mesh, kind) = read(file, beside, &options.load, progress)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let grid = Grid::around(&mesh, options.depth).map_err(|error| OpenError::Grid {
-            source_name: name.to_owned(),
-            error,
-        })?;
+        let grid = Grid::around(&mesh, options.depth)
+            .map_err(|error| OpenError::Grid { source_name, error })?;
         Ok(Self {
             kind,
             mesh,

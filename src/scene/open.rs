@@ -1,17 +1,15 @@
 //! From what a user calls a scene to a graph: a generator's specification or
 //! a file of any known format.
 
-use std::fs::File;
-use std::io::Read;
-use std::path::Path;
+use std::io::{Read, Seek};
 
-use super::generate::{self, Spec, SpecError};
+use super::generate::{Spec, SpecError};
 use super::memory;
-use super::mesh::{From as MeshFrom, MeshOptions, MeshSummary, Ready};
-use super::{DETECT_BYTES, FileKind, ReadOptions, SceneError, SceneInfo, detect, read_voxels};
+use super::mesh::{MeshOptions, MeshSummary, Ready};
+use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::graph::{BuildError, BuildOptions, Builder, ExternalError, Graph, Progress, vxg};
 use crate::mesh::voxelize::GridError;
-use crate::mesh::{MeshError, Nothing};
+use crate::mesh::{Beside, MeshError, Nothing, SameFolder};
 
 /// Graph files up to this size are checked in full when they are opened;
 /// larger ones are mapped, and only the pages that a picture needs are read.
@@ -127,31 +125,27 @@ pub fn open(
     options: &OpenOptions,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
-    if source.starts_with(generate::PREFIX) {
-        return open_generated(source, progress);
-    }
-    let path = Path::new(source);
-    let refused = |action, error| {
-        OpenError::Scene(SceneError::Io {
-            file: source.to_owned(),
-            action,
-            source: error,
-        })
+    open_source(Source::find(source)?, options, progress)
+}
+
+/// [`open`], of what was found already.
+///
+/// # Errors
+/// See [`OpenError`].
+pub fn open_source(
+    source: Source,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    let file = match source {
+        Source::Generated(spec) => return open_generated(&spec, progress),
+        Source::File(file) => file,
     };
-    let mut beginning = Vec::new();
-    let file = File::open(path).map_err(|e| refused("open the file", e))?;
-    let length = file
-        .metadata()
-        .map_err(|e| refused("ask for the file's size", e))?
-        .len();
-    file.take(DETECT_BYTES as u64)
-        .read_to_end(&mut beginning)
-        .map_err(|e| refused("read the file", e))?;
-    if detect(&beginning) == Some(FileKind::Vxg) {
-        let graph = if length <= VERIFY_BYTES {
-            vxg::verify(path)?
+    if file.kind() == Some(FileKind::Vxg) {
+        let graph = if file.length() <= VERIFY_BYTES {
+            vxg::verify(file.path())?
         } else {
-            vxg::open(path)?
+            vxg::open(file.path())?
         };
         return Ok(Opened {
             graph,
@@ -160,20 +154,30 @@ pub fn open(
             mesh: None,
         });
     }
-    let mut gathered = Gathered::default();
-    match read_voxels(path, &options.read, &mut |v| gathered.push(v), progress) {
-        Ok(info) => Ok(Opened {
-            graph: gathered.finish(source, UNIT, progress)?,
-            format: info.kind.to_string(),
-            info: Some(info),
-            mesh: None,
-        }),
-        Err(error) => {
-            let file = MeshFrom::File(path);
-            let ready = Ready::after(error, &file, source, &options.mesh, progress)?;
-            open_mesh(&ready, options.mesh.opacities, source, progress)
-        }
+    let beside = SameFolder::of(file.path());
+    open_file(file, &beside, options, progress)
+}
+
+/// Opens voxels or a mesh.
+fn open_file<R: Read + Seek>(
+    file: SceneFile<R>,
+    beside: &dyn Beside,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    let name = file.name();
+    if file.kind().is_some_and(FileKind::is_mesh) {
+        let ready = Ready::read(file, beside, &options.mesh, progress)?;
+        return open_mesh(&ready, options.mesh.opacities, &name, progress);
     }
+    let mut gathered = Gathered::default();
+    let info = file.read_voxels(&options.read, &mut |v| gathered.push(v), progress)?;
+    Ok(Opened {
+        graph: gathered.finish(&name, UNIT, progress)?,
+        format: info.kind.to_string(),
+        info: Some(info),
+        mesh: None,
+    })
 }
 
 /// Voxels of side 1 from the origin: file indices are world coordinates.
@@ -211,27 +215,8 @@ pub fn open_bytes(
     options: &OpenOptions,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
-    let mut gathered = Gathered::default();
-    let read = super::read_voxels_from(
-        bytes,
-        name,
-        &options.read,
-        &mut |v| gathered.push(v),
-        progress,
-    );
-    match read {
-        Ok(info) => Ok(Opened {
-            graph: gathered.finish(name, UNIT, progress)?,
-            format: info.kind.to_string(),
-            info: Some(info),
-            mesh: None,
-        }),
-        Err(error) => {
-            let memory = MeshFrom::Memory(bytes, &Nothing);
-            let ready = Ready::after(error, &memory, name, &options.mesh, progress)?;
-            open_mesh(&ready, options.mesh.opacities, name, progress)
-        }
-    }
+    let file = SceneFile::in_memory(bytes, name)?;
+    open_file(file, &Nothing, options, progress)
 }
 
 fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {

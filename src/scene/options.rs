@@ -7,13 +7,16 @@ use super::FileKind;
 /// VoxelShop writes such files when told to fit the model to its bounding box:
 /// coordinates left of the box, or far right of it, end up in one byte modulo 256.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum OutOfBounds {
-    /// Take the coordinate, modulo 256, that is nearest to the middle of `SIZE`.
+    /// Take the coordinate modulo 256 that is nearest to the middle of SIZE.
     #[default]
     Wrap,
-    /// Take the byte as it stands, 0 to 255.
+    /// Take the byte as it stands.
     Keep,
-    /// Leave such voxels out, as MagicaVoxel does.
+    /// Leave such voxels out.
+    ///
+    /// As MagicaVoxel does.
     Drop,
     /// Refuse the file.
     Error,

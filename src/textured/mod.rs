@@ -25,11 +25,16 @@ use record::{Primitive, Texel, VoxelRecord};
 
 /// Which voxels an erosion takes away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Element {
-    /// Those with an empty cell among the 26 around them: a structuring element of 3 x 3 x 3, as the paper says.
+    /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
+    ///
+    /// The structuring element of the paper's text.
     Cube,
-    /// Those with an empty cell at one of their six sides, as the paper says too, and as its
-    /// table must have been made (`spec/textured.md`).
+    /// Those with an empty cell at one of their six sides.
+    ///
+    /// The paper's text has this one too, and its table must have been made with it
+    /// (`spec/textured.md`).
     #[default]
     Sides,
 }

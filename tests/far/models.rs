@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
+use shiftvox::drawing::mesh_view::view_of;
 use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox::far::{BuildOptions, FarFile, build};
 use shiftvox::graph::Silent;
-use shiftvox::lab::mesh_view::view_of;
 use shiftvox::lab::walk::{Plan, camera};
 use shiftvox::mesh::LoadOptions;
 use shiftvox::scene;

@@ -170,7 +170,7 @@ fn meshes_are_told_from_clouds() {
         matches!(
             error,
             SceneError::Mesh {
-                kind: FileKind::Ply,
+                kind: FileKind::PlyMesh,
                 ..
             }
         ),

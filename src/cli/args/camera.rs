@@ -3,9 +3,9 @@
 use clap::{Args, ValueEnum};
 use glam::DVec3;
 
-use super::{Point, Setting};
-use crate::cli::fit::{Bounds, DEFAULT_FOV, Direction, Up, fit};
-use crate::project::Camera;
+use super::setting::{Setting, word};
+use super::values::Point;
+use crate::project::{Bounds, Camera, DEFAULT_FOV, Direction, Up, fit_camera};
 
 /// Where the camera stands around the object.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -116,7 +116,7 @@ impl CameraArgs {
             elevation: self.elevation.unwrap_or(named.elevation),
         };
         let zoom = self.zoom.unwrap_or(1.0);
-        fit(bounds, up, direction, fov_degrees, zoom, (width, height))
+        fit_camera(bounds, up, direction, fov_degrees, zoom, (width, height))
     }
 
     /// Whether the numbers make sense, in words if they do not.
@@ -149,7 +149,7 @@ impl CameraArgs {
         for (name, point) in [("eye", self.eye), ("target", self.target), ("up", self.up)] {
             settings.extend(point.map(|point| (name, point.to_string().into())));
         }
-        settings.extend(self.view.map(|view| ("view", super::word(&view))));
+        settings.extend(self.view.map(|view| ("view", word(&view))));
         let numbers = [
             ("fov", self.fov),
             ("azimuth", self.azimuth),

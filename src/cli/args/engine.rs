@@ -6,7 +6,10 @@ use std::str::FromStr;
 use clap::{Args, ValueEnum};
 use hwmodel::Overflow;
 
-use super::{SceneArgs, Setting, Tolerance, word};
+use super::scene::SceneArgs;
+use super::setting::{Setting, word};
+use super::values::Tolerance;
+use crate::far::view::Opacity;
 use crate::project::{CageKind, Coverage, SetupOptions};
 
 /// Which engine draws.
@@ -23,28 +26,6 @@ pub enum EngineName {
     Far,
     /// Textured voxels, of a .tvx file; see `convert`.
     Textured,
-}
-
-/// How a record holds its projected vertices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum CageName {
-    /// Eight corners (the paper).
-    Corners,
-    /// One corner and three edges.
-    Frame,
-}
-
-/// Which pixels a voxel draws.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum CoverageName {
-    /// The pixel in which its whole box lies (the paper).
-    Any,
-    /// The pixel that holds its centre.
-    Center,
-    /// Every pixel whose centre lies inside its outline.
-    Exact,
-    /// As exact, each voxel with its six opacities (--opacities), blended front to back.
-    Alpha,
 }
 
 /// What a result that does not fit a word becomes.
@@ -69,18 +50,6 @@ pub enum Isa {
     Scalar,
     /// AVX2.
     Avx2,
-}
-
-/// What the far voxel engine uses opacities for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum FarOpacityName {
-    /// Every voxel is opaque: without anti-aliasing.
-    None,
-    /// One number a voxel: hits over rays, of all directions.
-    Scalar,
-    /// A number for each main direction.
-    #[default]
-    Six,
 }
 
 /// How often textured voxels are eroded: a number, or `auto`.
@@ -120,7 +89,7 @@ impl fmt::Display for Erosion {
 pub struct RuleArgs {
     /// How a record holds its projected vertices [default: frame]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    pub cage: Option<CageName>,
+    pub cage: Option<CageKind>,
     /// Of --coverage any and center: largest deviation in pixels at which a record may change from
     /// clip to screen space, 0 never, inf at once [default: 0.125]. With exact and alpha, whose
     /// picture is defined without approximation, it is 0 and nothing else
@@ -128,7 +97,7 @@ pub struct RuleArgs {
     pub tolerance: Option<Tolerance>,
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    pub coverage: Option<CoverageName>,
+    pub coverage: Option<Coverage>,
     /// As the paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
@@ -162,7 +131,7 @@ pub struct EngineArgs {
     pub isa: Isa,
     /// What --engine far uses opacities for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
-    pub far_opacity: Option<FarOpacityName>,
+    pub far_opacity: Option<Opacity>,
     /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all grids,
     /// whose texels are no larger than a pixel [default: auto]
     #[arg(long, value_name = "K|auto")]
@@ -183,24 +152,15 @@ impl RuleArgs {
             coverage: Coverage::Any,
             ..SetupOptions::of(Coverage::Any)
         };
-        let coverage = self.coverage.map(|rule| match rule {
-            CoverageName::Any => Coverage::Any,
-            CoverageName::Center => Coverage::Center,
-            CoverageName::Exact => Coverage::Exact,
-            CoverageName::Alpha => Coverage::Alpha,
-        });
         let base = if self.paper {
             paper
         } else {
-            SetupOptions::of(coverage.unwrap_or_default())
+            SetupOptions::of(self.coverage.unwrap_or_default())
         };
         SetupOptions {
             bits: self.bits.unwrap_or(base.bits),
             frac: self.frac,
-            cage: self.cage.map_or(base.cage, |cage| match cage {
-                CageName::Corners => CageKind::Corners,
-                CageName::Frame => CageKind::Frame,
-            }),
+            cage: self.cage.unwrap_or(base.cage),
             tolerance_px: self.tolerance.map_or(base.tolerance_px, |t| t.0),
             coverage: base.coverage,
             lod_px: self.lod.unwrap_or(base.lod_px),
@@ -217,7 +177,7 @@ impl RuleArgs {
     /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
     #[must_use]
     pub fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
-        let blends = self.coverage == Some(CoverageName::Alpha);
+        let blends = self.coverage == Some(Coverage::Alpha);
         SceneArgs {
             opacities: scene.opacities || blends,
             ..scene.clone()
@@ -237,21 +197,11 @@ impl RuleArgs {
     /// Settings that the engines of voxels have alone.
     fn settings(&self) -> Vec<Setting> {
         let options = self.options(0);
-        let cage = match options.cage {
-            CageKind::Corners => CageName::Corners,
-            CageKind::Frame => CageName::Frame,
-        };
-        let coverage = match options.coverage {
-            Coverage::Any => CoverageName::Any,
-            Coverage::Center => CoverageName::Center,
-            Coverage::Exact => CoverageName::Exact,
-            Coverage::Alpha => CoverageName::Alpha,
-        };
         let tolerance = Tolerance(options.tolerance_px);
         let mut settings = vec![
-            ("cage", word(&cage)),
+            ("cage", word(&options.cage)),
             ("tolerance", tolerance.to_string().into()),
-            ("coverage", word(&coverage)),
+            ("coverage", word(&options.coverage)),
             ("bits", i64::from(options.bits).into()),
             ("overflow", word(&self.overflow.unwrap_or_default())),
         ];

@@ -1,64 +1,11 @@
 //! The picture: size, samples, colours, buffers.
 
+use clap::Args;
 use clap::builder::PossibleValuesParser;
-use clap::{Args, ValueEnum};
 
-use super::{Setting, Size, word};
+use super::setting::{Setting, word};
+use super::values::Size;
 use crate::picture::{Background, Buffer, Shading};
-
-/// A buffer that can be written beside the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Aov {
-    /// View-axis depth, world units; inf where nothing is seen.
-    Depth,
-    /// Unit normal in world directions.
-    Normal,
-    /// File index of the voxel seen, and its level; level -1 where nothing is seen.
-    Voxel,
-    /// Graph node; -1 where nothing is seen.
-    Node,
-    /// Records worked on for the pixel.
-    Records,
-    /// Colour and alpha.
-    Color,
-}
-
-impl Aov {
-    /// The name in file names.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Normal => "normal",
-            Self::Voxel => "voxel",
-            Self::Node => "node",
-            Self::Records => "records",
-            Self::Color => "color",
-        }
-    }
-
-    /// The buffer of a picture that it is.
-    pub(in crate::cli) fn buffer(self) -> Buffer {
-        match self {
-            Self::Depth => Buffer::Depth,
-            Self::Normal => Buffer::Normal,
-            Self::Voxel => Buffer::Voxel,
-            Self::Node => Buffer::Node,
-            Self::Records => Buffer::Records,
-            Self::Color => Buffer::Color,
-        }
-    }
-}
-
-/// How colours depend on where a voxel looks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum ShadeName {
-    /// Colours as the file has them.
-    Flat,
-    /// A key light that moves with the camera, over an ambient floor.
-    #[default]
-    Lambert,
-}
 
 /// The picture.
 #[derive(Debug, Clone, Default, Args)]
@@ -73,13 +20,13 @@ pub struct PictureArgs {
     pub aa: String,
     /// Shading
     #[arg(long, value_enum, default_value_t)]
-    pub shade: ShadeName,
+    pub shade: Shading,
     /// What is behind the object: sRGB, 0 to 255 each, or none (transparent) [default: 236,239,244]
     #[arg(long, value_name = "R,G,B|none")]
     pub background: Option<Background>,
     /// Buffers to write beside the picture, as {out stem}.{aov}.npy
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    pub aov: Vec<Aov>,
+    pub aov: Vec<Buffer>,
 }
 
 /// Size where none is given.
@@ -100,15 +47,6 @@ impl PictureArgs {
             "4" => 2,
             "2" => 1,
             _ => 0,
-        }
-    }
-
-    /// Shading of the picture.
-    #[must_use]
-    pub fn shading(&self) -> Shading {
-        match self.shade {
-            ShadeName::Flat => Shading::Flat,
-            ShadeName::Lambert => Shading::Lambert,
         }
     }
 

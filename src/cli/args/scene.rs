@@ -1,43 +1,12 @@
 //! How scenes are read.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
-use super::{Setting, word};
-use crate::cli::fit::Up;
+use super::setting::{Setting, word};
+use crate::mesh::ColorSpace;
 use crate::mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
-
-/// What to do with voxels outside a model's SIZE.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum OutOfBoundsName {
-    /// Take the coordinate modulo 256 that is nearest to the middle of SIZE.
-    #[default]
-    Wrap,
-    /// Take the byte as it stands.
-    Keep,
-    /// Leave such voxels out.
-    Drop,
-    /// Refuse the file.
-    Error,
-}
-
-/// Which axis of a mesh is up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum UpName {
-    /// +Y.
-    Y,
-    /// +Z.
-    Z,
-}
-
-/// How the colours of an MTL are meant.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum ColorName {
-    /// As shown on a screen.
-    #[default]
-    Srgb,
-    /// In proportion to light, as Blender writes them.
-    Linear,
-}
+use crate::project::Up;
+use crate::scene::OutOfBounds;
 
 /// How scenes are read.
 #[derive(Debug, Clone, Default, Args)]
@@ -45,7 +14,7 @@ pub enum ColorName {
 pub struct SceneArgs {
     /// Voxels outside a .vox model's SIZE (VoxelShop writes them, modulo 256)
     #[arg(long, value_enum, default_value_t)]
-    pub oob: OutOfBoundsName,
+    pub oob: OutOfBounds,
     /// Levels that a mesh is voxelised at: at most 2^N voxels a side [default: 9]
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
@@ -55,10 +24,10 @@ pub struct SceneArgs {
     pub opacities: bool,
     /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else z]
     #[arg(long, value_enum)]
-    pub mesh_up: Option<UpName>,
+    pub mesh_up: Option<Up>,
     /// How the colours of an .obj mesh's .mtl are meant; the format does not say
     #[arg(long, value_enum, default_value_t)]
-    pub mesh_colors: ColorName,
+    pub mesh_colors: ColorSpace,
 }
 
 impl SceneArgs {
@@ -71,11 +40,7 @@ impl SceneArgs {
     /// Which axis is up, where the file's own axis is `up`.
     #[must_use]
     pub fn up_or(&self, up: Up) -> Up {
-        match self.mesh_up {
-            None => up,
-            Some(UpName::Y) => Up::Y,
-            Some(UpName::Z) => Up::Z,
-        }
+        self.mesh_up.unwrap_or(up)
     }
 
     /// Flags of the command line that say how meshes become voxels, by their long names.

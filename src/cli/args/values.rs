@@ -101,6 +101,25 @@ impl fmt::Display for Tolerance {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ThreadCounts(pub Vec<u16>);
 
+impl ThreadCounts {
+    /// The numbers, 0 resolved, each once and in order.
+    #[must_use]
+    pub fn resolved(&self) -> Vec<usize> {
+        let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let mut counts: Vec<usize> = self
+            .0
+            .iter()
+            .map(|&count| match count {
+                0 => all(),
+                count => usize::from(count),
+            })
+            .collect();
+        counts.sort_unstable();
+        counts.dedup();
+        counts
+    }
+}
+
 impl FromStr for ThreadCounts {
     type Err = String;
 

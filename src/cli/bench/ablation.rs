@@ -3,12 +3,11 @@
 use serde_json::json;
 
 use super::args::{MeasureArgs, SceneBenchArgs};
-use super::context::Context;
-use super::export::{self, Results};
-use super::{subjects, thread_counts};
-use crate::cli::args::ThreadCounts;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Candidate, Family, Harness, ablation as experiment};
 
@@ -18,11 +17,11 @@ const DEFAULT_SIDE: u32 = 512;
 pub(super) fn run(
     args: &SceneBenchArgs,
     from_config: Vec<String>,
-    threads: Option<&ThreadCounts>,
+    threads: &[usize],
     console: &Console,
 ) -> Result<(), CliError> {
     export::check(&args.export)?;
-    if threads.is_some() && thread_counts(threads) != [1] {
+    if threads != [1] {
         return Err(CliError::usage("an ablation is measured on one thread"));
     }
     let sizes = args.measure.sizes(DEFAULT_SIDE)?;

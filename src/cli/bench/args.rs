@@ -1,16 +1,15 @@
 //! Flags that the timed experiments share.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use crate::cli::args::{CameraArgs, CoverageName, RuleArgs, SceneArgs, Size, Tolerance};
+use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::export::ExportArgs;
 use crate::lab::bench::{Candidate, Scan, Schedule};
-use crate::project::SetupOptions;
 use crate::project::camera::MAX_SIDE;
+use crate::project::{Coverage, SetupOptions};
 
 /// Most pixels of a picture: two gigabytes of samples.
 const MAX_PIXELS: u64 = 1 << 26;
@@ -55,7 +54,7 @@ pub(super) struct MeasureArgs {
     engines: Vec<String>,
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
-    coverage: Option<CoverageName>,
+    coverage: Option<Coverage>,
     /// Of --coverage any and center: largest deviation in pixels at which a record may change from
     /// clip to screen space [default: 0.125]; with exact and alpha 0 and nothing else
     #[arg(long, value_name = "PX|inf", conflicts_with = "paper")]
@@ -67,27 +66,6 @@ pub(super) struct MeasureArgs {
     /// As the paper has it: eight corners, screen space at once, coverage any
     #[arg(long)]
     paper: bool,
-}
-
-/// Files that the results are written to.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Output")]
-pub(in crate::cli) struct ExportArgs {
-    /// All results, as --json prints them
-    #[arg(long, value_name = "FILE")]
-    pub(in crate::cli) export_json: Option<PathBuf>,
-    /// A row for each measurement
-    #[arg(long, value_name = "FILE")]
-    pub(in crate::cli) export_csv: Option<PathBuf>,
-    /// The tables, with machine and command
-    #[arg(long, value_name = "FILE")]
-    pub(in crate::cli) export_markdown: Option<PathBuf>,
-    /// A plot
-    #[arg(long, value_name = "FILE")]
-    pub(in crate::cli) export_svg: Option<PathBuf>,
-    /// Replace files that exist
-    #[arg(long)]
-    pub(in crate::cli) force: bool,
 }
 
 /// The engines that there are, with a line about each.

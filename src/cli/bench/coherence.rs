@@ -3,12 +3,13 @@
 use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, check_sizes};
-use super::export::{self, Results};
-use super::subjects;
+use super::args::check_sizes;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::coherence as experiment;
 

@@ -3,12 +3,11 @@
 use serde_json::json;
 
 use super::args::SceneBenchArgs;
-use super::context::Context;
-use super::export::{self, Results};
-use super::{subjects, thread_counts};
-use crate::cli::args::ThreadCounts;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Harness, Plan, engines as experiment, measure};
 
@@ -18,7 +17,7 @@ const DEFAULT_SIDE: u32 = 1024;
 pub(super) fn run(
     args: &SceneBenchArgs,
     from_config: Vec<String>,
-    threads: Option<&ThreadCounts>,
+    threads: &[usize],
     console: &Console,
 ) -> Result<(), CliError> {
     export::check(&args.export)?;
@@ -28,10 +27,9 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let threads = thread_counts(threads);
     let plan = Plan {
         sizes: &sizes,
-        threads: &threads,
+        threads,
         options,
         candidates: &candidates,
         reference: Some(&engines::REFERENCE),

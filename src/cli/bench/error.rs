@@ -3,19 +3,20 @@
 use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, check_sizes};
-use super::context::Context;
-use super::export::{self, Results};
+use super::args::check_sizes;
 use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
-use super::subjects;
-use crate::cli::args::{CageName, CameraArgs, CoverageName, RuleArgs, SceneArgs, Size, Tolerance};
+use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
 use crate::lab::error::{self as experiment, Look, Method, Plan, SceneErrors, VoxelMethod};
-use crate::project::SetupOptions;
+use crate::project::{CageKind, Coverage, SetupOptions};
 use crate::report::html::Page;
 
 /// Scenes where none is named: a model, a landscape, a sponge, thin things.
@@ -100,13 +101,13 @@ struct SelectArgs {
     full: bool,
     /// Drawing rules
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    coverages: Vec<CoverageName>,
+    coverages: Vec<Coverage>,
     /// Tolerances, pixels, of the rules any and center; exact has 0 alone
     #[arg(long, value_delimiter = ',', value_name = "PX|inf,...")]
     tolerances: Vec<Tolerance>,
     /// Cages
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
-    cages: Vec<CageName>,
+    cages: Vec<CageKind>,
     /// Widths of a word, bits, 16 to 64
     #[arg(long, value_delimiter = ',', value_name = "BITS,...",
           value_parser = clap::value_parser!(u32).range(16..=64))]
@@ -133,22 +134,22 @@ fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
-const COVERAGES: [CoverageName; 3] = [CoverageName::Exact, CoverageName::Center, CoverageName::Any];
-const CAGES: [CageName; 2] = [CageName::Frame, CageName::Corners];
+const COVERAGES: [Coverage; 3] = [Coverage::Exact, Coverage::Center, Coverage::Any];
+const CAGES: [CageKind; 2] = [CageKind::Frame, CageKind::Corners];
 
 /// One setting of each kind.
 #[derive(Clone, Copy)]
 struct Choice {
-    coverage: CoverageName,
+    coverage: Coverage,
     tolerance: f64,
-    cage: CageName,
+    cage: CageKind,
     bits: u32,
     lod: f64,
     aa_log2: u32,
 }
 
 impl Choice {
-    fn default_with(coverage: CoverageName) -> Self {
+    fn default_with(coverage: Coverage) -> Self {
         let rule = RuleArgs {
             coverage: Some(coverage),
             ..RuleArgs::default()
@@ -157,7 +158,7 @@ impl Choice {
         Self {
             coverage,
             tolerance: options.tolerance_px,
-            cage: CageName::Frame,
+            cage: CageKind::Frame,
             bits: options.bits,
             lod: options.lod_px,
             aa_log2: 0,
@@ -234,8 +235,8 @@ impl SelectArgs {
 }
 
 /// Whether a rule takes other tolerances than 0.
-fn has_tolerances(coverage: CoverageName) -> bool {
-    matches!(coverage, CoverageName::Any | CoverageName::Center)
+fn has_tolerances(coverage: Coverage) -> bool {
+    matches!(coverage, Coverage::Any | Coverage::Center)
 }
 
 /// Around the default settings: every drawing rule with every tolerance it has and
@@ -256,7 +257,7 @@ fn standard() -> Vec<Choice> {
             }));
         }
         // The other rules take seconds for a frame of 16 samples a pixel.
-        let exact = matches!(coverage, CoverageName::Exact);
+        let exact = matches!(coverage, Coverage::Exact);
         let most = if exact { 2 } else { 1 };
         choices.extend((1..=most).map(|aa_log2| Choice { aa_log2, ..default }));
         let lods = [0.0, 0.5, 1.0, 2.0].into_iter();
@@ -274,7 +275,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     let scene_args = SceneArgs {
-        opacities: args.scene.opacities || args.select.coverages.contains(&CoverageName::Alpha),
+        opacities: args.scene.opacities || args.select.coverages.contains(&Coverage::Alpha),
         ..args.scene.clone()
     };
     export::check(&args.export)?;

@@ -3,15 +3,15 @@
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::args::ExportArgs;
 use super::error::{SCENES, reference_size};
-use super::export::{self, Results};
 use super::meshes::MeshMethodArgs;
 use super::picture_export::{self as pictures, PagesArgs};
-use super::subjects;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::error::{Look, Method, References, VoxelMethod};
 use crate::lab::flicker::{self as experiment, Films, Motion, Plan};

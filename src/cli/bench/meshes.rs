@@ -7,9 +7,10 @@ use clap::{Args, ValueEnum};
 
 use crate::cli::args::SceneArgs;
 use crate::cli::console::Console;
-use crate::cli::drawing::milliseconds_since;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::subjects::BUNDLED;
 use crate::cli::scenes;
+use crate::drawing::milliseconds_since;
 use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
@@ -72,10 +73,10 @@ impl MeshMethodArgs {
         args: &SceneArgs,
         console: &Console,
     ) -> Result<Option<MeshScene>, CliError> {
-        if !scenes::is_mesh_file(name) {
+        if name == BUNDLED || !scenes::is_mesh(name)? {
             return Ok(None);
         }
-        let (mesh, _) = scenes::open_mesh(name, args, console.progress())?;
+        let (mesh, _) = scenes::read_mesh(name, args, console.progress())?;
         let mut files = Vec::new();
         if self.has(FamilyName::Far) {
             for (label, options) in self.builds() {

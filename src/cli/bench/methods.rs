@@ -6,17 +6,17 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::args::ExportArgs;
-use super::context::Context;
 use super::error::reference_size;
-use super::export::{self, Results};
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
 use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
-use crate::cli::drawing::milliseconds_since;
 use crate::cli::error::{CliError, Kind};
-use crate::cli::{engines, render, report, scenes, triangles};
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::{engines, report, scenes};
+use crate::drawing::{bounds_of_mesh, milliseconds_since};
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
@@ -159,7 +159,7 @@ impl Made {
                     opacities,
                     ..args.scene.clone()
                 };
-                let scene = render::open(name, &scene_args, console)?;
+                let scene = scenes::open(name, &scene_args, console)?;
                 let read_ms = scene.mesh.as_ref().map_or(0.0, |mesh| mesh.load_ms);
                 made.voxels.push((scene.graph, scene.load_ms - read_ms));
             }
@@ -288,8 +288,8 @@ fn measure(
     plan: &Plan,
     console: &Console,
 ) -> Result<MeshMethods, CliError> {
-    let (mesh, up) = scenes::open_mesh(name, &args.scene, console.progress())?;
-    let camera = args.camera.camera(&triangles::bounds(&mesh), up, size, 0.0);
+    let (mesh, up) = scenes::read_mesh(name, &args.scene, console.progress())?;
+    let camera = args.camera.camera(&bounds_of_mesh(&mesh), up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
     let all = methods(args, &mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
     let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();

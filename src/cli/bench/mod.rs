@@ -1,18 +1,15 @@
-//! `bench`: the experiments, one file each, and what they share.
+//! `bench`: the experiments, one file each.
 
 mod ablation;
-pub(super) mod args;
+mod args;
 mod coherence;
-pub(super) mod context;
 mod engines;
 mod error;
-pub(super) mod export;
 mod flicker;
 mod meshes;
 mod methods;
 mod picture_export;
 mod scaling;
-pub(super) mod subjects;
 mod vertex_error;
 mod walk;
 
@@ -20,9 +17,7 @@ use clap::{Args, Subcommand};
 
 use super::args::ThreadCounts;
 use super::console::Console;
-use super::error::{CliError, Kind};
-use crate::lab::bench::BenchError;
-use crate::report::plot::PlotError;
+use super::error::CliError;
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -94,49 +89,17 @@ pub(super) fn run(
     threads: Option<&ThreadCounts>,
     console: &Console,
 ) -> Result<(), CliError> {
+    // One where nothing was said.
+    let counts = threads.map_or_else(|| vec![1], ThreadCounts::resolved);
     match &args.experiment {
-        Experiment::Engines(args) => engines::run(args, scenes, threads, console),
-        Experiment::Scaling(args) => scaling::run(args, scenes, threads, console),
-        Experiment::Ablation(args) => ablation::run(args, scenes, threads, console),
+        Experiment::Engines(args) => engines::run(args, scenes, &counts, console),
+        Experiment::Scaling(args) => scaling::run(args, scenes, &counts, console),
+        Experiment::Ablation(args) => ablation::run(args, scenes, &counts, console),
         Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Flicker(args) => flicker::run(args, scenes, console),
         Experiment::Methods(args) => methods::run(args, console),
         Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::Walk(args) => walk::run(args, console),
         Experiment::VertexError => vertex_error::run(console),
-    }
-}
-
-/// Thread counts to measure: those given, 0 for all; else one.
-fn thread_counts(given: Option<&ThreadCounts>) -> Vec<usize> {
-    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let mut counts: Vec<usize> = given.map_or_else(
-        || vec![1],
-        |given| {
-            let resolved = |&count: &u16| match count {
-                0 => all(),
-                count => usize::from(count),
-            };
-            given.0.iter().map(resolved).collect()
-        },
-    );
-    counts.sort_unstable();
-    counts.dedup();
-    counts
-}
-
-impl From<BenchError> for CliError {
-    fn from(error: BenchError) -> Self {
-        match error {
-            BenchError::Engine { who, source } => Self::from(source).at(who),
-            BenchError::Setup(error) => error.into(),
-            BenchError::Picture(_) | BenchError::Threads { .. } => Self::new(Kind::Run, error),
-        }
-    }
-}
-
-impl From<PlotError> for CliError {
-    fn from(error: PlotError) -> Self {
-        Self::new(Kind::Run, error)
     }
 }

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::args::ExportArgs;
-use super::subjects::file_stem;
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::subjects::file_stem;
 use crate::measure::difference;
 use crate::picture::{png, store};
 use crate::report::html::Page;

@@ -3,13 +3,14 @@
 use clap::Args;
 use serde_json::json;
 
-use super::args::{ExportArgs, MeasureArgs, check_sizes, squares};
-use super::context::Context;
-use super::export::{self, Results};
-use super::{subjects, thread_counts};
-use crate::cli::args::{CameraArgs, SceneArgs, ThreadCounts};
+use super::args::{MeasureArgs, check_sizes, squares};
+use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::experiment::context::Context;
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::scaling::{self as experiment, Growing, Growth};
 use crate::lab::bench::{Harness, Plan, Scan, measure};
@@ -74,7 +75,7 @@ fn voxel_count(text: &str) -> Result<u64, String> {
 pub(super) fn run(
     args: &ScalingArgs,
     from_config: Vec<String>,
-    threads: Option<&ThreadCounts>,
+    threads: &[usize],
     console: &Console,
 ) -> Result<(), CliError> {
     export::check(&args.export)?;
@@ -89,10 +90,9 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let threads = thread_counts(threads);
     let mut plan = Plan {
         sizes: &picture_sizes,
-        threads: &threads,
+        threads,
         options,
         candidates: &candidates,
         reference: None,

@@ -5,13 +5,15 @@ use std::path::Path;
 use clap::Args;
 use serde_json::json;
 
-use super::args::ExportArgs;
-use super::export::{self, Results};
-use crate::cli::args::{DataBudget, FarOpacityName, Size};
+use crate::cli::args::{DataBudget, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::cli::{far, report};
+use crate::cli::experiment::export::ExportArgs;
+use crate::cli::experiment::export::{self, Results};
+use crate::cli::report;
+use crate::drawing::resident;
 use crate::far::FarFile;
+use crate::far::view::Opacity;
 use crate::lab::walk::{self as experiment, Plan};
 
 /// Arguments of `bench walk`.
@@ -42,7 +44,7 @@ pub(super) struct WalkArgs {
         value_name = "LIST",
         default_value = "none,six"
     )]
-    far_opacity: Vec<FarOpacityName>,
+    far_opacity: Vec<Opacity>,
     /// Draw hidden nodes too
     #[arg(long)]
     no_culling: bool,
@@ -59,7 +61,7 @@ pub(super) fn run(args: &WalkArgs, console: &Console) -> Result<(), CliError> {
         frames: args.frames,
         size: args.size.map_or((640, 360), |s| (s.width, s.height)),
         voxel_px: args.lod,
-        opacities: args.far_opacity.iter().map(|&o| far::opacity(o)).collect(),
+        opacities: args.far_opacity.clone(),
         culling: !args.no_culling,
         runs: args.runs,
     };
@@ -76,7 +78,7 @@ pub(super) fn run(args: &WalkArgs, console: &Console) -> Result<(), CliError> {
             "file": name,
             "bytes": file.len(),
             "triangles": file.nodes()[0].triangles,
-            "memory": far::resident(&file),
+            "memory": resident(&file),
             "walks": walks,
         }));
     }

@@ -7,8 +7,8 @@ use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
-use crate::cli::bench::args::ExportArgs;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::export::ExportArgs;
 use crate::lab::bench::Scan;
 use crate::lab::model::cost::Prices;
 

@@ -1,12 +1,13 @@
 //! What the model found, as one page.
 
-use super::{Findings, output};
-use crate::cli::bench::context::Context;
+use super::findings::Findings;
+use super::summary;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::context::Context;
 use crate::lab::model::cost;
 use crate::picture::{Background, Shading, png, resolve};
 use crate::report::html::Page;
-use crate::report::plot::Panel;
+use crate::report::plot::{self, Panel};
 
 /// The page. `heat`: a PNG; `most`: records of its brightest sample.
 pub(super) fn html(
@@ -61,17 +62,17 @@ pub(super) fn html(
         ),
     ]);
     page.chapter("Summary");
-    page.table(&output::summary(found));
-    for table in output::short_tables(found) {
+    page.table(&summary::summary(found));
+    for table in summary::short_tables(found) {
         page.chapter(title_of(&table.title));
         page.table(&table);
     }
     page.chapter("Plots");
     for panel in panels {
-        page.plot(&output::svg(panel)?, "");
+        page.plot(&plot::svg(std::slice::from_ref(panel))?, "");
     }
     page.chapter("Details, line by line");
-    for table in output::long_tables(found) {
+    for table in summary::long_tables(found) {
         page.section(&table.title);
         page.table(&table);
     }

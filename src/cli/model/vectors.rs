@@ -2,7 +2,7 @@
 
 use hwmodel::Overflow;
 
-use super::ModelArgs;
+use super::args::ModelArgs;
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
 use crate::graph::{Graph, GraphView};

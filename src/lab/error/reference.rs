@@ -4,9 +4,9 @@
 use rayon::prelude::*;
 
 use super::voxels::Look;
+use crate::drawing::mesh_view::{light_of, view_of};
 use crate::graph::{Graph, Progress};
 use crate::lab::bench::BenchError;
-use crate::lab::mesh_view::{light_of, view_of};
 use crate::mesh::Surface;
 use crate::mesh::raster::{self, Pattern, RasterOptions, Samples};
 use crate::picture::{Background, Shader, Shading};

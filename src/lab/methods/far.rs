@@ -1,9 +1,9 @@
 //! Far voxels as a method.
 
+use crate::drawing::mesh_view::{light_of, picture_of_far, view_of};
 use crate::far::FarFile;
 use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewOptions};
 use crate::lab::error::{Look, Method, Refused, Shown};
-use crate::lab::mesh_view::{light_of, picture_of_far, view_of};
 use crate::mesh::raster::View;
 use crate::picture::Picture;
 use crate::project::Camera;

@@ -1,8 +1,8 @@
 //! Textured voxels as a method.
 
 use super::triangles::{options, shown};
+use crate::drawing::mesh_view::{picture_of_triangles, view_of};
 use crate::lab::error::{Look, Method, Refused, Shown};
-use crate::lab::mesh_view::{picture_of_triangles, view_of};
 use crate::mesh::raster::{Pattern, RasterPicture, Samples, View};
 use crate::picture::Picture;
 use crate::project::Camera;

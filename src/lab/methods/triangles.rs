@@ -1,8 +1,8 @@
 //! The triangle rasteriser as a method: what other ways to draw a mesh have to beat.
 
+use crate::drawing::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::graph::Silent;
 use crate::lab::error::{Look, Method, Refused, Shown};
-use crate::lab::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::mesh::Surface;
 use crate::mesh::raster::{self, Pattern, RasterOptions, RasterPicture, Samples, View};
 use crate::picture::Picture;

@@ -95,6 +95,14 @@ pub(super) struct Header {
     pub elements: Vec<Element>,
 }
 
+impl Header {
+    /// Whether there are faces.
+    pub(super) fn has_faces(&self) -> bool {
+        let faces = |element: &Element| element.name == b"face" && element.count > 0;
+        self.elements.iter().any(faces)
+    }
+}
+
 /// Reads a header up to and with `end_header`.
 pub(super) fn read<R: BufRead>(source: &mut Source<'_, R>) -> Result<Header, Problem> {
     let mut line = Vec::new();

@@ -59,6 +59,12 @@ struct Layout<'h> {
     has_normal: bool,
 }
 
+/// Whether a PLY file is a mesh: whether its header promises faces. `false` of a damaged header, of
+/// which [`read`] says what is wrong.
+pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
+    header::read(&mut Source::new(reader)).is_ok_and(|header| header.has_faces())
+}
+
 /// Hands on the voxels of a PLY cloud.
 pub(super) fn read<R: BufRead>(
     reader: &mut R,
@@ -68,13 +74,6 @@ pub(super) fn read<R: BufRead>(
     let mut source = Source::new(reader);
     let header = header::read(&mut source)?;
     let is_named = |element: &&Element, name: &[u8]| element.name == name;
-    if header
-        .elements
-        .iter()
-        .any(|e| e.name == b"face" && e.count > 0)
-    {
-        return Err(Problem::Mesh(FileKind::Ply));
-    }
     let Some(vertices) = header.elements.iter().find(|e| is_named(e, b"vertex")) else {
         return Err(Fault::new(
             "header",

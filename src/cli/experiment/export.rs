@@ -2,16 +2,37 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
 use comfy_table::CellAlignment;
 use comfy_table::presets::NOTHING;
 use serde_json::Value;
 
-use super::args::ExportArgs;
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::picture::store;
 use crate::report::plot::{self, Panel};
 use crate::report::{Cell, Table};
+
+/// Files that the results are written to.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Output")]
+pub(in crate::cli) struct ExportArgs {
+    /// All results, as --json prints them
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_json: Option<PathBuf>,
+    /// A row for each measurement
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_csv: Option<PathBuf>,
+    /// The tables, with machine and command
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_markdown: Option<PathBuf>,
+    /// A plot
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_svg: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    pub(in crate::cli) force: bool,
+}
 
 /// The results of an experiment in all forms.
 pub(in crate::cli) struct Results {
@@ -82,7 +103,7 @@ pub(in crate::cli) fn write(
 }
 
 /// The same where plots were written before, one file a scene.
-pub(super) fn write_without_plots(
+pub(in crate::cli) fn write_without_plots(
     results: &Results,
     args: &ExportArgs,
     console: &Console,
@@ -95,7 +116,7 @@ pub(super) fn write_without_plots(
 }
 
 /// What tables look like on a terminal, one below the other.
-pub(super) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
+pub(in crate::cli) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
     let tables: Vec<String> = tables.iter().map(in_text).collect();
     console.data(tables.join("\n\n"))
 }

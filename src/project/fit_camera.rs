@@ -14,11 +14,16 @@ const MAX_VISITS: u32 = 4_000_000;
 
 /// Which world axis is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Up {
-    /// +Z, as in voxel files; the front looks towards -Y.
-    Z,
-    /// +Y, as in meshes; the front looks towards +Z.
+    /// +Y.
+    ///
+    /// The custom of meshes; the front looks towards +Z.
     Y,
+    /// +Z.
+    ///
+    /// The custom of voxel files; the front looks towards -Y.
+    Z,
 }
 
 impl Up {
@@ -234,7 +239,7 @@ impl Direction {
 /// The nearest camera in a direction that sees the whole box, then magnified
 /// by `zoom` (the field of view stays, the eye comes nearer).
 #[must_use]
-pub fn fit(
+pub fn fit_camera(
     bounds: &Bounds,
     up: Up,
     direction: Direction,
@@ -310,7 +315,7 @@ mod tests {
 
     fn eye(azimuth: f64, elevation: f64, up: Up) -> DVec3 {
         let direction = Direction { azimuth, elevation };
-        let camera = fit(&cube(), up, direction, 40.0, 1.0, (100, 100));
+        let camera = fit_camera(&cube(), up, direction, 40.0, 1.0, (100, 100));
         (camera.eye - camera.target).normalize()
     }
 
@@ -331,7 +336,7 @@ mod tests {
                 azimuth,
                 elevation: 20.0,
             };
-            let camera = fit(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
+            let camera = fit_camera(&bounds, Up::Z, direction, 40.0, 1.0, (100, 100));
             (camera.eye - camera.target).length()
         };
         for turn in [5.0, 45.0, 90.0, 210.0] {
@@ -343,7 +348,7 @@ mod tests {
     fn all_corners_are_seen_and_one_is_near_the_edge() {
         for (azimuth, elevation) in [(45.0, 35.0), (0.0, 0.0), (10.0, 90.0), (200.0, -60.0)] {
             let direction = Direction { azimuth, elevation };
-            let camera = fit(&cube(), Up::Z, direction, 40.0, 1.0, (300, 200));
+            let camera = fit_camera(&cube(), Up::Z, direction, 40.0, 1.0, (300, 200));
             let axes = camera.axes().unwrap();
             let mut most = 0.0f64;
             for corner in 0..8u32 {

@@ -5,12 +5,11 @@ use glam::DVec3;
 use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::cli::fit::Bounds;
+use crate::cli::scenes;
 use crate::cli::scenes::Scene;
-use crate::cli::{render, scenes};
 use crate::graph::Store;
 use crate::lab::bench::Subject;
-use crate::project::Camera;
+use crate::project::{Bounds, Camera};
 
 /// What stands for the bundled scene.
 pub(in crate::cli) const BUNDLED: &str = "bundled";
@@ -53,12 +52,12 @@ impl Standpoint {
 }
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(super) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+pub(in crate::cli) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
     names_or(given, from_config, &DEFAULT)
 }
 
 /// The same with other scenes where none is named.
-pub(super) fn names_or(
+pub(in crate::cli) fn names_or(
     given: &[String],
     from_config: Vec<String>,
     default: &[&str],
@@ -73,7 +72,7 @@ pub(super) fn names_or(
 }
 
 /// A scene's name as part of a file's: letters, digits, and hyphens between them.
-pub(super) fn file_stem(name: &str) -> String {
+pub(in crate::cli) fn file_stem(name: &str) -> String {
     let name = name.strip_prefix("gen:").unwrap_or(name);
     let letters = |c: char| !c.is_ascii_alphanumeric();
     let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
@@ -93,7 +92,7 @@ pub(in crate::cli) fn open(
     let scene = if name == BUNDLED {
         scenes::demo(console.progress())?
     } else {
-        render::open(name, scene_args, console)?
+        scenes::open(name, scene_args, console)?
     };
     let standard = standard_camera(name, &scene).filter(|_| camera.settings().is_empty());
     let camera = standard.unwrap_or_else(|| {

@@ -1,0 +1,270 @@
+//! What the model finds of a frame.
+
+use hwmodel::Overflow;
+use hwmodel::cost::Breakdown;
+use hwmodel::cycles::{Hardware, NoObserver, Progress as Ticks, Recorder, ScalingRow, TraceLimit};
+use hwmodel::cycles::{LANES, scaling};
+use hwmodel::memory::Widths;
+
+use super::args::ModelArgs;
+use super::{trace, vectors};
+use crate::cli::console::Console;
+use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::subjects;
+use crate::lab::bench::Subject;
+use crate::lab::model::ModelError;
+use crate::lab::model::claims::{self, Claim};
+use crate::lab::model::cost::{self, FrameCost, Prices};
+use crate::lab::model::frame::{self, Counted};
+use crate::lab::model::growth::{self, GrowthRow};
+use crate::lab::model::host::HostWork;
+use crate::lab::model::rival::{self, Rival};
+use crate::lab::model::rules::{self, RuleRow};
+use crate::lab::model::sweep::{self, FormatRow};
+use crate::machine::Simulated;
+use crate::project::{FrameSetup, SetupOptions};
+
+/// Everything that the model found of a scene.
+pub(super) struct Findings {
+    pub(super) name: String,
+    pub(super) subject: Subject,
+    pub(super) setup: FrameSetup,
+    pub(super) hardware: Hardware,
+    pub(super) widths: Widths,
+    pub(super) counted: Counted,
+    /// What the host did before the first record.
+    pub(super) host: HostWork,
+    pub(super) simulated: Simulated,
+    /// Samples that the hardware's picture shows otherwise than the serial machine's.
+    pub(super) differing: u64,
+    pub(super) cost: FrameCost,
+    pub(super) area: Breakdown,
+    pub(super) rival: Rival,
+    /// Wrong samples of the machine's picture.
+    pub(super) wrong: crate::measure::CoverageError,
+    pub(super) claims: Vec<Claim>,
+    pub(super) rules: Vec<RuleRow>,
+    pub(super) formats: Vec<FormatRow>,
+    pub(super) lanes: Vec<ScalingRow>,
+    pub(super) pictures: Vec<GrowthRow>,
+    pub(super) objects: Vec<GrowthRow>,
+}
+
+/// Draws, counts and measures.
+pub(super) fn find(
+    args: &ModelArgs,
+    name: &str,
+    hardware: Hardware,
+    prices: &Prices,
+    console: &Console,
+) -> Result<Findings, CliError> {
+    let size = (args.size.width, args.size.height);
+    let subject = subjects::open(
+        name,
+        &args.camera,
+        &args.rules.scene_args(&args.scene),
+        size,
+        console,
+    )?;
+    let options = SetupOptions {
+        bits: args.rules.bits.unwrap_or(BITS),
+        ..args.rules.options(0)
+    };
+    let overflow = args.rules.overflow();
+    let setup = subject.setup(size, &options)?;
+    let graph = &subject.graph;
+    let progress = console.progress();
+
+    let camera = crate::project::Camera {
+        width: size.0,
+        height: size.1,
+        ..subject.camera
+    };
+    progress.begin("counting", 0);
+    let counted = frame::count(graph, &setup, &hardware, overflow)?;
+    progress.end();
+    let host = HostWork::measure(
+        &camera,
+        &graph.placement,
+        graph.depth,
+        &options,
+        &counted,
+        prices,
+    )?;
+    vectors::write(args, name, graph, &setup, overflow, console)?;
+    let (hardware_frame, simulated) = simulate(
+        args, &subject, &setup, &hardware, overflow, &counted, console,
+    )?;
+    let serial = counted.frame.voxel.iter();
+    let differing = serial
+        .zip(&hardware_frame.voxel)
+        .filter(|(a, b)| a != b)
+        .count() as u64;
+
+    progress.begin("the exact picture and the ray caster", 0);
+    let true_setup = rules::true_setup(graph, &camera, &options)?;
+    let exact = frame::reference(&graph.view(), &true_setup)?;
+    let rival = rival::measure(graph, &setup, &hardware, prices, &exact)?;
+    let wrong = frame::error(&counted.frame, &exact);
+    progress.end();
+
+    let widths = frame::widths(&setup, graph, &hardware);
+    let cost = cost::frame_cost(
+        &counted.counter,
+        &simulated.cycles,
+        &widths,
+        &setup,
+        &hardware,
+        prices,
+    )
+    .map_err(ModelError::from)?;
+    let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let tables = &args.tables;
+    let rules = if tables.rules || tables.all {
+        rules::table(graph, &camera, &options, &hardware, prices, progress)?
+    } else {
+        Vec::new()
+    };
+    let formats = match tables.widths() {
+        Some(widths) => sweep::table(
+            graph, &camera, &options, &widths, &hardware, prices, progress,
+        )?,
+        None => Vec::new(),
+    };
+    let lanes = if tables.lanes || tables.all {
+        progress.begin("1 to 64 lanes", LANES.len() as u64);
+        let rows = scaling(&hardware, &LANES, |hardware| {
+            let drawn = frame::simulate(&graph.view(), &setup, hardware, overflow, &mut NoObserver);
+            progress.advance(1);
+            drawn.map(|(_, simulated)| simulated.cycles)
+        })?;
+        progress.end();
+        rows
+    } else {
+        Vec::new()
+    };
+    let (pictures, objects) = if tables.growth || tables.all {
+        let sides = sides_to(size.0.max(size.1));
+        let pictures = growth::pictures(name, graph, &camera, &sides, &options, progress)?;
+        (pictures, objects(size, &options, console)?)
+    } else {
+        (Vec::new(), Vec::new())
+    };
+    let mut claims = claims::of_frame(&counted);
+    claims.extend(claims::of_growth(&pictures, &objects));
+    claims.extend(claims::of_hardware(&simulated, differing, &setup));
+    Ok(Findings {
+        name: name.to_owned(),
+        setup,
+        hardware,
+        widths,
+        counted,
+        host,
+        simulated,
+        differing,
+        cost,
+        area,
+        rival,
+        wrong,
+        claims,
+        rules,
+        formats,
+        lanes,
+        pictures,
+        objects,
+        subject,
+    })
+}
+
+/// Draws the frame on the hardware, with progress, and writes the trace that was asked for.
+fn simulate(
+    args: &ModelArgs,
+    subject: &Subject,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+    counted: &Counted,
+    console: &Console,
+) -> Result<(crate::frame::Frame, Simulated), CliError> {
+    let view = subject.graph.view();
+    let progress = console.progress();
+    progress.begin("cycles", counted.counter.records());
+    let mut told = 0;
+    let mut ticks = Ticks(|_, records: u64| {
+        progress.advance(records.saturating_sub(told));
+        told = records;
+    });
+    let drawn = match &args.files.trace {
+        None => frame::simulate(&view, setup, hardware, overflow, &mut ticks)?,
+        Some(path) => {
+            let mut recorder = Recorder::new(TraceLimit {
+                records: args.files.trace_records,
+                ..TraceLimit::default()
+            });
+            let mut both = (&mut recorder, ticks);
+            let drawn = frame::simulate(&view, setup, hardware, overflow, &mut both)?;
+            trace::write(path, &recorder, hardware, args.export.force, console)?;
+            drawn
+        }
+    };
+    progress.end();
+    Ok(drawn)
+}
+
+/// Sides of growing pictures: powers of two from 64 to `most`.
+fn sides_to(most: u32) -> Vec<u32> {
+    std::iter::successors(Some(64u32), |side| side.checked_mul(2))
+        .take_while(|&side| side <= most.max(64))
+        .collect()
+}
+
+/// Width of a word where nothing is said: that for which the shipped hardware is built.
+const BITS: u32 = 32;
+
+/// Terrains and sponges of growing depth, in one picture size.
+const OBJECTS: [&str; 9] = [
+    "gen:terrain,depth=6",
+    "gen:terrain,depth=7",
+    "gen:terrain,depth=8",
+    "gen:terrain,depth=9",
+    "gen:terrain,depth=10",
+    "gen:terrain,depth=11",
+    "gen:menger,depth=3",
+    "gen:menger,depth=4",
+    "gen:menger,depth=5",
+];
+
+fn objects(
+    size: (u32, u32),
+    options: &SetupOptions,
+    console: &Console,
+) -> Result<Vec<GrowthRow>, CliError> {
+    let mut rows = Vec::new();
+    let (camera, scene) = Default::default();
+    for name in OBJECTS {
+        let subject = subjects::open(name, &camera, &scene, size, console)?;
+        let side = size.0.max(size.1);
+        rows.push(growth::row(
+            name,
+            &subject.graph,
+            &subject.camera,
+            side,
+            options,
+        )?);
+    }
+    Ok(rows)
+}
+
+impl From<ModelError> for CliError {
+    fn from(error: ModelError) -> Self {
+        use crate::machine::SimulateError;
+        match error {
+            ModelError::Setup(error) => error.into(),
+            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Engine(error)) => {
+                error.into()
+            }
+            ModelError::Simulate(error) => Self::new(Kind::Limit, error),
+            ModelError::Cost(error) => Self::new(Kind::Input, error),
+        }
+    }
+}

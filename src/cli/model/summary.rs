@@ -1,0 +1,229 @@
+//! What the model found, as tables.
+
+use super::findings::Findings;
+use crate::lab::model::{cost, tables};
+use crate::report::{Cell, Table, grouped};
+
+/// What matters most, in words.
+pub(super) fn summary(found: &Findings) -> Table {
+    let mut table = Table::new(
+        format!(
+            "{}, {} x {}, on hardware `{}`: {}",
+            found.name,
+            found.setup.width,
+            found.setup.height,
+            found.hardware.name,
+            found.simulated.cycles.bottleneck.sentence
+        ),
+        &["what", "figure"],
+    );
+    let cycles = &found.simulated.cycles;
+    let (energy, low, high) = found.cost.total();
+    let ray = found.rival.cost.total().0;
+    let bits = found.counted.record_bits();
+    let mut row = |what: &str, figure: String| {
+        table.rows.push(vec![Cell::from(what), Cell::Text(figure)]);
+    };
+    row("records", grouped(found.counted.counter.records()));
+    row(
+        "operations",
+        format!(
+            "{}, {:.0} a record; none is a multiplication or a division; widest {} bits",
+            grouped(found.counted.counter.ops()),
+            found.counted.operations_per_record(),
+            found.counted.counter.widest()
+        ),
+    );
+    row("the host's set-up", host_in_words(found));
+    row(
+        "cycles",
+        format!(
+            "{}: {:.1} a record, {:.1} a pixel; {:.1} frames a second at {} MHz",
+            grouped(cycles.cycles),
+            cycles.cycles_per_record,
+            cycles.cycles_per_pixel,
+            cycles.frames_per_second,
+            cycles.clock_mhz
+        ),
+    );
+    row(
+        "parallelism",
+        format!(
+            "work {} over span {}: {:.1} contexts could be kept busy; here there are {} (lanes {}, contexts {})",
+            grouped(cycles.work),
+            grouped(cycles.span),
+            cycles.parallelism,
+            cycles.lanes * cycles.contexts,
+            cycles.lanes,
+            cycles.contexts
+        ),
+    );
+    row(
+        "records beyond the serial machine's",
+        format!(
+            "{} ({})",
+            cycles.records as i64 - found.counted.counter.records() as i64,
+            match found.differing {
+                0 => "the picture is the same".to_owned(),
+                some => format!(
+                    "the picture differs at {}: under this rule, children of one class may claim the same sample",
+                    samples(some)
+                ),
+            },
+        ),
+    );
+    row(
+        "stack",
+        format!(
+            "{bits} bits a record, {} deep at most on a lane here: {} bits ({} in the serial machine); {} entries a lane are {} kbit",
+            cycles.stack.deepest,
+            grouped(u64::from(bits) * cycles.stack.deepest),
+            found.counted.memory.deepest_stack(),
+            found.hardware.stack.entries,
+            grouped(cost::stack_bits(&found.hardware, bits) / 1024)
+        ),
+    );
+    row(
+        "fill vectors",
+        format!(
+            "{} kbit",
+            grouped(cost::fill_vector_bits(&found.setup) / 1024)
+        ),
+    );
+    let accumulators = cost::accumulator_bits(&found.setup);
+    if accumulators > 0 {
+        row(
+            "accumulators",
+            format!("{} kbit", grouped(accumulators / 1024)),
+        );
+    }
+    row(
+        "node cache",
+        format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
+    );
+    row(
+        "area of the units",
+        format!(
+            "{:.0} NAND2 equivalents, of those that this frame uses (memories, pipeline registers and control are not in it)",
+            found.area.total
+        ),
+    );
+    row(
+        "energy",
+        format!(
+            "{:.1} uJ ({:.1} to {:.1}); a ray caster in float {:.1} uJ: {}",
+            energy / 1e6,
+            low / 1e6,
+            high / 1e6,
+            ray / 1e6,
+            if energy <= ray {
+                format!("{:.2} times as much", ray / energy)
+            } else {
+                format!("the light hardware needs {:.2} times as much", energy / ray)
+            }
+        ),
+    );
+    row(
+        "wrong pixels (coverage)",
+        format!(
+            "{} of {}; the ray caster {}",
+            found.wrong.extra + found.wrong.missing,
+            grouped(found.wrong.covered),
+            found.rival.error.extra + found.rival.error.missing
+        ),
+    );
+    table
+}
+
+/// What the host did, beside what the machine did.
+fn host_in_words(found: &Findings) -> String {
+    let host = &found.host;
+    let energy = &host.energy;
+    format!(
+        "{} steps apart from these, {} multiplies and {} divides among them: {:.2} a record, {:.2} a pixel written; {:.3} uJ ({:.3} to {:.3}, without {} steps that have no row), {:.2} % of what the machine's operations take, {:.2} % of the frame's energy, in which it is not",
+        grouped(host.steps),
+        grouped(host.multiplies),
+        grouped(host.divides),
+        host.steps_per_record,
+        host.steps_per_pixel,
+        energy.total / 1e6,
+        energy.low / 1e6,
+        energy.high / 1e6,
+        grouped(host.unpriced),
+        100.0 * energy.total / found.cost.operations.total,
+        100.0 * energy.total / found.cost.total().0
+    )
+}
+
+fn samples(count: u64) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{} sample{plural}", grouped(count))
+}
+
+/// The tables that are printed.
+pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
+    let cycles = &found.simulated.cycles;
+    let mut all = vec![
+        tables::stages(&found.counted, cycles),
+        tables::memories(&found.counted, &found.widths, cycles),
+        tables::bounds(cycles),
+        tables::host(&found.host),
+        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.rival),
+        tables::claims(&found.claims),
+    ];
+    if !found.rules.is_empty() {
+        all.push(tables::rules(&found.rules));
+    }
+    if !found.formats.is_empty() {
+        all.push(tables::formats(&found.formats));
+    }
+    if !found.lanes.is_empty() {
+        all.push(tables::lanes(&found.lanes));
+    }
+    if !found.pictures.is_empty() {
+        all.push(tables::growth(
+            "Growing pictures of one object",
+            &found.pictures,
+        ));
+        all.push(tables::growth(
+            "Growing objects in one picture",
+            &found.objects,
+        ));
+    }
+    all
+}
+
+/// The tables that only files hold.
+pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
+    vec![
+        tables::classes(&found.counted),
+        tables::levels(&found.counted),
+        tables::record(&found.counted.fields),
+        tables::miss_curve(&found.counted),
+        tables::host_parts(&found.host),
+        tables::breakdown("Energy of the host's set-up", "pj", &found.host.energy),
+        tables::breakdown("Energy of the operations", "pj", &found.cost.operations),
+        tables::breakdown(
+            "Energy of the memories on the chip",
+            "pj",
+            &found.cost.on_chip,
+        ),
+        tables::breakdown("Energy of outer memory", "pj", &found.cost.outer),
+        tables::breakdown("Area of the units", "nand2", &found.area),
+        tables::breakdown(
+            "Energy of the ray caster's operations",
+            "pj",
+            &found.rival.cost.operations,
+        ),
+        tables::breakdown(
+            "Energy of the ray caster's memories on the chip",
+            "pj",
+            &found.rival.cost.on_chip,
+        ),
+        tables::breakdown(
+            "Energy of the ray caster's outer memory",
+            "pj",
+            &found.rival.cost.outer,
+        ),
+    ]
+}

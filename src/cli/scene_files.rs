@@ -1,0 +1,176 @@
+//! Scenes written to files.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::SceneArgs;
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::report;
+use super::scenes::{self, Scene};
+use crate::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
+use crate::picture::store;
+use crate::scene;
+
+/// Most voxels that are written to a voxel file.
+const MAX_WRITTEN: u64 = 1 << 28;
+
+/// Where a conversion reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Conversion<'a> {
+    /// The scene, as the user named it.
+    pub(super) input: &'a str,
+    /// The file.
+    pub(super) output: &'a Path,
+    /// Whether a file that exists is replaced.
+    pub(super) force: bool,
+    /// How the scene is read.
+    pub(super) scene: &'a SceneArgs,
+}
+
+/// What a conversion wrote.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Written {
+    /// Voxels in the scene.
+    pub(super) voxels: u64,
+    /// Bytes written.
+    pub(super) bytes: u64,
+    /// What the user should know.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Writes a scene in the format that the output's ending names.
+///
+/// # Errors
+/// An unknown format (usage), a file that exists, or a failed write.
+pub(super) fn write(
+    scene: &Scene,
+    output: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<Written, CliError> {
+    let graph = &scene.graph;
+    let mut warnings = Vec::new();
+    let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
+    progress.begin("writing", 0);
+    match ending {
+        "vxg" => store::write_with(output, force, |file| {
+            vxg::write_to(graph, file).map_err(std::io::Error::other)
+        })?,
+        "vox" => {
+            let mut writer = scene::VoxWriter::new();
+            for voxel in voxels(graph)? {
+                writer.add(voxel);
+            }
+            store::write_with(output, force, |file| {
+                let written = writer.write(file)?;
+                if written.colors_given > written.colors_kept {
+                    warnings.push(format!(
+                        "{} colours were reduced to the {} that a .vox holds",
+                        written.colors_given, written.colors_kept
+                    ));
+                }
+                Ok(())
+            })?;
+        }
+        "ply" => {
+            let all = voxels(graph)?;
+            store::write_with(output, force, |file| {
+                scene::write_ply(file, all, true).map(|_| ())
+            })?;
+        }
+        _ => {
+            return Err(CliError::usage(format!(
+                "{}: cannot tell the format to write from the ending",
+                output.display()
+            ))
+            .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx"));
+        }
+    }
+    progress.end();
+    let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
+    Ok(Written {
+        voxels: graph.voxels,
+        bytes,
+        warnings,
+    })
+}
+
+/// Builds a `.vxg` file of a scene within a limit of memory.
+///
+/// # Errors
+/// A bad input, a file that exists, or a failed write.
+pub(super) fn build_file(
+    source: &str,
+    args: &SceneArgs,
+    external: ExternalOptions,
+    output: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<(Written, Option<ExternalReport>), CliError> {
+    let options = scenes::options(args);
+    let built = scene::build_file(source, &options, external, output, force, progress)?;
+    let written = Written {
+        voxels: built.voxels,
+        bytes: built.bytes,
+        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+    };
+    Ok((written, built.report))
+}
+
+/// The finest voxels of a graph at their file indices; a large leaf is many.
+fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
+    if graph.voxels > MAX_WRITTEN {
+        return Err(CliError::new(
+            Kind::Limit,
+            format!("a voxel file of {} voxels is too large", graph.voxels),
+        )
+        .advise("write a .vxg, or convert a scene of fewer levels"));
+    }
+    Ok(graph.voxels().flat_map(move |cell| {
+        let corner = graph.file_index(&cell);
+        let side = 1i64 << (graph.depth - cell.level);
+        let color = graph.color_of(cell.node);
+        let normal = graph.normal_of(cell.node);
+        (0..side * side * side).map(move |i| {
+            let offset = [i / (side * side), i / side % side, i % side];
+            Voxel {
+                // Within `i32`, as the builder made sure.
+                index: std::array::from_fn(|k| (corner[k] + offset[k]) as i32),
+                color,
+                normal: Some(normal).filter(|n| !n.is_none()),
+            }
+        })
+    }))
+}
+
+/// Says what was written.
+pub(super) fn tell(
+    verb: &str,
+    input: &str,
+    output: &Path,
+    written: &Written,
+    console: &Console,
+) -> Result<(), CliError> {
+    for warning in &written.warnings {
+        console.note(format!("{}: {warning}", output.display()));
+    }
+    console.note(format!(
+        "{}: {} voxels, {} bytes",
+        output.display(),
+        report::grouped(written.voxels),
+        report::grouped(written.bytes)
+    ));
+    if console.json {
+        let fields = json!({
+            "input": input,
+            "output": output,
+            "voxels": written.voxels,
+            "bytes": written.bytes,
+            "warnings": written.warnings,
+        });
+        console.document(&report::document(verb, fields))?;
+    }
+    Ok(())
+}

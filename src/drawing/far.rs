@@ -1,0 +1,118 @@
+//! Far voxels as something that can be drawn.
+
+use serde_json::{Value, json};
+
+use super::mesh_view::{light_of, picture_of_far, view_of};
+use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
+use crate::far::FarFile;
+use crate::far::view::{Counts, FarViewer, Opacity, ViewOptions};
+use crate::picture::{Background, Shading};
+use crate::project::{Bounds, Camera, Up};
+
+/// What far voxels are drawn with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FarLook {
+    /// Largest voxel, pixels; above 0.
+    pub voxel_px: f64,
+    /// Samples per pixel and axis, as a power of two.
+    pub aa_log2: u32,
+    /// What opacities are used for.
+    pub opacity: Opacity,
+    /// Light.
+    pub shading: Shading,
+    /// What is behind.
+    pub background: Background,
+}
+
+/// A file of far voxels that is drawn, once or from many cameras.
+pub struct FarDrawing<'f> {
+    file: &'f FarFile,
+    viewer: FarViewer<'f>,
+    look: FarLook,
+    kept: Option<Kept>,
+}
+
+impl<'f> FarDrawing<'f> {
+    /// Nothing is drawn yet.
+    #[must_use]
+    pub fn new(file: &'f FarFile, look: FarLook) -> Self {
+        Self {
+            file,
+            viewer: FarViewer::new(file),
+            look,
+            kept: None,
+        }
+    }
+}
+
+impl Drawable for FarDrawing<'_> {
+    fn bounds(&self) -> Bounds {
+        let (low, high) = self.file.bounds();
+        Bounds::of_box(low, high)
+    }
+
+    fn up(&self) -> Up {
+        if self.file.y_up() { Up::Y } else { Up::Z }
+    }
+
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
+        self.kept = None;
+        check_samples(camera, self.look.aa_log2)?;
+        let view = view_of(camera, self.file.bounds())?;
+        let options = ViewOptions {
+            voxel_px: self.look.voxel_px,
+            samples_across: 1 << self.look.aa_log2,
+            opacity: self.look.opacity,
+            light: light_of(&view, self.look.shading),
+            background: self.look.background.color(),
+            ..ViewOptions::default()
+        };
+        let ((picture, counts), times_ms) = timed(runs, || {
+            let (drawn, counts) = self.viewer.draw(&view, &options)?;
+            Ok((picture_of_far(drawn), counts))
+        })?;
+        self.kept = Some(Kept {
+            picture,
+            counters: counters(&counts),
+            times_ms,
+        });
+        Ok(())
+    }
+
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
+        let details = || {
+            vec![
+                ("engine", json!("far")),
+                ("memory", json!(resident(self.file))),
+            ]
+        };
+        Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+}
+
+/// What a budget of memory came to; `None` without one.
+#[must_use]
+pub fn resident(file: &FarFile) -> Option<Value> {
+    let resident = file.resident()?;
+    Some(json!({
+        "bytes": resident.bytes,
+        "most_bytes": resident.most_bytes,
+        "nodes_released": resident.released,
+    }))
+}
+
+fn counters(counts: &Counts) -> Figures {
+    let counters = [
+        ("nodes_visited", counts.visited),
+        ("nodes_outside", counts.outside),
+        ("voxel_nodes", counts.voxel_nodes),
+        ("leaves", counts.leaves),
+        ("nodes_hidden", counts.hidden),
+        ("queries", counts.queries),
+        ("opaque_voxels", counts.opaque_voxels),
+        ("transparent_voxels", counts.transparent_voxels),
+        ("triangles", counts.triangles),
+        ("drawn_twice", counts.drawn_twice),
+    ];
+    counters.map(|(name, count)| (name, count.into())).to_vec()
+}

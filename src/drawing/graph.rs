@@ -1,0 +1,229 @@
+//! A voxel graph as something that can be drawn, by any engine of voxels.
+
+use std::borrow::Cow;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::{
+    Buffers, DrawError, Drawable, Figures, Shown, check_samples, milliseconds_since, timed,
+};
+use crate::frame::Colors;
+use crate::graph::{Graph, GraphView};
+use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
+use crate::project::{
+    Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
+};
+
+/// What a voxel graph is drawn with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GraphLook {
+    /// Rules and words.
+    pub options: SetupOptions,
+    /// Light.
+    pub shading: Shading,
+    /// What is behind.
+    pub background: Background,
+    /// Buffers that are wanted beside the colours.
+    pub buffers: Vec<Buffer>,
+    /// Whether the picture's hash is wanted, which is over all buffers.
+    pub is_hashed: bool,
+}
+
+/// A graph that is drawn, once or from many cameras: what is made for a frame
+/// and can stay (engine, frame, and a picture that does not change) does.
+pub struct GraphDrawing<'g> {
+    graph: &'g Graph,
+    up: Up,
+    look: GraphLook,
+    engine: Box<dyn Fn() -> Box<dyn Engine> + 'g>,
+    viewer: Viewer<'g, Box<dyn Engine>>,
+    /// What the viewer's frames hold.
+    contents: Contents,
+    /// What the viewer shows.
+    last: Option<Drawn>,
+}
+
+/// What is known of the viewer's frame.
+struct Drawn {
+    pixels: Pixels,
+    pixels_drawn: usize,
+    setup: FrameSetup,
+    stats: Stats,
+    times_ms: Vec<f64>,
+    /// Time to make the colours, milliseconds.
+    resolve_ms: f64,
+}
+
+impl<'g> GraphDrawing<'g> {
+    /// Nothing is drawn yet. `engine` makes a new engine, always the same one.
+    #[must_use]
+    pub fn new(
+        graph: &'g Graph,
+        up: Up,
+        look: GraphLook,
+        engine: impl Fn() -> Box<dyn Engine> + 'g,
+    ) -> Self {
+        let of_voxels = [Buffer::Depth, Buffer::Normal, Buffer::Voxel];
+        let wants = |buffer: &Buffer| look.buffers.contains(buffer);
+        let contents = if wants(&Buffer::Records) {
+            Contents::Records
+        } else if look.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
+            Contents::Voxels
+        } else {
+            // A fifth of the memory. Colours depend on voxels where a node has
+            // no normal, and the graph then says where the node is.
+            Contents::Nodes
+        };
+        Self {
+            graph,
+            up,
+            look,
+            viewer: Viewer::new(graph.view(), engine(), contents),
+            engine: Box::new(engine),
+            contents,
+            last: None,
+        }
+    }
+
+    /// The integers of a frame.
+    ///
+    /// # Errors
+    /// When the picture is too large, or the frame cannot be set up.
+    pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
+        check_samples(camera, self.look.options.aa_log2)?;
+        let Graph {
+            placement, depth, ..
+        } = self.graph;
+        Ok(FrameSetup::new(
+            camera,
+            placement,
+            *depth,
+            &self.look.options,
+        )?)
+    }
+
+    /// Times of drawing a frame so often with an engine for that alone, as experiments time a frame:
+    /// clear, traverse, colours written. Milliseconds.
+    fn measure(&self, setup: &FrameSetup, runs: u32) -> Result<Vec<f64>, DrawError> {
+        let mut engine = (self.engine)();
+        let mut colors = Colors::new(setup.width, setup.height);
+        let light = lights(self.graph, setup, Shading::Flat);
+        let view = GraphView {
+            light: &light,
+            ..self.graph.view()
+        };
+        let (_, times_ms) = timed(runs, || {
+            engine.draw_colors(&view, &self.graph.color, setup, &mut colors)?;
+            std::hint::black_box(&colors);
+            Ok(())
+        })?;
+        Ok(times_ms)
+    }
+
+    /// The buffers of what the viewer shows.
+    fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
+        // A frame that is not there has no samples.
+        let frame = self.viewer.frame();
+        let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
+        let GraphLook {
+            shading,
+            background,
+            ..
+        } = self.look;
+        Resolver::new(frame, self.graph, setup, shading, background)
+    }
+
+    /// The colours of what the viewer shows.
+    fn pixels(&self, setup: &FrameSetup) -> Result<Pixels, ResolveError> {
+        let resolver = self.resolver(setup)?;
+        let (width, height) = resolver.size();
+        let rows = 0..height;
+        Ok(match resolver.is_opaque() {
+            true => Pixels::opaque(width, height, resolver.colors(rows)?),
+            false => Pixels::new(width, height, resolver.colors(rows)?),
+        })
+    }
+}
+
+impl Drawable for GraphDrawing<'_> {
+    fn bounds(&self) -> Bounds {
+        Bounds::of(self.graph)
+    }
+
+    fn up(&self) -> Up {
+        self.up
+    }
+
+    /// Draws the graph, unless it was drawn like this the last time, and makes the colours. With several
+    /// runs the times are those of so many frames drawn for that alone.
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
+        let setup = self.setup(camera)?;
+        let measured = match runs {
+            0 | 1 => None,
+            runs => Some(self.measure(&setup, runs)?),
+        };
+        let mut started = Instant::now();
+        let is_shown = self.viewer.shows(&setup);
+        let light = lights(self.graph, &setup, self.look.shading);
+        let mut stats = self.viewer.render_lit(&setup, &light)?;
+        let mut draw_ms = milliseconds_since(started);
+        started = Instant::now();
+        let pixels = match self.last.take().filter(|_| is_shown) {
+            Some(last) => last.pixels,
+            None => match self.pixels(&setup) {
+                Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
+                    // The graph does not say it: once more, with voxels.
+                    self.contents = Contents::Voxels;
+                    let engine = (self.engine)();
+                    self.viewer = Viewer::new(self.graph.view(), engine, self.contents);
+                    started = Instant::now();
+                    stats = self.viewer.render_lit(&setup, &light)?;
+                    draw_ms += milliseconds_since(started);
+                    started = Instant::now();
+                    self.pixels(&setup)?
+                }
+                made => made?,
+            },
+        };
+        let pixels_drawn = self.resolver(&setup)?.drawn();
+        self.last = Some(Drawn {
+            pixels,
+            pixels_drawn,
+            setup,
+            stats,
+            times_ms: measured.unwrap_or_else(|| vec![draw_ms]),
+            resolve_ms: milliseconds_since(started),
+        });
+        Ok(())
+    }
+
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
+        let Some(last) = &self.last else {
+            return Ok(None);
+        };
+        let mut counters: Figures = last
+            .stats
+            .iter()
+            .map(|&(name, count)| (name, count.into()))
+            .collect();
+        // Of a mapped graph: all pages, and those in memory by now.
+        if let Some(pages) = self.graph.mapped_pages() {
+            counters.push(("pages_mapped", pages.mapped.into()));
+            counters.push(("pages_resident", pages.resident.into()));
+        }
+        let word = json!({
+            "bits": last.setup.format.bits(),
+            "screen_fraction_bits": last.setup.format.frac(),
+            "clip_fraction_bits": last.setup.clip_frac,
+        });
+        Ok(Some(Shown {
+            pixels: Cow::Borrowed(&last.pixels),
+            buffers: Buffers::Resolved(self.resolver(&last.setup)?),
+            pixels_drawn: last.pixels_drawn,
+            times_ms: &last.times_ms,
+            counters,
+            details: vec![("word", word), ("resolve_ms", json!(last.resolve_ms))],
+        }))
+    }
+}

@@ -1,0 +1,193 @@
+//! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels, triangles.
+//!
+//! A [`Drawable`] is data, an engine and its options. It is asked for a picture with a camera, and what it
+//! [shows](Drawable::shown) is the same for all methods: colours, buffers, times and counters.
+
+mod far;
+mod graph;
+pub mod mesh_view;
+mod textured;
+mod triangles;
+
+use std::borrow::Cow;
+use std::ops::Range;
+use std::time::Instant;
+
+use serde_json::Value;
+
+use crate::mesh::raster::{RasterError, SamplesError};
+use crate::picture::npy::Values;
+use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
+use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
+
+pub use far::{FarDrawing, FarLook, resident};
+pub use graph::{GraphDrawing, GraphLook};
+pub use textured::{Erosion, TexturedDrawing, TexturedLook};
+pub use triangles::{TrianglesDrawing, TrianglesLook, bounds_of_mesh};
+
+/// Something that can be drawn from any camera.
+pub trait Drawable {
+    /// The box and what is in it, for a fitted camera.
+    fn bounds(&self) -> Bounds;
+
+    /// Which axis is up, by the file's own account.
+    fn up(&self) -> Up;
+
+    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work.
+    ///
+    /// # Errors
+    /// See [`DrawError`]; nothing is shown then.
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError>;
+
+    /// What was drawn last, if anything was.
+    ///
+    /// # Errors
+    /// When the buffers cannot be made of it.
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
+}
+
+/// Figures by name, in an order for people.
+pub type Figures = Vec<(&'static str, Value)>;
+
+/// A drawn picture, and what it took.
+pub struct Shown<'d> {
+    /// The colours.
+    pub pixels: Cow<'d, Pixels>,
+    /// All buffers, made as they are asked for.
+    pub buffers: Buffers<'d>,
+    /// Pixels that show something at their middle sample.
+    pub pixels_drawn: usize,
+    /// Time of each run, milliseconds.
+    pub times_ms: &'d [f64],
+    /// What was counted of one frame.
+    pub counters: Figures,
+    /// What this method alone tells.
+    pub details: Figures,
+}
+
+/// The buffers of a picture that is whole in memory, or of one that is made of an engine's frame.
+pub enum Buffers<'d> {
+    /// Whole.
+    Whole(&'d Picture),
+    /// Made row by row.
+    Resolved(Resolver<'d>),
+}
+
+impl Rows for Buffers<'_> {
+    type Error = ResolveError;
+
+    fn size(&self) -> (u32, u32) {
+        match self {
+            Self::Whole(picture) => picture.size(),
+            Self::Resolved(resolver) => resolver.size(),
+        }
+    }
+
+    fn rows(&self, buffer: Buffer, rows: Range<u32>) -> Result<Values, ResolveError> {
+        match self {
+            Self::Whole(picture) => picture.rows(buffer, rows).map_err(|never| match never {}),
+            Self::Resolved(resolver) => resolver.rows(buffer, rows),
+        }
+    }
+}
+
+/// Why a frame was not drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DrawError {
+    /// The picture would take too much memory.
+    #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
+    TooLarge(u64),
+    /// The camera has no direction.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The frame cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// The engine gave up.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The colours cannot be made.
+    #[error(transparent)]
+    Resolve(#[from] ResolveError),
+    /// Far voxels cannot be drawn so.
+    #[error(transparent)]
+    Far(#[from] crate::far::view::ViewError),
+    /// Textured voxels cannot be drawn so.
+    #[error(transparent)]
+    Textured(#[from] crate::textured::view::ViewError),
+    /// A file of textured voxels has no grid with so many cells.
+    #[error("the file has no grid of {cells} cells")]
+    NoGrid {
+        /// The number that was asked for.
+        cells: u32,
+        /// The numbers that there are.
+        has: Vec<u32>,
+    },
+    /// Triangles cannot be drawn so.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// A pixel cannot have so many samples.
+    #[error(transparent)]
+    Samples(#[from] SamplesError),
+}
+
+/// Most samples of a picture: about three gigabytes with all that is made of them.
+const MAX_SAMPLES: u64 = 1 << 27;
+
+/// Refuses a picture that would take too much memory. `aa_log2`: samples per pixel and axis, as a power of two.
+fn check_samples(camera: &Camera, aa_log2: u32) -> Result<(), DrawError> {
+    let pixels = u64::from(camera.width) * u64::from(camera.height);
+    match pixels << (2 * aa_log2) {
+        samples if samples > MAX_SAMPLES => Err(DrawError::TooLarge(samples)),
+        _ => Ok(()),
+    }
+}
+
+/// Does something `runs` times, once at the least: the last result, and how long each run took, milliseconds.
+fn timed<T>(
+    runs: u32,
+    mut run: impl FnMut() -> Result<T, DrawError>,
+) -> Result<(T, Vec<f64>), DrawError> {
+    let mut times_ms = Vec::new();
+    loop {
+        let started = Instant::now();
+        let result = run()?;
+        times_ms.push(milliseconds_since(started));
+        if times_ms.len() >= runs as usize {
+            return Ok((result, times_ms));
+        }
+    }
+}
+
+/// Time that has passed, milliseconds.
+#[must_use]
+pub fn milliseconds_since(started: Instant) -> f64 {
+    started.elapsed().as_secs_f64() * 1e3
+}
+
+/// A picture that a method of meshes drew.
+#[derive(Debug)]
+struct Kept {
+    picture: Picture,
+    counters: Figures,
+    times_ms: Vec<f64>,
+}
+
+impl Kept {
+    fn shown(&self, details: Figures) -> Shown<'_> {
+        let picture = &self.picture;
+        Shown {
+            pixels: Cow::Owned(Pixels::new(
+                picture.width,
+                picture.height,
+                picture.rgba.clone(),
+            )),
+            buffers: Buffers::Whole(picture),
+            pixels_drawn: picture.drawn(),
+            times_ms: &self.times_ms,
+            counters: self.counters.clone(),
+            details,
+        }
+    }
+}

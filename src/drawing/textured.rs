@@ -1,0 +1,138 @@
+//! Textured voxels as something that can be drawn.
+
+use serde_json::json;
+
+use super::mesh_view::{light_of, picture_of_triangles, view_of};
+use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
+use crate::mesh::raster::{Pattern, Samples, View};
+use crate::picture::{Background, Shading};
+use crate::project::{Bounds, Camera, Up};
+use crate::textured::TexturedFile;
+use crate::textured::record::Primitive;
+use crate::textured::view::{Counts, Detail, ViewOptions, choose_grid, draw};
+
+/// How often voxels are eroded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Erosion {
+    /// The level of fewest faces, of all grids, whose texels are at most so many pixels; above 0.
+    Auto {
+        /// Pixels.
+        texel_px: f64,
+    },
+    /// So often; beyond the last level primitives alone are left.
+    Level {
+        /// Erosions.
+        level: u32,
+        /// The grid, by its number of cells; else the one that fits the view best.
+        cells: Option<u32>,
+    },
+}
+
+/// What textured voxels are drawn with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexturedLook {
+    /// Level of detail.
+    pub erosion: Erosion,
+    /// Samples per pixel and axis, as a power of two.
+    pub aa_log2: u32,
+    /// Light.
+    pub shading: Shading,
+    /// What is behind.
+    pub background: Background,
+}
+
+/// A file of textured voxels that is drawn, once or from many cameras.
+pub struct TexturedDrawing<'f> {
+    file: &'f TexturedFile,
+    look: TexturedLook,
+    kept: Option<Kept>,
+}
+
+impl<'f> TexturedDrawing<'f> {
+    /// Nothing is drawn yet.
+    #[must_use]
+    pub fn new(file: &'f TexturedFile, look: TexturedLook) -> Self {
+        Self {
+            file,
+            look,
+            kept: None,
+        }
+    }
+
+    fn detail(&self, view: &View) -> Result<Detail, DrawError> {
+        let (level, cells) = match self.look.erosion {
+            Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
+            Erosion::Level { level, cells } => (level, cells),
+        };
+        let cells_of = |grid: usize| self.file.grid(grid).lattice().cells();
+        let grid = match cells {
+            None => choose_grid(self.file, view, level),
+            Some(cells) => (0..self.file.grids())
+                .find(|&grid| cells_of(grid) == cells)
+                .ok_or_else(|| DrawError::NoGrid {
+                    cells,
+                    has: (0..self.file.grids()).map(cells_of).collect(),
+                })?,
+        };
+        Ok(Detail::Level { grid, level })
+    }
+}
+
+impl Drawable for TexturedDrawing<'_> {
+    /// The box and the corners of all primitives: the camera is the one that the mesh's triangles get.
+    fn bounds(&self) -> Bounds {
+        let (low, high) = self.file.bounds();
+        let hull = self.file.primitives().iter().flat_map(Primitive::positions);
+        Bounds {
+            low,
+            high,
+            hull: hull.collect(),
+        }
+    }
+
+    fn up(&self) -> Up {
+        if self.file.y_up() { Up::Y } else { Up::Z }
+    }
+
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
+        self.kept = None;
+        check_samples(camera, self.look.aa_log2)?;
+        let view = view_of(camera, self.file.bounds())?;
+        // Which grid fits the view is part of the work.
+        let ((picture, counts), times_ms) = timed(runs, || {
+            let options = ViewOptions {
+                detail: self.detail(&view)?,
+                samples: Samples::new(1 << (2 * self.look.aa_log2), Pattern::Regular)?,
+                light: light_of(&view, self.look.shading),
+                background: self.look.background.color(),
+            };
+            let (drawn, counts) = draw(self.file, &view, &options)?;
+            Ok((picture_of_triangles(drawn), counts))
+        })?;
+        self.kept = Some(Kept {
+            picture,
+            counters: counters(self.file, &counts),
+            times_ms,
+        });
+        Ok(())
+    }
+
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
+        let details = || vec![("engine", json!("textured"))];
+        Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+}
+
+fn counters(file: &TexturedFile, counts: &Counts) -> Figures {
+    let choice = &counts.choice;
+    let cells = file.grid(choice.grid).lattice().cells();
+    vec![
+        ("grid", json!(cells)),
+        ("erosion", json!(choice.level)),
+        // Null where the eye is among the voxels.
+        ("texel_px", json!((choice.texel_px * 1e3).round() / 1e3)),
+        ("primitives", json!(counts.primitives)),
+        ("voxels", json!(counts.voxels)),
+        ("surfels", json!(counts.surfels)),
+    ]
+}

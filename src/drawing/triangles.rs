@@ -1,0 +1,102 @@
+//! The triangles of a mesh as something that can be drawn: the reference picture of the other methods.
+
+use glam::DVec3;
+use serde_json::json;
+
+use super::mesh_view::{light_of, picture_of_triangles, view_of};
+use super::{DrawError, Drawable, Kept, Shown, timed};
+use crate::graph::Progress;
+use crate::mesh::Mesh;
+use crate::mesh::raster::{self, RasterOptions, Samples};
+use crate::picture::{Background, Shading};
+use crate::project::{Bounds, Camera, Up};
+
+/// What triangles are drawn with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrianglesLook {
+    /// Samples of a pixel.
+    pub samples: Samples,
+    /// Light.
+    pub shading: Shading,
+    /// What is behind.
+    pub background: Background,
+}
+
+/// A mesh that is drawn with a depth buffer, once or from many cameras.
+pub struct TrianglesDrawing<'m> {
+    mesh: &'m Mesh,
+    up: Up,
+    look: TrianglesLook,
+    progress: &'m dyn Progress,
+    kept: Option<Kept>,
+    coverage: Vec<f32>,
+}
+
+impl<'m> TrianglesDrawing<'m> {
+    /// Nothing is drawn yet.
+    #[must_use]
+    pub fn new(mesh: &'m Mesh, up: Up, look: TrianglesLook, progress: &'m dyn Progress) -> Self {
+        Self {
+            mesh,
+            up,
+            look,
+            progress,
+            kept: None,
+            coverage: Vec::new(),
+        }
+    }
+
+    /// Of each pixel of what is shown, the share of its samples that see a triangle.
+    #[must_use]
+    pub fn coverage(&self) -> &[f32] {
+        &self.coverage
+    }
+}
+
+impl Drawable for TrianglesDrawing<'_> {
+    fn bounds(&self) -> Bounds {
+        bounds_of_mesh(self.mesh)
+    }
+
+    fn up(&self) -> Up {
+        self.up
+    }
+
+    fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
+        self.kept = None;
+        let view = view_of(camera, self.mesh.bounds())?;
+        let options = RasterOptions {
+            samples: self.look.samples,
+            light: light_of(&view, self.look.shading),
+            background: self.look.background.color(),
+        };
+        let (mut drawn, times_ms) = timed(runs, || {
+            Ok(raster::draw(self.mesh, &view, &options, self.progress)?)
+        })?;
+        self.coverage = std::mem::take(&mut drawn.coverage);
+        self.kept = Some(Kept {
+            picture: picture_of_triangles(drawn),
+            counters: vec![("triangles", json!(self.mesh.triangles().len()))],
+            times_ms,
+        });
+        Ok(())
+    }
+
+    fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
+        let details = || vec![("engine", json!("triangles"))];
+        Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+}
+
+/// A mesh's box and its vertices, for a fitted camera.
+#[must_use]
+pub fn bounds_of_mesh(mesh: &Mesh) -> Bounds {
+    let (low, high) = mesh.bounds();
+    let points = mesh.triangles().iter().flatten();
+    let hull = points.map(|&i| DVec3::from_array(mesh.positions()[i as usize].map(f64::from)));
+    Bounds {
+        low,
+        high,
+        hull: hull.collect(),
+    }
+}
