@@ -4,6 +4,7 @@
 //! [`View::new`] takes no frame whose positions, times sixteen, leave 53 bits.
 //! So the compares with depths of level of detail are the machine's.
 
+use crate::project::vector::cross;
 use crate::project::{Coverage, FrameSetup, OpacityEye};
 
 /// Positions, times sixteen, stay below this: whole numbers of an `f64`.
@@ -184,14 +185,6 @@ impl View {
         }
         octant
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// Constants of a level. `clip`: a finest voxel's edges. `focal`: samples that

@@ -5,8 +5,8 @@
 
 use hwmodel::{Datapath, Probe, WideWord, Word};
 
-use crate::project::host::{Host, Num, Part, Untold, cross, lift_all};
 use crate::project::setup::ShiftSum;
+use crate::project::vector::cross;
 use crate::project::{Coverage, FrameSetup};
 
 /// How a clip-space box is compared with a bisector of the quadtree.
@@ -42,8 +42,8 @@ pub(super) struct BlendEye {
 }
 
 impl BlendEye {
-    fn load<P: Probe, H: Host>(dp: &mut Datapath<P>, setup: &FrameSetup, by: H) -> Self {
-        let eye = setup.opacity_eye_by(by);
+    fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
+        let eye = setup.opacity_eye();
         Self {
             shift: eye.shift,
             at: eye.at.map(|c| dp.load(c)),
@@ -116,48 +116,32 @@ pub(super) struct Constants {
 impl Constants {
     /// Loads a frame; no probe sees it.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
-        Self::load_by(dp, setup, Untold)
-    }
-
-    /// The same; `by` counts what the host does.
-    pub(super) fn load_by<P: Probe, H: Host>(
-        dp: &mut Datapath<P>,
-        setup: &FrameSetup,
-        by: H,
-    ) -> Self {
-        by.enter(Part::Words);
         let options = &setup.options;
         let exact = options.coverage.draws_outlines();
         let scale = setup.sub_levels;
-        let origin_clip = lift_all(by, setup.origin_clip);
-        let edge_clip = setup.edge_clip.map(|e| lift_all(by, e));
-        let mut word = |value: Num<H, i64>, shift: u32| {
-            dp.load((value.widened() << shift).clamped_to_i64().value)
-        };
+        let (origin_clip, edge_clip) = (setup.origin_clip, setup.edge_clip);
+        let mut word = |value: i64, shift: u32| dp.load(clamped(i128::from(value) << shift));
         let origin = origin_clip.map(|c| word(c, scale));
         let edges =
             [0, 1, 2].map(|c| [0, 1, 2].map(|k| word(edge_clip[k][c], scale + setup.depth)));
         let depths = |depths: &[i64]| -> Vec<Option<Word>> {
             let depth = |&w: &i64| {
-                let w = by.lift(w);
-                let scaled = w.widened() << scale;
+                let scaled = i128::from(w) << scale;
                 let reachable = w != i64::MAX && scaled <= i128::from(setup.format.max());
-                reachable.then(|| Word::from_host(scaled.clamped_to_i64().value))
+                reachable.then(|| Word::from_host(clamped(scaled)))
             };
             depths.iter().map(depth).collect()
         };
         // All eyes beyond the object compare alike, so a far one is brought near.
-        let far = by.lift(1i64) << (setup.depth + setup.sub_levels);
-        let beyond = (far + 1).value;
-        let eye =
-            |eye: [i64; 3]| lift_all(by, eye).map(|c| Word::from_host(c.clamped(-1, beyond).value));
+        let beyond = (1i64 << (setup.depth + setup.sub_levels)) + 1;
+        let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, beyond)));
         let screen_frac = setup.format.frac();
         let screen_limit = |limit: &ShiftSum| {
-            let units = limit.value_by(by).scaled(screen_frac as i32).floor();
-            Word::from_host(units.to_i64().max(by.lift(LEAST_SIZE)).value)
+            let units = libm::floor(libm::ldexp(limit.value(), screen_frac as i32));
+            Word::from_host((units as i64).max(LEAST_SIZE))
         };
-        let near = word(by.lift(setup.near), scale);
-        let near_crossing = by.lift(near.to_host()) >> NEAR_CROSSING_SHIFT;
+        let near = word(setup.near, scale);
+        let near_crossing = near.to_host() >> NEAR_CROSSING_SHIFT;
 
         let mut axis_ab = [[WideWord::ZERO; 2]; 3];
         let mut axis_c = [WideWord::ZERO; 3];
@@ -165,11 +149,10 @@ impl Constants {
         if exact {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let mut plane = |a: [Num<H, i64>; 3], b: [Num<H, i64>; 3]| {
+                let mut plane = |a: [i64; 3], b: [i64; 3]| {
                     // Beyond 64 bits it is clamped to a number that no format
                     // holds, so that the load overflows as it must.
-                    cross(a.map(Num::widened), b.map(Num::widened))
-                        .map(|c| dp.load_wide(c.clamped_to_i64().value))
+                    cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c)))
                 };
                 let [a, b, c] = plane(edge_clip[i], edge_clip[j]);
                 axis_ab[k] = [a, b];
@@ -177,21 +160,20 @@ impl Constants {
                 edge_planes[k] = plane(origin_clip, edge_clip[k]);
             }
         }
-        let tolerance = by.lift(options.tolerance_px);
         Self {
             coverage: if exact {
                 Coverage::Exact
             } else {
                 options.coverage
             },
-            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup, by)),
+            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup)),
             levels: setup.levels,
             depth: setup.depth,
             sub_levels: setup.sub_levels,
             level_bound: setup.level_bound(),
             screen_frac,
             half_sample_places: [screen_frac.saturating_sub(1), u32::from(screen_frac == 0)],
-            finite_tolerance: tolerance.is_finite(),
+            finite_tolerance: options.tolerance_px.is_finite(),
             margin: match setup.grow_shift {
                 _ if exact => Margin::Gap,
                 Some(shift) => Margin::Grow(shift),
@@ -207,7 +189,7 @@ impl Constants {
                 .map_or(Word::from_host(LEAST_SIZE), screen_limit),
             least_size_screen: Word::from_host(LEAST_SIZE),
             near,
-            near_crossing: Word::from_host(near_crossing.value),
+            near_crossing: Word::from_host(near_crossing),
             screen_depth: depths(&setup.screen_depth),
             lod_depth: depths(&setup.lod_depth),
             eye_floor: eye(setup.eye_floor),
@@ -220,4 +202,10 @@ impl Constants {
             edges,
         }
     }
+}
+
+/// With 64 bits; beyond them the nearest.
+fn clamped(value: i128) -> i64 {
+    let most = if value < 0 { i64::MIN } else { i64::MAX };
+    i64::try_from(value).unwrap_or(most)
 }

@@ -56,5 +56,5 @@ pub use engine::Machine;
 #[cfg(test)]
 pub(crate) use instruments::mutants;
 pub(crate) use instruments::{Cage, cages_along};
-pub use instruments::{Positions, SimulateError, Simulated, Space, count_load, visit_positions};
+pub use instruments::{Positions, SimulateError, Simulated, Space, visit_positions};
 pub use options::MachineOptions;

@@ -3,8 +3,6 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::host::{Host, Real, Untold, cross, dot, lift_all, times, values};
-
 /// A pinhole camera and the size of its picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
@@ -60,70 +58,48 @@ pub struct Axes {
     pub focal_px: f64,
 }
 
-/// The same as the host computes with them.
-pub(super) struct HostAxes<H> {
-    pub(super) right: [Real<H>; 3],
-    pub(super) up: [Real<H>; 3],
-    pub(super) forward: [Real<H>; 3],
-    pub(super) focal_px: Real<H>,
-}
-
 impl Camera {
     /// The camera's axes.
     ///
     /// # Errors
     /// When the camera cannot see: see [`CameraError`].
     pub fn axes(&self) -> Result<Axes, CameraError> {
-        let axes = self.host_axes(Untold)?;
-        let vector = |v| DVec3::from_array(values(v));
-        Ok(Axes {
-            right: vector(axes.right),
-            up: vector(axes.up),
-            forward: vector(axes.forward),
-            focal_px: axes.focal_px.value,
-        })
-    }
-
-    /// The camera's axes, with all steps told.
-    pub(super) fn host_axes<H: Host>(&self, by: H) -> Result<HostAxes<H>, CameraError> {
-        let [eye, target, up] =
-            [self.eye, self.target, self.up].map(|v| lift_all(by, v.to_array()));
-        let mut coordinates = [eye, target, up].into_iter().flatten();
-        if !coordinates.all(Real::is_finite) {
+        if ![self.eye, self.target, self.up]
+            .iter()
+            .all(|v| v.is_finite())
+        {
             return Err(CameraError::NotFinite);
         }
-        let fov_degrees = by.lift(self.fov_degrees);
-        if !(fov_degrees > 0.0 && fov_degrees < 180.0) {
+        if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return Err(CameraError::FieldOfView(self.fov_degrees));
         }
         if self.width == 0 || self.height == 0 || self.width > MAX_SIDE || self.height > MAX_SIDE {
             return Err(CameraError::Size(self.width, self.height));
         }
-        let forward = [0, 1, 2].map(|k| target[k] - eye[k]);
-        let scale = by.lift(1.0) / length(forward);
+        // glam's vectors, in the order of operations that fixes the bits.
+        let forward = self.target - self.eye;
+        let scale = 1.0 / length(forward);
         if !(scale.is_finite() && scale > 0.0) {
             return Err(CameraError::NoDirection);
         }
-        let forward = times(forward, scale);
-        let right = cross(forward, up);
+        let forward = forward * scale;
+        let right = forward.cross(self.up);
         // Below this the two directions agree to within f64 rounding.
         let right_length = length(right);
-        if right_length <= length(up) * 1e-12 || up.iter().all(|&c| c == 0.0) {
+        if right_length <= length(self.up) * 1e-12 || self.up == DVec3::ZERO {
             return Err(CameraError::NoUp);
         }
-        let right = times(right, by.lift(1.0) / right_length);
-        let up = cross(right, forward);
-        let half_angle = fov_degrees * (std::f64::consts::PI / 360.0);
-        let half_height = by.lift(u64::from(self.height)).to_real() / 2.0;
-        Ok(HostAxes {
+        let right = right * (1.0 / right_length);
+        let half_angle = self.fov_degrees * (std::f64::consts::PI / 360.0);
+        Ok(Axes {
             right,
-            up,
+            up: right.cross(forward),
             forward,
-            focal_px: half_height / half_angle.tan(),
+            focal_px: f64::from(self.height) / 2.0 / libm::tan(half_angle),
         })
     }
 }
 
-fn length<H: Host>(vector: [Real<H>; 3]) -> Real<H> {
-    dot(vector, vector).sqrt()
+fn length(vector: DVec3) -> f64 {
+    libm::sqrt(vector.dot(vector))
 }

@@ -7,43 +7,40 @@
 //! voxel of twice the side looks the same, so one ratio of side to depth
 //! serves all levels.
 
-use super::host::{Host, Real};
 use super::setup::SCREEN_GUARD_SHIFT;
 
 /// Clip vectors of a finest voxel's edges, and the picture they are seen in.
-pub(super) struct Edges<H> {
+pub(super) struct Edges {
     /// X and Y in units of the image root times depth, W in voxels.
-    pub(super) edge: [[Real<H>; 3]; 3],
+    pub(super) edge: [[f64; 3]; 3],
     /// Samples a side of the image root.
-    pub(super) root_samples: Real<H>,
-    /// Is told of all steps.
-    pub(super) by: H,
+    pub(super) root_samples: f64,
 }
 
 /// Where W is in a clip vector.
 const W: usize = 2;
 
-impl<H: Host> Edges<H> {
+impl Edges {
     /// How fast a picture position at `x` (0 to 1 across the image root)
     /// moves along each edge, times the depth, in samples.
-    fn speed(&self, axis: usize, x: Real<H>) -> [Real<H>; 3] {
+    fn speed(&self, axis: usize, x: f64) -> [f64; 3] {
         self.edge.map(|e| (e[axis] - x * e[W]) * self.root_samples)
     }
 
     /// The two ends of the range of positions that may change: linear and
     /// convex functions of the position are greatest there.
-    fn ends(&self) -> [Real<H>; 2] {
-        let guard = self.by.lift(1.0).scaled(-(SCREEN_GUARD_SHIFT as i32));
+    fn ends(&self) -> [f64; 2] {
+        let guard = libm::ldexp(1.0, -(SCREEN_GUARD_SHIFT as i32));
         [-guard, guard + 1.0]
     }
 
     /// Sum over the edges of how fast they move a point, the greater of both
     /// axes and ends.
-    fn total_speed(&self) -> Real<H> {
+    fn total_speed(&self) -> f64 {
         let ends = self.ends();
-        let mut most = self.by.lift(0.0);
+        let mut most = 0.0f64;
         for axis in 0..2 {
-            let [low, high] = ends.map(|x| self.speed(axis, x).map(Real::abs));
+            let [low, high] = ends.map(|x| self.speed(axis, x).map(f64::abs));
             let [x, y, z] = [0, 1, 2].map(|k| low[k].max(high[k]));
             most = most.max(x + y + z);
         }
@@ -51,31 +48,26 @@ impl<H: Host> Edges<H> {
     }
 
     /// Depth that a finest voxel spans.
-    fn depth_span(&self) -> Real<H> {
+    fn depth_span(&self) -> f64 {
         let [x, y, z] = self.edge.map(|e| e[W].abs());
         x + y + z
     }
 
     /// Least depth, in voxels, for a voxel of side 1 that a level of detail of
     /// at most `limit` samples takes for a solid.
-    pub(super) fn detail_depth(&self, limit: Real<H>) -> Real<H> {
+    pub(super) fn detail_depth(&self, limit: f64) -> f64 {
         self.total_speed() / limit
     }
 
     /// Least depth, in voxels, at which a voxel of side 1 may change to
     /// screen space with a deviation of at most `allowed` samples.
-    pub(super) fn screen_depth(&self, allowed: Real<H>) -> Real<H> {
-        (self.total_speed() * self.depth_span() / allowed).sqrt()
+    pub(super) fn screen_depth(&self, allowed: f64) -> f64 {
+        libm::sqrt(self.total_speed() * self.depth_span() / allowed)
     }
-}
-
-/// `2^exponent`.
-fn power<H: Host>(by: H, exponent: i32) -> Real<H> {
-    by.lift(1.0).scaled(exponent)
 }
 
 /// Most of a sample by which rounding moves a vertex in screen space: quotients
 /// are rounded down, a corner and three edges, one unit each.
-pub(super) fn rounding<H: Host>(by: H, screen_frac: u32) -> Real<H> {
-    power(by, -(screen_frac as i32)) * 4.0
+pub(super) fn rounding(screen_frac: u32) -> f64 {
+    libm::ldexp(4.0, -(screen_frac as i32))
 }

@@ -4,10 +4,10 @@ pub mod camera;
 mod depths;
 pub mod engine;
 mod fit_camera;
-pub mod host;
 mod opacity;
 mod reach;
 pub mod setup;
+pub(crate) mod vector;
 mod view;
 pub mod viewer;
 

@@ -2,7 +2,6 @@
 //! (`SPEC.md`, section 11).
 
 use super::FrameSetup;
-use super::host::{Host, Untold, lift_all, values};
 
 /// Most bits of a coordinate that directions are taken from.
 const MOST_BITS: u32 = 24;
@@ -33,20 +32,14 @@ impl FrameSetup {
     /// The eye, with as many bits as leave a word room for directions.
     #[must_use]
     pub fn opacity_eye(&self) -> OpacityEye {
-        self.opacity_eye_by(Untold)
-    }
-
-    /// The same, with all steps told.
-    pub(crate) fn opacity_eye_by<H: Host>(&self, by: H) -> OpacityEye {
         let room = (self.format.bits() - HEADROOM_BITS).min(MOST_BITS);
-        let eye = lift_all(by, self.eye_floor);
-        let side = by.lift(1u64) << self.depth;
-        let [x, y, z] = eye.map(|c| c.unsigned_abs().max(side));
+        let side = 1u64 << self.depth;
+        let [x, y, z] = self.eye_floor.map(|c| c.unsigned_abs().max(side));
         let longest = x.max(y).max(z);
-        let shift = longest.significant_bits().saturating_sub(room);
+        let shift = (u64::BITS - longest.leading_zeros()).saturating_sub(room);
         OpacityEye {
             shift,
-            at: values(eye.map(|c| c >> shift)),
+            at: self.eye_floor.map(|c| c >> shift),
         }
     }
 }

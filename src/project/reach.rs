@@ -2,35 +2,34 @@
 
 use hwmodel::Format;
 
-use super::host::{Host, Num, Whole, cross};
+use super::vector::cross;
 
 /// A view as integers of `2^-frac` voxels: clip vectors of the object's lowest
 /// corner and of a finest voxel's edges.
 #[derive(Clone, Copy)]
-pub(super) struct Quantised<H> {
-    pub(super) origin: [Num<H, i64>; 3],
-    pub(super) edge: [[Num<H, i64>; 3]; 3],
+pub(super) struct Quantised {
+    pub(super) origin: [i64; 3],
+    pub(super) edge: [[i64; 3]; 3],
 }
 
 /// Largest magnitudes that a frame meets.
-pub(super) struct Reach<H> {
+pub(super) struct Reach {
     /// Of a coordinate of a clip vector.
-    pub(super) position: Whole<H>,
+    pub(super) position: i128,
     /// Of a silhouette plane: the sum of its three coefficients.
-    plane: Whole<H>,
+    plane: i128,
 }
 
-impl<H: Host> Reach<H> {
+impl Reach {
     /// The reach over the object's eight corners; intermediate vertices lie between.
     /// `None` where it does not fit 127 bits.
-    pub(super) fn of(view: &Quantised<H>, depth: u32) -> Option<Self> {
-        let by = view.origin[0].by;
-        let origin = view.origin.map(Num::widened);
-        let edge = view.edge.map(|e| e.map(Num::widened));
+    pub(super) fn of(view: &Quantised, depth: u32) -> Option<Self> {
+        let origin = view.origin.map(i128::from);
+        let edge = view.edge.map(|e| e.map(i128::from));
         let along = edge.map(|e| e.map(|c| c << depth));
         let mut reach = Self {
-            position: by.lift(0),
-            plane: by.lift(0),
+            position: 0,
+            plane: 0,
         };
         for corner in 0..8u32 {
             let mut at = origin;
@@ -48,7 +47,7 @@ impl<H: Host> Reach<H> {
                 return None;
             }
             for step in edge {
-                let [a, b, c] = cross(at, step).map(Whole::abs);
+                let [a, b, c] = cross(at, step).map(i128::abs);
                 reach.plane = reach.plane.max(a + b + c);
             }
         }
@@ -71,22 +70,21 @@ impl<H: Host> Reach<H> {
 }
 
 /// The eye of the quantised view, exactly: where the clip vector is zero.
-pub(super) struct Eye<H> {
-    pub(super) floor: [Num<H, i64>; 3],
-    pub(super) ceil: [Num<H, i64>; 3],
+pub(super) struct Eye {
+    pub(super) floor: [i64; 3],
+    pub(super) ceil: [i64; 3],
     pub(super) positive: bool,
 }
 
-impl<H: Host> Eye<H> {
+impl Eye {
     /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of
     /// `2^-sub_levels`. `None`: beyond 127 bits; `Some(None)`: no volume.
-    pub(super) fn solve(view: &Quantised<H>, sub_levels: u32) -> Option<Option<Self>> {
-        let by = view.origin[0].by;
-        let edge = view.edge.map(|e| e.map(Num::widened));
-        let minus_origin = view.origin.map(|c| -c.widened());
-        let determinant = |m: &[[Whole<H>; 3]; 3]| -> Option<Whole<H>> {
+    pub(super) fn solve(view: &Quantised, sub_levels: u32) -> Option<Option<Self>> {
+        let edge = view.edge.map(|e| e.map(i128::from));
+        let minus_origin = view.origin.map(|c| -i128::from(c));
+        let determinant = |m: &[[i128; 3]; 3]| -> Option<i128> {
             let minor = cross(m[1], m[2]);
-            (0..3).try_fold(by.lift(0), |sum, c| {
+            (0..3).try_fold(0i128, |sum, c| {
                 m[0][c].checked_mul(minor[c])?.checked_add(sum)
             })
         };
@@ -95,15 +93,15 @@ impl<H: Host> Eye<H> {
             return Some(None);
         }
         let (sign, size) = (whole.signum(), whole.abs());
-        let mut floor = [by.lift(0); 3];
-        let mut ceil = floor;
+        let mut floor = [0; 3];
+        let mut ceil = [0; 3];
         for k in 0..3 {
             let mut replaced = edge;
             replaced[k] = minus_origin;
-            let unit = by.lift(1i128) << sub_levels;
+            let unit = 1i128 << sub_levels;
             let part = determinant(&replaced)?.checked_mul(unit)? * sign;
-            floor[k] = part.div_floor(size).narrowed()?;
-            ceil[k] = floor[k] + i64::from(part.rem_floor(size) != 0);
+            floor[k] = i64::try_from(part.div_euclid(size)).ok()?;
+            ceil[k] = floor[k] + i64::from(part.rem_euclid(size) != 0);
         }
         Some(Some(Self {
             floor,

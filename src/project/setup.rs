@@ -16,7 +16,6 @@ use hwmodel::{Format, FormatError};
 use serde::{Deserialize, Serialize};
 
 use super::camera::{Camera, CameraError};
-use super::host::{Host, Part, Real, Tally, Untold, lift_all, values};
 use super::reach::{Eye, Quantised, Reach};
 use super::view::{Levels, View};
 use crate::graph::{MAX_DEPTH, Placement};
@@ -260,43 +259,15 @@ impl FrameSetup {
         depth: u32,
         options: &SetupOptions,
     ) -> Result<Self, SetupError> {
-        Self::made(camera, placement, depth, options, Untold)
-    }
-
-    /// The same, with every step of its arithmetic counted.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn counted(
-        camera: &Camera,
-        placement: &Placement,
-        depth: u32,
-        options: &SetupOptions,
-        tally: &Tally,
-    ) -> Result<Self, SetupError> {
-        Self::made(camera, placement, depth, options, tally)
-    }
-
-    fn made<H: Host>(
-        camera: &Camera,
-        placement: &Placement,
-        depth: u32,
-        options: &SetupOptions,
-        by: H,
-    ) -> Result<Self, SetupError> {
-        by.enter(Part::View);
-        let axes = camera.host_axes(by)?;
-        by.enter(Part::Limits);
-        check_settings(by, options)?;
+        let axes = camera.axes()?;
+        check_settings(options)?;
         if depth > MAX_DEPTH {
             return Err(SetupError::Depth(depth));
         }
-        by.enter(Part::View);
         let root_px_log2 = root_log2(camera.width, camera.height);
         let levels = root_px_log2 + options.aa_log2;
-        let view = View::new(by, camera, &axes, placement, root_px_log2);
+        let view = View::new(camera, &axes, placement, root_px_log2);
 
-        by.enter(Part::Quantise);
         let format = {
             let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
             let frac = options.frac.unwrap_or(DEFAULT_SCREEN_FRAC.min(room));
@@ -309,14 +280,12 @@ impl FrameSetup {
         let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
         let quantised = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
         let reach = Reach::of(&quantised, depth).ok_or(SetupError::OutOfRange)?;
-        let tolerance = by.lift(options.tolerance_px);
-        let finite = tolerance.is_finite();
+        let tolerance = options.tolerance_px;
         let has_headroom = reach.fits(format, sub_levels)
-            && (!finite || tolerance <= MOST_TOLERANCE_WITH_HEADROOM)
+            && (!tolerance.is_finite() || tolerance <= MOST_TOLERANCE_WITH_HEADROOM)
             && (options.coverage.draws_outlines()
                 || levels + format.frac() + SCREEN_HEADROOM_BITS <= options.bits);
 
-        by.enter(Part::Eye);
         let eye = Eye::solve(&quantised, sub_levels)
             .ok_or(SetupError::OutOfRange)?
             .ok_or(SetupError::Collapsed {
@@ -324,8 +293,7 @@ impl FrameSetup {
                 frac: clip_frac,
             })?;
 
-        by.enter(Part::Depths);
-        let near = by.lift(1i64) << clip_frac.saturating_sub(4);
+        let near = 1i64 << clip_frac.saturating_sub(4);
         let levels_of = Levels {
             depth,
             bound: depth + sub_levels,
@@ -334,7 +302,6 @@ impl FrameSetup {
         };
         let screen_depth = view.screen_depths(&levels_of, options, format.frac());
         let lod_depth = view.lod_depths(&levels_of, options);
-        by.enter(Part::Limits);
         Ok(Self {
             options: *options,
             width: camera.width << options.aa_log2,
@@ -343,19 +310,19 @@ impl FrameSetup {
             depth,
             format,
             clip_frac,
-            origin_clip: values(quantised.origin),
-            edge_clip: quantised.edge.map(values),
+            origin_clip: quantised.origin,
+            edge_clip: quantised.edge,
             positive: eye.positive,
             sub_levels,
-            eye_floor: values(eye.floor),
-            eye_ceil: values(eye.ceil),
-            near: near.value,
+            eye_floor: eye.floor,
+            eye_ceil: eye.ceil,
+            near,
             screen_depth,
             lod_depth,
             has_headroom,
             grow_shift: grow_shift(tolerance),
-            size_limit: size_limit(by, options, 1.0).unwrap_or_default(),
-            lod_limit: detail_limit(by, options),
+            size_limit: size_limit(options, 1.0).unwrap_or_default(),
+            lod_limit: detail_limit(options),
             placement: *placement,
         })
     }
@@ -382,10 +349,10 @@ impl FrameSetup {
     #[must_use]
     pub fn position_reach(&self) -> Option<i128> {
         let view = Quantised {
-            origin: lift_all(Untold, self.origin_clip),
-            edge: self.edge_clip.map(|e| lift_all(Untold, e)),
+            origin: self.origin_clip,
+            edge: self.edge_clip,
         };
-        Reach::of(&view, self.depth).map(|reach| reach.position.value)
+        Reach::of(&view, self.depth).map(|reach| reach.position)
     }
 
     /// World depth of one unit of `W`.
@@ -412,9 +379,9 @@ pub fn root_log2(width: u32, height: u32) -> u32 {
     width.max(height).next_power_of_two().trailing_zeros()
 }
 
-fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupError> {
-    let tolerance = by.lift(options.tolerance_px);
-    let lod = by.lift(options.lod_px);
+fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
+    let tolerance = options.tolerance_px;
+    let lod = options.lod_px;
     let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
     if tolerance.is_nan() || tolerance < 0.0 {
         return bad("tolerance", "0 pixels or more", options.tolerance_px);
@@ -430,8 +397,7 @@ fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupErr
     if options.coverage.draws_outlines() && tolerance != 0.0 {
         return Err(SetupError::Tolerance(options.tolerance_px));
     }
-    let most = by.lift(4096.0);
-    if !(lod >= 0.0 && lod <= most) {
+    if !(0.0..=4096.0).contains(&lod) {
         return bad("level of detail", "0 to 4096 pixels", options.lod_px);
     }
     if options.aa_log2 > 2 {
@@ -442,9 +408,9 @@ fn check_settings<H: Host>(by: H, options: &SetupOptions) -> Result<(), SetupErr
 }
 
 /// The tolerance, rounded up to `2^-shift` samples.
-fn grow_shift<H: Host>(tolerance: Real<H>) -> Option<i32> {
+fn grow_shift(tolerance: f64) -> Option<i32> {
     let is_approximate = tolerance > 0.0 && tolerance.is_finite();
-    is_approximate.then(|| -(tolerance.log2().ceil().to_i64().value as i32))
+    is_approximate.then(|| -(libm::ceil(libm::log2(tolerance)) as i32))
 }
 
 /// A constant factor as a sum of powers of two: `x` times it is a sum of
@@ -459,15 +425,11 @@ impl ShiftSum {
     /// The largest sum of at most five neighbouring powers of two that is not above `value`.
     #[must_use]
     pub fn floor(value: f64) -> Self {
-        Self::floor_by(Untold.lift(value))
-    }
-
-    fn floor_by<H: Host>(value: Real<H>) -> Self {
         if value <= 0.0 {
             return Self::default();
         }
-        let leading = value.log2().floor().to_i64().value as i32;
-        let kept = value.scaled(SHIFT_SUM_BITS - 1 - leading).floor().to_i64();
+        let leading = libm::floor(libm::log2(value)) as i32;
+        let kept = libm::floor(libm::ldexp(value, SHIFT_SUM_BITS - 1 - leading)) as i64;
         Self(
             (0..SHIFT_SUM_BITS)
                 .filter(|place| (kept >> (SHIFT_SUM_BITS - 1 - place) as u32) & 1 != 0)
@@ -485,36 +447,27 @@ impl ShiftSum {
     /// The factor.
     #[must_use]
     pub fn value(&self) -> f64 {
-        self.value_by(Untold).value
-    }
-
-    /// The same, with all steps told.
-    pub(crate) fn value_by<H: Host>(&self, by: H) -> Real<H> {
-        let add = |sum, &shift: &i32| sum + by.lift(1.0).scaled(-shift);
-        self.0.iter().fold(by.lift(0.0), add)
+        let powers = self.0.iter().map(|&shift| libm::ldexp(1.0, -shift));
+        powers.fold(0.0, |sum, power| sum + power)
     }
 }
 
 /// A size in samples, less its share of twice the tolerance, so that
 /// neighbours that deviate by the tolerance leave no pinhole; `None` for 0.
 /// The rules that draw outlines have no tolerance to take a share of.
-fn size_limit<H: Host>(by: H, options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
-    let tolerance = by.lift(options.tolerance_px);
-    let finite = tolerance.is_finite();
-    let tolerance = if finite { tolerance } else { by.lift(0.0) };
+fn size_limit(options: &SetupOptions, samples: f64) -> Option<ShiftSum> {
+    let tolerance = Some(options.tolerance_px).filter(|t| t.is_finite());
     // Never below an eighth: with coarser tolerances the user has chosen holes.
-    let share = (by.lift(1.0) - tolerance * 2.0).max(by.lift(0.125));
-    let samples = by.lift(samples);
-    (samples > 0.0).then(|| ShiftSum::floor_by(samples * share))
+    let share = (1.0 - tolerance.unwrap_or(0.0) * 2.0).max(0.125);
+    (samples > 0.0).then(|| ShiftSum::floor(samples * share))
 }
 
 /// The size of a node that level of detail takes for a solid; `None` for 0.
 /// Under `exact`, where a solid is drawn at every sample of its silhouette and
 /// not at one, it needs no share for pinholes.
-pub(super) fn detail_limit<H: Host>(by: H, options: &SetupOptions) -> Option<ShiftSum> {
+pub(super) fn detail_limit(options: &SetupOptions) -> Option<ShiftSum> {
     if options.coverage.draws_outlines() {
-        let samples = by.lift(options.lod_px);
-        return (samples > 0.0).then(|| ShiftSum::floor_by(samples));
+        return (options.lod_px > 0.0).then(|| ShiftSum::floor(options.lod_px));
     }
-    size_limit(by, options, options.lod_px)
+    size_limit(options, options.lod_px)
 }

@@ -51,23 +51,7 @@ fn the_document_adds_up() {
     let distinct: std::collections::BTreeSet<&str> = names.iter().copied().collect();
     assert_eq!(distinct.len(), names.len());
     assert_eq!(stat("machine.ops.multiply"), 0);
-    // What the host multiplied is told apart, line by line and in all.
-    let host = &found["host"];
-    let host_cells = host["cells"].as_array().expect("cells");
-    let sum_of = |is_wanted: &dyn Fn(&Value) -> bool| -> u64 {
-        let wanted = host_cells.iter().filter(|cell| is_wanted(cell));
-        wanted.filter_map(|cell| cell["times"].as_u64()).sum()
-    };
-    let multiplies = sum_of(&|cell| cell["step"] == "multiply");
-    assert!(multiplies > 100, "{multiplies}");
-    assert_eq!(host["multiplies"], multiplies);
-    assert_eq!(stat("host.multiplies"), multiplies);
-    assert_eq!(host["steps"], sum_of(&|_| true));
     assert!(cells.iter().all(|cell| cell["class"] != "multiply"));
-    let energy = host["energy"]["lines"].as_array().expect("lines");
-    let priced: u64 = energy.iter().filter_map(|l| l["times"].as_u64()).sum();
-    let unpriced = host["unpriced"].as_u64().expect("a count");
-    assert_eq!(host["steps"], priced + unpriced);
     let cycles = &found["simulated"]["cycles"];
     let number = |value: &Value| value.as_u64().expect("a number");
     assert!(number(&cycles["span"]) <= number(&cycles["cycles"]));

@@ -135,36 +135,16 @@ const PRODUCTS: [Allowed; 12] = [
     ),
 ];
 
-/// Lines that name the host's arithmetic, which multiplies.
-const HOST: [Allowed; 6] = [
+/// Lines that name arithmetic which multiplies.
+const HOST: [Allowed; 2] = [
     allowed(
-        "instruments/load.rs",
-        "use crate::project::host::Tally;",
-        "it counts what the host does",
+        "constants.rs",
+        "use crate::project::vector::cross;",
+        "for the line below",
     ),
     allowed(
         "constants.rs",
-        "use crate::project::host::{Host, Num, Part, Untold, cross, lift_all};",
-        "for the lines below",
-    ),
-    allowed(
-        "constants.rs",
-        "let origin_clip = lift_all(by, setup.origin_clip);",
-        CONSTANT,
-    ),
-    allowed(
-        "constants.rs",
-        "let edge_clip = setup.edge_clip.map(|e| lift_all(by, e));",
-        CONSTANT,
-    ),
-    allowed(
-        "constants.rs",
-        "|eye: [i64; 3]| lift_all(by, eye).map(|c| Word::from_host(c.clamped(-1, beyond).value));",
-        CONSTANT,
-    ),
-    allowed(
-        "constants.rs",
-        "cross(a.map(Num::widened), b.map(Num::widened))",
+        "cross(a.map(i128::from), b.map(i128::from)).map(|c| dp.load_wide(clamped(c)))",
         CONSTANT,
     ),
 ];
@@ -282,7 +262,7 @@ fn words_are_read_by_the_host_alone() {
 #[test]
 fn the_host_s_arithmetic_makes_constants_alone() {
     let is_host = |line: &str| {
-        let names = ["host::", "lift_all(", "cross(", "dot("];
+        let names = ["vector::", "cross(", "dot(", "DVec3"];
         names.iter().any(|name| line.contains(name))
     };
     check(&lines(&sources(), is_host), &HOST);

@@ -17,7 +17,6 @@ use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
-use crate::lab::model::host::HostWork;
 use crate::lab::model::rival::{self, Rival};
 use crate::lab::model::rules::{self, RuleRow};
 use crate::lab::model::sweep::{self, FormatRow};
@@ -32,8 +31,6 @@ pub(super) struct Findings {
     pub(super) hardware: Hardware,
     pub(super) widths: Widths,
     pub(super) counted: Counted,
-    /// What the host did before the first record.
-    pub(super) host: HostWork,
     pub(super) simulated: Simulated,
     /// Samples that the hardware's picture shows otherwise than the serial machine's.
     pub(super) differing: u64,
@@ -83,14 +80,6 @@ pub(super) fn find(
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
-    let host = HostWork::measure(
-        &camera,
-        &graph.placement,
-        graph.depth,
-        &options,
-        &counted,
-        prices,
-    )?;
     vectors::write(args, name, graph, &setup, overflow, console)?;
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
@@ -159,7 +148,6 @@ pub(super) fn find(
         hardware,
         widths,
         counted,
-        host,
         simulated,
         differing,
         cost,

@@ -59,7 +59,6 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
     let list = statistics::of(
         &found.counted,
         &found.simulated,
-        &found.host,
         &found.cost,
         found.area.total,
         Some(&found.rival),
@@ -166,7 +165,6 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "fill_vector_bits": cost::fill_vector_bits(&found.setup),
             "accumulator_bits": cost::accumulator_bits(&found.setup),
             "operations": cells,
-            "host": found.host,
             "miss_curves": curve,
             "simulated": found.simulated,
             "same_picture": found.differing == 0,

@@ -34,7 +34,6 @@ pub(super) fn summary(found: &Findings) -> Table {
             found.counted.counter.widest()
         ),
     );
-    row("the host's set-up", host_in_words(found));
     row(
         "cycles",
         format!(
@@ -135,26 +134,6 @@ pub(super) fn summary(found: &Findings) -> Table {
     table
 }
 
-/// What the host did, beside what the machine did.
-fn host_in_words(found: &Findings) -> String {
-    let host = &found.host;
-    let energy = &host.energy;
-    format!(
-        "{} steps apart from these, {} multiplies and {} divides among them: {:.2} a record, {:.2} a pixel written; {:.3} uJ ({:.3} to {:.3}, without {} steps that have no row), {:.2} % of what the machine's operations take, {:.2} % of the frame's energy, in which it is not",
-        grouped(host.steps),
-        grouped(host.multiplies),
-        grouped(host.divides),
-        host.steps_per_record,
-        host.steps_per_pixel,
-        energy.total / 1e6,
-        energy.low / 1e6,
-        energy.high / 1e6,
-        grouped(host.unpriced),
-        100.0 * energy.total / found.cost.operations.total,
-        100.0 * energy.total / found.cost.total().0
-    )
-}
-
 fn samples(count: u64) -> String {
     let plural = if count == 1 { "" } else { "s" };
     format!("{} sample{plural}", grouped(count))
@@ -167,7 +146,6 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
         tables::stages(&found.counted, cycles),
         tables::memories(&found.counted, &found.widths, cycles),
         tables::bounds(cycles),
-        tables::host(&found.host),
         tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.rival),
         tables::claims(&found.claims),
     ];
@@ -200,8 +178,6 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::levels(&found.counted),
         tables::record(&found.counted.fields),
         tables::miss_curve(&found.counted),
-        tables::host_parts(&found.host),
-        tables::breakdown("Energy of the host's set-up", "pj", &found.host.energy),
         tables::breakdown("Energy of the operations", "pj", &found.cost.operations),
         tables::breakdown(
             "Energy of the memories on the chip",

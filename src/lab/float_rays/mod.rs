@@ -21,6 +21,7 @@ pub use counted::{Counts, count};
 
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::GraphView;
+use crate::project::vector::cross;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
 /// Bits of an `f32`'s mantissa, hence levels that positions can tell apart.
@@ -139,14 +140,6 @@ impl Rays {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 #[cfg(test)]

@@ -12,7 +12,6 @@ pub mod cost;
 pub mod frame;
 pub mod growth;
 pub mod heat;
-pub mod host;
 #[cfg(feature = "cli")]
 pub mod plots;
 pub mod record;

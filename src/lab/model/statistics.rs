@@ -6,7 +6,6 @@ use hwmodel::{Memory, OpClass};
 
 use super::cost::FrameCost;
 use super::frame::Counted;
-use super::host::HostWork;
 use super::record::record_bits;
 use super::rival::Rival;
 use crate::lab::float_rays::Step;
@@ -24,7 +23,6 @@ fn word(name: &str) -> String {
 pub fn of(
     counted: &Counted,
     simulated: &Simulated,
-    host: &HostWork,
     cost: &FrameCost,
     area_nand2: f64,
     rival: Option<&Rival>,
@@ -124,7 +122,6 @@ pub fn of(
         );
     }
     cycles(&mut list, simulated);
-    host_steps(&mut list, host);
     for (name, part) in [
         ("operations", &cost.operations),
         ("on_chip", &cost.on_chip),
@@ -173,29 +170,6 @@ pub fn of(
         );
     }
     list
-}
-
-fn host_steps(list: &mut Statistics, host: &HostWork) {
-    for ((step, kind), times) in host.by_step() {
-        let bits = kind.bits();
-        let name = format!("host.{}.{}{bits}", word(step.name()), kind.name());
-        let what = format!("{} on {}s of {bits} bits", step.name(), kind.name());
-        list.add(&name, times, "Count", &what);
-    }
-    for (name, count, what) in [
-        (
-            "steps",
-            host.steps,
-            "the host's steps before the first record",
-        ),
-        ("multiplies", host.multiplies, "multiplies among them"),
-        ("divides", host.divides, "divides among them"),
-        ("unpriced", host.unpriced, "steps without a row of energy"),
-    ] {
-        list.add(&format!("host.{name}"), count, "Count", what);
-    }
-    let what = "energy of the host's set-up, not in the frame's";
-    list.add("host.energy", host.energy.total, "pJ", what);
 }
 
 fn cycles(list: &mut Statistics, simulated: &Simulated) {

@@ -3,14 +3,12 @@
 //! import the machine, never the reverse.
 
 mod descent;
-mod load;
 #[cfg(test)]
 pub(crate) mod mutants;
 mod positions;
 mod simulate;
 mod vertices;
 
-pub use load::count_load;
 pub use positions::{Positions, Space, visit_positions};
 pub use simulate::{SimulateError, Simulated};
 pub(crate) use vertices::{Cage, cages_along};

@@ -2,14 +2,12 @@
 
 mod cost;
 mod frame;
-mod host;
 mod repeats;
 
 pub use cost::{breakdown, side_by_side};
 pub use frame::{
     bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
 };
-pub use host::{host, host_parts};
 pub use repeats::{claims, formats, growth, lanes, rules};
 
 use crate::report::Cell;
