@@ -129,24 +129,11 @@ impl FillVectors {
         self.levels
     }
 
-    /// Number of nodes: the fill-vector memory has 4 bits for each.
-    #[must_use]
-    pub fn nodes(&self) -> usize {
-        self.vectors.len()
-    }
-
     /// The fill vector of a node.
     #[inline]
     #[must_use]
     pub fn vector(&self, node: QuadNode) -> u8 {
         self.vectors[node.address()]
-    }
-
-    /// All fill vectors, by address.
-    #[inline]
-    #[must_use]
-    pub fn cells(&self) -> &[u8] {
-        &self.vectors
     }
 
     /// Sets bits of a node's vector and returns the vector.

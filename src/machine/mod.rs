@@ -15,15 +15,15 @@
 //! draws. Every arithmetic step is a call on a
 //! [`Datapath`](hwmodel::Datapath), so that a probe sees all of it.
 //!
-//! Each file imports files above it in this list only:
+//! Each file imports files named before it only:
 //!
-//! - data: [`blocks`], [`options`], [`lattice`], [`record`], [`constants`];
-//! - steps on words: [`shifts`], [`planes`], [`quadrants`], [`fit`],
-//!   [`to_screen`], [`size`], [`alpha`], [`canvas`];
-//! - steps of the loop: [`watch`], [`state`], [`push`], [`undrawn`],
-//!   [`verdict`], [`children`], [`record_loop`];
-//! - [`heat`] and [`engine`], the machine as an [`Engine`](crate::project::Engine);
-//! - [`instruments`], which watch the machine or drive it in another way. It
+//! - data: `blocks`, `options`, `lattice`, `record`, `constants`;
+//! - steps on words: `shifts`, `planes`, `quadrants`, `fit`,
+//!   `to_screen`, `size`, `alpha`, `canvas`;
+//! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
+//!   `verdict`, `children`, `record_loop`;
+//! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
+//! - `instruments`, which watch the machine or drive it in another way. It
 //!   knows nothing of them.
 
 mod alpha;

@@ -18,7 +18,9 @@ use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
-use shiftvox::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions as Options};
+use shiftvox::project::{
+    CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions as Options,
+};
 use shiftvox::rays::Rays;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -41,8 +43,7 @@ fn paper() -> Options {
     Options {
         cage: CageKind::Corners,
         tolerance_px: f64::INFINITY,
-        coverage: Coverage::Any,
-        ..Options::default()
+        ..Options::of(Coverage::Any)
     }
 }
 
@@ -412,7 +413,11 @@ fn pictures_by_box_and_centre_are_those_recorded() {
                 hash.update(format!("{stats:?}").as_bytes());
             }
             Ok(None) => hash.update(b"too many records"),
-            Err(error) => hash.update(error.to_string().as_bytes()),
+            Err(EngineError::Trap(trap)) => {
+                // As the message was when this was recorded.
+                let advice = "use more bits, fewer fraction bits, or --overflow wrap|saturate";
+                hash.update(format!("{trap}; {advice}").as_bytes());
+            }
         }
     }
     assert!(drawn * 2 > RECORDED_FRAMES, "{drawn}");

@@ -12,10 +12,6 @@ use crate::project::FrameSetup;
 /// The eight vertices of a voxel, in Morton order, as the machine holds them
 /// relative to the whole picture, in units of the last place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-#[expect(
-    clippy::large_enum_variant,
-    reason = "a few exist at a time, one for each level"
-)]
 pub(crate) enum Cage {
     /// X, Y, W.
     Clip([[i64; 8]; 3]),
