@@ -12,7 +12,7 @@ use crate::graph::{Progress, Silent};
 pub(super) struct Console {
     quiet: bool,
     verbose: u8,
-    /// Whether results are told as JSON.
+    /// Whether results are printed as JSON.
     pub(super) json: bool,
     progress: Box<dyn Progress>,
 }
@@ -32,7 +32,7 @@ impl Console {
         }
     }
 
-    /// Who listens to long work.
+    /// Receives the progress of long work.
     pub(super) fn progress(&self) -> &dyn Progress {
         &*self.progress
     }
@@ -51,27 +51,27 @@ impl Console {
         self.data(format!("{value:#}"))
     }
 
-    /// Says what was done, unless the user wants quiet.
+    /// Prints a note, except with `--quiet`.
     pub(super) fn note(&self, text: impl AsRef<str>) {
         if !self.quiet {
             say(text.as_ref());
         }
     }
 
-    /// Says more, where the user asked for it.
+    /// Prints a note with `--verbose`.
     pub(super) fn detail(&self, text: impl AsRef<str>) {
         if self.verbose > 0 && !self.quiet {
             say(text.as_ref());
         }
     }
 
-    /// Tells an error after which the work goes on.
+    /// Reports an error after which the work goes on.
     pub(super) fn error(&self, error: &CliError) {
         say(&format!("shiftvox: {error}"));
     }
 }
 
-/// A closed stderr is nothing to stop for.
+/// A closed stderr does not stop the work.
 fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }

@@ -149,7 +149,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     let scene = scenes::open(&args.input, &args.scene, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::tell("convert", &args.input, &args.output, &written, console)
+    scene_files::report_written("convert", &args.input, &args.output, &written, console)
 }
 
 fn build_outside_memory(
@@ -192,7 +192,7 @@ fn build_outside_memory(
             report::grouped(report.temporary_written)
         ));
     }
-    scene_files::tell("convert", &args.input, &args.output, &written, console)
+    scene_files::report_written("convert", &args.input, &args.output, &written, console)
 }
 
 #[cfg(test)]

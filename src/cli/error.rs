@@ -29,7 +29,7 @@ pub enum Kind {
     Input,
     /// A limit of the program or of the word format is exceeded: exit code 5.
     Limit,
-    /// Whoever read our output stopped reading: no failure of ours.
+    /// The reader of stdout closed it early: not a failure.
     Pipe,
 }
 

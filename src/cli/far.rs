@@ -115,7 +115,7 @@ fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
         .collect()
 }
 
-/// Tells what is in a file, all of which is checked; as JSON if that is asked for.
+/// Checks all of a file and describes it: prints that, or with `--json` returns it.
 pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliError> {
     let file = FarFile::open(Path::new(name))?;
     file.verify()?;

@@ -34,5 +34,5 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
     };
     let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
-    scene_files::tell("generate", &spec, &args.output, &written, console)
+    scene_files::report_written("generate", &spec, &args.output, &written, console)
 }

@@ -28,7 +28,7 @@ pub struct InfoArgs {
     scene: SceneArgs,
 }
 
-/// Tells of all scenes; a scene that fails is told and does not stop the others.
+/// Describes all scenes; a scene that fails is reported and does not stop the others.
 pub(super) fn run(
     args: &InfoArgs,
     from_config: Vec<String>,
@@ -61,7 +61,7 @@ pub(super) fn run(
     }
 }
 
-/// Tells what is in a scene; as JSON, to be printed with that of others, if that is asked for.
+/// Describes a scene: prints it, or with `--json` returns it, to be printed with the others.
 fn of_one(
     name: &str,
     args: &InfoArgs,

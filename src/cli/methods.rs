@@ -1,4 +1,4 @@
-//! Who draws what: the only registry of the command line. It opens a scene once, finds the method that draws
+//! The registry of drawing methods, the only one of the command line. It opens a scene once, finds the method that draws
 //! it, refuses flags that this method does not follow, and hands the scene on as one [`Drawable`].
 
 use std::path::Path;
@@ -70,7 +70,7 @@ const METHODS: [Method; 2] = [
     },
 ];
 
-/// An open scene, and who draws it.
+/// An open scene, and the engine that draws it.
 pub(super) struct Opened {
     pub(super) engine: EngineName,
     /// Time to open, milliseconds.
@@ -84,7 +84,7 @@ enum Content {
     Textured(TexturedFile),
 }
 
-/// Opens a scene for who draws it: the engine that is asked for, or else that of its file.
+/// Opens a scene for the engine that the flags name, or else for the one that draws its kind of file.
 ///
 /// # Errors
 /// A bad scene, or flags that do not go with it.
@@ -146,7 +146,7 @@ impl Method {
             });
         }
         let mut given = args.engine.given();
-        given.extend(args.scene.of_meshes());
+        given.extend(args.scene.given());
         if let Some(idle) = given.iter().find(|flag| !self.flags.contains(flag)) {
             let message = format!("{scene}: --{idle} changes nothing of a {file} file");
             return Err(CliError::usage(message).advise("leave it out"));

@@ -59,7 +59,7 @@ pub struct RenderArgs {
     pub out: OutputArgs,
 }
 
-/// Draws all scenes; a scene that fails is told and does not stop the others.
+/// Draws all scenes; a scene that fails is reported and does not stop the others.
 ///
 /// # Errors
 /// The first scene's failure, or a wrong command line.
@@ -171,7 +171,7 @@ fn output_path(args: &RenderArgs, stem: &str) -> Option<PathBuf> {
     }
 }
 
-/// Draws a scene, writes its picture and says what is asked for: `of` is the number of scenes.
+/// Draws a scene, writes its picture and prints what the flags ask for. `of`: number of scenes.
 fn render_one(
     args: &RenderArgs,
     name: &str,
@@ -218,7 +218,7 @@ fn render_one(
     if let Some(path) = &output {
         outputs::write(&shown, path, &args.picture.aov, args.out.force)?;
     }
-    tell(name, &shown, output.as_deref(), args.repeat, console)?;
+    print_times(name, &shown, output.as_deref(), args.repeat, console)?;
     if let (Some(expected), Some(found)) = (&args.expect_hash, &hash)
         && !expected.eq_ignore_ascii_case(found)
     {
@@ -232,8 +232,8 @@ fn render_one(
     Ok((camera, opened.engine, result))
 }
 
-/// Says how long drawing took, and in detail what was counted.
-fn tell(
+/// Prints how long drawing took, and with `--verbose` what was counted.
+fn print_times(
     name: &str,
     shown: &Shown<'_>,
     output: Option<&Path>,

@@ -145,8 +145,8 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
     }))
 }
 
-/// Says what was written.
-pub(super) fn tell(
+/// Reports what was written.
+pub(super) fn report_written(
     verb: &str,
     input: &str,
     output: &Path,

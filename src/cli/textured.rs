@@ -52,7 +52,7 @@ pub(super) fn convert(
     Ok(())
 }
 
-/// Tells what is in a file, all of which is checked; as JSON if that is asked for.
+/// Checks all of a file and describes it: prints that, or with `--json` returns it.
 pub(super) fn info(
     name: &str,
     with_levels: bool,

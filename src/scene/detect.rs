@@ -11,7 +11,7 @@ use crate::mesh::is_binary_stl;
 /// How many bytes of a file [`detect`] should be given, where there are so many.
 pub(super) const DETECT_BYTES: usize = 4096;
 
-/// The formats that are told apart.
+/// The formats that are recognised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum FileKind {
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_are_told_by_content() {
+    fn formats_are_recognised_by_content() {
         for (begins, kind) in [
             (&b"VOX \x96\0\0\0MAIN"[..], Some(FileKind::Vox)),
             (b"ply\nformat ascii 1.0\n", Some(FileKind::Ply)),
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn binary_stl_is_told_by_its_length() {
+    fn binary_stl_is_recognised_by_its_length() {
         let mut bytes = vec![b' '; 84 + 50];
         bytes[80..84].copy_from_slice(&1u32.to_le_bytes());
         assert_eq!(detect(&bytes), None);

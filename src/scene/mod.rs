@@ -2,7 +2,7 @@
 //!
 //! Importers hand voxels to a sink one by one, so that memory stays bounded by
 //! what the sink keeps (and, for `.vox`, by the file, which is held whole). The
-//! format is told by content. File coordinates are kept: voxel `(i, j, k)`
+//! format is recognised by content. File coordinates are kept: voxel `(i, j, k)`
 //! fills `[i, i+1) x [j, j+1) x [k, k+1)`, Z up, and colours are sRGB as stored.
 
 use std::path::Path;

@@ -38,7 +38,7 @@ const TO_HOST: [Allowed; 6] = [
     ),
     allowed(
         "constants.rs",
-        "let near_crossing = by.lift(near.to_host()) >> NEAR_CROSSING_SHIFT;",
+        "let near_crossing = near.to_host() >> NEAR_CROSSING_SHIFT;",
         CONSTANT,
     ),
     allowed(

@@ -4,6 +4,7 @@ use std::fs;
 
 use shiftvox::graph::Silent;
 use shiftvox::mesh::{Mesh, Surface, Triangle};
+use shiftvox::scene::{FileKind, detect};
 use shiftvox::textured::record::{CLEAR, NEVER};
 use shiftvox::textured::store::encode;
 use shiftvox::textured::{
@@ -61,6 +62,7 @@ fn files_hold_what_was_built() {
 #[test]
 fn truncated_and_damaged_files_are_refused() {
     let bytes = encode(&small()).unwrap();
+    assert_eq!(detect(&bytes), Some(FileKind::Tvx));
     for length in 0..bytes.len() {
         let error = TexturedFile::from_bytes(&bytes[..length]).unwrap_err();
         let is_placed = matches!(error, TexturedError::Malformed { .. });

@@ -211,8 +211,7 @@ impl RuleArgs {
 }
 
 impl EngineArgs {
-    /// Flags of the command line that not every engine follows, by their long names. Not among them:
-    /// `--isa`, which changes no picture.
+    /// Flags of the command line that not every engine follows, by their long names.
     #[must_use]
     pub fn given(&self) -> Vec<&'static str> {
         let flags = [
@@ -223,6 +222,7 @@ impl EngineArgs {
             ("bits", self.rules.bits.is_some()),
             ("frac", self.rules.frac.is_some()),
             ("overflow", self.rules.overflow.is_some()),
+            ("isa", self.isa != Isa::Auto),
             ("far-opacity", self.far_opacity.is_some()),
             ("erosion", self.erosion.is_some()),
             ("erosion-grid", self.erosion_grid.is_some()),
@@ -231,7 +231,7 @@ impl EngineArgs {
         given.map(|(name, _)| name).collect()
     }
 
-    /// Refuses flags of engines that draw files of their own, where voxels are drawn.
+    /// Refuses flags that the engine of voxels does not follow.
     ///
     /// # Errors
     /// What the first such flag is for.
@@ -241,6 +241,9 @@ impl EngineArgs {
         }
         if self.erosion.is_some() || self.erosion_grid.is_some() {
             return Err("--erosion and --erosion-grid are for .tvx files".to_owned());
+        }
+        if self.isa != Isa::Auto && self.engine.is_some_and(|engine| engine != EngineName::Fast) {
+            return Err("--isa is for --engine fast".to_owned());
         }
         Ok(())
     }

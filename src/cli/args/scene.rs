@@ -43,12 +43,16 @@ impl SceneArgs {
         self.mesh_up.unwrap_or(up)
     }
 
-    /// Flags of the command line that say how meshes become voxels, by their long names.
-    pub fn of_meshes(&self) -> impl Iterator<Item = &'static str> {
-        let depth = self.depth.map(|_| "depth");
-        depth
-            .into_iter()
-            .chain(self.opacities.then_some("opacities"))
+    /// Flags of the command line that say how voxels and meshes are read, by their long names.
+    pub fn given(&self) -> impl Iterator<Item = &'static str> {
+        let flags = [
+            ("depth", self.depth.is_some()),
+            ("opacities", self.opacities),
+            ("oob", self.oob != OutOfBounds::default()),
+            ("mesh-colors", self.mesh_colors != ColorSpace::default()),
+        ];
+        let given = flags.into_iter().filter(|&(_, is_given)| is_given);
+        given.map(|(name, _)| name)
     }
 
     /// Every setting, for a configuration file.

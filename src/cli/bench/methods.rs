@@ -371,21 +371,9 @@ fn enlarged(distance: &Distance) -> impl Iterator<Item = (usize, Vec<[u8; 4]>)> 
 
 /// All pictures of a distance side by side.
 fn strip(distance: &Distance) -> Result<Vec<u8>, CliError> {
-    const GAP: usize = 4;
     let pictures: Vec<(usize, Vec<[u8; 4]>)> = enlarged(distance).collect();
-    let across = pictures[0].0;
-    let height = pictures[0].1.len() / across;
-    let mut strip = Vec::new();
-    for y in 0..height {
-        for (place, (_, picture)) in pictures.iter().enumerate() {
-            if place > 0 {
-                strip.extend([[255; 4]; GAP]);
-            }
-            strip.extend(&picture[y * across..(y + 1) * across]);
-        }
-    }
-    let width = strip.len() / height;
-    encode(width, height, &strip)
+    let shown = pictures.iter().map(|(_, picture)| picture.as_slice());
+    pictures::side_by_side(pictures[0].0, shown)
 }
 
 fn encode(width: usize, height: usize, pixels: &[[u8; 4]]) -> Result<Vec<u8>, CliError> {

@@ -130,22 +130,28 @@ pub(super) fn strip(
     result: &[[u8; 4]],
     reference: &[[u8; 4]],
 ) -> Result<Vec<u8>, CliError> {
-    let failed = |e: &dyn std::fmt::Display| CliError::new(Kind::Run, e.to_string());
     let apart = difference((width, height, result), (width, height, reference));
-    let apart = apart.map_err(|e| failed(&e))?;
+    let apart = apart.map_err(|e| CliError::new(Kind::Run, e))?;
+    side_by_side(width as usize, [result, reference, &apart].into_iter())
+}
+
+/// Pictures of one size side by side, as a PNG file. `width`: pixels across of each.
+pub(super) fn side_by_side<'p>(
+    width: usize,
+    pictures: impl Iterator<Item = &'p [[u8; 4]]> + Clone,
+) -> Result<Vec<u8>, CliError> {
+    let height = pictures.clone().next().map_or(0, <[_]>::len) / width.max(1);
     let mut strip = Vec::new();
-    let across = width as usize;
-    for y in 0..height as usize {
-        let row = y * across..(y + 1) * across;
-        for (place, picture) in [result, reference, &apart].into_iter().enumerate() {
+    for y in 0..height {
+        for (place, picture) in pictures.clone().enumerate() {
             if place > 0 {
                 strip.extend([[255; 4]; GAP]);
             }
-            strip.extend(&picture[row.clone()]);
+            strip.extend(&picture[y * width..(y + 1) * width]);
         }
     }
-    let across = 3 * across + 2 * GAP;
-    png::encode(across as u32, height, &strip).map_err(|e| failed(&e))
+    let across = strip.len() / height.max(1);
+    png::encode(across as u32, height as u32, &strip).map_err(|e| CliError::new(Kind::Run, e))
 }
 
 /// Writes a strip into the folder of `--strips`.

@@ -14,5 +14,5 @@ mod write;
 
 pub use crate::graph::file::FileError as FarError;
 pub use budget::Resident;
-pub use read::{FarFile, is_far};
+pub use read::FarFile;
 pub use write::{encode, write_to};

@@ -18,12 +18,6 @@ use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::graph::vxg::release;
 
-/// Whether a file that begins with these bytes is a `.far` file (of any version).
-#[must_use]
-pub fn is_far(beginning: &[u8]) -> bool {
-    beginning.starts_with(&FORMAT.magic)
-}
-
 /// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
 const BROUGHT_IN: u64 = 64 << 10;
 

@@ -10,5 +10,5 @@ mod read;
 mod write;
 
 pub use crate::graph::file::FileError as TexturedError;
-pub use read::{Grid, TexturedFile, is_textured};
+pub use read::{Grid, TexturedFile};
 pub use write::{encode, write_to};

@@ -15,12 +15,6 @@ use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
 use crate::textured::{Element, Lattice};
 
-/// Whether a file that begins with these bytes is a `.tvx` file (of any version).
-#[must_use]
-pub fn is_textured(beginning: &[u8]) -> bool {
-    beginning.starts_with(&FORMAT.magic)
-}
-
 /// An open `.tvx` file.
 #[derive(Debug)]
 pub struct TexturedFile {
