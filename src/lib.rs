@@ -50,6 +50,12 @@
 //!
 //! Without them (`default-features = false`) the renderer and its voxel formats are left.
 
+// Without the laboratory parts of lower rooms have no user.
+#![cfg_attr(
+    not(feature = "lab"),
+    allow(dead_code, unreachable_pub, unused_imports)
+)]
+
 mod api;
 
 pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};

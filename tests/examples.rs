@@ -5,7 +5,7 @@ use std::process::Command;
 
 /// The folder of the examples that were built beside this test.
 fn built() -> PathBuf {
-    let mut folder = std::env::current_exe().unwrap();
+    let mut folder = std::env::current_exe().expect("this program");
     folder.pop();
     folder.pop();
     folder.join("examples")
@@ -13,20 +13,29 @@ fn built() -> PathBuf {
 
 /// Runs an example in an empty folder; the files that it left, and what it printed.
 fn run(name: &str) -> (Vec<String>, String) {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = tempfile::tempdir().expect("a folder");
     let program = built().join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     assert!(
         program.exists(),
         "{}: build it with `cargo build --release --examples`",
         program.display()
     );
-    let output = Command::new(program).current_dir(&folder).output().unwrap();
-    let said = String::from_utf8(output.stdout).unwrap();
-    let failed = String::from_utf8(output.stderr).unwrap();
+    let output = Command::new(program)
+        .current_dir(&folder)
+        .output()
+        .expect("a run");
+    let said = String::from_utf8(output.stdout).expect("text");
+    let failed = String::from_utf8(output.stderr).expect("text");
     assert!(output.status.success(), "{name}: {said}{failed}");
-    let entries = std::fs::read_dir(&folder).unwrap();
+    let entries = std::fs::read_dir(&folder).expect("the folder");
     let mut files: Vec<String> = entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .map(|entry| {
+            entry
+                .expect("a file")
+                .file_name()
+                .into_string()
+                .expect("text")
+        })
         .collect();
     files.sort();
     (files, said)

@@ -28,7 +28,10 @@ impl Scene {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_string_lossy();
         let opened = open(&path, &OpenOptions::default(), &Silent)?;
-        let up = if opened.mesh.is_some() { Up::Y } else { Up::Z };
+        let up = match &opened.mesh {
+            Some(mesh) if mesh.y_up => Up::Y,
+            _ => Up::Z,
+        };
         Ok(Self {
             graph: opened.graph,
             up,
@@ -42,7 +45,10 @@ impl Scene {
     /// As [`Scene::open`].
     pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, Error> {
         let opened = open_bytes(bytes, name, &OpenOptions::default(), &Silent)?;
-        let up = if opened.mesh.is_some() { Up::Y } else { Up::Z };
+        let up = match &opened.mesh {
+            Some(mesh) if mesh.y_up => Up::Y,
+            _ => Up::Z,
+        };
         Ok(Self {
             graph: opened.graph,
             up,

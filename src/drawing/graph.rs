@@ -219,7 +219,7 @@ impl Drawable for GraphDrawing<'_> {
         });
         Ok(Some(Shown {
             pixels: Cow::Borrowed(&last.pixels),
-            buffers: Buffers::Resolved(self.resolver(&last.setup)?),
+            buffers: Buffers::Resolved(Box::new(self.resolver(&last.setup)?)),
             pixels_drawn: last.pixels_drawn,
             times_ms: &last.times_ms,
             counters,

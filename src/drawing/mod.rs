@@ -70,7 +70,7 @@ pub enum Buffers<'d> {
     /// Whole.
     Whole(&'d Picture),
     /// Made row by row.
-    Resolved(Resolver<'d>),
+    Resolved(Box<Resolver<'d>>),
 }
 
 impl Rows for Buffers<'_> {

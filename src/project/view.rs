@@ -164,5 +164,5 @@ impl Levels {
 /// A rounded f64 that fits 62 bits.
 fn to_i64(value: f64) -> Option<i64> {
     let rounded = libm::round(value);
-    (rounded.abs() < (1u64 << 62) as f64).then(|| rounded as i64)
+    (rounded.abs() < (1u64 << 62) as f64).then_some(rounded as i64)
 }

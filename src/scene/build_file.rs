@@ -3,11 +3,10 @@
 use std::path::Path;
 
 use super::generate::Spec;
-use super::mesh::{MeshSummary, Ready};
+use super::mesh::{MeshSummary, Ready, SameFolder};
 use super::open::{OpenError, OpenOptions};
 use super::{FileKind, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
-use crate::mesh::SameFolder;
 
 /// A `.vxg` file that was built.
 #[derive(Debug)]

@@ -6,7 +6,14 @@ use std::fmt;
 use std::path::Path;
 
 use crate::graph::vxg;
+#[cfg(feature = "mesh")]
 use crate::mesh::is_binary_stl;
+
+/// Without the feature `mesh` the binary form of STL, which has no mark, is not known.
+#[cfg(not(feature = "mesh"))]
+fn is_binary_stl(_: &[u8], _: u64) -> bool {
+    false
+}
 
 /// How many bytes of a file [`detect`] should be given, where there are so many.
 pub(super) const DETECT_BYTES: usize = 4096;
@@ -80,10 +87,10 @@ impl fmt::Display for FileKind {
     }
 }
 
-/// Tells a file's format from its first bytes ([`DETECT_BYTES`] of them, or the whole of a shorter file).
+/// Tells a file's format from its first bytes (`DETECT_BYTES` of them, or the whole of a shorter file).
 ///
 /// `None` where they begin like no format that is known here. A binary STL is
-/// not recognised, since its first 80 bytes are free: see [`detect_with_length`].
+/// not recognised, since its first 80 bytes are free: see `detect_with_length`.
 #[must_use]
 pub fn detect(prefix: &[u8]) -> Option<FileKind> {
     let marks: [(&[u8], FileKind); 8] = [

@@ -10,7 +10,8 @@ use super::open::OpenError;
 use super::{FileKind, SceneError, SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
-use crate::mesh::{self, Beside, LoadOptions, Mesh, MeshFormat, SameFolder};
+use crate::mesh::{self, LoadOptions, Mesh, MeshFormat};
+pub(super) use crate::mesh::{Beside, Nothing, SameFolder};
 
 /// How a mesh becomes a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -16,6 +16,10 @@ mod error;
 mod file;
 pub mod generate;
 mod memory;
+#[cfg(feature = "mesh")]
+mod mesh;
+#[cfg(not(feature = "mesh"))]
+#[path = "no_mesh.rs"]
 mod mesh;
 mod npy;
 mod open;
@@ -30,7 +34,9 @@ pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
 pub use file::{SceneFile, Source};
 pub use memory::available as available_memory;
-pub use mesh::{MeshOptions, MeshSummary, read_mesh};
+#[cfg(feature = "mesh")]
+pub use mesh::read_mesh;
+pub use mesh::{MeshOptions, MeshSummary};
 pub use open::{OpenError, OpenOptions, Opened, open, open_bytes, open_source};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 pub use ply_write::write_ply;

@@ -5,11 +5,11 @@ use std::io::{Read, Seek};
 
 use super::generate::{Spec, SpecError};
 use super::memory;
-use super::mesh::{MeshOptions, MeshSummary, Ready};
+use super::mesh::{Beside, MeshOptions, MeshSummary, Nothing, Ready, SameFolder};
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::graph::{BuildError, BuildOptions, Builder, ExternalError, Graph, Progress, vxg};
-use crate::mesh::voxelize::GridError;
-use crate::mesh::{Beside, MeshError, Nothing, SameFolder};
+#[cfg(feature = "mesh")]
+use crate::mesh::{MeshError, voxelize::GridError};
 
 /// Graph files up to this size are checked in full when they are opened;
 /// larger ones are mapped, and only the pages that a picture needs are read.
@@ -49,10 +49,16 @@ pub enum OpenError {
     /// The file is a damaged graph.
     #[error(transparent)]
     Graph(#[from] vxg::VxgError),
+    /// The file is a mesh, and this build reads none.
+    #[cfg(not(feature = "mesh"))]
+    #[error("{0}: this is a mesh, which only builds with the feature `mesh` read")]
+    NoMeshes(String),
     /// The file is a mesh that cannot be read.
+    #[cfg(feature = "mesh")]
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// The mesh cannot be voxelised.
+    #[cfg(feature = "mesh")]
     #[error("{source_name}: {error}")]
     Grid {
         /// The scene, as the user named it.
@@ -105,7 +111,11 @@ impl OpenError {
                 ..
             } => !matches!(error, BuildError::Empty),
             Self::Scene(error) => error.is_limit(),
+            #[cfg(not(feature = "mesh"))]
+            Self::NoMeshes(_) => false,
+            #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_limit(),
+            #[cfg(feature = "mesh")]
             Self::Grid { error, .. } => matches!(error, GridError::TooMany(_)),
             Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
         }

@@ -141,8 +141,9 @@ fn a_budget_below_the_files_size_changes_nothing_but_time() {
         let resident = within.resident().unwrap();
         assert!(resident.most_bytes <= budget, "{resident:?} {budget}");
         if let Some(mapped) = mapped_bytes(&path) {
-            // Two maps of the file, of which this is the emptier.
-            let most = resident.most_bytes + (64 << 10);
+            // Two maps of the file, of which this is the emptier. The system maps up to 64 KiB about a page
+            // that is touched, beyond either end of what was asked for.
+            let most = resident.most_bytes + 2 * (64 << 10);
             assert!(mapped[1] <= most, "{mapped:?} {resident:?}");
         }
     }

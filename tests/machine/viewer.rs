@@ -212,7 +212,7 @@ fn every_part_of_a_setup_counts() {
     expect(&camera, &usual, true);
     expect(&camera, &usual, false);
     let lod = SetupOptions {
-        lod_px: 0.5,
+        lod_px: 2.0,
         ..usual
     };
     expect(&camera, &lod, true);

@@ -213,9 +213,18 @@ impl SelectArgs {
                 true => list(&tolerances, self.full, &all),
                 false => vec![0.0],
             };
+            // The rule's own default first.
+            let default = Choice::default_with(coverage).lod;
+            let mut lods = vec![default];
+            lods.extend(
+                [0.0, 0.5, 1.0, 2.0]
+                    .into_iter()
+                    .filter(|&lod| lod != default),
+            );
+            let lods = list(&self.lods, self.full, &lods);
             for cage in list(&self.cages, self.full, &CAGES) {
                 for bits in list(&self.bits, self.full, &[64, 48, 32, 24, 20, 16]) {
-                    for lod in list(&self.lods, self.full, &[1.0, 0.0, 0.5, 2.0]) {
+                    for &lod in &lods {
                         for aa_log2 in list(&self.aas, self.full, &[0, 1, 2]) {
                             choices.extend(tolerances.iter().map(|&tolerance| Choice {
                                 coverage,
@@ -508,7 +517,7 @@ mod tests {
         assert_eq!(some.len(), 2);
         assert_eq!(
             (some[0].bits, some[0].aa_log2, some[0].lod_px),
-            (24, 1, 1.0)
+            (24, 1, 0.5)
         );
     }
 }

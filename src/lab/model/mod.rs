@@ -2,7 +2,7 @@
 //! what a ray caster with multipliers would cost instead.
 //!
 //! [`frame`] draws a frame and has everything counted; [`rival`] does the same
-//! with the ray caster, [`host`] with what comes before the first record; [`cost`] turns counts into energy and area; [`rules`],
+//! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
 //! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
 //! formats, and over pictures and objects; [`claims`] holds the paper's words against the counts.
 //! The other files say it: as tables, as statistics, as a page.

@@ -1,7 +1,7 @@
 //! Numerical stability: word formats x cameras x scenes x rules, each frame
 //! held against the oracle, the specification and the bounds on its error.
 //!
-//! [`sweep`] runs a [`Plan`]; what fails is shrunk to a small [`Case`], a line
+//! `sweep` runs a [`Plan`]; what fails is shrunk to a small [`Case`], a line
 //! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
 
 mod book;
