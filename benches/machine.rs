@@ -179,7 +179,7 @@ fn probes(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Records a second under the paper's rule, alone and counted: at 512 x 512 for
+/// Records a second under the image-order paper's rule, alone and counted: at 512 x 512 for
 /// times, at 128 x 128 for instruction counts.
 fn records(criterion: &mut Criterion) {
     for subject in &subjects()[..2] {

@@ -20,7 +20,7 @@ pub enum EngineKind {
     /// On all threads, with vectors where the processor has them.
     #[default]
     Fast,
-    /// The paper's loop, in counted words that cannot multiply: the reference of the hardware.
+    /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
     Machine,
     /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others.
     Rays,

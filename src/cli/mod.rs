@@ -110,7 +110,7 @@ enum Verb {
     /// Every frame is held against the exact ray caster, the specification and bounds on its vertices' error.
     /// What fails is shrunk to one command line; exit code 3.
     Stress(Box<stress::StressArgs>),
-    /// The paper's Table I, claims and figures, beside its numbers
+    /// The image-order paper's Table I, claims and figures, beside its numbers
     ///
     /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is drawn again
     /// and compared: exit code 3 if a picture's hash or a count differs.

@@ -1,4 +1,4 @@
-//! `reproduce`: the paper's results in one go, and again.
+//! `reproduce`: the image-order paper's results in one go, and again.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -65,7 +65,7 @@ pub(super) struct ReproduceArgs {
 const CONFIG: &str = "config.toml";
 const RESULTS: &str = "results.json";
 const PAGE: &str = "report.html";
-/// The viewer's octant of the paper's Figure 2.
+/// The viewer's octant of the image-order paper's Figure 2.
 const PAPER_OCTANT: u8 = 0b110;
 
 impl From<ReproduceError> for CliError {
@@ -270,7 +270,7 @@ fn encoded(picture: &Picture) -> Result<Vec<u8>, CliError> {
         .map_err(|error| CliError::new(Kind::Run, error))
 }
 
-/// Figures 3 and 4 in kind: each object by the machine under the paper's
+/// Figures 3 and 4 in kind: each object by the machine under the image-order paper's
 /// settings, by default, and by the exact ray caster in place of the editor's picture.
 fn pictures(
     config: &Config,

@@ -167,7 +167,7 @@ fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     parts.join("\n\n")
 }
 
-/// The paper's Fig. 12 (c): what each level shows.
+/// The image-order paper's Fig. 12 (c): what each level shows.
 fn level_table(grid: &Grid<'_>) -> String {
     let head = ["level", "faces", "primitives", "voxels", "surfels"];
     let rows = grid.levels().rows().iter().map(|row| {

@@ -1,4 +1,4 @@
-//! The image quadtree: which parts of the picture are full (paper, 3.3).
+//! The image quadtree: which parts of the picture are full (image-order paper, 3.3).
 //!
 //! Each node has a 4-bit fill vector, one bit for each quadrant
 //! (`y << 1 | x`). A drawn sample sets all its bits; a full node sets its bit

@@ -63,7 +63,7 @@ pub struct PackedNormal(pub u16);
 /// Nodes `0..mask.len()` may have children; nodes from there up to
 /// `color.len()` are voxels of the finest level, which need neither mask nor
 /// child list. Five bytes a node, five more for one that may have children. A
-/// node without children is solid and, as in the paper (section 2.2), points
+/// node without children is solid and, as in the image-order paper (section 2.2), points
 /// to itself. A node that is reached at level `depth` is a voxel, whatever
 /// children it has: that is what ends a cyclic graph.
 #[derive(Debug, Clone)]

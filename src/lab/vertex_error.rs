@@ -1,4 +1,4 @@
-//! How far the paper's screen-space midpoints are from the truth.
+//! How far the image-order paper's screen-space midpoints are from the truth.
 //!
 //! Collinearity survives a perspective projection, midpoints do not. Here a
 //! cube's lattice of vertices is projected exactly for the first levels, then
@@ -197,7 +197,7 @@ fn row(view: &View, depth: u32, exact_levels: u32) -> Result<ViewError, VertexEr
     })
 }
 
-/// The paper's machine on a unit cube of `2^depth` voxels a side.
+/// The image-order paper's machine on a unit cube of `2^depth` voxels a side.
 fn set_up(camera: &Camera, depth: u32) -> Result<FrameSetup, SetupError> {
     let placement = Placement {
         voxel_size: libm::ldexp(1.0, -(depth as i32)),

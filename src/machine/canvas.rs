@@ -1,5 +1,5 @@
 //! The picture in the making: draws samples and updates the fill vectors
-//! (paper, 3.3).
+//! (image-order paper, 3.3).
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 

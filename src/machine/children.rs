@@ -1,5 +1,5 @@
 //! Subdivision: a record's children, in order, their vertices, and which of
-//! them are pushed (paper, 3.2 and 3.4).
+//! them are pushed (image-order paper, 3.2 and 3.4).
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 

@@ -1,4 +1,4 @@
-//! The fit: the smallest unfilled quadtree node that holds a box (paper, 3.5).
+//! The fit: the smallest unfilled quadtree node that holds a box (image-order paper, 3.5).
 //!
 //! ```text
 //! from the parent's node on:

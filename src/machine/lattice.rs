@@ -1,5 +1,5 @@
 //! One coordinate of a cage, that is of a voxel's eight projected vertices,
-//! held in either of two ways: eight corners (the paper) or one corner and
+//! held in either of two ways: eight corners (the image-order paper) or one corner and
 //! three edges.
 //!
 //! A lattice gives its children's lattices by adds and shifts, and the least
@@ -94,7 +94,7 @@ impl Lattice for Corners {
         Self(parallelepiped(dp, corner, edges))
     }
 
-    /// The paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the
+    /// The image-order paper's 27-vertex pool (section 3.4): the 3 x 3 x 3 vertices of the
     /// eight children, by 4 midpoints along x, then 6 along y, then 9 along z.
     /// The order is normative: midpoints are rounded down, so that another order
     /// differs in the last bit.

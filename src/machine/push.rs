@@ -1,5 +1,5 @@
 //! Pushing records: those that are before the eye, and whose box has an
-//! unfilled quadtree node (paper, 3.5).
+//! unfilled quadtree node (image-order paper, 3.5).
 
 use hwmodel::{Memory, Probe, Stage, Word};
 

@@ -1,5 +1,5 @@
 //! Which quadrants of a quadtree node a box overlaps: the box against the
-//! node's two bisectors (paper, 3.5).
+//! node's two bisectors (image-order paper, 3.5).
 //!
 //! In clip space `x` runs from 0 to `w` across the node, so the sign of
 //! `2x - w` is the side of the bisector, and `2x - w` is `x` relative to the far

@@ -1,4 +1,4 @@
-//! The record: what the machine keeps of a cube on its stack (paper, 2.4).
+//! The record: what the machine keeps of a cube on its stack (image-order paper, 2.4).
 //! Data only; the steps that work on it are in the files above.
 
 use hwmodel::{WideWord, Word};

@@ -1,4 +1,4 @@
-//! The record loop (paper, 3.1 to 3.6): see the machine's page.
+//! The record loop (image-order paper, 3.1 to 3.6): see the machine's page.
 
 use hwmodel::{Memory, Probe, Short, Stage};
 

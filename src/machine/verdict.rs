@@ -91,7 +91,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
         }
     }
 
-    /// `any`, the paper's rule: a box within one sample is drawn there.
+    /// `any`, the image-order paper's rule: a box within one sample is drawn there.
     fn verdict_any(&mut self, record: &mut Record<L>) -> Verdict {
         self.apply_level_of_detail(record);
         let one = record.place.quad.level == self.constants.levels && record.place.inside;

@@ -7,7 +7,7 @@ use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 
 /// Children by occlusion order, nearest first, for octant 000: exclusive-or
-/// with the octant bits gives the order for any eye (paper, 3.2). Normative:
+/// with the octant bits gives the order for any eye (image-order paper, 3.2). Normative:
 /// the first record to reach a sample draws it.
 pub const OCCLUSION_ORDER: [u8; 8] = [7, 6, 5, 3, 4, 2, 1, 0];
 

@@ -40,7 +40,7 @@ pub const SCREEN_GUARD_SHIFT: u32 = 3;
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum CageKind {
-    /// Eight corners (the paper).
+    /// Eight corners (the image-order paper).
     ///
     /// In Morton order.
     Corners,
@@ -54,7 +54,7 @@ pub enum CageKind {
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Coverage {
-    /// The pixel in which its whole box lies (the paper).
+    /// The pixel in which its whole box lies (the image-order paper).
     Any,
     /// The pixel that holds its centre.
     ///

@@ -6,7 +6,7 @@
 //! children that exist, `t` the number of quadtree nodes against whose
 //! bisectors a child's box is tested (one per descent, and one at the end):
 //!
-//! | stage | corners (the paper) | frame |
+//! | stage | corners (the image-order paper) | frame |
 //! |---|---|---|
 //! | centre | 3 adds, 3 shifts | the same |
 //! | octant and order | 3 compares, 8 logic of 3 bits | the same |
@@ -29,7 +29,7 @@
 //! and where the child goes on to the left (upper) half, its coordinates are
 //! doubled once more, by 8 shifts (4 for frames).
 //!
-//! All of that is under the paper's drawing rule (`Coverage::Any`), for boxes
+//! All of that is under the image-order paper's drawing rule (`Coverage::Any`), for boxes
 //! inside the picture: one that leaves it is also compared with the picture's
 //! four edges, and the exact rule carries silhouette planes along. A screen
 //! position is divided for once, bit by bit, in a stage of its own; nothing
@@ -167,7 +167,7 @@ impl Turn {
     }
 }
 
-/// The paper's settings, but for the cage and the tolerance.
+/// The image-order paper's settings, but for the cage and the tolerance.
 fn options(cage: CageKind, tolerance_px: f64) -> SetupOptions {
     SetupOptions {
         bits: 48,
@@ -598,7 +598,7 @@ fn every_record_has_one_turn() {
     }
 }
 
-/// The paper's box of a child takes 7 minima and 7 maxima a coordinate, or 10
+/// The image-order paper's box of a child takes 7 minima and 7 maxima a coordinate, or 10
 /// compares when the eight vertices are taken in pairs; the frame cage has no
 /// eight vertices to pair.
 #[test]

@@ -2,7 +2,7 @@
 //!
 //! Under `none` and `image` that holds for all settings, to the last count:
 //! records whose image nodes meet have their turns in the serial order. Under
-//! `classes` and `both` it is the paper's claim (children of one class never
+//! `classes` and `both` it is the image-order paper's claim (children of one class never
 //! occlude one another), which holds where a sample is claimed by a ray: under the exact
 //! rule.
 
@@ -194,7 +194,7 @@ fn cycles_classes_are_independent_by_geometry() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
-    /// The paper's claim on hardware that does its best to break it: many
+    /// The image-order paper's claim on hardware that does its best to break it: many
     /// contexts, and misses so slow that classmates overtake one another.
     #[test]
     fn cycles_classmates_may_overtake_one_another(

@@ -38,7 +38,7 @@ struct Case {
     oracle: bool,
 }
 
-/// The paper's machine.
+/// The image-order paper's machine.
 fn paper() -> Options {
     Options {
         cage: CageKind::Corners,
@@ -367,7 +367,7 @@ fn exact_pictures_are_alike_from_all_engines() {
 
 /// Frames that [`RECORDED_SAMPLES`] is of.
 const RECORDED_FRAMES: u32 = 400;
-/// XXH3-128 of what the paper's rules draw of them, or how they end.
+/// XXH3-128 of what the image-order paper's rules draw of them, or how they end.
 const RECORDED_SAMPLES: u128 = 0x18d0_8acf_1d8c_47b5_7535_f004_11f5_07de;
 
 /// The rules `any` and `center`, at all tolerances, in words of many widths.

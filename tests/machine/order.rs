@@ -1,4 +1,4 @@
-//! Occlusion order (paper, 3.2): proved for every position of the eye, and
+//! Occlusion order (image-order paper, 3.2): proved for every position of the eye, and
 //! seen at work on random graphs.
 
 use crate::common::*;

@@ -1,4 +1,4 @@
-//! The leafy tree and the kitchen: the paper's Fig. 12 and its office, in kind.
+//! The leafy tree and the kitchen: the image-order paper's Fig. 12 and its office, in kind.
 
 use shiftvox::graph::Silent;
 use shiftvox::mesh::LoadOptions;
@@ -41,7 +41,7 @@ fn the_tree_and_the_kitchen_have_the_papers_table_in_kind() {
 }
 
 /// Why the default is the element of six sides: what a cube of 3 x 3 x 3 leaves
-/// has, with all its neighbours, a volume that the paper's table has no room for.
+/// has, with all its neighbours, a volume that the image-order paper's table has no room for.
 #[test]
 fn the_papers_table_is_not_of_the_cube() {
     let voxels: [f64; 6] = [1481.0, 883.0, 485.0, 214.0, 61.0, 4.0];

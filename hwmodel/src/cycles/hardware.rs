@@ -67,7 +67,7 @@ pub struct Hardware {
 pub enum Independence {
     /// None: one after the other, depth first.
     None,
-    /// Those of one class of the occlusion order, as the paper has it: the
+    /// Those of one class of the occlusion order, as the image-order paper has it: the
     /// nearest; the next three; the next three; the farthest. They never
     /// occlude one another, but where samples are not claimed by exact rays
     /// two may claim the same one; then the first to come has it.

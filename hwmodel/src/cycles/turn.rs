@@ -72,7 +72,7 @@ impl Region {
 }
 
 /// Classes of the occlusion order by place: `{7} {6, 5, 3} {4, 2, 1} {0}` in
-/// the paper's octants.
+/// the image-order paper's octants.
 const CLASS_OF_PLACE: [u8; 8] = [0, 1, 1, 1, 2, 2, 2, 3];
 
 impl Independence {

@@ -18,7 +18,7 @@ pub enum EngineName {
     /// The same bits as the machine, as fast as the processor goes.
     #[default]
     Fast,
-    /// The paper's loop in machine words: adders and shifts.
+    /// The image-order paper's loop in machine words: adders and shifts.
     Machine,
     /// The exact reference: what each sample's centre sees, by plain rays.
     Rays,
@@ -98,7 +98,7 @@ pub struct RuleArgs {
     /// Which pixels a voxel draws [default: exact]
     #[arg(long, value_enum, conflicts_with = "paper")]
     pub coverage: Option<Coverage>,
-    /// As the paper has it: --cage corners --tolerance inf --coverage any
+    /// As the image-order paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
     /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with exact,

@@ -63,7 +63,7 @@ pub(super) struct MeasureArgs {
     /// exact, else 1]
     #[arg(long, value_name = "PX")]
     lod: Option<f64>,
-    /// As the paper has it: eight corners, screen space at once, coverage any
+    /// As the image-order paper has it: eight corners, screen space at once, coverage any
     #[arg(long)]
     paper: bool,
 }

@@ -366,7 +366,7 @@ fn methods<'s>(
     methods
 }
 
-/// What pages and folders show pictures of: the default, the paper, other
+/// What pages and folders show pictures of: the default, the image-order paper, other
 /// rules, more samples; and whatever nothing beats.
 fn is_shown(method: &str) -> bool {
     const SHOWN: [&str; 5] = [

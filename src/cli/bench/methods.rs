@@ -136,7 +136,7 @@ struct Made {
     /// Without opacities, and with.
     voxels: Vec<(Graph, f64)>,
     far: Option<(FarFile, f64)>,
-    /// The paper's grid, and those that a level is chosen from by distance.
+    /// The image-order paper's grid, and those that a level is chosen from by distance.
     textured: Option<[(TexturedFile, f64); 2]>,
 }
 

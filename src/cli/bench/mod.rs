@@ -68,7 +68,7 @@ enum Experiment {
     Coherence(Box<coherence::CoherenceArgs>),
     /// Frame times of far voxels along a walk, with and without opacities (.far files; see convert)
     Walk(Box<walk::WalkArgs>),
-    /// How far the paper's screen-space midpoints are from exact projection
+    /// How far the image-order paper's screen-space midpoints are from exact projection
     VertexError,
 }
 

@@ -1,4 +1,4 @@
-//! `bench vertex-error`: the paper's midpoints against exact projection.
+//! `bench vertex-error`: the image-order paper's midpoints against exact projection.
 
 use serde_json::json;
 

@@ -7,7 +7,7 @@
 //! a voxel are spread evenly, whatever is around it.
 //!
 //! A large object of which a voxel has but a corner goes on behind it: such a
-//! pass says nothing of the object, and does not count (the paper's Fig. 3b).
+//! pass says nothing of the object, and does not count (the image-order paper's Fig. 3b).
 
 use glam::DVec3;
 

@@ -8,7 +8,7 @@ use super::measure::Timing;
 use crate::report::plot::{Chart, Panel, Series};
 use crate::report::{Cell, Table};
 
-/// The paper's Table I, on its machine and with its scene: pixels a side of a
+/// The image-order paper's Table I, on its machine and with its scene: pixels a side of a
 /// square picture, and milliseconds as it prints them.
 pub const PAPER_TABLE_I: [(u32, &str); 5] = [
     (64, "<1"),
@@ -18,7 +18,7 @@ pub const PAPER_TABLE_I: [(u32, &str); 5] = [
     (1024, "1772"),
 ];
 
-/// The paper's time for a square picture, as it prints it, milliseconds.
+/// The image-order paper's time for a square picture, as it prints it, milliseconds.
 #[must_use]
 pub fn paper_ms(width: u32, height: u32) -> Option<&'static str> {
     let found = PAPER_TABLE_I
@@ -202,7 +202,7 @@ pub fn laws_table(growths: &[Growth]) -> Table {
     table
 }
 
-/// Two plots: time by pixels, with the paper's Table I, and time by voxels.
+/// Two plots: time by pixels, with the image-order paper's Table I, and time by voxels.
 #[cfg(feature = "cli")]
 #[must_use]
 pub fn panels(growths: &[Growth]) -> Vec<Panel> {

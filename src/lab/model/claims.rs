@@ -1,4 +1,4 @@
-//! The paper's claims, one by one, against what was counted.
+//! The image-order paper's claims, one by one, against what was counted.
 
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
@@ -12,7 +12,7 @@ use crate::project::{Coverage, FrameSetup};
 /// A claim and what the counts say.
 #[derive(Debug, Clone, Serialize)]
 pub struct Claim {
-    /// What the paper says.
+    /// What the image-order paper says.
     pub claim: &'static str,
     /// Whether it holds for what was measured; `None`: figures alone, for the reader to judge.
     pub holds: Option<bool>,

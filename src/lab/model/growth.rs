@@ -1,4 +1,4 @@
-//! The paper's claim that cost follows the picture's pixels and not the
+//! The image-order paper's claim that cost follows the picture's pixels and not the
 //! object: the same object in growing pictures, growing objects in one picture.
 
 use hwmodel::{OpClass, Overflow};

@@ -4,7 +4,7 @@
 //! [`frame`] draws a frame and has everything counted; [`rival`] does the same
 //! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
 //! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, and over pictures and objects; [`claims`] holds the paper's words against the counts.
+//! formats, and over pictures and objects; [`claims`] holds the image-order paper's words against the counts.
 //! The other files say it: as tables, as statistics, as a page.
 
 pub mod claims;

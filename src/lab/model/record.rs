@@ -77,7 +77,7 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
             false => field("solid, inside, pose", 3, Held::Always),
         },
         field("lowest vertex", 3 * position, Held::Always),
-        // It can be had from the lowest vertex and the level; the paper keeps it.
+        // It can be had from the lowest vertex and the level; the image-order paper keeps it.
         field("highest vertex", 3 * position, Held::Always),
         field(
             "quadtree level",

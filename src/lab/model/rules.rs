@@ -1,5 +1,5 @@
 //! Both cages, the drawing rules and tolerances side by side: what exact
-//! perspective costs over the paper's midpoints.
+//! perspective costs over the image-order paper's midpoints.
 
 use hwmodel::cycles::{Hardware, NoObserver};
 use hwmodel::{OpClass, Overflow};

@@ -1,4 +1,4 @@
-//! The paper's drawings, as SVG: the voxel's children with their numbers
+//! The image-order paper's drawings, as SVG: the voxel's children with their numbers
 //! (Figure 1) and their occlusion order (Figure 2).
 
 use std::fmt::Write;
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn the_diagram_has_the_papers_example() {
-        // Figure 2 of the paper: octant 110.
+        // Figure 2 of the image-order paper: octant 110.
         let svg = order_diagram(0b110);
         for (at, child) in [1, 0, 3, 5, 2, 4, 7, 6].into_iter().enumerate() {
             assert!(

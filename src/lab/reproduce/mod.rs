@@ -1,9 +1,9 @@
-//! The paper's results in one go: Table I, the claim that time does not
+//! The image-order paper's results in one go: Table I, the claim that time does not
 //! depend on the object, the claim about occlusion order, and its figures.
 //!
 //! What does not depend on the machine (hashes of pictures, records,
 //! operations) is one list, [`Evidence`]; a rerun compares it. Times are
-//! another. What the paper says and what was found: `spec/lab.md`.
+//! another. What the image-order paper says and what was found: `spec/lab.md`.
 
 pub mod figures;
 #[cfg(feature = "cli")]
@@ -32,7 +32,7 @@ pub struct Config {
     pub sides: Vec<u32>,
     /// Side of the pictures in which objects are compared, pixels.
     pub object_side: u32,
-    /// Scenes that stand for the paper's simple objects; the first is Table I's.
+    /// Scenes that stand for the image-order paper's simple objects; the first is Table I's.
     pub simple: Vec<String>,
     /// Scenes that stand for its complex ones.
     pub complex: Vec<String>,
@@ -116,7 +116,7 @@ impl Config {
     }
 }
 
-/// The paper's settings.
+/// The image-order paper's settings.
 #[must_use]
 pub fn paper_options() -> SetupOptions {
     SetupOptions {
@@ -127,7 +127,7 @@ pub fn paper_options() -> SetupOptions {
     }
 }
 
-/// Settings by name: the paper's, and ours.
+/// Settings by name: the image-order paper's, and ours.
 #[must_use]
 pub fn settings() -> [(&'static str, SetupOptions); 2] {
     [
@@ -302,7 +302,7 @@ pub struct Timed {
     pub timing: Timing,
 }
 
-/// Who is timed: under the paper's settings the machine alone.
+/// Who is timed: under the image-order paper's settings the machine alone.
 #[derive(Debug, Clone, Copy)]
 pub struct Engines<'e> {
     /// The machine.
@@ -350,9 +350,9 @@ pub fn times(
 /// The machine with and without occlusion order, and without the rejection
 /// that the order allows, on some subjects, under both settings.
 ///
-/// Without rejection the paper's loop takes a solid apart along every bisector
+/// Without rejection the image-order paper's loop takes a solid apart along every bisector
 /// down to the level bound, exponentially in its levels: nobody can wait for
-/// that, so under the paper's settings there is no such row.
+/// that, so under the image-order paper's settings there is no such row.
 ///
 /// # Errors
 /// When a frame cannot be set up or drawn.

@@ -6,14 +6,14 @@ use crate::lab::bench::{PowerLaw, ablation};
 use crate::report::plot::{Bar, Chart, Panel, Series};
 use crate::report::{Cell, Table};
 
-/// The paper's times of Figures 3 and 4, milliseconds.
+/// The image-order paper's times of Figures 3 and 4, milliseconds.
 pub const PAPER_FIGURES: [(&str, f64); 3] = [
     ("Figure 3, a complex object", 119.0),
     ("Figure 4, a simple object", 110.0),
     ("Figure 4, another simple object", 60.0),
 ];
 
-/// The law of the paper's Table I, the first row (<1) left out.
+/// The law of the image-order paper's Table I, the first row (<1) left out.
 #[must_use]
 pub fn paper_law() -> Option<PowerLaw> {
     let points: Vec<(f64, f64)> = PAPER_TABLE_I
@@ -93,7 +93,7 @@ pub fn table_one(times: &[Timed], evidence: &[Evidence]) -> Table {
     table
 }
 
-/// The exponents, the paper's among them.
+/// The exponents, the image-order paper's among them.
 #[must_use]
 pub fn laws(times: &[Timed]) -> Table {
     let columns = ["what", "exponent_in_pixels", "r_squared", "points"];
@@ -264,7 +264,7 @@ pub fn hashes(evidence: &[Evidence]) -> Table {
     table
 }
 
-/// Figure 5: time against pixels, the paper's and ours.
+/// Figure 5: time against pixels, the image-order paper's and ours.
 #[must_use]
 pub fn figure_five(times: &[Timed]) -> Panel {
     let mut series = vec![Series::curve(

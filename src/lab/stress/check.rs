@@ -510,10 +510,10 @@ impl Seen<'_> {
                 first.get_or_insert(sample);
             }
         }
-        // The paper's rules part a voxel down to the level bound; where a record
+        // The image-order paper's rules part a voxel down to the level bound; where a record
         // meets that, words are too narrow for the view, and what is left of a
         // voxel is drawn at one sample, or by its box. An infinite tolerance is
-        // the paper's to the letter. Holes of both are listed, not failures.
+        // the image-order paper's to the letter. Holes of both are listed, not failures.
         let is_promised =
             self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
         if let Some(sample) = first.filter(|_| is_promised) {

@@ -1,4 +1,4 @@
-//! Which grid and level a camera gets: the paper's future work.
+//! Which grid and level a camera gets: the image-order paper's future work.
 
 use glam::DVec3;
 
