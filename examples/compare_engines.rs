@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         hashes.push(picture.hash());
     }
     assert!(hashes.iter().all(|hash| *hash == hashes[0]));
-    // The image-order paper's rule draws every sample that a voxel's box touches: another picture.
+    // The rule of the image-order paper covers every sample that a voxel's box overlaps: another picture.
     let any = Renderer::new().coverage(Coverage::Any);
     assert_ne!(any.render(&scene, &camera, 256, 256)?.hash(), hashes[0]);
     Ok(())

@@ -1,6 +1,6 @@
 //! Voxel rendering with nothing but adders and shifts.
 //!
-//! `shiftvox` draws voxel files without a GPU, and counts what the same picture would cost a light hardware that has
+//! `shiftvox` draws voxel files without a GPU, and counts what the same picture would cost simple hardware that has
 //! adders, shifts, logic and compares, and no multiplier, divider or floating point. Its default picture is exact: at
 //! each sample it shows the first voxel on the ray, proved against an oracle in wide integers, the same on every
 //! platform, instruction set and number of threads.
@@ -13,9 +13,9 @@
 //! let scene = Scene::from_voxels([voxel(0, [255, 0, 0]), voxel(1, [0, 0, 255])])?;
 //! let camera = Camera::fit(&scene).azimuth(0.0).elevation(0.0);
 //! let picture = Renderer::new().render(&scene, &camera, 32, 32)?;
-//! assert_eq!(picture.voxels()[16 * 32 + 16], [0, 0, 0, 1]); // index, and level in the graph
-//! let [red, _, blue, coverage] = picture.rgba()[16 * 32 + 16];
-//! assert!(red > 100 && blue == 0 && coverage == 255);
+//! assert_eq!(picture.voxel_at(16, 16), Some(([0, 0, 0], 1))); // index, and level in the graph
+//! let [red, _, blue, _] = picture.rgba()[16 * 32 + 16];
+//! assert!(red > 100 && blue == 0);
 //! # #[cfg(feature = "png")]
 //! picture.save_png(std::env::temp_dir().join("red.png"))?;
 //! # Ok::<(), shiftvox::Error>(())
@@ -37,20 +37,20 @@
 //! | [`hwmodel`] | words that cannot multiply, and the model of cycles, memory, area and energy |
 //!
 //! `examples/` has programs to begin with; the command line does the same and more. The rules are in `SPEC.md`, the
-//! floors of the house in `ARCHITECTURE.md`.
+//! layers of the source in `ARCHITECTURE.md`.
 //!
 //! # Features
 //!
 //! | feature | default | what for |
 //! |---|---|---|
 //! | `png` | yes | [`Picture::save_png`] |
-//! | `mesh` | yes | meshes, Far Voxels and textured voxels |
+//! | `mesh` | yes | meshes, Far Voxels and textured voxels; without it a binary `.stl` is of no known format |
 //! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
 //! | `cli` | yes | the command line; needs all of them |
 //!
 //! Without them (`default-features = false`) the renderer and its voxel formats are left.
 
-// Without the laboratory parts of lower rooms have no user.
+// Without `lab` some functions of lower modules have no caller.
 #![cfg_attr(
     not(feature = "lab"),
     allow(dead_code, unreachable_pub, unused_imports)
@@ -72,9 +72,10 @@ pub use project::{
 pub use rays::Rays;
 
 pub use hwmodel;
+pub use hwmodel::Overflow;
 
-// The rooms of the house. They are open to tests and tools, may change with every version, and are not
-// part of the library's promise.
+// Internal modules, public for this project's own tests and tools. They may change in any version and are no part of
+// the API.
 #[doc(hidden)]
 pub mod fast;
 #[doc(hidden)]

@@ -52,7 +52,8 @@ impl Camera {
         }
     }
 
-    /// A camera at `eye` that has `target` in the middle of its picture, world units; Z is up.
+    /// A camera at `eye` that has `target` in the middle of its picture, world units. Z is up; for scenes in which Y
+    /// is ([`Scene::up`]) add `.up([0.0, 1.0, 0.0])`.
     #[must_use]
     pub fn look_at(eye: [f64; 3], target: [f64; 3]) -> Self {
         Self {
@@ -83,7 +84,7 @@ impl Camera {
         self
     }
 
-    /// By how much a fitted camera is nearer than it must be to see all; a placed one stays.
+    /// Magnification, above 0: 2 halves the eye's distance. Of a fitted camera; a placed one stays.
     #[must_use]
     pub fn zoom(mut self, factor: f64) -> Self {
         if let Place::Fitted { zoom, .. } = &mut self.place {
@@ -101,7 +102,7 @@ impl Camera {
         self
     }
 
-    /// Another direction that is seen pointing up, of a placed camera.
+    /// Another direction that is seen pointing up; not along the view. Of a placed camera; a fitted one stays.
     #[must_use]
     pub fn up(mut self, direction: [f64; 3]) -> Self {
         if let Place::Placed { up, .. } = &mut self.place {
@@ -115,6 +116,14 @@ impl Camera {
     pub fn field_of_view(mut self, degrees: f64) -> Self {
         self.fov_degrees = degrees;
         self
+    }
+
+    /// The zoom of a fitted camera.
+    pub(super) fn zoom_factor(&self) -> f64 {
+        match self.place {
+            Place::Fitted { zoom, .. } => zoom,
+            Place::Placed { .. } => 1.0,
+        }
     }
 
     /// The camera of a picture of a size, pixels.

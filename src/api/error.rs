@@ -15,13 +15,14 @@ pub enum Error {
     /// The scene cannot be opened: a missing, damaged, unknown or too large file, or a wrong specification.
     #[error(transparent)]
     Open(Box<OpenError>),
-    /// The voxels make no graph: there are none, or they lie too far apart.
+    /// The voxels make no graph: there are none, too many, or they lie too far apart.
     #[error(transparent)]
     Build(#[from] BuildError),
     /// Camera and settings make no frame.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// A picture has 1 to 4 samples a pixel and axis, and this many altogether at most.
+    /// Samples of a pixel along an axis are not 1, 2 or 4, the picture has more than 2^27 samples, or the zoom is not
+    /// above 0.
     #[error("{0}")]
     Size(String),
     /// The engine cannot finish the frame: a word overflowed.

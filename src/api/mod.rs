@@ -1,4 +1,4 @@
-//! The library's front door: a scene, a camera, a renderer, a picture.
+//! The public API: a scene, a camera, a renderer, a picture.
 
 mod camera;
 mod error;

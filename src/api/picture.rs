@@ -9,7 +9,8 @@ use crate::picture::{self, Buffer, Rows, npy, store};
 use crate::project::Stats;
 
 /// A finished picture: buffers of `width() * height()` entries, row by row from the top left, and what the engine
-/// counted.
+/// counted. Colours average all samples of a pixel. Depth, normal, voxel and node are those of one sample: the
+/// pixel's only one, or of several the one right of and below its middle.
 #[derive(Debug)]
 pub struct Picture {
     buffers: picture::Picture,
@@ -42,14 +43,15 @@ impl Picture {
         self.buffers.height
     }
 
-    /// Colours, sRGB, and coverage (0 nothing, 255 all), not premultiplied.
+    /// Red, green, blue (sRGB) and alpha, not premultiplied. Alpha is 255 everywhere unless the background is
+    /// [`Background::None`](crate::Background::None); then it is the share of the pixel that shows voxels.
     #[must_use]
     pub fn rgba(&self) -> &[[u8; 4]] {
         &self.buffers.rgba
     }
 
-    /// Depth along the view axis, world units, at which the ray of a pixel's middle enters the voxel; infinity where
-    /// nothing is seen.
+    /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity where nothing is
+    /// seen.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.buffers.depth
@@ -74,10 +76,30 @@ impl Picture {
         &self.buffers.node
     }
 
-    /// What the engine counted, by name: nodes, samples, what was skipped and why (`spec/lab.md`).
+    /// What the engine counted, by name. Names differ by engine; all have `samples_drawn`. The fast engine has
+    /// `handed_to_machine`, 1, where it could not draw the frame itself.
     #[must_use]
     pub fn counters(&self) -> &[(&'static str, u64)] {
         &self.counters
+    }
+
+    /// The voxel that a pixel shows: its index, finest voxels of the file, and its level. `None` where nothing is seen,
+    /// and outside the picture.
+    #[must_use]
+    pub fn voxel_at(&self, x: u32, y: u32) -> Option<([i32; 3], u32)> {
+        let &[i, j, k, level] = self.buffers.voxel.get(self.at(x, y)?)?;
+        Some(([i, j, k], u32::try_from(level).ok()?))
+    }
+
+    /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
+        self.buffers.rgba.get(self.at(x, y)?).copied()
+    }
+
+    fn at(&self, x: u32, y: u32) -> Option<usize> {
+        let is_inside = x < self.width() && y < self.height();
+        is_inside.then(|| y as usize * self.width() as usize + x as usize)
     }
 
     /// A counter by its name.

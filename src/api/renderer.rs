@@ -3,6 +3,7 @@
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, NoObserver};
+use rayon::ThreadPoolBuilder;
 
 use super::{Camera, Error, Picture, Scene};
 use crate::fast::{Fast, FastOptions};
@@ -17,12 +18,13 @@ use crate::rays::Rays;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
 pub enum EngineKind {
-    /// On all threads, with vectors where the processor has them.
+    /// The default: on all threads, with AVX2 where the processor has it.
     #[default]
     Fast,
     /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
     Machine,
-    /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others.
+    /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others. Always draws the
+    /// exact picture, whatever coverage, cage and tolerance say.
     Rays,
 }
 
@@ -93,7 +95,8 @@ impl Renderer {
         self
     }
 
-    /// Which samples a voxel covers.
+    /// Which samples a voxel covers. [`Coverage::Alpha`] is for voxels with opacities: those of a `.vxg` file that
+    /// was converted from a mesh with `--opacities`.
     #[must_use]
     pub fn coverage(mut self, coverage: Coverage) -> Self {
         self.coverage = coverage;
@@ -146,7 +149,7 @@ impl Renderer {
         self
     }
 
-    /// As the image-order paper has it: eight corners a record, screen space at once, every pixel touched.
+    /// The rules of the image-order paper: eight corners a record, screen space at once, [`Coverage::Any`].
     #[must_use]
     pub fn paper(self) -> Self {
         self.coverage(Coverage::Any)
@@ -168,14 +171,15 @@ impl Renderer {
         self
     }
 
-    /// Threads of the fast engine; 0: as many as there are.
+    /// Threads that draw; 0: as many as there are. Never changes the picture.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
         self
     }
 
-    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`].
+    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`], unless
+    /// [`Renderer::engine`] says another later, which counts nothing.
     #[must_use]
     pub fn count_operations(mut self) -> Self {
         self.engine = EngineKind::Machine;
@@ -186,9 +190,27 @@ impl Renderer {
     /// Draws a picture of `width` x `height` pixels.
     ///
     /// # Errors
-    /// [`Error::Setup`] where camera and settings make no frame, [`Error::Size`] for samples other than 1, 2 and 4
+    /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
+    /// [`Error::Size`] for samples other than 1, 2 and 4
     /// and for more than 2^27 samples in all, [`Error::Engine`] where a word overflows.
     pub fn render(
+        &self,
+        scene: &Scene,
+        camera: &Camera,
+        width: u32,
+        height: u32,
+    ) -> Result<Picture, Error> {
+        if self.threads > 0 {
+            let pool = ThreadPoolBuilder::new().num_threads(self.threads).build();
+            let pool =
+                pool.map_err(|error| Error::Size(format!("threads cannot be had: {error}")))?;
+            return pool.install(|| self.render_here(scene, camera, width, height));
+        }
+        self.render_here(scene, camera, width, height)
+    }
+
+    /// [`Renderer::render`] on the threads of the current pool.
+    fn render_here(
         &self,
         scene: &Scene,
         camera: &Camera,
@@ -280,6 +302,10 @@ impl Renderer {
                 )));
             }
         };
+        let zoom = camera.zoom_factor();
+        if !(zoom.is_finite() && zoom > 0.0) {
+            return Err(Error::Size(format!("the zoom must be above 0, not {zoom}")));
+        }
         let samples = (u64::from(width) * u64::from(height)) << (2 * aa_log2);
         if samples > MAX_SAMPLES {
             return Err(Error::Size(format!(

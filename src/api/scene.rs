@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Error;
-use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
+use crate::graph::{BuildOptions, Builder, Graph, GraphView, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
 use crate::scene::{OpenOptions, open, open_bytes};
@@ -38,8 +38,8 @@ impl Scene {
         })
     }
 
-    /// Opens a file that is held in memory; errors call it `name`. Meshes find no other files, such as
-    /// materials.
+    /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`. A mesh
+    /// finds no other files, such as materials.
     ///
     /// # Errors
     /// As [`Scene::open`].
@@ -72,7 +72,8 @@ impl Scene {
     /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one counts.
     ///
     /// # Errors
-    /// [`Error::Build`] where there is no voxel, or voxels lie more than 2^30 apart.
+    /// [`Error::Build`] where there is no voxel, where the voxels span more than 2^21 (2,097,152) along an axis, or
+    /// where voxels or nodes number 2^32 or more.
     pub fn from_voxels(voxels: impl IntoIterator<Item = Voxel>) -> Result<Self, Error> {
         let mut builder = Builder::new(BuildOptions::default());
         for voxel in voxels {
@@ -128,15 +129,23 @@ impl Scene {
         Ok(vxg::write(&self.graph, path.as_ref(), true)?)
     }
 
-    /// The graph, for who drives an engine themselves.
+    /// The shape of the graph, as an [`Engine`](crate::Engine) walks it: for programs that draw frame after frame.
+    #[must_use]
+    pub fn view(&self) -> GraphView<'_> {
+        self.graph.view()
+    }
+
+    /// Which axis is up: Z for voxels, Y for meshes other than STL, unless [`Scene::with_up`] said another.
+    #[must_use]
+    pub fn up(&self) -> Up {
+        self.up
+    }
+
+    /// The graph.
     #[doc(hidden)]
     #[must_use]
     pub fn graph(&self) -> &Graph {
         &self.graph
-    }
-
-    pub(super) fn up(&self) -> Up {
-        self.up
     }
 }
 

@@ -27,7 +27,7 @@ pub use triangles::{TrianglesDrawing, TrianglesLook, bounds_of_mesh};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {
-    /// The box and what is in it, for a fitted camera.
+    /// The box, and points that enclose the contents, for a fitted camera.
     fn bounds(&self) -> Bounds;
 
     /// Which axis is up, by the file's own account.

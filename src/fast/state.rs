@@ -29,7 +29,7 @@ pub(super) struct Walk<'w, I> {
     pub(super) found: Found,
     /// What its samples show.
     pub(super) hits: [Hit; 64],
-    /// Their nodes, of bricks of four levels where nothing is blended.
+    /// The node that each of them shows; used only for bricks of four levels without blending.
     pub(super) nodes: [u32; 64],
     /// The blocks of the brick of four levels that is worked on.
     pub(super) blocks: &'w mut Blocks,
@@ -38,7 +38,7 @@ pub(super) struct Walk<'w, I> {
 /// The blocks of a brick of four levels: its parts, with theirs.
 #[derive(Debug)]
 pub(super) struct Blocks {
-    /// By number in order of occlusion: parts, in that order too.
+    /// Which parts of each block exist. Blocks and parts are both in order of occlusion.
     pub(super) exist: [u64; 64],
     pub(super) parts: [Parts; 64],
 }

@@ -20,6 +20,12 @@ impl PackedNormal {
     /// No normal.
     pub const NONE: Self = Self(0);
 
+    /// The nearest normal to a direction (x, y, z) of any length; none for zero or what is not finite.
+    #[must_use]
+    pub fn from_array(direction: [f64; 3]) -> Self {
+        Self::encode(direction.into())
+    }
+
     /// The nearest normal to a direction of any length; none for zero or a
     /// direction that is not finite.
     #[must_use]

@@ -8,33 +8,33 @@ use std::ops::Range;
 use super::Picture;
 use super::npy::Values;
 
-/// A buffer of a picture.
+/// A buffer of a picture: `height x width` entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Buffer {
     /// View-axis depth, world units; inf where nothing is seen.
     ///
-    /// [`Picture::depth`].
+    /// Depth: `f32`, world units.
     Depth,
     /// Unit normal in world directions.
     ///
-    /// [`Picture::normal`].
+    /// Unit normal: 3 x `f32`.
     Normal,
     /// File index of the voxel seen, and its level; level -1 where nothing is seen.
     ///
-    /// [`Picture::voxel`].
+    /// Voxel's index x, y, z and level: 4 x `i32`.
     Voxel,
     /// Graph node; -1 where nothing is seen.
     ///
-    /// [`Picture::node`].
+    /// Graph node: `i32`.
     Node,
     /// Records worked on for the pixel.
     ///
-    /// [`Picture::records`]; zeros where they were not counted.
+    /// Records worked on: `f32`; zeros where they were not counted, as by [`Renderer`](crate::Renderer).
     Records,
     /// Colour and alpha.
     ///
-    /// [`Picture::rgba`].
+    /// Red, green, blue and alpha: 4 x `u8`.
     Color,
 }
 

@@ -64,17 +64,17 @@ impl Camera {
     /// # Errors
     /// When the camera cannot see: see [`CameraError`].
     pub fn axes(&self) -> Result<Axes, CameraError> {
-        if ![self.eye, self.target, self.up]
-            .iter()
-            .all(|v| v.is_finite())
-        {
-            return Err(CameraError::NotFinite);
-        }
         if !(self.fov_degrees > 0.0 && self.fov_degrees < 180.0) {
             return Err(CameraError::FieldOfView(self.fov_degrees));
         }
         if self.width == 0 || self.height == 0 || self.width > MAX_SIDE || self.height > MAX_SIDE {
             return Err(CameraError::Size(self.width, self.height));
+        }
+        if ![self.eye, self.target, self.up]
+            .iter()
+            .all(|v| v.is_finite())
+        {
+            return Err(CameraError::NotFinite);
         }
         // glam's vectors, in the order of operations that fixes the bits.
         let forward = self.target - self.eye;

@@ -49,18 +49,21 @@ pub enum CageKind {
     Frame,
 }
 
-/// Which pixels a voxel draws.
+/// Which samples a voxel covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Coverage {
-    /// The pixel in which its whole box lies (the image-order paper).
-    Any,
-    /// The pixel that holds its centre.
+    /// Every sample that its box overlaps (the image-order paper).
     ///
-    /// Larger voxels are split until they are no larger than a pixel.
+    /// Nodes are subdivided until their box lies within one sample, or they can be divided no further. Covers more
+    /// than there is.
+    Any,
+    /// The sample that holds its centre.
+    ///
+    /// Larger voxels are split until they are no larger than a sample.
     Center,
-    /// Every pixel whose centre lies inside its outline.
+    /// Every sample whose centre lies inside its outline.
     #[default]
     Exact,
     /// As `Exact`, each voxel with its six opacities, blended front to back.
@@ -179,7 +182,7 @@ pub enum SetupError {
     },
     /// A tolerance of a rule that has none.
     #[error(
-        "a tolerance of {0} pixels does not go with exact or alpha coverage, whose picture is defined \
+        "a tolerance of {0} samples does not go with exact or alpha coverage, whose picture is defined \
          at every sample and approximates nothing: leave it at 0, or take the rule any or center"
     )]
     Tolerance(f64),
@@ -384,13 +387,13 @@ fn check_settings(options: &SetupOptions) -> Result<(), SetupError> {
     let lod = options.lod_px;
     let bad = |name, range, value| Err(SetupError::Setting { name, range, value });
     if tolerance.is_nan() || tolerance < 0.0 {
-        return bad("tolerance", "0 pixels or more", options.tolerance_px);
+        return bad("tolerance", "0 samples or more", options.tolerance_px);
     }
     // Beyond any picture, and within any word: more is what `inf` is for.
     if tolerance.is_finite() && tolerance > 4096.0 {
         return bad(
             "tolerance",
-            "0 to 4096 pixels, or inf",
+            "0 to 4096 samples, or inf",
             options.tolerance_px,
         );
     }

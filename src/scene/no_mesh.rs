@@ -1,4 +1,4 @@
-//! In the place of `mesh.rs`, in builds without the feature `mesh`: a mesh is told apart and refused.
+//! Replaces `mesh.rs` in builds without the feature `mesh`: meshes are recognised and refused.
 
 use std::io::{Read, Seek};
 use std::path::Path;
@@ -7,14 +7,14 @@ use super::open::OpenError;
 use super::{SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 
-/// How a mesh becomes a scene: not at all.
+/// Stands in for the options of meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MeshOptions {
     /// Whether the voxels get opacities.
     pub opacities: bool,
 }
 
-/// What a mesh was. There is none.
+/// Stands in for what a mesh was; never made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSummary {
     /// Whether +Y is up.

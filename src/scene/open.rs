@@ -51,7 +51,7 @@ pub enum OpenError {
     Graph(#[from] vxg::VxgError),
     /// The file is a mesh, and this build reads none.
     #[cfg(not(feature = "mesh"))]
-    #[error("{0}: this is a mesh, which only builds with the feature `mesh` read")]
+    #[error("{0}: this is a mesh; build with the feature `mesh` to open it")]
     NoMeshes(String),
     /// The file is a mesh that cannot be read.
     #[cfg(feature = "mesh")]
@@ -157,15 +157,20 @@ pub fn open_source(
         } else {
             vxg::open(file.path())?
         };
-        return Ok(Opened {
-            graph,
-            format: FileKind::Vxg.to_string(),
-            info: None,
-            mesh: None,
-        });
+        return Ok(of_graph(graph));
     }
     let beside = SameFolder::of(file.path());
     open_file(file, &beside, options, progress)
+}
+
+/// A scene of a `.vxg` file's graph.
+fn of_graph(graph: Graph) -> Opened {
+    Opened {
+        graph,
+        format: FileKind::Vxg.to_string(),
+        info: None,
+        mesh: None,
+    }
 }
 
 /// Opens voxels or a mesh.
@@ -226,6 +231,9 @@ pub fn open_bytes(
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let file = SceneFile::in_memory(bytes, name)?;
+    if file.kind() == Some(FileKind::Vxg) {
+        return Ok(of_graph(vxg::from_bytes(bytes)?));
+    }
     open_file(file, &Nothing, options, progress)
 }
 
