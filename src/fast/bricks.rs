@@ -96,6 +96,9 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
     let any = isa.parts_of_samples(tables, &cells, exist, open, &mut walk.found);
     let pair = u32::from(octant) * 9;
+    if DEEP && any != 0 {
+        brick.parts.prefetch_masks(isa, walk.graph);
+    }
     let mut ready = 0u64;
     let (mut drawn, mut left) = (0u64, any);
     if !DEEP && !walk.blends {

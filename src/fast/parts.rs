@@ -161,6 +161,16 @@ impl Parts {
         }
     }
 
+    /// Asks the memory for the masks below the parts, once what [`Parts::prefetch_below`] asked for has come.
+    #[inline(always)]
+    pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
+        let part = graph.first.get(self.first as usize).copied().unwrap_or(0);
+        let first = graph.first.get(part as usize).copied().unwrap_or(0) as usize;
+        for line in 0..4 {
+            isa.prefetch(graph.mask, first + 64 * line);
+        }
+    }
+
     /// Whether all parts are one solid node.
     #[inline(always)]
     pub(super) fn is_single(&self) -> bool {
