@@ -25,6 +25,9 @@ pub enum Error {
     /// above 0.
     #[error("{0}")]
     Size(String),
+    /// The system gives no threads.
+    #[error(transparent)]
+    Threads(#[from] rayon::ThreadPoolBuildError),
     /// The engine cannot finish the frame: a word overflowed.
     #[error(transparent)]
     Engine(#[from] EngineError),

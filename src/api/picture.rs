@@ -77,7 +77,9 @@ impl Picture {
     }
 
     /// What the engine counted, by name. Names differ by engine; all have `samples_drawn`. The fast engine has
-    /// `handed_to_machine`, 1, where it could not draw the frame itself.
+    /// `handed_to_machine`, 1, where it could not draw the frame itself, and why ([`Declined::counter`]).
+    ///
+    /// [`Declined::counter`]: crate::Declined::counter
     #[must_use]
     pub fn counters(&self) -> &[(&'static str, u64)] {
         &self.counters

@@ -191,8 +191,8 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
-    /// [`Error::Size`] for samples other than 1, 2 and 4
-    /// and for more than 2^27 samples in all, [`Error::Engine`] where a word overflows.
+    /// [`Error::Size`] for samples other than 1, 2 and 4, for more than 2^27 samples in all and for a zoom of 0 or
+    /// less, [`Error::Engine`] where a word overflows, [`Error::Threads`] where the system gives no threads.
     pub fn render(
         &self,
         scene: &Scene,
@@ -200,13 +200,14 @@ impl Renderer {
         width: u32,
         height: u32,
     ) -> Result<Picture, Error> {
-        if self.threads > 0 {
-            let pool = ThreadPoolBuilder::new().num_threads(self.threads).build();
-            let pool =
-                pool.map_err(|error| Error::Size(format!("threads cannot be had: {error}")))?;
-            return pool.install(|| self.render_here(scene, camera, width, height));
+        let draw = || self.render_here(scene, camera, width, height);
+        match self.threads {
+            0 => draw(),
+            threads => {
+                let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+                pool.install(draw)
+            }
         }
-        self.render_here(scene, camera, width, height)
     }
 
     /// [`Renderer::render`] on the threads of the current pool.
@@ -218,12 +219,8 @@ impl Renderer {
         height: u32,
     ) -> Result<Picture, Error> {
         let setup = self.set_up(scene, camera, width, height)?;
-        let graph = scene.graph();
-        let light = lights(graph, &setup, self.shading);
-        let view = GraphView {
-            light: &light,
-            ..graph.view()
-        };
+        let light = lights(scene.graph(), &setup, self.shading);
+        let view = lit(scene, &light);
         let mut frame = Frame::new(setup.width, setup.height, false);
         let mut operations = None;
         let counters = match self.engine {
@@ -244,7 +241,7 @@ impl Renderer {
                 Fast::new(options, Box::new(self.machine())).render(&view, &setup, &mut frame)?
             }
         };
-        let buffers = resolve(&frame, graph, &setup, self.shading, self.background)?;
+        let buffers = resolve(&frame, scene.graph(), &setup, self.shading, self.background)?;
         Ok(Picture::new(buffers, counters, operations))
     }
 
@@ -263,14 +260,9 @@ impl Renderer {
         hardware: &Hardware,
     ) -> Result<Simulated, Error> {
         let setup = self.set_up(scene, camera, width, height)?;
-        let graph = scene.graph();
-        let light = lights(graph, &setup, self.shading);
-        let view = GraphView {
-            light: &light,
-            ..graph.view()
-        };
+        let light = lights(scene.graph(), &setup, self.shading);
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let mut machine = self.machine();
+        let (mut machine, view) = (self.machine(), lit(scene, &light));
         Ok(machine.simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)?)
     }
 
@@ -330,5 +322,13 @@ impl Renderer {
             graph.depth,
             &options,
         )?)
+    }
+}
+
+/// A scene's shape with the light of its nodes, for rules that blend.
+fn lit<'s>(scene: &'s Scene, light: &'s [[u16; 3]]) -> GraphView<'s> {
+    GraphView {
+        light,
+        ..scene.view()
     }
 }

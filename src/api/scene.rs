@@ -6,7 +6,7 @@ use super::Error;
 use crate::graph::{BuildOptions, Builder, Graph, GraphView, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
-use crate::scene::{OpenOptions, open, open_bytes};
+use crate::scene::{OpenOptions, Opened, open, open_bytes};
 
 /// What a renderer draws: a voxel graph in world coordinates.
 ///
@@ -27,15 +27,7 @@ impl Scene {
     /// voxels than memory does.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_string_lossy();
-        let opened = open(&path, &OpenOptions::default(), &Silent)?;
-        let up = match &opened.mesh {
-            Some(mesh) if mesh.y_up => Up::Y,
-            _ => Up::Z,
-        };
-        Ok(Self {
-            graph: opened.graph,
-            up,
-        })
+        Ok(open(&path, &OpenOptions::default(), &Silent)?.into())
     }
 
     /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`. A mesh
@@ -44,15 +36,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::open`].
     pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, Error> {
-        let opened = open_bytes(bytes, name, &OpenOptions::default(), &Silent)?;
-        let up = match &opened.mesh {
-            Some(mesh) if mesh.y_up => Up::Y,
-            _ => Up::Z,
-        };
-        Ok(Self {
-            graph: opened.graph,
-            up,
-        })
+        Ok(open_bytes(bytes, name, &OpenOptions::default(), &Silent)?.into())
     }
 
     /// Makes a scene of a generator's specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All
@@ -62,11 +46,7 @@ impl Scene {
     /// [`Error::Open`] where no generator has the name, or its parameters are wrong.
     pub fn generate(specification: &str) -> Result<Self, Error> {
         let source = format!("{}{specification}", crate::scene::generate::PREFIX);
-        let opened = open(&source, &OpenOptions::default(), &Silent)?;
-        Ok(Self {
-            graph: opened.graph,
-            up: Up::Z,
-        })
+        Ok(open(&source, &OpenOptions::default(), &Silent)?.into())
     }
 
     /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one counts.
@@ -146,6 +126,17 @@ impl Scene {
     #[must_use]
     pub fn graph(&self) -> &Graph {
         &self.graph
+    }
+}
+
+impl From<Opened> for Scene {
+    /// With +Y up where that is the custom of a mesh's format.
+    fn from(opened: Opened) -> Self {
+        let is_y_up = opened.mesh.is_some_and(|mesh| mesh.y_up);
+        Self {
+            graph: opened.graph,
+            up: if is_y_up { Up::Y } else { Up::Z },
+        }
     }
 }
 

@@ -186,11 +186,6 @@ impl Fast {
 }
 
 impl Engine for Fast {
-    fn note(&self) -> Option<String> {
-        let why = self.declined?;
-        Some(format!("drawn by the machine, which is slower: {why}"))
-    }
-
     fn draw(
         &mut self,
         graph: &GraphView<'_>,
@@ -244,6 +239,7 @@ impl Engine for Fast {
         }
         let mut stats = self.fallback.render(graph, setup, frame)?;
         stats.push(("handed_to_machine", 1));
+        stats.extend(self.declined.map(|why| (why.counter(), 1)));
         Ok(stats)
     }
 }

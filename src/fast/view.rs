@@ -71,6 +71,20 @@ pub enum Declined {
     Records,
 }
 
+impl Declined {
+    /// The name by which the engine counts frames that it declined for this.
+    #[must_use]
+    pub const fn counter(self) -> &'static str {
+        match self {
+            Self::Rule => "handed_for_rule",
+            Self::Words => "handed_for_words",
+            Self::Range => "handed_for_range",
+            Self::FieldOfView => "handed_for_field_of_view",
+            Self::Records => "handed_for_records",
+        }
+    }
+}
+
 /// The constants of a frame.
 #[derive(Debug, Clone)]
 pub(super) struct View {

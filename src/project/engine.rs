@@ -56,11 +56,6 @@ pub trait Engine {
         Ok(())
     }
 
-    /// What a user should know of how the last frame was drawn, such as that it took a slower way; one sentence.
-    fn note(&self) -> Option<String> {
-        None
-    }
-
     /// Draws into `frame`, which has the size of `setup` and is cleared first.
     ///
     /// # Errors
@@ -74,10 +69,6 @@ pub trait Engine {
 }
 
 impl<E: Engine + ?Sized> Engine for Box<E> {
-    fn note(&self) -> Option<String> {
-        (**self).note()
-    }
-
     fn draw(
         &mut self,
         graph: &GraphView<'_>,

@@ -12,7 +12,7 @@ use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-use crate::common::{octree, sierpinski, solid};
+use crate::common::{octree, sierpinski, solid, up_of};
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
 /// Samples that are compared unless the environment says otherwise.
@@ -74,15 +74,10 @@ fn camera(graph: &Graph, dice: &mut Dice) -> Option<Camera> {
         1 => dice.between(90.0, 170.0),
         _ => dice.between(10.0, 90.0),
     };
-    let up = if (target - eye).normalize_or_zero().z.abs() > 0.9 {
-        DVec3::Y
-    } else {
-        DVec3::Z
-    };
     let camera = Camera {
         eye,
         target,
-        up,
+        up: up_of(target - eye),
         fov_degrees,
         width: 8 + dice.below(300),
         height: 8 + dice.below(300),

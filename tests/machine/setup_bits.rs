@@ -4,40 +4,11 @@ use glam::DVec3;
 use shiftvox::graph::Placement;
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
 
-/// Numbers from a seed.
-struct Dice(u64);
-
-impl Dice {
-    fn bits(&mut self) -> u64 {
-        // SplitMix64.
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, end: u64) -> u64 {
-        self.bits() % end
-    }
-
-    /// From 0 to 1.
-    fn share(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.share()
-    }
-
-    fn of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[self.below(choices.len() as u64) as usize]
-    }
-}
+use crate::scenes::Dice;
 
 /// A frame of any kind, some of which cannot be set up.
 fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, SetupOptions) {
-    let depth = dice.below(18) as u32;
+    let depth = dice.below(18);
     let side = (1u64 << depth) as f64;
     let far = dice.of(&[1.0, 1.0, 1.0, 30.0, 1e6, 1e15]);
     let mut point = |low, high| DVec3::from_array([0; 3].map(|_| dice.between(low, high) * side));
@@ -116,7 +87,7 @@ const RECORDED_HASH: u64 = 0xe136_c7d9_7fb5_f1e1;
 #[test]
 fn the_integers_of_frames_are_those_recorded() {
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
-    let mut dice = Dice(1);
+    let mut dice = Dice::new(1);
     let mut set_up = 0;
     for _ in 0..RECORDED_FRAMES {
         let (camera, placement, depth, options) = any_frame(&mut dice);

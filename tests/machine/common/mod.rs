@@ -180,16 +180,10 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
                 Some(target) => DVec3::from_array(target) * side,
                 None => eye + axis,
             };
-            let forward = (target - eye).try_normalize()?;
-            let up = if forward.z.abs() > 0.9 {
-                DVec3::Y
-            } else {
-                DVec3::Z
-            };
             let camera = Camera {
                 eye,
                 target,
-                up,
+                up: up_of(target - eye),
                 fov_degrees,
                 width,
                 height,
@@ -197,6 +191,15 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
             camera.axes().ok().map(|_| camera)
         },
     )
+}
+
+/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the same.
+pub fn up_of(forward: DVec3) -> DVec3 {
+    if forward.normalize_or_zero().z.abs() > 0.9 {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    }
 }
 
 /// A camera at `eye` that looks at `target`, 60 degrees, square.

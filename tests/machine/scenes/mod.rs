@@ -110,6 +110,11 @@ impl Dice {
         (self.next() % u64::from(end)) as u32
     }
 
+    /// One of some choices.
+    pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        choices[self.below(choices.len() as u32) as usize]
+    }
+
     /// A point of the cube `[low, high)^3`.
     pub fn point(&mut self, low: f64, high: f64) -> DVec3 {
         DVec3::new(
