@@ -9,6 +9,9 @@ use super::lanes::Isa;
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window};
 use crate::frame::{Blend, NO_NODE, color_word};
 
+/// Tiles along a block's side.
+const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
+
 /// Which samples of a band of the picture are drawn.
 #[derive(Debug)]
 pub(super) struct Fill<'p> {
@@ -17,7 +20,7 @@ pub(super) struct Fill<'p> {
     grid: Grid,
     /// Place of the band's first tile in the whole picture.
     first_tile: usize,
-    /// Row of the band's first blocks in the whole picture.
+    /// Row of the band's first blocks in the whole picture; of these the band may have the lower tiles alone.
     first_block_row: i32,
     part: FillPart<'p>,
     /// Samples not drawn yet.
@@ -41,15 +44,16 @@ pub(super) struct FillMemory {
 }
 
 impl FillMemory {
-    /// Makes room for a picture; no more is allocated for the next of its size.
+    /// Makes room for a picture in bands; no more is allocated for the next of its size.
     pub(super) fn resize(&mut self, grid: &Grid) {
-        let rows = grid.blocks_down;
         // Beyond the last tile there is room for what lies below and beside
         // it, so that squares there can be looked at like others.
         let beyond = grid.tiles_across + 2;
         self.tiles
-            .resize(rows * grid.tiles_per_block_row() + beyond, 0);
-        self.blocks.resize(rows * grid.blocks_across, 0);
+            .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
+        // Bands that share a row of blocks each have a row of their own; there may be a band for each row of tiles.
+        let block_rows = grid.tiles_down.div_ceil(TILES_PER_BLOCK) + grid.tiles_down;
+        self.blocks.resize(block_rows * grid.blocks_across, 0);
     }
 
     pub(super) fn part(&mut self) -> FillPart<'_> {
@@ -61,10 +65,11 @@ impl FillMemory {
 }
 
 impl FillPart<'_> {
-    /// The first rows of blocks, and the others.
-    pub(super) fn split(self, grid: &Grid, rows: usize) -> (Self, Self) {
-        let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_per_block_row());
-        let (blocks, blocks_rest) = self.blocks.split_at_mut(rows * grid.blocks_across);
+    /// The first rows of tiles, and the others. `top`: the first of these rows in the picture.
+    pub(super) fn split(self, grid: &Grid, top: usize, rows: usize) -> (Self, Self) {
+        let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_across);
+        let block_rows = (top + rows).div_ceil(TILES_PER_BLOCK) - top / TILES_PER_BLOCK;
+        let (blocks, blocks_rest) = self.blocks.split_at_mut(block_rows * grid.blocks_across);
         let part = |tiles, blocks| Self { tiles, blocks };
         (part(tiles, blocks), part(tiles_rest, blocks_rest))
     }
@@ -74,23 +79,19 @@ impl FillPart<'_> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Grid {
     pub(super) tiles_across: usize,
+    pub(super) tiles_down: usize,
     pub(super) blocks_across: usize,
-    pub(super) blocks_down: usize,
 }
 
 impl Grid {
-    /// The grid of a picture; whole blocks.
+    /// The grid of a picture: whole blocks across, whole tiles down.
     pub(super) fn new(width: u32, height: u32) -> Self {
-        let blocks = |samples: u32| (samples as usize).div_ceil(1 << BLOCK_LOG2);
+        let blocks_across = (width as usize).div_ceil(1 << BLOCK_LOG2);
         Self {
-            tiles_across: blocks(width) << (BLOCK_LOG2 - TILE_LOG2),
-            blocks_across: blocks(width),
-            blocks_down: blocks(height),
+            tiles_across: blocks_across * TILES_PER_BLOCK,
+            tiles_down: (height as usize).div_ceil(1 << TILE_LOG2),
+            blocks_across,
         }
-    }
-
-    fn tiles_per_block_row(&self) -> usize {
-        self.tiles_across << (BLOCK_LOG2 - TILE_LOG2)
     }
 }
 
@@ -122,7 +123,7 @@ static SQUARES: [u64; 64] = {
 };
 
 impl<'p> Fill<'p> {
-    /// An empty band. `bounds.top` is a multiple of a block's side.
+    /// An empty band. `bounds.top` is a multiple of a tile's side.
     pub(super) fn clear(grid: &Grid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;

@@ -40,6 +40,8 @@ mod voxels;
 mod walk;
 mod window;
 
+use std::ops::Range;
+
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
@@ -51,7 +53,7 @@ use state::{Blocks, Compiled, Hit, Walk};
 pub use switches::Switches;
 pub use view::Declined;
 use view::View;
-use window::{BLOCK_LOG2, Window};
+use window::{TILE_LOG2, Window};
 
 /// Which instructions the engine uses. Never changes a bit of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -164,10 +166,12 @@ impl Fast {
             fill: self.fill.part(),
             pixels,
         };
+        let object = view.rows(setup.height);
+        let object = object.start >> TILE_LOG2..object.end.div_ceil(1 << TILE_LOG2);
         let counters = match self.options.instructions.found() {
             #[cfg(target_arch = "x86_64")]
-            Found::Avx2(isa) => run_bands(&job, piece, isa, threads),
-            Found::Scalar(isa) => run_bands(&job, piece, isa, threads),
+            Found::Avx2(isa) => run_bands(&job, piece, isa, &object, threads),
+            Found::Scalar(isa) => run_bands(&job, piece, isa, &object, threads),
         };
         self.counters = counters;
         true
@@ -295,7 +299,7 @@ struct Job<'j> {
     switches: &'j Switches,
 }
 
-/// A band of the picture: whole rows of blocks.
+/// A band of the picture: whole rows of tiles.
 struct Piece<'p> {
     grid: Grid,
     bounds: Window,
@@ -303,24 +307,30 @@ struct Piece<'p> {
     pixels: Pixels<'p>,
 }
 
-/// Rows of blocks that the first of several bands has. Nodes that lie across
-/// two bands are visited in both, so there are few bands; several to a
-/// thread, large ones first, so that threads end together.
-fn first_band(block_rows: usize, threads: usize) -> usize {
-    if threads <= 1 {
-        return block_rows;
+/// Rows of tiles that the first of several bands has, of `rows` from `top` on; all: there is one band.
+///
+/// Nodes that lie across two bands are visited in both, so there are few bands; several to a
+/// thread, large ones first, so that threads end together. What counts is the rows that the object
+/// covers: those above and below it cost nothing.
+fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) -> usize {
+    let begin = object.start.max(top);
+    let covered = object.end.min(top + rows).saturating_sub(begin);
+    let size = (covered / (2 * threads)).max(1);
+    if threads <= 1 || covered <= size {
+        return rows;
     }
-    (block_rows / (2 * threads)).max(1)
+    begin - top + size
 }
 
 impl Piece<'_> {
-    /// The first rows of blocks, and the others.
+    /// The first rows of tiles, and the others.
     fn split(self, rows: usize) -> (Self, Self) {
-        let top = self.bounds.top + ((rows << BLOCK_LOG2) as i32);
+        let top = self.bounds.top + ((rows << TILE_LOG2) as i32);
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
         let voxels = samples.min(self.pixels.voxel.len());
         let blends = samples.min(self.pixels.blend.len());
-        let (fill, fill_rest) = self.fill.split(&self.grid, rows);
+        let first = (self.bounds.top >> TILE_LOG2) as usize;
+        let (fill, fill_rest) = self.fill.split(&self.grid, first, rows);
         let (shown, shown_rest) = self.pixels.shown.split_at_mut(samples);
         let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
         let (blend, blend_rest) = self.pixels.blend.split_at_mut(blends);
@@ -348,26 +358,27 @@ impl Piece<'_> {
             piece(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
         )
     }
-
-    /// Rows of blocks.
-    fn block_rows(&self) -> usize {
-        ((self.bounds.bottom - self.bounds.top) as usize >> BLOCK_LOG2) + 1
-    }
 }
 
-/// Draws a band after the other, each while others draw the rest.
-fn run_bands<I: Compiled>(job: &Job<'_>, piece: Piece<'_>, isa: I, threads: usize) -> Counters {
-    let rows = piece.block_rows();
-    let first = first_band(rows, threads);
+/// Draws a band after the other, each while others draw the rest. `object`: rows of tiles that the object covers.
+fn run_bands<I: Compiled>(
+    job: &Job<'_>,
+    piece: Piece<'_>,
+    isa: I,
+    object: &Range<usize>,
+    threads: usize,
+) -> Counters {
+    let tiles = piece.bounds.coarser(TILE_LOG2);
+    let rows = (tiles.bottom - tiles.top + 1) as usize;
+    let first = first_band(tiles.top as usize, rows, object, threads);
     if first == rows {
         return run(job, piece, isa);
     }
     let (band, rest) = piece.split(first);
-    let (counters, others) = rayon::join(
+    let (mut counters, others) = rayon::join(
         || run(job, band, isa),
-        || run_bands(job, rest, isa, threads),
+        || run_bands(job, rest, isa, object, threads),
     );
-    let mut counters = counters;
     counters.add(&others);
     counters
 }

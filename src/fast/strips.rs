@@ -81,38 +81,58 @@ pub(super) const fn along(part: usize, axis: usize) -> usize {
     (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1
 }
 
+/// By axis and place along it, the parts there.
+static AT: [[u64; 4]; 3] = {
+    let mut at = [[0; 4]; 3];
+    let mut number = 0;
+    while number < 3 * 64 {
+        let (axis, part) = (number / 64, number % 64);
+        at[axis][along(part, axis)] |= 1 << part;
+        number += 1;
+    }
+    at
+};
+
 impl Strips {
     fn new() -> Self {
-        let mut touched = vec![[0; CELLS]; BLIND + 1];
-        let mut ends_above = touched.clone();
-        let mut begins_below = touched.clone();
-        for all in [&mut touched, &mut ends_above, &mut begins_below] {
-            all[BLIND] = [u64::MAX; CELLS];
-        }
+        let mut strips = Self {
+            touched: vec![[0; CELLS]; BLIND + 1],
+            ends_above: vec![[0; CELLS]; BLIND + 1],
+            begins_below: vec![[0; CELLS]; BLIND + 1],
+        };
         for (class, margin) in MARGINS.into_iter().enumerate() {
             for axis in 0..3 {
-                let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
                 for share in 0..SHARES {
-                    let at = class * PER_MARGIN + axis * SHARES + share;
-                    let share = share as f32 / SHARE_STEPS;
-                    for part in 0..64 {
-                        let t = |axis| along(part, axis) as f32 - 1.5;
-                        let centre = t(next) * share - t(last) * (1.0 - share);
-                        let cell = |end: f32| (end * CELLS_PER_WIDTH + MIDDLE) as usize;
-                        let first = cell(centre - 0.5 - margin);
-                        let end = cell(centre + 0.5 + margin) + 1;
-                        let bit = 1 << part;
-                        touched[at][first..end].iter_mut().for_each(|c| *c |= bit);
-                        ends_above[at][..end].iter_mut().for_each(|c| *c |= bit);
-                        begins_below[at][first..].iter_mut().for_each(|c| *c |= bit);
-                    }
+                    let at = Self::table(axis, share, class);
+                    strips.fill(at, axis, share as f32 / SHARE_STEPS, margin);
                 }
             }
         }
-        Self {
-            touched,
-            ends_above,
-            begins_below,
+        strips.touched[BLIND] = [u64::MAX; CELLS];
+        strips.ends_above[BLIND] = [u64::MAX; CELLS];
+        strips.begins_below[BLIND] = [u64::MAX; CELLS];
+        strips
+    }
+
+    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then adds up, upwards
+    /// the parts that have begun and downwards those that have not ended.
+    fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
+        let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+        let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
+        for place in 0..16 {
+            let (a, b) = (place & 3, place >> 2);
+            let parts = AT[next][a] & AT[last][b];
+            let centre = (a as f32 - 1.5) * share - (b as f32 - 1.5) * (1.0 - share);
+            let cell = |end: f32| (end * CELLS_PER_WIDTH + MIDDLE) as usize;
+            begun[cell(centre - 0.5 - margin)] |= parts;
+            ends[cell(centre + 0.5 + margin)] |= parts;
+        }
+        for cell in 1..CELLS {
+            begun[cell] |= begun[cell - 1];
+            ends[CELLS - 1 - cell] |= ends[CELLS - cell];
+        }
+        for (touched, (begun, ends)) in self.touched[at].iter_mut().zip(begun.iter().zip(ends)) {
+            *touched = *begun & *ends;
         }
     }
 

@@ -188,6 +188,23 @@ impl View {
         })
     }
 
+    /// Rows of samples that the object's box covers, about; all of a picture of this height where the box
+    /// reaches behind the eye. Work is shared out by them, nothing is left out.
+    pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
+        let vertices = &self.levels[0].vertices;
+        let mut rows = [f64::INFINITY, f64::NEG_INFINITY];
+        for vertex in 0..8 {
+            let [y, w] = [1, 2].map(|c| self.centre[c] + vertices[c][vertex]);
+            if w <= 0.0 {
+                return 0..height as usize;
+            }
+            let row = y / w * self.root_samples;
+            rows = [rows[0].min(row), rows[1].max(row)];
+        }
+        let [top, bottom] = rows.map(|row| row.clamp(0.0, f64::from(height)) as usize);
+        top..bottom
+    }
+
     /// Which octant of a node is nearest to the eye, the node's lowest corner
     /// and half side given: bit k is set where the eye is above the centre.
     #[inline(always)]
