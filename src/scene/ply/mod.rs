@@ -16,8 +16,8 @@ use super::emit::Emitter;
 use super::error::{Fault, Problem, printable};
 use super::{FileKind, ReadOptions, SceneInfo};
 use crate::graph::PackedNormal;
-use header::{Element, Encoding, Property};
-use source::{Number, Source, parse_number};
+use header::{Element, Encoding, Property, Scalar};
+use source::{Number, Source, decode, parse_number};
 
 /// Longest line of an ASCII body, bytes.
 const MAX_LINE: usize = 1 << 20;
@@ -55,6 +55,10 @@ struct Layout<'h> {
     properties: &'h [Property],
     /// What each property is for, if for anything.
     roles: Vec<Option<Role>>,
+    /// Of those that are for something: type and first byte in a binary vertex.
+    wanted: Vec<(Role, Scalar, usize)>,
+    /// Bytes of a binary vertex; `None`: they differ, for there are lists.
+    stride: Option<usize>,
     has_color: bool,
     has_normal: bool,
 }
@@ -105,7 +109,14 @@ pub(super) fn read<R: BufRead>(
         };
         match header.encoding {
             Encoding::Ascii => read_line(&mut source, &layout, number, &mut line, &mut vertex)?,
-            encoding => read_binary(&mut source, &layout, number, encoding, &mut vertex)?,
+            encoding => read_binary(
+                &mut source,
+                &layout,
+                number,
+                encoding,
+                &mut line,
+                &mut vertex,
+            )?,
         }
         hand_on(&vertex, &layout, (number, begin), options, emitter)?;
     }
@@ -139,6 +150,13 @@ fn understand(vertices: &Element, offset: u64) -> Result<Layout<'_>, Box<Fault>>
             }
         })
         .collect();
+    let mut wanted = Vec::new();
+    let mut stride = 0;
+    for (property, role) in vertices.properties.iter().zip(&roles) {
+        wanted.extend(role.map(|role| (role, property.scalar, stride)));
+        stride += property.scalar.size();
+    }
+    let has_lists = vertices.properties.iter().any(|p| p.list.is_some());
     let has = |kind: fn(usize) -> Role| (0..3).all(|i| roles.contains(&Some(kind(i))));
     if !has(Role::Position) {
         return Err(Fault::new(
@@ -151,6 +169,8 @@ fn understand(vertices: &Element, offset: u64) -> Result<Layout<'_>, Box<Fault>>
     }
     Ok(Layout {
         properties: &vertices.properties,
+        wanted,
+        stride: (!has_lists).then_some(stride),
         has_color: has(Role::Color),
         has_normal: has(Role::Normal),
         roles,
@@ -243,8 +263,23 @@ fn read_binary<R: BufRead>(
     layout: &Layout<'_>,
     number: u64,
     encoding: Encoding,
+    scratch: &mut Vec<u8>,
     vertex: &mut Vertex,
 ) -> Result<(), Problem> {
+    if let Some(stride) = layout.stride {
+        let put_all = |bytes: &[u8]| {
+            for &(role, scalar, at) in &layout.wanted {
+                vertex.put(
+                    role,
+                    decode(scalar, encoding, bytes.get(at..).unwrap_or(&[])),
+                );
+            }
+        };
+        return match source.bytes(stride, scratch, put_all)? {
+            Some(()) => Ok(()),
+            None => Err(cut_at(number, source.offset()).into()),
+        };
+    }
     for (property, role) in layout.properties.iter().zip(&layout.roles) {
         let part = || vertex_part(number);
         let Some(value) = skip_or_read(source, property, encoding, &part)? else {
@@ -317,6 +352,7 @@ fn read_line<R: BufRead>(
 }
 
 /// Turns a vertex into a voxel.
+#[inline]
 fn hand_on(
     vertex: &Vertex,
     layout: &Layout<'_>,
@@ -327,31 +363,19 @@ fn hand_on(
     let mut index = [0; 3];
     for axis in 0..3 {
         let value = vertex.position[axis];
-        index[axis] = value.whole().ok_or_else(|| {
-            Fault::new(
-                format!("vertex {number}, property {}", ["x", "y", "z"][axis]),
-                offset,
-                "a whole number, the voxel's index",
-                value.to_string(),
-                "only clouds whose positions are voxel indices can be read; divide the positions by the voxel's size and round them down first",
-            )
-        })?;
+        let Some(whole) = value.whole() else {
+            return Err(not_an_index(number, axis, offset, value).into());
+        };
+        index[axis] = whole;
     }
     let mut color = options.default_color;
     if layout.has_color {
-        for (channel, value) in vertex.color.into_iter().enumerate() {
-            color[channel] = to_channel(value).ok_or_else(|| {
-                Fault::new(
-                    format!(
-                        "vertex {number}, property {}",
-                        ["red", "green", "blue"][channel]
-                    ),
-                    offset,
-                    "a whole number from 0 to 255, or a real one from 0 to 1",
-                    value.to_string(),
-                    "export the colours as uchar",
-                )
-            })?;
+        for channel in 0..3 {
+            let value = vertex.color[channel];
+            let Some(byte) = to_channel(value) else {
+                return Err(not_a_channel(number, channel, offset, value).into());
+            };
+            color[channel] = byte;
         }
     }
     // A normal of length zero says that there is none.
@@ -360,6 +384,31 @@ fn hand_on(
         .then(|| PackedNormal::encode(DVec3::from_array(vertex.normal.map(Number::real))))
         .filter(|normal| !normal.is_none());
     emitter.voxel(index, color, normal, || (vertex_part(number), offset))
+}
+
+#[cold]
+fn not_an_index(number: u64, axis: usize, offset: u64, value: Number) -> Box<Fault> {
+    Fault::new(
+        format!("vertex {number}, property {}", ["x", "y", "z"][axis]),
+        offset,
+        "a whole number, the voxel's index",
+        value.to_string(),
+        "only clouds whose positions are voxel indices can be read; divide the positions by the voxel's size and round them down first",
+    )
+}
+
+#[cold]
+fn not_a_channel(number: u64, channel: usize, offset: u64, value: Number) -> Box<Fault> {
+    Fault::new(
+        format!(
+            "vertex {number}, property {}",
+            ["red", "green", "blue"][channel]
+        ),
+        offset,
+        "a whole number from 0 to 255, or a real one from 0 to 1",
+        value.to_string(),
+        "export the colours as uchar",
+    )
 }
 
 /// A colour channel as a byte. A real number is a share of 1, rounded to nearest.

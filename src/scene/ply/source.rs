@@ -1,6 +1,6 @@
 //! Bytes, lines and numbers from a stream, and where in the file they are.
 
-use std::io::BufRead;
+use std::io::{BufRead, Read};
 
 use super::header::{Encoding, Scalar};
 use crate::scene::error::{Fault, Problem};
@@ -19,9 +19,11 @@ impl Number {
     pub(super) fn whole(self) -> Option<i64> {
         match self {
             Self::Whole(n) => Some(n),
-            // Below 2^53 the cast is exact.
-            Self::Real(x) if x == x.trunc() && x.abs() < 9_007_199_254_740_992.0 => Some(x as i64),
-            Self::Real(_) => None,
+            // Below 2^53 the casts are exact.
+            Self::Real(x) => {
+                let whole = x as i64;
+                (whole as f64 == x && x.abs() < 9_007_199_254_740_992.0).then_some(whole)
+            }
         }
     }
 
@@ -68,33 +70,26 @@ impl<'a, R: BufRead> Source<'a, R> {
     ) -> Result<bool, Problem> {
         line.clear();
         let begin = self.offset;
-        loop {
-            let buffer = self.reader.fill_buf().map_err(Problem::Read)?;
-            if buffer.is_empty() {
-                return Ok(self.offset > begin);
+        let most = longest as u64 + 1;
+        let read = self.reader.by_ref().take(most).read_until(b'\n', line);
+        let read = read.map_err(Problem::Read)? as u64;
+        self.offset += read;
+        if line.last() == Some(&b'\n') {
+            line.pop();
+            if line.last() == Some(&b'\r') {
+                line.pop();
             }
-            let end = buffer.iter().position(|b| *b == b'\n');
-            let used = end.map_or(buffer.len(), |end| end + 1);
-            line.extend_from_slice(&buffer[..end.unwrap_or(buffer.len())]);
-            self.reader.consume(used);
-            self.offset += used as u64;
-            if line.len() > longest {
-                return Err(Fault::new(
-                    part,
-                    begin,
-                    format!("lines of at most {longest} bytes, ended by a line feed"),
-                    "a longer one",
-                    "the file is damaged, or binary where its header says ascii; export it again",
-                )
-                .into());
-            }
-            if end.is_some() {
-                if line.last() == Some(&b'\r') {
-                    line.pop();
-                }
-                return Ok(true);
-            }
+        } else if read == most {
+            return Err(Fault::new(
+                part,
+                begin,
+                format!("lines of at most {longest} bytes, ended by a line feed"),
+                "a longer one",
+                "the file is damaged, or binary where its header says ascii; export it again",
+            )
+            .into());
         }
+        Ok(read > 0)
     }
 
     /// Skips bytes; `false` where the file ends first.
@@ -114,6 +109,32 @@ impl<'a, R: BufRead> Source<'a, R> {
         Ok(true)
     }
 
+    /// Reads so many bytes; `None` where the file ends first. `scratch`: for those that do not lie side by side in
+    /// the reader's buffer.
+    #[inline]
+    pub(super) fn bytes<T>(
+        &mut self,
+        count: usize,
+        scratch: &mut Vec<u8>,
+        decode: impl FnOnce(&[u8]) -> T,
+    ) -> Result<Option<T>, Problem> {
+        if let Some(bytes) = self.reader.fill_buf().map_err(Problem::Read)?.get(..count) {
+            let decoded = decode(bytes);
+            self.reader.consume(count);
+            self.offset += count as u64;
+            return Ok(Some(decoded));
+        }
+        scratch.resize(count, 0);
+        match self.reader.read_exact(scratch) {
+            Ok(()) => {
+                self.offset += count as u64;
+                Ok(Some(decode(scratch)))
+            }
+            Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(None),
+            Err(error) => Err(Problem::Read(error)),
+        }
+    }
+
     /// Reads a binary number; `None` where the file ends first.
     #[inline]
     pub(super) fn number(
@@ -122,43 +143,70 @@ impl<'a, R: BufRead> Source<'a, R> {
         encoding: Encoding,
     ) -> Result<Option<Number>, Problem> {
         let mut bytes = [0u8; 8];
-        let size = scalar.size();
-        // Nearly always more than a number is at hand. What lies behind it is not looked at.
-        if let Ok(buffer) = self.reader.fill_buf()
-            && let Some(at_hand) = buffer.first_chunk()
-        {
-            bytes = *at_hand;
-            self.reader.consume(size);
-            self.offset += size as u64;
-        } else {
-            match self.reader.read_exact(&mut bytes[..size]) {
-                Ok(()) => self.offset += size as u64,
-                Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => return Ok(None),
-                Err(error) => return Err(Problem::Read(error)),
+        let bytes = &mut bytes[..scalar.size()];
+        match self.reader.read_exact(bytes) {
+            Ok(()) => {
+                self.offset += bytes.len() as u64;
+                Ok(Some(decode(scalar, encoding, bytes)))
             }
+            Err(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => Ok(None),
+            Err(error) => Err(Problem::Read(error)),
         }
+    }
+}
+
+/// The binary number that bytes begin with; 0 where there are too few.
+#[inline]
+pub(super) fn decode(scalar: Scalar, encoding: Encoding, bytes: &[u8]) -> Number {
+    #[inline]
+    fn first<const N: usize>(bytes: &[u8], encoding: Encoding) -> [u8; N] {
+        let mut first = bytes.first_chunk().copied().unwrap_or([0; N]);
         if encoding == Encoding::Big {
-            bytes[..size].reverse();
+            first.reverse();
         }
-        let [a, b, c, d, ..] = bytes;
-        Ok(Some(match scalar {
-            Scalar::I8 => Number::Whole(i64::from(a as i8)),
-            Scalar::U8 => Number::Whole(i64::from(a)),
-            Scalar::I16 => Number::Whole(i64::from(i16::from_le_bytes([a, b]))),
-            Scalar::U16 => Number::Whole(i64::from(u16::from_le_bytes([a, b]))),
-            Scalar::I32 => Number::Whole(i64::from(i32::from_le_bytes([a, b, c, d]))),
-            Scalar::U32 => Number::Whole(i64::from(u32::from_le_bytes([a, b, c, d]))),
-            Scalar::F32 => Number::Real(f64::from(f32::from_le_bytes([a, b, c, d]))),
-            Scalar::F64 => Number::Real(f64::from_le_bytes(bytes)),
-        }))
+        first
+    }
+    match scalar {
+        Scalar::I8 => Number::Whole(i64::from(i8::from_le_bytes(first(bytes, encoding)))),
+        Scalar::U8 => Number::Whole(i64::from(u8::from_le_bytes(first(bytes, encoding)))),
+        Scalar::I16 => Number::Whole(i64::from(i16::from_le_bytes(first(bytes, encoding)))),
+        Scalar::U16 => Number::Whole(i64::from(u16::from_le_bytes(first(bytes, encoding)))),
+        Scalar::I32 => Number::Whole(i64::from(i32::from_le_bytes(first(bytes, encoding)))),
+        Scalar::U32 => Number::Whole(i64::from(u32::from_le_bytes(first(bytes, encoding)))),
+        Scalar::F32 => Number::Real(f64::from(f32::from_le_bytes(first(bytes, encoding)))),
+        Scalar::F64 => Number::Real(f64::from_le_bytes(first(bytes, encoding))),
     }
 }
 
 /// A number of an ASCII body.
 pub(super) fn parse_number(word: &[u8]) -> Option<Number> {
+    if let Some(whole) = parse_short(word) {
+        return Some(Number::Whole(whole));
+    }
     let text = std::str::from_utf8(word).ok()?;
     if let Ok(whole) = text.parse() {
         return Some(Number::Whole(whole));
     }
     text.parse().ok().map(Number::Real)
+}
+
+/// A whole number of up to 18 digits, as nearly all are.
+#[inline]
+fn parse_short(word: &[u8]) -> Option<i64> {
+    let (digits, sign) = match word {
+        [b'-', digits @ ..] => (digits, -1),
+        digits => (digits, 1),
+    };
+    if digits.is_empty() || digits.len() > 18 {
+        return None;
+    }
+    let mut size = 0;
+    for digit in digits {
+        let digit = digit.wrapping_sub(b'0');
+        if digit > 9 {
+            return None;
+        }
+        size = 10 * size + i64::from(digit);
+    }
+    Some(sign * size)
 }
