@@ -1,7 +1,7 @@
 //! The only place of the command line that makes engines.
 
 use hwmodel::count::Counter;
-use hwmodel::{Memory, Place, Probe};
+use hwmodel::{Memory, Probe, StageLevel};
 
 use super::args::{EngineArgs, EngineName, Isa};
 use super::error::{CliError, Kind};
@@ -308,7 +308,7 @@ fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, Engine
     /// Notes the nodes in the order in which they are read.
     struct Noted(Vec<u32>);
     impl Probe for Noted {
-        fn read(&mut self, memory: Memory, address: u64, _: Place) {
+        fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
             if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
                 self.0.push(node);
             }

@@ -10,7 +10,7 @@ use super::engines;
 use super::error::CliError;
 use super::scenes::{self, Scene};
 use crate::drawing::{
-    self, Drawable, FarDrawing, FarLook, GraphDrawing, GraphLook, TexturedDrawing, TexturedLook,
+    self, Drawable, FarDrawing, FarStyle, GraphDrawing, GraphStyle, TexturedDrawing, TexturedStyle,
     milliseconds_since,
 };
 use crate::far::FarFile;
@@ -176,7 +176,7 @@ impl Opened {
         Ok(match &self.content {
             Content::Graph(scene) => Box::new(of_graph(scene, args)?),
             Content::Far(file) => {
-                let look = FarLook {
+                let look = FarStyle {
                     voxel_px: args.engine.rules.mesh_lod(),
                     aa_log2,
                     opacity: args.engine.far_opacity.unwrap_or_default(),
@@ -186,7 +186,7 @@ impl Opened {
                 Box::new(FarDrawing::new(file, look))
             }
             Content::Textured(file) => {
-                let look = TexturedLook {
+                let look = TexturedStyle {
                     erosion: erosion(args.engine)?,
                     aa_log2,
                     shading,
@@ -206,7 +206,7 @@ pub(super) fn of_graph<'s>(
     scene: &'s Scene,
     args: &DrawArgs<'_>,
 ) -> Result<GraphDrawing<'s>, CliError> {
-    let look = GraphLook {
+    let look = GraphStyle {
         options: args.engine.rules.options(args.picture.aa_log2()),
         shading: args.picture.shade,
         background: args.picture.background.unwrap_or_default(),

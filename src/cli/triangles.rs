@@ -11,7 +11,7 @@ use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::{outputs, report, scenes};
-use crate::drawing::{Drawable, TrianglesDrawing, TrianglesLook, milliseconds_since};
+use crate::drawing::{Drawable, TrianglesDrawing, TrianglesStyle, milliseconds_since};
 use crate::mesh::raster::{Pattern, Samples};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::{Background, Buffer, Shading, store};
@@ -139,14 +139,14 @@ impl TrianglesArgs {
         std::iter::once(self.output.clone()).chain(beside).collect()
     }
 
-    fn look(&self) -> Result<TrianglesLook, CliError> {
+    fn look(&self) -> Result<TrianglesStyle, CliError> {
         let pattern = match self.pattern {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
         // The flag takes numbers of samples only that there are.
         let samples = self.samples.parse().unwrap_or(16);
-        Ok(TrianglesLook {
+        Ok(TrianglesStyle {
             samples: Samples::new(samples, pattern).map_err(CliError::usage)?,
             shading: if self.flat {
                 Shading::Flat

@@ -5,13 +5,13 @@ use serde_json::{Value, json};
 use super::mesh_view::{light_of, picture_of_far, view_of};
 use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
 use crate::far::FarFile;
-use crate::far::view::{Counts, FarViewer, Opacity, ViewOptions};
+use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 
 /// What far voxels are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FarLook {
+pub struct FarStyle {
     /// Largest voxel, pixels; above 0.
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
@@ -28,14 +28,14 @@ pub struct FarLook {
 pub struct FarDrawing<'f> {
     file: &'f FarFile,
     viewer: FarViewer<'f>,
-    look: FarLook,
+    look: FarStyle,
     kept: Option<Kept>,
 }
 
 impl<'f> FarDrawing<'f> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(file: &'f FarFile, look: FarLook) -> Self {
+    pub fn new(file: &'f FarFile, look: FarStyle) -> Self {
         Self {
             file,
             viewer: FarViewer::new(file),
@@ -101,7 +101,7 @@ pub fn resident(file: &FarFile) -> Option<Value> {
     }))
 }
 
-fn counters(counts: &Counts) -> Figures {
+fn counters(counts: &FarCounts) -> Figures {
     let counters = [
         ("nodes_visited", counts.visited),
         ("nodes_outside", counts.outside),

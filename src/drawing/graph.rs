@@ -17,7 +17,7 @@ use crate::project::{
 
 /// What a voxel graph is drawn with.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GraphLook {
+pub struct GraphStyle {
     /// Rules and words.
     pub options: SetupOptions,
     /// Light.
@@ -35,7 +35,7 @@ pub struct GraphLook {
 pub struct GraphDrawing<'g> {
     graph: &'g Graph,
     up: Up,
-    look: GraphLook,
+    look: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine> + 'g>,
     viewer: Viewer<'g, Box<dyn Engine>>,
     /// What the viewer's frames hold.
@@ -61,7 +61,7 @@ impl<'g> GraphDrawing<'g> {
     pub fn new(
         graph: &'g Graph,
         up: Up,
-        look: GraphLook,
+        look: GraphStyle,
         engine: impl Fn() -> Box<dyn Engine> + 'g,
     ) -> Self {
         let of_voxels = [Buffer::Depth, Buffer::Normal, Buffer::Voxel];
@@ -126,7 +126,7 @@ impl<'g> GraphDrawing<'g> {
         // A frame that is not there has no samples.
         let frame = self.viewer.frame();
         let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
-        let GraphLook {
+        let GraphStyle {
             shading,
             background,
             ..

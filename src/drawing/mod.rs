@@ -20,10 +20,10 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use far::{FarDrawing, FarLook, resident};
-pub use graph::{GraphDrawing, GraphLook};
-pub use textured::{Erosion, TexturedDrawing, TexturedLook};
-pub use triangles::{TrianglesDrawing, TrianglesLook, bounds_of_mesh};
+pub use far::{FarDrawing, FarStyle, resident};
+pub use graph::{GraphDrawing, GraphStyle};
+pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
+pub use triangles::{TrianglesDrawing, TrianglesStyle, bounds_of_mesh};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {

@@ -4,12 +4,12 @@ use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
-use crate::mesh::raster::{Pattern, Samples, View};
+use crate::mesh::raster::{Pattern, RasterCamera, Samples};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 use crate::textured::TexturedFile;
 use crate::textured::record::Primitive;
-use crate::textured::view::{Counts, Detail, ViewOptions, choose_grid, draw};
+use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
 
 /// How often voxels are eroded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub enum Erosion {
 
 /// What textured voxels are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TexturedLook {
+pub struct TexturedStyle {
     /// Level of detail.
     pub erosion: Erosion,
     /// Samples per pixel and axis, as a power of two.
@@ -44,14 +44,14 @@ pub struct TexturedLook {
 /// A file of textured voxels that is drawn, once or from many cameras.
 pub struct TexturedDrawing<'f> {
     file: &'f TexturedFile,
-    look: TexturedLook,
+    look: TexturedStyle,
     kept: Option<Kept>,
 }
 
 impl<'f> TexturedDrawing<'f> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(file: &'f TexturedFile, look: TexturedLook) -> Self {
+    pub fn new(file: &'f TexturedFile, look: TexturedStyle) -> Self {
         Self {
             file,
             look,
@@ -59,12 +59,12 @@ impl<'f> TexturedDrawing<'f> {
         }
     }
 
-    fn detail(&self, view: &View) -> Result<Detail, DrawError> {
+    fn detail(&self, view: &RasterCamera) -> Result<Detail, DrawError> {
         let (level, cells) = match self.look.erosion {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
             Erosion::Level { level, cells } => (level, cells),
         };
-        let cells_of = |grid: usize| self.file.grid(grid).lattice().cells();
+        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells();
         let grid = match cells {
             None => choose_grid(self.file, view, level),
             Some(cells) => (0..self.file.grids())
@@ -123,9 +123,9 @@ impl Drawable for TexturedDrawing<'_> {
     }
 }
 
-fn counters(file: &TexturedFile, counts: &Counts) -> Figures {
+fn counters(file: &TexturedFile, counts: &TexturedCounts) -> Figures {
     let choice = &counts.choice;
-    let cells = file.grid(choice.grid).lattice().cells();
+    let cells = file.grid(choice.grid).cell_grid().cells();
     vec![
         ("grid", json!(cells)),
         ("erosion", json!(choice.level)),

@@ -13,7 +13,7 @@ use crate::project::{Bounds, Camera, Up};
 
 /// What triangles are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrianglesLook {
+pub struct TrianglesStyle {
     /// Samples of a pixel.
     pub samples: Samples,
     /// Light.
@@ -26,7 +26,7 @@ pub struct TrianglesLook {
 pub struct TrianglesDrawing<'m> {
     mesh: &'m Mesh,
     up: Up,
-    look: TrianglesLook,
+    look: TrianglesStyle,
     progress: &'m dyn Progress,
     kept: Option<Kept>,
     coverage: Vec<f32>,
@@ -35,7 +35,7 @@ pub struct TrianglesDrawing<'m> {
 impl<'m> TrianglesDrawing<'m> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(mesh: &'m Mesh, up: Up, look: TrianglesLook, progress: &'m dyn Progress) -> Self {
+    pub fn new(mesh: &'m Mesh, up: Up, look: TrianglesStyle, progress: &'m dyn Progress) -> Self {
         Self {
             mesh,
             up,

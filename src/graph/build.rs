@@ -9,10 +9,10 @@ use rayon::prelude::*;
 
 use super::average::Sum;
 use super::normals::Estimate;
-use super::records::{Record, Records, extent};
+use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
 
-pub use super::records::MAX_SIDE;
+pub use super::pushed::MAX_SIDE;
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -64,7 +64,7 @@ pub enum BuildError {
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
-    records: Records,
+    records: PushedVoxels,
     min: [i32; 3],
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
@@ -77,7 +77,7 @@ impl Builder {
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
-            records: Records::default(),
+            records: PushedVoxels::default(),
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
@@ -114,7 +114,7 @@ impl Builder {
             let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
             let sequence = self.pushed as u32;
             self.records
-                .push(Record::new(voxel.index, sequence, voxel.color, normal));
+                .push(PushedVoxel::new(voxel.index, sequence, voxel.color, normal));
         }
         self.pushed += 1;
     }
@@ -219,7 +219,7 @@ struct Tree {
 impl Tree {
     /// Shape and finest level, from sorted records.
     fn build(
-        records: Vec<Record>,
+        records: Vec<PushedVoxel>,
         depth: u32,
         progress: &dyn Progress,
     ) -> Result<Self, BuildError> {
@@ -299,7 +299,7 @@ pub(super) fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 
 }
 
 /// The first node of each level, and the end.
-fn level_starts(records: &[Record], depth: u32) -> Result<Vec<u32>, BuildError> {
+fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildError> {
     let begun = records
         .par_windows(2)
         .fold(

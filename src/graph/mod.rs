@@ -2,6 +2,7 @@
 
 mod average;
 pub mod build;
+pub mod cells;
 pub mod external;
 pub(crate) mod file;
 pub mod linked;
@@ -11,14 +12,14 @@ mod normal;
 mod normals;
 mod opacity;
 mod progress;
-mod records;
+mod pushed;
 mod store;
 pub mod validate;
 mod voxel;
 pub mod vxg;
-pub mod walk;
 
 pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use cells::Cell;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
@@ -27,7 +28,6 @@ pub use progress::{Progress, Silent};
 pub use store::Store;
 pub use validate::Invalid;
 pub use voxel::Voxel;
-pub use walk::Cell;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;

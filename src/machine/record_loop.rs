@@ -4,8 +4,8 @@ use hwmodel::{Memory, Probe, Short, Stage};
 
 use super::alpha::Ink;
 use super::blocks::Block;
+use super::cage::CageCoordinate;
 use super::canvas::Paint;
-use super::lattice::Lattice;
 use super::planes::Silhouette;
 use super::record::{Pose, Record};
 use super::size;
@@ -24,7 +24,7 @@ enum Left {
     Children,
 }
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Draws the object in at most `most_records` turns. Returns whether that
     /// was enough.
     ///

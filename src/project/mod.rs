@@ -6,9 +6,9 @@ pub mod engine;
 mod fit_camera;
 mod opacity;
 mod reach;
+mod real_view;
 pub mod setup;
 pub(crate) mod vector;
-mod view;
 pub mod viewer;
 
 pub use camera::{Camera, CameraError};

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::camera::{Camera, CameraError};
 use super::reach::{Eye, Quantised, Reach};
-use super::view::{Levels, View};
+use super::real_view::{Levels, RealView};
 use crate::graph::{MAX_DEPTH, Placement};
 
 /// Most fraction bits of a clip vector; more would not be seen.
@@ -269,7 +269,7 @@ impl FrameSetup {
         }
         let root_px_log2 = root_log2(camera.width, camera.height);
         let levels = root_px_log2 + options.aa_log2;
-        let view = View::new(camera, &axes, placement, root_px_log2);
+        let real_view = RealView::new(camera, &axes, placement, root_px_log2);
 
         let format = {
             let room = options.bits.saturating_sub(levels + SCREEN_HEADROOM_BITS);
@@ -278,10 +278,12 @@ impl FrameSetup {
         };
         let (clip_frac, sub_levels) = match options.frac {
             Some(frac) => split_fraction(frac, MAX_CLIP_FRAC, options.coverage),
-            None => view.widest_fraction(depth, format, options.coverage),
+            None => real_view.widest_fraction(depth, format, options.coverage),
         };
         let sub_levels = sub_levels.min((options.bits - 2).saturating_sub(depth));
-        let quantised = view.quantise(clip_frac).ok_or(SetupError::OutOfRange)?;
+        let quantised = real_view
+            .quantise(clip_frac)
+            .ok_or(SetupError::OutOfRange)?;
         let reach = Reach::of(&quantised, depth).ok_or(SetupError::OutOfRange)?;
         let tolerance = options.tolerance_px;
         let has_headroom = reach.fits(format, sub_levels)
@@ -303,8 +305,8 @@ impl FrameSetup {
             clip_frac,
             near,
         };
-        let screen_depth = view.screen_depths(&levels_of, options, format.frac());
-        let lod_depth = view.lod_depths(&levels_of, options);
+        let screen_depth = real_view.screen_depths(&levels_of, options, format.frac());
+        let lod_depth = real_view.lod_depths(&levels_of, options);
         Ok(Self {
             options: *options,
             width: camera.width << options.aa_log2,
@@ -351,11 +353,11 @@ impl FrameSetup {
     /// Largest magnitude of a coordinate of a clip vector in the object.
     #[must_use]
     pub fn position_reach(&self) -> Option<i128> {
-        let view = Quantised {
+        let quantised = Quantised {
             origin: self.origin_clip,
             edge: self.edge_clip,
         };
-        Reach::of(&view, self.depth).map(|reach| reach.position)
+        Reach::of(&quantised, self.depth).map(|reach| reach.position)
     }
 
     /// World depth of one unit of `W`.

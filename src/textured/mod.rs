@@ -9,14 +9,14 @@
 //! texel sees is decided in integers.
 
 pub mod build;
-pub mod lattice;
+pub mod cell_grid;
 pub mod levels;
 pub mod record;
 pub mod store;
 pub mod view;
 
 pub use build::{BuildError, BuildOptions, build};
-pub use lattice::Lattice;
+pub use cell_grid::CellGrid;
 pub use store::{TexturedError, TexturedFile};
 
 use glam::DVec3;

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
 use super::touched::Touched;
-use crate::{Memory, OpClass, Operand, Place, Probe};
+use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
 
@@ -176,17 +176,17 @@ impl MemoryProbe {
 
 impl Probe for MemoryProbe {
     #[inline(always)]
-    fn op(&mut self, _: OpClass, _: u32, _: Place, _: u32) {}
+    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {}
 
     #[inline(always)]
-    fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: Place) {}
+    fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: StageLevel) {}
 
-    fn read(&mut self, memory: Memory, address: u64, _: Place) {
+    fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
         self.reads[memory as usize] += 1;
         self.access(memory, address);
     }
 
-    fn write(&mut self, memory: Memory, address: u64, _: Place) {
+    fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
         self.writes[memory as usize] += 1;
         if memory == Memory::Stack {
             let depth = usize::try_from(address).map_or(MAX_DEPTH, |at| at.min(MAX_DEPTH - 1) + 1);

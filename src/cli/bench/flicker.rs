@@ -13,8 +13,8 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{Look, Method, References, VoxelMethod};
-use crate::lab::flicker::{self as experiment, Films, Motion, Plan};
+use crate::lab::error::{Method, PixelStyle, References, VoxelMethod};
+use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{CageKind, Coverage, SetupOptions};
 use crate::report::html::Page;
 
@@ -125,11 +125,11 @@ pub(super) fn run(
     pictures::check(&args.page, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
-    let plan = Plan {
+    let plan = FilmPlan {
         size,
         frames: args.frames,
         strata_log2: samples.ilog2(),
-        look: Look::default(),
+        look: PixelStyle::default(),
     };
     let mut films = Vec::new();
     for name in &names {

@@ -15,7 +15,7 @@ use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{Look, Method};
+use crate::lab::error::{Method, PixelStyle};
 use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
 use crate::mesh::Mesh;
 
@@ -114,7 +114,7 @@ impl MeshMethodArgs {
     pub(super) fn methods<'m>(
         &self,
         scene: &'m MeshScene,
-        look: Look,
+        look: PixelStyle,
     ) -> Result<Vec<Box<dyn Method + 'm>>, CliError> {
         let mut methods: Vec<Box<dyn Method + 'm>> = Vec::new();
         if self.has(FamilyName::Triangles) {

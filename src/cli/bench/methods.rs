@@ -21,11 +21,11 @@ use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
-use crate::lab::error::{Look, Method, Refused, VoxelMethod};
+use crate::lab::error::{Method, PixelStyle, Refused, VoxelMethod};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, Plan, TexturedMethod,
-    TrianglesMethod,
+    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
+    TexturedMethod, TrianglesMethod,
 };
 use crate::mesh::{Mesh, Surface};
 use crate::project::{Coverage, SetupOptions};
@@ -108,7 +108,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     }
     let context = Context::now();
     context.warn(console);
-    let plan = Plan {
+    let plan = MethodsPlan {
         halvings: (size.0.min(size.1) / args.least).ilog2(),
         schedule: Schedule {
             warmup: args.warmup,
@@ -116,7 +116,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
         },
         frames: args.frames,
         motion: Motion::Pan { pixels: 0.125 },
-        look: Look::default(),
+        look: PixelStyle::default(),
     };
     let mut meshes = Vec::new();
     for name in &args.meshes {
@@ -216,7 +216,7 @@ fn methods<'m>(
     args: &MethodsArgs,
     mesh: &'m Mesh,
     made: &'m Made,
-    look: Look,
+    look: PixelStyle,
 ) -> Result<Vec<Candidate<'m>>, Refused> {
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
@@ -285,7 +285,7 @@ fn measure(
     args: &MethodsArgs,
     name: &str,
     size: (u32, u32),
-    plan: &Plan,
+    plan: &MethodsPlan,
     console: &Console,
 ) -> Result<MeshMethods, CliError> {
     let (mesh, up) = scenes::read_mesh(name, &args.scene, console.progress())?;

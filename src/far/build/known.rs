@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::grid::Grid;
 use super::rays::Occluders;
 use super::sample::{MOST_LOOKS, Rays, Sampled, Seen, Target};
-use super::{fit, look_at};
+use super::{look_at, shader_fit};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind};
 use crate::mesh::{Mesh, MeshBuilder, Surface};
@@ -88,7 +88,7 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
         let [x, y, _] = seen.place;
         // The rim's voxels are filled in part.
         if (1..7).contains(&x) && (1..7).contains(&y) {
-            let fitted = fit::fit(seen, Blend::Squares, Opacity::Six);
+            let fitted = shader_fit::fit(seen, Blend::Squares, Opacity::Six);
             inner += 1;
             opaque += u32::from(fitted.voxel.opacity_kind == OpacityKind::Opaque);
             let opacity = seen.counted.six();

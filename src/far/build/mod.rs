@@ -4,10 +4,10 @@
 //! threads: a node's rays depend on its number and on nothing else.
 
 mod count;
-mod fit;
 mod grid;
 mod rays;
 mod sample;
+mod shader_fit;
 mod split;
 mod touch;
 
@@ -269,7 +269,7 @@ fn keep(
     let mut square_error = 0.0;
     let mut looks = 0;
     for seen in &sampled.seen {
-        let fitted = fit::fit(seen, options.shader_blend, options.opacity);
+        let fitted = shader_fit::fit(seen, options.shader_blend, options.opacity);
         let list = fitted.voxel.list();
         fitted.voxel.write(&mut lists[list]);
         node.counts[list] += 1;

@@ -21,7 +21,7 @@ use glam::DVec3;
 
 pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
-use crate::mesh::raster::{Light, RasterError, View};
+use crate::mesh::raster::{Light, RasterCamera, RasterError};
 use crate::mesh::{linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
@@ -102,7 +102,7 @@ pub struct FarPicture {
 
 /// What a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
+pub struct FarCounts {
     /// Nodes that were looked at.
     pub visited: u64,
     /// Nodes of those beside or behind the picture.
@@ -155,9 +155,9 @@ impl<'f> FarViewer<'f> {
     /// See [`ViewError`].
     pub fn draw(
         &mut self,
-        view: &View,
+        view: &RasterCamera,
         options: &ViewOptions,
-    ) -> Result<(FarPicture, Counts), ViewError> {
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
         self.draw_with_cut_of(view, view, options)
     }
 
@@ -168,10 +168,10 @@ impl<'f> FarViewer<'f> {
     /// See [`ViewError`].
     pub fn draw_with_cut_of(
         &mut self,
-        view: &View,
-        cut_of: &View,
+        view: &RasterCamera,
+        cut_of: &RasterCamera,
         options: &ViewOptions,
-    ) -> Result<(FarPicture, Counts), ViewError> {
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
             return Err(ViewError::VoxelSize(options.voxel_px));
         }
@@ -180,7 +180,7 @@ impl<'f> FarViewer<'f> {
             return Err(ViewError::Samples(across));
         }
         let (pixels, view) = (view, &samples::finer(view, across));
-        let mut counts = Counts::default();
+        let mut counts = FarCounts::default();
         let cut = Cut {
             file: self.file,
             view: *view,
@@ -282,7 +282,7 @@ impl Pixel {
 }
 
 /// Right, up and depth of a point.
-fn in_view(view: &View, point: DVec3) -> DVec3 {
+fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
     let offset = point - view.eye;
     DVec3::new(
         offset.dot(view.right),
@@ -292,7 +292,7 @@ fn in_view(view: &View, point: DVec3) -> DVec3 {
 }
 
 /// Where a point of a view is in the picture, pixels from the top left corner.
-fn on_picture(view: &View, seen: DVec3) -> [f64; 2] {
+fn on_picture(view: &RasterCamera, seen: DVec3) -> [f64; 2] {
     [
         f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
         f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,

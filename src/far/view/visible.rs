@@ -10,10 +10,10 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::cut::{Chosen, Cut, Found};
+use super::cut::{Chosen, Cut, CutNode};
 use super::fill::Fill;
 use super::opaque::Opaque;
-use super::{Counts, ViewError};
+use super::{FarCounts, ViewError};
 
 /// Nodes of the first batch of those that were not visible; each next has twice as many.
 const FIRST_BATCH: usize = 16;
@@ -75,7 +75,7 @@ pub(super) struct Walked {
 }
 
 /// A branch or node that waits; the nearest comes first.
-struct Waiting(Found);
+struct Waiting(CutNode);
 
 impl PartialEq for Waiting {
     fn eq(&self, other: &Self) -> bool {
@@ -106,7 +106,7 @@ pub(super) fn walk(
     memory: &Memory,
     late: usize,
     opaque: &mut Opaque<'_>,
-    counts: &mut Counts,
+    counts: &mut FarCounts,
 ) -> Result<Walked, ViewError> {
     let mut walked = Walked {
         drawn: Vec::new(),
@@ -120,8 +120,8 @@ pub(super) fn walk(
         };
         match found {
             _ if !memory.was_visible(number) => waiting.push(Waiting(found)),
-            Found::Drawn(chosen) => walked.drawn.push(chosen),
-            Found::Branch(_) => {
+            CutNode::Drawn(chosen) => walked.drawn.push(chosen),
+            CutNode::Branch(_) => {
                 walked.branches.push(number);
                 known.extend(cut.children(number));
             }
@@ -142,8 +142,8 @@ pub(super) fn walk(
                 continue;
             }
             match found {
-                Found::Drawn(chosen) => visible.push(chosen),
-                Found::Branch(chosen) => {
+                CutNode::Drawn(chosen) => visible.push(chosen),
+                CutNode::Branch(chosen) => {
                     walked.branches.push(chosen.number);
                     let children = cut.children(chosen.number).into_iter();
                     let found = children.filter_map(|child| cut.look(child, counts));

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::brick::Window;
+use super::cluster::Surroundings;
 use crate::graph::PackedNormal;
 
 /// Weight of a voxel by its distance along an axis, -2 to 2.
@@ -80,9 +80,9 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Of the voxel at a place of the brick, 0 to 3 along each axis.
+    /// Of the voxel at a place of the cluster, 0 to 3 along each axis.
     #[inline]
-    pub(super) fn around(rows: &Window, [x, y, z]: [usize; 3]) -> Self {
+    pub(super) fn around(rows: &Surroundings, [x, y, z]: [usize; 3]) -> Self {
         // Along x by the table, then along y in each plane, then along z.
         let planes: [[i64; 3]; 5] = std::array::from_fn(|k| {
             let rows = &rows[z + k];
@@ -164,7 +164,7 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::brick::MORTON_TO_XYZ;
+    use super::super::cluster::MORTON_TO_XYZ;
     use super::*;
 
     #[test]

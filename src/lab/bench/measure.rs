@@ -48,7 +48,7 @@ impl Subject {
 
 /// What is measured of some scenes.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan<'p> {
+pub struct BenchPlan<'p> {
     /// Sizes of the picture, pixels across and down.
     pub sizes: &'p [(u32, u32)],
     /// Thread counts, each 1 or more. Engines that use one thread are measured once, on one.
@@ -129,7 +129,7 @@ pub(super) fn counter(counters: &Stats, name: &str) -> Option<u64> {
 /// When a frame cannot be set up or drawn, or there are no threads.
 pub fn measure(
     subjects: &[Subject],
-    plan: &Plan<'_>,
+    plan: &BenchPlan<'_>,
     harness: &mut Harness<'_>,
 ) -> Result<Vec<Timing>, BenchError> {
     let mut contenders = Vec::new();

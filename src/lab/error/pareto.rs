@@ -2,7 +2,7 @@
 
 #[cfg(feature = "cli")]
 use super::measure::SceneErrors;
-use super::measure::{Outcome, Row};
+use super::measure::{MethodErrors, Outcome};
 #[cfg(feature = "cli")]
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
@@ -43,7 +43,7 @@ const WORTH_MENTIONING: f64 = 0.01;
 /// no more work, no more wrong coverage, no greater error of the picture, and one of
 /// them less by a hundredth or more.
 #[must_use]
-pub fn beaten_by(rows: &[Row]) -> Vec<Option<String>> {
+pub fn beaten_by(rows: &[MethodErrors]) -> Vec<Option<String>> {
     let standings: Vec<_> = rows
         .iter()
         .map(|row| row.outcome.as_ref().ok().map(standing))
@@ -104,7 +104,7 @@ pub fn panels(scene: &SceneErrors) -> Vec<Panel> {
 fn chart(scene: &SceneErrors, across: Across, up: Up) -> Chart {
     // Half a sample in a million stands for none, which a logarithm has no place for.
     const NONE: f64 = 0.5;
-    let done: Vec<(&Row, &Outcome)> = scene
+    let done: Vec<(&MethodErrors, &Outcome)> = scene
         .rows
         .iter()
         .filter_map(|row| Some((row, row.outcome.as_ref().ok()?)))

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::voxels::Look;
+use super::voxels::PixelStyle;
 use crate::drawing::mesh_view::{light_of, view_of};
 use crate::graph::{Graph, Progress};
 use crate::lab::bench::BenchError;
@@ -104,7 +104,7 @@ pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 pub(in crate::lab) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
-    look: Look,
+    look: PixelStyle,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Reference, BenchError> {

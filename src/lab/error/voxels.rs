@@ -16,14 +16,14 @@ use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOption
 
 /// How samples become colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub struct PixelStyle {
     /// Shading.
     pub shading: Shading,
     /// What is behind the object; a colour, so that pictures are opaque.
     pub background: [u8; 3],
 }
 
-impl Default for Look {
+impl Default for PixelStyle {
     fn default() -> Self {
         let background = match Background::default() {
             Background::Color(color) => color,
@@ -45,7 +45,7 @@ pub struct VoxelMethod<'g> {
     engine_name: &'static str,
     make: MakeEngine,
     engine: Box<dyn Engine + Send>,
-    look: Look,
+    look: PixelStyle,
     ready: Option<Ready>,
 }
 
@@ -72,7 +72,7 @@ impl<'g> VoxelMethod<'g> {
         graph: &'g Graph,
         (engine_name, make): (&'static str, MakeEngine),
         options: SetupOptions,
-        look: Look,
+        look: PixelStyle,
     ) -> Self {
         Self {
             graph,

@@ -14,7 +14,7 @@ pub use motion::Motion;
 
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Subject};
-use crate::lab::error::{Look, Method, References, Refused, Sampling};
+use crate::lab::error::{Method, PixelStyle, References, Refused, Sampling};
 use crate::measure::{Flicker, LinearPicture, SizeError};
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -24,7 +24,7 @@ use crate::report::{Cell, Table};
 
 /// What is filmed, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct FilmPlan {
     /// Pixels across and down.
     pub size: (u32, u32),
     /// Frames of a film, 2 or more.
@@ -32,7 +32,7 @@ pub struct Plan {
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
     /// How samples become colours.
-    pub look: Look,
+    pub look: PixelStyle,
 }
 
 /// A film of one method.
@@ -99,7 +99,7 @@ pub fn film(
     subject: &Subject,
     motion: Motion,
     methods: &mut [Box<dyn Method + '_>],
-    plan: &Plan,
+    plan: &FilmPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
 ) -> Result<Films, BenchError> {

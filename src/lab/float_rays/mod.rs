@@ -14,10 +14,10 @@ mod arithmetic;
 mod caster;
 mod counted;
 
+pub use arithmetic::FloatStep;
 use arithmetic::Plain;
-pub use arithmetic::Step;
 use caster::Caster;
-pub use counted::{Counts, count};
+pub use counted::{FloatRayCounts, count};
 
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::GraphView;

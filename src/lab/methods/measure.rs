@@ -6,7 +6,7 @@ use super::distance::at_distance;
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Schedule, Summary};
 use crate::lab::error::{
-    Judge, Look, Method, PictureError, Reference, Refused, Shown, as_map, of_triangles,
+    Judge, Method, PictureError, PixelStyle, Reference, Refused, Shown, as_map, of_triangles,
     outcome_or_reason, race,
 };
 use crate::lab::flicker::{Motion, restless};
@@ -16,7 +16,7 @@ use crate::project::{Camera, Stats};
 
 /// What is measured, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct MethodsPlan {
     /// Halvings of the picture: so many distances, and the first.
     pub halvings: u32,
     /// How often each method draws.
@@ -26,7 +26,7 @@ pub struct Plan {
     /// How a film's camera moves.
     pub motion: Motion,
     /// How samples become colours.
-    pub look: Look,
+    pub look: PixelStyle,
 }
 
 /// What is known of a method beside its pictures.
@@ -42,7 +42,7 @@ pub struct Facts {
 
 /// A method at a distance.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct MethodAtDistance {
     /// What it is called.
     pub method: String,
     /// Its family.
@@ -82,7 +82,7 @@ pub struct Distance {
     /// What a second reference of another seed is from the first.
     pub noise_floor: PictureError,
     /// The methods.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MethodAtDistance>,
     /// The reference.
     #[serde(skip)]
     pub reference: Reference,
@@ -114,7 +114,7 @@ pub fn measure(
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
     facts: Vec<Facts>,
-    plan: &Plan,
+    plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<MeshMethods, BenchError> {
     let mut distances = Vec::new();
@@ -134,7 +134,7 @@ fn at(
     mesh: &dyn Surface,
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
-    plan: &Plan,
+    plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<Distance, BenchError> {
     let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
@@ -184,7 +184,7 @@ fn at(
         if outcome.is_err() {
             pictures.push(Vec::new());
         }
-        rows.push(Row {
+        rows.push(MethodAtDistance {
             method: method.name(),
             family: method.family(),
             outcome,

@@ -2,9 +2,9 @@
 
 use crate::drawing::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::graph::Silent;
-use crate::lab::error::{Look, Method, Refused, Shown};
+use crate::lab::error::{Method, PixelStyle, Refused, Shown};
 use crate::mesh::Surface;
-use crate::mesh::raster::{self, Pattern, RasterOptions, RasterPicture, Samples, View};
+use crate::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use crate::picture::Picture;
 use crate::project::{Camera, Stats};
 
@@ -12,8 +12,8 @@ use crate::project::{Camera, Stats};
 pub struct TrianglesMethod<'m> {
     surface: &'m dyn Surface,
     samples: Samples,
-    look: Look,
-    view: Option<View>,
+    look: PixelStyle,
+    view: Option<RasterCamera>,
 }
 
 impl<'m> TrianglesMethod<'m> {
@@ -21,7 +21,11 @@ impl<'m> TrianglesMethod<'m> {
     ///
     /// # Errors
     /// With another number.
-    pub fn new(surface: &'m dyn Surface, per_pixel: u32, look: Look) -> Result<Self, Refused> {
+    pub fn new(
+        surface: &'m dyn Surface,
+        per_pixel: u32,
+        look: PixelStyle,
+    ) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
             surface,
@@ -90,7 +94,7 @@ impl Method for TrianglesMethod<'_> {
 }
 
 /// What the rasteriser is to draw with.
-pub(super) fn options(view: &View, samples: Samples, look: Look) -> RasterOptions {
+pub(super) fn options(view: &RasterCamera, samples: Samples, look: PixelStyle) -> RasterOptions {
     RasterOptions {
         samples,
         light: light_of(view, look.shading),

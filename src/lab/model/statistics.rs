@@ -8,7 +8,7 @@ use super::cost::FrameCost;
 use super::frame::Counted;
 use super::record::record_bits;
 use super::rival::Rival;
-use crate::lab::float_rays::Step;
+use crate::lab::float_rays::FloatStep;
 use crate::machine::Simulated;
 
 /// A name as one word of a dotted name.
@@ -146,7 +146,7 @@ pub fn of(
         "area of the units that the frame uses",
     );
     if let Some(rival) = rival {
-        for step in Step::ALL {
+        for step in FloatStep::ALL {
             let name = format!("ray_caster.{}", word(step.name()));
             list.add(
                 &name,

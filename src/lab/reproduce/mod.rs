@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::frame::Frame;
 use crate::graph::Progress;
 use crate::lab::bench::{
-    BenchError, Candidate, Family, Harness, Plan, Schedule, Subject, Timing, ablation, measure,
+    BenchError, BenchPlan, Candidate, Family, Harness, Schedule, Subject, Timing, ablation, measure,
 };
 use crate::lab::model::frame::count_operations;
 use crate::picture::{self, Background, Picture, Shading, resolve};
@@ -334,7 +334,7 @@ pub fn times(
             "paper" => vec![*engines.machine],
             _ => vec![*engines.machine, *engines.fast],
         };
-        let plan = Plan {
+        let plan = BenchPlan {
             sizes: &sizes,
             threads: &[1],
             options,
@@ -361,7 +361,7 @@ pub fn order(
     side: u32,
     engines: &Engines<'_>,
     harness: &mut Harness<'_>,
-) -> Result<Vec<(&'static str, ablation::Row)>, ReproduceError> {
+) -> Result<Vec<(&'static str, ablation::AblationRow)>, ReproduceError> {
     let mut rows = Vec::new();
     for subject in subjects {
         for (name, options) in settings() {

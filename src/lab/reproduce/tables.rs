@@ -204,7 +204,7 @@ pub fn independence(times: &[Timed], growing: &[String]) -> Table {
 
 /// Techniques that rest on occlusion order.
 #[must_use]
-pub fn order(rows: &[(&'static str, ablation::Row)]) -> Table {
+pub fn order(rows: &[(&'static str, ablation::AblationRow)]) -> Table {
     let columns = [
         "scene",
         "settings",
@@ -310,7 +310,7 @@ pub fn object_chart(times: &[Timed]) -> Panel {
 
 /// How much longer a frame takes, on the whole's time.
 #[must_use]
-pub fn order_bars(rows: &[(&'static str, ablation::Row)]) -> Panel {
+pub fn order_bars(rows: &[(&'static str, ablation::AblationRow)]) -> Panel {
     Panel::Bars {
         title: "Time without the technique, over time with it".to_owned(),
         bars: rows

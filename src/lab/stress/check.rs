@@ -31,7 +31,7 @@ pub enum Check {
     /// Nothing is seen that lies behind what the oracle sees.
     Order,
     /// What is seen is before the eye and at its sample.
-    Place,
+    StageLevel,
     /// Vertices are the specification's, bit for bit.
     Book,
     /// Vertices are within the bounds on their error.
@@ -49,7 +49,7 @@ impl Check {
         Self::Missing,
         Self::Holes,
         Self::Order,
-        Self::Place,
+        Self::StageLevel,
         Self::Book,
         Self::Bound,
         Self::Engines,
@@ -65,7 +65,7 @@ impl Check {
             Self::Missing => "missing",
             Self::Holes => "holes",
             Self::Order => "order",
-            Self::Place => "place",
+            Self::StageLevel => "place",
             Self::Book => "book",
             Self::Bound => "bound",
             Self::Engines => "engines",
@@ -86,7 +86,7 @@ impl Check {
                 "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no record met the level bound"
             }
             Self::Order => "nothing is seen that the oracle's voxel hides",
-            Self::Place => {
+            Self::StageLevel => {
                 "what is seen is before the eye and no more than the rule allows from its sample"
             }
             Self::Book => "vertices are the specification's, bit for bit",
@@ -455,7 +455,7 @@ impl Seen<'_> {
                     "behind the eye"
                 };
                 outcome.fail(
-                    Check::Place,
+                    Check::StageLevel,
                     format!("sample ({x}, {y}) shows {voxel:?}, which is {what}"),
                 );
                 return;

@@ -10,7 +10,7 @@ use crate::scene::generate::Spec;
 
 /// A scene by its text.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Scene {
+pub enum StressScene {
     /// What a generator makes: `gen:shell,depth=5`.
     Generated(Spec),
     /// A dense plane through the cube's middle, which no line passes through,
@@ -47,7 +47,7 @@ const MOST_LISTED_DEPTH: u32 = 20;
 /// Most levels of a plane.
 const MOST_PLANE_DEPTH: u32 = 10;
 
-impl fmt::Display for Scene {
+impl fmt::Display for StressScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Generated(spec) => spec.fmt(f),
@@ -66,7 +66,7 @@ impl fmt::Display for Scene {
     }
 }
 
-impl FromStr for Scene {
+impl FromStr for StressScene {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -163,7 +163,7 @@ impl Numbers {
     }
 }
 
-impl Scene {
+impl StressScene {
     /// Whether its surface is closed: no line of sight passes between its
     /// voxels where the oracle's rays next to it do not.
     #[must_use]
@@ -341,7 +341,7 @@ mod tests {
             "cyclic:6,3",
             "voxels:2,0.0.0+3.1.2",
         ] {
-            let scene: Scene = text.parse().unwrap();
+            let scene: StressScene = text.parse().unwrap();
             assert_eq!(scene.to_string(), text);
             assert_eq!(scene.graph().unwrap().depth, scene.depth(), "{text}");
         }
@@ -353,15 +353,15 @@ mod tests {
             "cube",
             "gen:x",
         ] {
-            assert!(bad.parse::<Scene>().is_err(), "{bad}");
+            assert!(bad.parse::<StressScene>().is_err(), "{bad}");
         }
     }
 
     #[test]
     fn a_list_of_voxels_is_the_same_scene() {
-        let scene: Scene = "gen:shell,depth=3".parse().unwrap();
+        let scene: StressScene = "gen:shell,depth=3".parse().unwrap();
         let listed = scene.as_voxels(1000).unwrap();
-        let voxels = |scene: &Scene| {
+        let voxels = |scene: &StressScene| {
             let graph = scene.graph().unwrap();
             let mut at: Vec<_> = graph.voxels().map(|cell| cell.corner).collect();
             at.sort_unstable();

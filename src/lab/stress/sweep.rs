@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::case::Case;
 use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
-use super::scene::{Numbers, Scene};
+use super::scene::{Numbers, StressScene};
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
 use super::vertex::Worst;
@@ -17,9 +17,9 @@ use crate::project::{CageKind, Coverage, SetupOptions};
 
 /// What is swept.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct SweepPlan {
     /// Scenes.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<StressScene>,
     /// Word widths, bits.
     pub bits: Vec<u32>,
     /// Pictures' sides, pixels.
@@ -75,7 +75,7 @@ const MORE_SCENES: [&str; 9] = [
     "cyclic:30,9",
 ];
 
-impl Plan {
+impl SweepPlan {
     /// The standard sweep, about two minutes of two processors, or hours.
     #[must_use]
     pub fn new(seed: u64, thorough: bool) -> Self {
@@ -344,14 +344,14 @@ struct Job<'p> {
 ///
 /// # Errors
 /// In words, where a scene of the plan cannot be made.
-pub fn sweep(plan: &Plan, progress: &dyn Progress) -> Result<Findings, String> {
+pub fn sweep(plan: &SweepPlan, progress: &dyn Progress) -> Result<Findings, String> {
     sweep_of(&Product, plan, progress)
 }
 
 /// Runs a plan on any subject.
 pub(crate) fn sweep_of(
     subject: &dyn Subject,
-    plan: &Plan,
+    plan: &SweepPlan,
     progress: &dyn Progress,
 ) -> Result<Findings, String> {
     let graphs: Vec<Graph> = plan
@@ -392,7 +392,7 @@ pub(crate) fn sweep_of(
     Ok(findings)
 }
 
-fn run_job(subject: &dyn Subject, plan: &Plan, job: &Job<'_>) -> Findings {
+fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
     let mut findings = Findings::default();
     let mut numbers = Numbers::new(job.salt);
     let all = rules();
@@ -400,7 +400,7 @@ fn run_job(subject: &dyn Subject, plan: &Plan, job: &Job<'_>) -> Findings {
     let mut oracle = Oracle::default();
     oracle.forget();
     for &bits in &plan.bits {
-        for frac in Plan::fractions(bits) {
+        for frac in SweepPlan::fractions(bits) {
             let mut chosen: Vec<usize> = if plan.rules >= all.len() {
                 (0..all.len()).collect()
             } else {
@@ -443,7 +443,7 @@ fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
 /// Shrinks the first failure of each check.
 fn shrink_failures(
     subject: &dyn Subject,
-    plan: &Plan,
+    plan: &SweepPlan,
     findings: &mut Findings,
     progress: &dyn Progress,
 ) {
@@ -493,9 +493,9 @@ mod tests {
 
     #[test]
     fn all_standard_scenes_can_be_read_and_made() {
-        let plan = Plan::new(1, true);
+        let plan = SweepPlan::new(1, true);
         assert_eq!(plan.scenes.len(), SCENES.len() + MORE_SCENES.len());
-        for scene in &Plan::new(1, false).scenes {
+        for scene in &SweepPlan::new(1, false).scenes {
             assert!(!scene.graph().unwrap().is_empty(), "{scene}");
         }
     }

@@ -2,7 +2,7 @@
 //! measurements of error.
 
 use super::descent::{Cage, Descent, Held};
-use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::project::{CageKind, FrameSetup};
 
 /// How a record holds its vertices.
@@ -45,7 +45,7 @@ pub fn visit_positions(
     }
 }
 
-fn visit_as<L: Lattice>(
+fn visit_as<L: CageCoordinate>(
     setup: &FrameSetup,
     ways: &[Way],
     visit: &mut dyn FnMut(&Positions),
@@ -96,7 +96,7 @@ struct Visitor<'v> {
 impl Visitor<'_> {
     /// Visits a voxel and those below it on the ways. `None` if a word
     /// overflowed.
-    fn node<L: Lattice>(
+    fn node<L: CageCoordinate>(
         &mut self,
         level: u32,
         corner: [i64; 3],

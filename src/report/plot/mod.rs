@@ -9,7 +9,7 @@ use plotters::prelude::*;
 
 pub use bars::{Bar, Stack};
 pub use chart::{Axis, Chart, Point, Scale, Series};
-pub use heat::{HeatMap, Tile};
+pub use heat::{HeatCell, HeatMap};
 
 /// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,8 +170,8 @@ mod tests {
                 rows: vec![(
                     "scene".to_owned(),
                     vec![
-                        Tile::Shade(0.5, "7".to_owned()),
-                        Tile::Bad("trap".to_owned()),
+                        HeatCell::Shade(0.5, "7".to_owned()),
+                        HeatCell::Bad("trap".to_owned()),
                     ],
                 )],
                 legend: "of nine".to_owned(),

@@ -4,7 +4,7 @@ use hwmodel::cost::{Breakdown, Fit};
 use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
-use crate::lab::float_rays::Step;
+use crate::lab::float_rays::FloatStep;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
 use crate::lab::model::rival::Rival;
@@ -79,12 +79,12 @@ pub fn side_by_side(
     row(
         "multiplies",
         Cell::from(0),
-        Cell::from(counts.of(Step::FloatMultiply)),
+        Cell::from(counts.of(FloatStep::FloatMultiply)),
     );
     row(
         "divides",
         Cell::from(0),
-        Cell::from(counts.of(Step::FloatDivide)),
+        Cell::from(counts.of(FloatStep::FloatDivide)),
     );
     row(
         "divide steps (subtract and select)",
@@ -94,18 +94,22 @@ pub fn side_by_side(
     row(
         "adds and subtracts (integer; float)",
         Cell::from(of(OpClass::Add) + of(OpClass::Sub)),
-        Cell::from(counts.of(Step::FloatAdd)),
+        Cell::from(counts.of(FloatStep::FloatAdd)),
     );
     row(
         "compares, minima, maxima",
         Cell::from(of(OpClass::Compare) + of(OpClass::MinMax)),
-        Cell::from(counts.of(Step::FloatCompare) + counts.of(Step::FloatMinMax)),
+        Cell::from(counts.of(FloatStep::FloatCompare) + counts.of(FloatStep::FloatMinMax)),
     );
     row("selects", Cell::from(of(OpClass::Select)), Cell::None);
     row(
         "logic, integer adds, variable shifts",
         Cell::from(of(OpClass::Logic)),
-        Cell::from(counts.of(Step::Logic) + counts.of(Step::IntegerAdd) + counts.of(Step::Shift)),
+        Cell::from(
+            counts.of(FloatStep::Logic)
+                + counts.of(FloatStep::IntegerAdd)
+                + counts.of(FloatStep::Shift),
+        ),
     );
     row(
         "shifts by constants (wires)",
@@ -120,7 +124,7 @@ pub fn side_by_side(
     row(
         "node reads",
         Cell::from(counter.reads(Memory::Node)),
-        Cell::from(counts.of(Step::NodeRead)),
+        Cell::from(counts.of(FloatStep::NodeRead)),
     );
     row(
         "energy of operations, uJ",

@@ -103,17 +103,17 @@ fn flat(looks: &[Look]) -> Shader {
 }
 
 fn complex(looks: &[Look], blend: Blend) -> Shader {
-    let mut fit = Fit::<6>::new();
+    let mut shader_fit = Fit::<6>::new();
     let mut mean = [0.0; 6];
     for look in looks {
         let (c, n) = (look.color, look.normal);
         let value = [c.x, c.y, c.z, n.x, n.y, n.z];
-        fit.add(&blend.shares(look.towards_eye), &value, 1.0);
+        shader_fit.add(&blend.shares(look.towards_eye), &value, 1.0);
         for (mean, value) in mean.iter_mut().zip(value) {
             *mean += value / looks.len() as f64;
         }
     }
-    let values = fit.solve(&mean, 0.5, (-1.0, 1.0));
+    let values = shader_fit.solve(&mean, 0.5, (-1.0, 1.0));
     Shader::Complex {
         normals: std::array::from_fn(|k| {
             let [.., x, y, z] = values[k];

@@ -7,7 +7,7 @@ const I128_BOUND: i128 = 1 << 123;
 
 /// What all samples of a frame have in common.
 #[derive(Debug)]
-pub(super) struct View {
+pub(super) struct RayFrame {
     /// Clip vector of the object's lowest corner.
     origin: [i128; 3],
     /// Clip vectors of a finest voxel's edges.
@@ -31,7 +31,7 @@ pub(super) struct View {
     lod_depth: Vec<Option<i128>>,
 }
 
-impl View {
+impl RayFrame {
     pub(super) fn new(setup: &FrameSetup) -> Self {
         let edge = setup.edge_clip.map(|e| e.map(i128::from));
         Self {
