@@ -15,7 +15,7 @@ pub use sums::{AccessCount, Accesses, OpCount};
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
-/// Octree levels that are told apart, 0..=63; deeper ones count as the last.
+/// Octree levels that are counted apart, 0..=63; deeper ones count as the last.
 pub const LEVELS: usize = 64;
 
 const CLASSES: usize = OpClass::ALL.len();
@@ -55,7 +55,7 @@ struct Table {
 ///
 /// What a [`Datapath`](crate::Datapath) reports is counted at the level of the
 /// record that has its turn (0 before the first), which is that of its place;
-/// operations that are told to [`Probe::op`] directly go by their place.
+/// operations passed to [`Probe::op`] directly go by their level.
 ///
 /// ```
 /// use hwmodel::count::Counter;

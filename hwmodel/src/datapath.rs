@@ -1,6 +1,6 @@
 //! The datapath: every arithmetic step of the machine is one call here.
 //!
-//! Each call does one operation on words, tells the probe, and applies the
+//! Each call does one operation on words, reports it to the probe, and applies the
 //! overflow policy. There is no call that multiplies and none that divides;
 //! the restoring divide is built by its user from [`Datapath::divide_step`].
 

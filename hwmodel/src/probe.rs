@@ -182,7 +182,7 @@ pub struct StageLevel {
     pub level: u32,
 }
 
-/// What an operation works on, as far as the line that calls for it says. The
+/// What an operation works on, as far as the calling line determines it. The
 /// datapath's format has the widths that go with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operand {
@@ -205,11 +205,11 @@ pub enum Operand {
 /// All methods do nothing by default, and [`Probe::ENABLED`] lets the
 /// datapath leave the calls out altogether.
 pub trait Probe {
-    /// Whether anything listens.
+    /// Whether the probe does anything.
     const ENABLED: bool = true;
 
-    /// Whether anything listens at the borders of blocks. Apart from
-    /// [`Probe::ENABLED`], so that who counts operations pays nothing for it.
+    /// Whether the probe takes the borders of blocks. Separate from
+    /// [`Probe::ENABLED`], so that counting operations alone costs no more.
     const TAPS: bool = false;
 
     /// A datapath of this format is built around the probe.
@@ -254,7 +254,7 @@ pub trait Probe {
         let _ = (index, level);
     }
 
-    /// Whether [`Probe::tap`] is wanted by now; asked only where `TAPS` is set.
+    /// Whether [`Probe::tap`] should be called now; used only where `TAPS` is set.
     #[inline]
     fn is_tapping(&self) -> bool {
         Self::TAPS

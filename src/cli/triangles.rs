@@ -85,8 +85,8 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
     let load_ms = milliseconds_since(started);
     let size = args.size.map_or((512, 512), |s| (s.width, s.height));
-    let look = args.look()?;
-    let mut drawing = TrianglesDrawing::new(&mesh, up, look, console.progress());
+    let style = args.style()?;
+    let mut drawing = TrianglesDrawing::new(&mesh, up, style, console.progress());
     let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
     let at_output = |error| CliError::from(error).at(args.output.display());
     drawing.draw(&camera, 1).map_err(at_output)?;
@@ -117,7 +117,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
             "mesh": args.mesh,
             "output": args.output,
             "triangles": mesh.triangles().len(),
-            "samples": look.samples.per_pixel(),
+            "samples": style.samples.per_pixel(),
             "camera": camera_line(&camera),
             "load_ms": load_ms,
             "draw_ms": draw_ms,
@@ -139,7 +139,7 @@ impl TrianglesArgs {
         std::iter::once(self.output.clone()).chain(beside).collect()
     }
 
-    fn look(&self) -> Result<TrianglesStyle, CliError> {
+    fn style(&self) -> Result<TrianglesStyle, CliError> {
         let pattern = match self.pattern {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },

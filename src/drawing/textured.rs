@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
+use super::{DrawError, Drawable, Figures, KeptPicture, Shown, check_samples, timed};
 use crate::mesh::raster::{Pattern, RasterCamera, Samples};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
@@ -44,23 +44,23 @@ pub struct TexturedStyle {
 /// A file of textured voxels that is drawn, once or from many cameras.
 pub struct TexturedDrawing<'f> {
     file: &'f TexturedFile,
-    look: TexturedStyle,
-    kept: Option<Kept>,
+    style: TexturedStyle,
+    kept: Option<KeptPicture>,
 }
 
 impl<'f> TexturedDrawing<'f> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(file: &'f TexturedFile, look: TexturedStyle) -> Self {
+    pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
         Self {
             file,
-            look,
+            style,
             kept: None,
         }
     }
 
     fn detail(&self, view: &RasterCamera) -> Result<Detail, DrawError> {
-        let (level, cells) = match self.look.erosion {
+        let (level, cells) = match self.style.erosion {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
             Erosion::Level { level, cells } => (level, cells),
         };
@@ -96,20 +96,20 @@ impl Drawable for TexturedDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.look.aa_log2)?;
+        check_samples(camera, self.style.aa_log2)?;
         let view = view_of(camera, self.file.bounds())?;
         // Which grid fits the view is part of the work.
         let ((picture, counts), times_ms) = timed(runs, || {
             let options = ViewOptions {
                 detail: self.detail(&view)?,
-                samples: Samples::new(1 << (2 * self.look.aa_log2), Pattern::Regular)?,
-                light: light_of(&view, self.look.shading),
-                background: self.look.background.color(),
+                samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
+                light: light_of(&view, self.style.shading),
+                background: self.style.background.color(),
             };
             let (drawn, counts) = draw(self.file, &view, &options)?;
             Ok((picture_of_triangles(drawn), counts))
         })?;
-        self.kept = Some(Kept {
+        self.kept = Some(KeptPicture {
             picture,
             counters: counters(self.file, &counts),
             times_ms,

@@ -1,10 +1,10 @@
-//! The quickest picture: each sample's own colour, unlit, as a window wants it.
+//! The quickest picture: each sample's own colour, unlit, ready for display in a window.
 
 use std::sync::LazyLock;
 
 use super::{Blend, Frame, NO_NODE};
 
-/// Samples that are looked at together: where none shows anything, none is looked up.
+/// Samples tested together: where none shows anything, no colour is looked up.
 const TOGETHER: usize = 16;
 /// Samples that are worth a thread's while.
 const SHARE: usize = 1 << 15;

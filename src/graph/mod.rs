@@ -208,10 +208,10 @@ impl GraphView<'_> {
 
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
     ///
-    /// A leaf has none here; that it points to itself is for the renderer to say.
+    /// A leaf has no children here; the renderer may treat it as its own child.
     /// Never panics, whatever a damaged file holds: a child list that leaves
     /// the file reads as no child, and a child without a node as a leaf
-    /// ([`Graph::color_of`] then says black).
+    /// ([`Graph::color_of`] is then black).
     #[inline]
     #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {

@@ -101,7 +101,7 @@ pub fn camera(file: &FarFile, frame: u32, plan: &FarPathPlan) -> Camera {
 /// # Errors
 /// When the file's data is damaged or the picture too large.
 pub fn walk(file: &FarFile, plan: &FarPathPlan) -> Result<Vec<FarPathTimes>, ViewError> {
-    let look = PixelStyle::default();
+    let style = PixelStyle::default();
     let mut walks: Vec<FarPathTimes> = plan
         .opacities
         .iter()
@@ -124,8 +124,8 @@ pub fn walk(file: &FarFile, plan: &FarPathPlan) -> Result<Vec<FarPathTimes>, Vie
                 let options = ViewOptions {
                     voxel_px: plan.voxel_px,
                     opacity,
-                    light: light_of(&view, look.shading),
-                    background: Some(look.background),
+                    light: light_of(&view, style.shading),
+                    background: Some(style.background),
                     culling: plan.culling,
                     ..ViewOptions::default()
                 };

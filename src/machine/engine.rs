@@ -26,7 +26,7 @@ struct SizedFill {
 }
 
 impl Machine {
-    /// A machine that works as `options` say.
+    /// A machine with these options.
     #[must_use]
     pub fn new(options: MachineOptions) -> Self {
         Self {

@@ -23,8 +23,8 @@
 //! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
 //!   `verdict`, `children`, `record_loop`;
 //! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
-//! - `instruments`, which watch the machine or drive it in another way. It
-//!   knows nothing of them.
+//! - `instruments`, which watch the machine or drive it in another way. The
+//!   machine does not depend on them.
 
 mod alpha;
 mod blocks;

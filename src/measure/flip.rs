@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use super::SizeError;
 use super::color::{Colors, check_sizes, on_black};
 
-/// Pixels in a degree of the field of vision that FLIP is told for by its
+/// Pixels in a degree of the field of vision that FLIP is evaluated for by its
 /// authors: a display 0.7 m wide with 3840 pixels, seen from 0.7 m away.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 

@@ -24,7 +24,7 @@ use crate::graph::{MAX_DEPTH, Placement};
 pub(super) const MAX_CLIP_FRAC: u32 = 30;
 /// Most levels below a finest voxel.
 pub(super) const MAX_SUB_LEVELS: u32 = 24;
-/// Fraction bits of screen positions, unless the format or the user says otherwise.
+/// Fraction bits of screen positions, unless the format or the user sets another number.
 const DEFAULT_SCREEN_FRAC: u32 = 16;
 /// Boxes widened by more samples than this may leave their words.
 const MOST_TOLERANCE_WITH_HEADROOM: f64 = 4.0;
@@ -137,7 +137,7 @@ impl Default for SetupOptions {
 }
 
 impl SetupOptions {
-    /// What a frame is drawn with under a rule, where nothing else is asked for.
+    /// The default settings of a drawing rule.
     #[must_use]
     pub fn of(coverage: Coverage) -> Self {
         Self {
@@ -201,7 +201,7 @@ pub enum SetupError {
 /// The recorded input of a frame: all integers that an engine starts from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameSetup {
-    /// What was asked for.
+    /// The requested value.
     pub options: SetupOptions,
     /// Samples across; the picture's width times the samples per pixel and axis.
     pub width: u32,
@@ -255,7 +255,7 @@ impl FrameSetup {
     /// Quantises a camera's view of a placed object of `2^depth` voxels a side.
     ///
     /// # Errors
-    /// When the camera cannot see, the format is none, or a setting is out of its range.
+    /// When the camera cannot see, the format is invalid, or a setting is out of its range.
     pub fn new(
         camera: &Camera,
         placement: &Placement,

@@ -49,7 +49,7 @@ impl Engine for Rays {
     }
 }
 
-/// Single rays of a frame: what [`Rays`] draws, asked for sample by sample,
+/// Single rays of a frame: what [`Rays`] draws, sample by sample,
 /// for pictures of so many samples that no frame would hold them.
 pub struct Caster<'g> {
     graph: &'g GraphView<'g>,
@@ -57,7 +57,7 @@ pub struct Caster<'g> {
     is_narrow: bool,
 }
 
-/// Most levels of an image root whose rays can be asked for: components of
+/// Most levels of an image root whose rays can be cast: components of
 /// rays are at most `2^18`.
 pub const MAX_CASTER_LEVELS: u32 = 17;
 

@@ -80,7 +80,7 @@ impl RayFrame {
     }
 
     /// The plane through the eye and the voxel edge that leaves object point
-    /// `u` along `axis`: its product with a ray direction tells on which side
+    /// `u` along `axis`: the sign of its product with a ray direction is the side
     /// of the edge the ray passes. Zero where the edge's line goes through the eye.
     pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
         let mut point = self.origin;

@@ -259,7 +259,7 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
 /// Voxels on their way into a graph.
 struct Gathered {
     builder: Builder,
-    /// Free memory at the beginning, where the system tells.
+    /// Free memory at the beginning, where the system reports it.
     available: Option<u64>,
     /// Most voxels that fit it.
     most: u64,

@@ -1,4 +1,4 @@
-//! The cells of a grid, and the integers in which they are told apart.
+//! The cells of a grid, and the lattice of integers on which they are distinguished.
 
 use glam::DVec3;
 

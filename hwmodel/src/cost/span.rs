@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the hardware finds a span: the least and the greatest of `n` values.
 ///
-/// The machine asks for `n - 1` minima and `n - 1` maxima. Units that do one
+/// The machine executes `n - 1` minima and `n - 1` maxima. Units that do one
 /// of them each do just that: for the eight vertices of a cage 7 + 7, each a
 /// compare and a select. Taken in pairs, one compare orders two values and
 /// serves both their minimum and their maximum; then the smaller ones go on to

@@ -31,7 +31,7 @@ pub struct Cost {
     pub high: f64,
     /// How it comes from its rows.
     pub fit: Fit,
-    /// Whether a row derives its figure from another source's, as the source says.
+    /// Whether a row derives its figure from another source's, as the row's source states.
     pub derived: bool,
     /// The rows in words, with the file that has them.
     pub rows: String,
@@ -75,7 +75,7 @@ impl Cost {
 /// "#;
 /// let table = table.with_overrides("mine.toml", mine)?;
 /// assert_eq!(table.area("add", 32, Goal::Area)?.value, 200.0);
-/// // What is not there is an error that says where to add it.
+/// // A missing row is an error that names where to add it.
 /// let error = table.energy("cube_root", 32).unwrap_err().to_string();
 /// assert!(error.contains("`cube_root`") && error.contains("energy.toml"));
 /// # Ok::<(), hwmodel::cost::CostError>(())

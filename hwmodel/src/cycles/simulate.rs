@@ -24,7 +24,7 @@ pub enum SimulationError<E> {
     /// The workload failed.
     #[error(transparent)]
     Workload(#[from] E),
-    /// The hardware is none.
+    /// The hardware's description is invalid.
     #[error(transparent)]
     Hardware(HardwareError),
     /// A stack without room, on hardware that does not spill.
@@ -187,7 +187,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             if at_end {
                 self.end_turn(now, context)?;
             } else {
-                self.come(now, context);
+                self.arrive(now, context);
             }
         }
         Ok(now)
@@ -243,7 +243,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
 
     /// A record comes to a block, or to the head of its line.
     #[inline]
-    fn come(&mut self, now: u64, context: u32) {
+    fn arrive(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         let stage = of.plan.visits[of.visit].stage as usize;
         let unit = &mut self.units[of.lane as usize][stage];

@@ -6,11 +6,11 @@ use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = Stage::ALL.len();
 const CLASSES: usize = OpClass::ALL.len();
-/// Widths of operations that are told apart; wider ones count as this less one.
+/// Widths of operations that are counted apart; wider ones count as this less one.
 const WIDTHS: usize = 128;
 
-/// What is simulated: something that works on records, one turn each, and
-/// knows what a turn does only by doing it.
+/// What is simulated: something that works on records, one turn each. What
+/// a turn costs is known only after it has been executed.
 ///
 /// The simulator calls [`Workload::turn`] in the order of simulated time, so
 /// that a record finds things as they are when its turn begins.
@@ -39,7 +39,7 @@ pub trait Workload {
 /// A record that a turn left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
-    /// What the workload knows it by.
+    /// The workload's number for it.
     pub item: u32,
     /// Its place in the occlusion order, 0 (nearest) to 7.
     pub place: u8,

@@ -9,7 +9,7 @@ use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 const MEMORIES: usize = Memory::ALL.len();
 
 /// Bits of what a pixel has so far where voxels are blended: nine of how much
-/// it still lets through, 24 of each colour. The rule says how many, no format.
+/// it still lets through, 24 of each colour. Fixed by the drawing rule, whatever the format.
 pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
 
 /// Bits that one access of each memory moves.
@@ -141,7 +141,7 @@ impl MemoryProbe {
         self.touched[memory as usize].distinct()
     }
 
-    /// Miss curves, in the order in which they were asked for.
+    /// Miss curves, in the order in which they were requested.
     #[must_use]
     pub fn curves(&self) -> &[(Memory, MissCurve)] {
         &self.curves

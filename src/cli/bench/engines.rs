@@ -1,4 +1,4 @@
-//! `bench engines`: the engines and a stand-in rival, side by side.
+//! `bench engines`: the engines and a ray caster in floating point, side by side.
 
 use serde_json::json;
 

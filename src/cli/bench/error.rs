@@ -301,7 +301,7 @@ pub(super) fn run(
             runs: args.runs,
         },
         strata_log2: args.reference.strata_log2(),
-        look: PixelStyle::default(),
+        style: PixelStyle::default(),
     };
     let options = args.select.options();
     let mut scenes = Vec::new();
@@ -309,13 +309,13 @@ pub(super) fn run(
         let subject = subjects::open(name, &args.camera, &scene_args, size, console)?;
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods = if args.meshes.has_voxels(mesh.is_some()) {
-            methods(&args.select, &options, &subject, plan.look)
+            methods(&args.select, &options, &subject, plan.style)
         } else {
             Vec::new()
         };
         let mut references = experiment::References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look)?);
+            methods.extend(args.meshes.methods(mesh, plan.style)?);
             references = experiment::References::of_triangles(&mesh.mesh);
         }
         let progress = console.progress();
@@ -346,7 +346,7 @@ fn methods<'s>(
     select: &SelectArgs,
     options: &[SetupOptions],
     subject: &'s Subject,
-    look: PixelStyle,
+    style: PixelStyle,
 ) -> Vec<Box<dyn Method + 's>> {
     let asked = |name: &str| match select.engines.as_slice() {
         [] => name == engines::FAST.name,
@@ -361,7 +361,7 @@ fn methods<'s>(
                 &subject.graph,
                 engine,
                 options,
-                look,
+                style,
             )));
         }
     }

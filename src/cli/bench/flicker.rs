@@ -129,14 +129,19 @@ pub(super) fn run(
         size,
         frames: args.frames,
         strata_log2: samples.ilog2(),
-        look: PixelStyle::default(),
+        style: PixelStyle::default(),
     };
     let mut films = Vec::new();
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
         let method = |options| -> Box<dyn Method + '_> {
-            Box::new(VoxelMethod::new(&subject.graph, engine, options, plan.look))
+            Box::new(VoxelMethod::new(
+                &subject.graph,
+                engine,
+                options,
+                plan.style,
+            ))
         };
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
@@ -148,7 +153,7 @@ pub(super) fn run(
         // The first frame is the same for all motions.
         let mut references = References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look)?);
+            methods.extend(args.meshes.methods(mesh, plan.style)?);
             references = References::of_triangles(&mesh.mesh);
         }
         for motion in args.motions() {

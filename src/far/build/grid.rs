@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Cubes from `origin`, as many along each axis as `cells` says (1 to 255).
+/// Cubes from `origin`, `cells` along each axis (1 to 255).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Lowest corner, world units.

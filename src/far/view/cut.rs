@@ -98,7 +98,7 @@ impl CutNode {
 /// Where a node's children's voxels may reach beyond its own grid, in its voxels.
 const BRANCH_MARGIN: f64 = 2.0;
 
-/// Says of each node whether it is drawn.
+/// Decides of each node whether it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
@@ -109,8 +109,8 @@ pub(super) struct Cut<'f> {
 }
 
 impl Cut<'_> {
-    /// Looks at a node; `None` if it is beside or behind the picture.
-    pub(super) fn look(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
+    /// Classifies a node; `None` if it is beside or behind the picture.
+    pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
         counts.visited += 1;
         let node = &self.file.nodes()[number];
         let centre = self.file.centre();
@@ -152,7 +152,7 @@ impl Cut<'_> {
         let mut drawn = Vec::new();
         let mut waiting = vec![0];
         while let Some(number) = waiting.pop() {
-            match self.look(number, counts) {
+            match self.classify(number, counts) {
                 None => {}
                 Some(CutNode::Drawn(chosen)) => drawn.push(chosen),
                 Some(CutNode::Branch(_)) => waiting.extend(self.children(number)),

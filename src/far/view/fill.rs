@@ -48,7 +48,7 @@ impl Fill {
         Self { levels }
     }
 
-    /// Whether everything in an outline is behind what is drawn. Says no where it does not know.
+    /// Whether everything in an outline is behind what is drawn. False where that is not certain.
     pub(super) fn hides(&self, view: &RasterCamera, outline: &Outline) -> bool {
         let Some([low, high]) = outline.pixels else {
             return false;

@@ -2,8 +2,8 @@
 //!
 //! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
 //! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
-//!    above, number below, the least counts. That does not depend on who comes
-//!    first, hence neither on threads nor on what was found hidden.
+//!    above, number below, the least counts. That does not depend on the order
+//!    of drawing, hence neither on threads nor on what was found hidden.
 //! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
 //!    hierarchy that are behind it are left out, with all below.
 //! 4. The winners' colours, then transparent voxels over them, back to front.
@@ -26,7 +26,7 @@ use crate::mesh::{linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
-use visible::{Memory, Walked};
+use visible::{VisibilityHistory, VisibleNodes};
 
 /// How far voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -103,7 +103,7 @@ pub struct FarPicture {
 /// What a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct FarCounts {
-    /// Nodes that were looked at.
+    /// Nodes that were visited.
     pub visited: u64,
     /// Nodes of those beside or behind the picture.
     pub outside: u64,
@@ -111,7 +111,7 @@ pub struct FarCounts {
     pub voxel_nodes: u64,
     /// Nodes drawn as triangles.
     pub leaves: u64,
-    /// Nodes and branches that were found hidden; nothing below them was looked at.
+    /// Nodes and branches that were found hidden; nothing below them was visited.
     pub hidden: u64,
     /// Queries whether a node or branch is hidden.
     pub queries: u64,
@@ -130,7 +130,7 @@ pub struct FarCounts {
 #[derive(Debug)]
 pub struct FarViewer<'f> {
     file: &'f FarFile,
-    memory: Memory,
+    memory: VisibilityHistory,
 }
 
 impl<'f> FarViewer<'f> {
@@ -139,7 +139,7 @@ impl<'f> FarViewer<'f> {
     pub fn new(file: &'f FarFile) -> Self {
         Self {
             file,
-            memory: Memory::new(file.nodes().len()),
+            memory: VisibilityHistory::new(file.nodes().len()),
         }
     }
 
@@ -194,7 +194,7 @@ impl<'f> FarViewer<'f> {
         } else {
             let drawn = cut.all(&mut counts);
             opaque.draw(&drawn, &mut counts)?;
-            Walked {
+            VisibleNodes {
                 drawn,
                 branches: Vec::new(),
             }

@@ -28,7 +28,7 @@ struct Splat {
     rows: [usize; 2],
 }
 
-/// Draws; says how many voxels. `nodes` in any order.
+/// Draws; returns how many voxels. `nodes` in any order.
 pub(super) fn draw(
     file: &FarFile,
     view: &RasterCamera,

@@ -110,7 +110,7 @@ impl Finest {
         } else {
             None
         };
-        let mut worked = Worked {
+        let mut worked = FinestInProgress {
             color: self.color,
             own_normal: self.own_normal,
             normal: Spool::new(scratch, sizes.spool_bytes),
@@ -184,7 +184,7 @@ impl BlockReader {
 }
 
 /// The finest level while it is worked on.
-struct Worked {
+struct FinestInProgress {
     color: Spool,
     own_normal: Spool,
     normal: Spool,
@@ -194,13 +194,13 @@ struct Worked {
 }
 
 /// A few clusters and their voxels.
-struct Part<'c> {
+struct ClusterBatch<'c> {
     clusters: &'c [[u64; 2]],
     color: &'c [[u8; 3]],
     normal: &'c mut [PackedNormal],
 }
 
-impl Worked {
+impl FinestInProgress {
     /// Works on the next clusters; gives the number of their voxels.
     fn work(
         &mut self,
@@ -230,7 +230,7 @@ impl Worked {
             color_rest = rest;
             let (normal, rest) = std::mem::take(&mut normal_rest).split_at_mut(count);
             normal_rest = rest;
-            parts.push(Part {
+            parts.push(ClusterBatch {
                 clusters,
                 color,
                 normal,
@@ -259,7 +259,7 @@ fn swap_on_big_endian(normals: &mut [PackedNormal]) {
     }
 }
 
-impl Part<'_> {
+impl ClusterBatch<'_> {
     /// Estimates normals where there is a grid, and averages.
     fn nodes(self, grid: Option<&Grid>, centre: [f64; 3]) -> Vec<ClusterNodes> {
         let mut all = Vec::with_capacity(self.clusters.len());

@@ -132,7 +132,7 @@ impl Gather {
 /// Nothing is written any more once the builder is gone.
 impl Drop for Gather {
     fn drop(&mut self) {
-        // Whatever it says, nobody wants the run.
+        // Its result is not needed any more.
         let _ = self.waited();
     }
 }

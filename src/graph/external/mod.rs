@@ -61,7 +61,7 @@ pub enum ExternalError {
     Temporary {
         /// Their folder.
         folder: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The file could not be written.
@@ -124,7 +124,7 @@ impl ExternalBuilder {
     }
 
     /// Adds a voxel; it replaces an earlier one at the same index. If a
-    /// temporary file cannot be written, [`Self::finish`] says so.
+    /// temporary file cannot be written, [`Self::finish`] returns the error.
     pub fn push(&mut self, voxel: Voxel) {
         self.gather.push(&voxel);
     }

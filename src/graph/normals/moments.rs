@@ -1,4 +1,4 @@
-//! Moments of a voxel's neighbourhood, and the normal that they tell.
+//! Moments of a voxel's neighbourhood, and the normal that follows from them.
 
 use glam::DVec3;
 
@@ -12,10 +12,10 @@ const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
 const HALF_MASS: i32 = 8 * 8 * 8 / 2;
 /// Mass of a voxel alone.
 const LONE_MASS: i32 = 2 * 2 * 2;
-/// A centre of mass at least this far off, in voxels, tells the normal by
+/// A centre of mass at least this far off, in voxels, gives the normal by
 /// itself: 0.8 is a flat face, 0.5 a wall of two.
 const ONE_SIDED: f64 = 0.6;
-/// How much the centre of mass, in voxels, has to say about which side of a
+/// Weight of the centre of mass, in voxels, in deciding which side of a
 /// wall is out, against the middle of the object.
 const OFFSET_SHARE: f64 = 0.25;
 
@@ -104,7 +104,7 @@ impl Moments {
         }
     }
 
-    /// The normal; `outward` says which side of a thin wall is preferred.
+    /// The normal; `outward`: which side of a thin wall is preferred.
     pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
         if self.mass <= LONE_MASS {
             return PackedNormal::NONE;

@@ -55,9 +55,9 @@ pub struct BenchPlan<'p> {
     pub threads: &'p [usize],
     /// What frames are drawn with.
     pub options: SetupOptions,
-    /// Who draws.
+    /// The engines that draw.
     pub candidates: &'p [Candidate],
-    /// Whose picture is the right one; `None`: coverage is not compared.
+    /// The engine whose picture is the reference; `None`: coverage is not compared.
     pub reference: Option<&'p Candidate>,
 }
 

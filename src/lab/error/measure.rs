@@ -29,7 +29,7 @@ pub struct ErrorPlan {
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
     /// How samples become colours.
-    pub look: PixelStyle,
+    pub style: PixelStyle,
 }
 
 /// Seeds of the reference and of the second one, whose distance is the noise floor.
@@ -179,7 +179,7 @@ impl<'m> References<'m> {
         subject: &Subject,
         camera: &Camera,
         sampling: Sampling,
-        look: PixelStyle,
+        style: PixelStyle,
         progress: &dyn Progress,
     ) -> Result<Arc<Reference>, BenchError> {
         let same = |(scene, from, with, _): &&(String, Camera, Sampling, Arc<Reference>)| {
@@ -189,12 +189,12 @@ impl<'m> References<'m> {
             return Ok(Arc::clone(known));
         }
         let reference = match self.mesh {
-            Some(mesh) => of_triangles(mesh, camera, look, sampling.seed, progress)?,
+            Some(mesh) => of_triangles(mesh, camera, style, sampling.seed, progress)?,
             None => cast(
                 &subject.graph,
                 &truth(subject, camera, 0)?,
-                look.shading,
-                Background::Color(look.background),
+                style.shading,
+                Background::Color(style.background),
                 sampling,
                 progress,
             ),
@@ -240,15 +240,15 @@ impl Exact {
         subject: &Subject,
         camera: &Camera,
         aa_log2: u32,
-        look: PixelStyle,
+        style: PixelStyle,
     ) -> Result<Self, BenchError> {
         let setup = truth(subject, camera, aa_log2)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let failed = |reason: String| BenchError::Picture(reason);
         Rays.render(&subject.graph.view(), &setup, &mut frame)
             .map_err(|e| failed(e.to_string()))?;
-        let background = Background::Color(look.background);
-        let picture = resolve(&frame, &subject.graph, &setup, look.shading, background)
+        let background = Background::Color(style.background);
+        let picture = resolve(&frame, &subject.graph, &setup, style.shading, background)
             .map_err(|e| failed(e.to_string()))?;
         Ok(Self {
             aa_log2,
@@ -282,7 +282,8 @@ pub fn measure(
         strata_log2: plan.strata_log2,
         seed,
     };
-    let mut reference = |seed| references.of(subject, &camera, sampling(seed), plan.look, progress);
+    let mut reference =
+        |seed| references.of(subject, &camera, sampling(seed), plan.style, progress);
     let (reference, second) = (reference(SEEDS[0])?, reference(SEEDS[1])?);
     let judge = Judge::new(&reference);
     let mismatch = |e: crate::measure::SizeError| BenchError::Picture(e.to_string());
@@ -300,7 +301,7 @@ pub fn measure(
         if let Ok(shown) = &drawn
             && !exact.iter().any(|exact| exact.aa_log2 == aa(shown))
         {
-            exact.push(Exact::new(subject, &camera, aa(shown), plan.look)?);
+            exact.push(Exact::new(subject, &camera, aa(shown), plan.style)?);
         }
         shown.push(match drawn {
             Ok(shown) => {

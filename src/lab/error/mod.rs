@@ -2,7 +2,7 @@
 //!
 //! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
 //! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene, error and time;
-//! [`beaten_by`] and the plots say which of them are worth having.
+//! [`beaten_by`] and the plots show which of them are worth having.
 
 mod cut;
 mod measure;

@@ -50,7 +50,7 @@ pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
 /// the frame's level of detail, start from the same integers as the frame:
 /// a pixel's strata are squares of that grid, and each has one of its grid
 /// points drawn by lot. The result depends on frame and sampling alone.
-/// `progress` is told of rows.
+/// `progress` advances by rows.
 #[must_use]
 pub fn cast(
     graph: &Graph,
@@ -75,7 +75,7 @@ pub fn cast(
     };
     progress.begin("casting the reference", u64::from(setup.height));
     let mut rows = Vec::with_capacity(setup.height as usize);
-    // In blocks, so that progress is told from this thread.
+    // In blocks, so that progress is reported from this thread.
     let block = 4 * rayon::current_num_threads().max(1) as u32;
     for first in (0..setup.height).step_by(block as usize) {
         let last = (first + block).min(setup.height);
@@ -104,7 +104,7 @@ pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 pub(in crate::lab) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
-    look: PixelStyle,
+    style: PixelStyle,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Reference, BenchError> {
@@ -113,8 +113,8 @@ pub(in crate::lab) fn of_triangles(
     let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
     let options = RasterOptions {
         samples: samples.map_err(|e| failed(&e))?,
-        light: light_of(&view, look.shading),
-        background: Some(look.background),
+        light: light_of(&view, style.shading),
+        background: Some(style.background),
     };
     let drawn = raster::draw(surface, &view, &options, progress).map_err(|e| failed(&e))?;
     Ok(Reference {

@@ -70,9 +70,9 @@ impl FloatStep {
     }
 }
 
-/// Does the ray caster's arithmetic and may count it.
+/// The ray caster's arithmetic, counted or not.
 pub(super) trait Arithmetic {
-    /// Is told of each step.
+    /// Called for each step.
     fn count(&mut self, step: FloatStep, times: u32);
 
     /// A node is read.

@@ -6,7 +6,7 @@ use crate::graph::GraphView;
 
 /// What is put aside when a ray descends: the node above, and where the ray leaves it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Aside {
+struct StackEntry {
     node: u32,
     exit: f32,
 }
@@ -61,7 +61,7 @@ impl Caster<'_> {
             return Some((node, [0; 4]));
         }
 
-        let mut stack = [Aside::default(); MANTISSA_BITS as usize + 1];
+        let mut stack = [StackEntry::default(); MANTISSA_BITS as usize + 1];
         // Of the cell looked at: lowest corner in mirrored space, octant in its parent
         // (mirrored), side, and the bit of the mantissa that the side is.
         let mut low = [1f32; 3];
@@ -102,7 +102,7 @@ impl Caster<'_> {
                     // Descend.
                     if by.less(cell_exit, aside) {
                         by.count(FloatStep::StackWrite, 1);
-                        stack[bit as usize] = Aside { node, exit };
+                        stack[bit as usize] = StackEntry { node, exit };
                     }
                     aside = cell_exit;
                     node = child;

@@ -41,7 +41,7 @@ impl FloatRayCounts {
     }
 }
 
-/// Counts, and tells `nodes` of every node that is read.
+/// Counts steps, and calls `nodes` for every node that is read.
 struct Counting<'n> {
     counts: FloatRayCounts,
     nodes: &'n mut dyn FnMut(u32),
@@ -60,8 +60,8 @@ impl Arithmetic for Counting<'_> {
     }
 }
 
-/// Draws a frame in `f32` and counts what that takes. `nodes` is told of every
-/// node that is read, in order.
+/// Draws a frame in `f32` and counts what that takes. `nodes` is called
+/// for every node that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,

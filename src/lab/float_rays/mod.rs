@@ -24,7 +24,7 @@ use crate::graph::GraphView;
 use crate::project::vector::cross;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
-/// Bits of an `f32`'s mantissa, hence levels that positions can tell apart.
+/// Bits of an `f32`'s mantissa, hence levels that positions can resolve.
 const MANTISSA_BITS: u32 = 23;
 /// Deepest level that is looked at; nodes there are drawn as one voxel.
 pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
@@ -174,7 +174,7 @@ mod tests {
             FrameSetup::new(&camera, placement, graph.depth, &SetupOptions::default()).unwrap();
         let mut exact = Frame::new(256, 256, false);
         let mut float = exact.clone();
-        // It knows no level of detail.
+        // It has no level of detail.
         let whole = setup.without_detail();
         Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
         let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();

@@ -37,19 +37,19 @@ pub struct FarMethod<'f> {
     file: &'f FarFile,
     viewer: FarViewer<'f>,
     settings: FarSettings,
-    look: PixelStyle,
+    style: PixelStyle,
     view: Option<RasterCamera>,
 }
 
 impl<'f> FarMethod<'f> {
     /// Of a file.
     #[must_use]
-    pub fn new(file: &'f FarFile, settings: FarSettings, look: PixelStyle) -> Self {
+    pub fn new(file: &'f FarFile, settings: FarSettings, style: PixelStyle) -> Self {
         Self {
             file,
             viewer: FarViewer::new(file),
             settings,
-            look,
+            style,
             view: None,
         }
     }
@@ -59,8 +59,8 @@ impl<'f> FarMethod<'f> {
         let options = ViewOptions {
             voxel_px: self.settings.voxel_px,
             opacity: self.settings.opacity,
-            light: light_of(&view, self.look.shading),
-            background: Some(self.look.background),
+            light: light_of(&view, self.style.shading),
+            background: Some(self.style.background),
             ..ViewOptions::default()
         };
         let cut_of = cut_of.unwrap_or(&view);

@@ -9,7 +9,7 @@ use crate::lab::error::{
     Judge, Method, PictureError, PixelStyle, Reference, Refused, Shown, as_map, of_triangles,
     outcome_or_reason, race,
 };
-use crate::lab::flicker::{Motion, restless};
+use crate::lab::flicker::{Motion, film_flicker};
 use crate::measure::LinearPicture;
 use crate::mesh::Surface;
 use crate::project::{Camera, Stats};
@@ -26,7 +26,7 @@ pub struct MethodsPlan {
     /// How a film's camera moves.
     pub motion: Motion,
     /// How samples become colours.
-    pub look: PixelStyle,
+    pub style: PixelStyle,
 }
 
 /// What is known of a method beside its pictures.
@@ -145,11 +145,11 @@ fn at(
     progress.begin("drawing references", cameras.len() as u64);
     let mut films = Vec::new();
     for camera in &cameras {
-        films.push(of_triangles(mesh, camera, plan.look, 1, &Silent)?);
+        films.push(of_triangles(mesh, camera, plan.style, 1, &Silent)?);
         progress.advance(1);
     }
     progress.end();
-    let second = of_triangles(mesh, camera, plan.look, 2, &Silent)?;
+    let second = of_triangles(mesh, camera, plan.style, 2, &Silent)?;
     let judge = Judge::new(&films[0]);
     let noise_floor = judge.judge(&second.rgba, &second.shares);
     let noise_floor = noise_floor.map_err(|e| failed(&e))?;
@@ -220,7 +220,7 @@ fn seen(
     let picture = picture.map_err(Refused::because)?;
     let film = match cameras.len() {
         0 | 1 => None,
-        _ => Some(restless(method, cameras, truth)?),
+        _ => Some(film_flicker(method, cameras, truth)?),
     };
     Ok(Seen {
         shown,

@@ -14,7 +14,7 @@ pub struct TexturedMethod<'f> {
     file: &'f TexturedFile,
     detail: Detail,
     samples: Samples,
-    look: PixelStyle,
+    style: PixelStyle,
     ready: Option<RasterCamera>,
 }
 
@@ -27,14 +27,14 @@ impl<'f> TexturedMethod<'f> {
         file: &'f TexturedFile,
         detail: Detail,
         per_pixel: u32,
-        look: PixelStyle,
+        style: PixelStyle,
     ) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
             file,
             detail,
             samples,
-            look,
+            style,
             ready: None,
         })
     }
@@ -43,7 +43,7 @@ impl<'f> TexturedMethod<'f> {
         let Some(view) = &self.ready else {
             return Err(Refused::because("no camera yet"));
         };
-        let raster = options(view, self.samples, self.look);
+        let raster = options(view, self.samples, self.style);
         let options = ViewOptions {
             detail,
             samples: raster.samples,

@@ -12,7 +12,7 @@ use crate::project::{Camera, Stats};
 pub struct TrianglesMethod<'m> {
     surface: &'m dyn Surface,
     samples: Samples,
-    look: PixelStyle,
+    style: PixelStyle,
     view: Option<RasterCamera>,
 }
 
@@ -24,20 +24,20 @@ impl<'m> TrianglesMethod<'m> {
     pub fn new(
         surface: &'m dyn Surface,
         per_pixel: u32,
-        look: PixelStyle,
+        style: PixelStyle,
     ) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
             surface,
             samples,
-            look,
+            style,
             view: None,
         })
     }
 
     fn drawn(&self) -> Result<RasterPicture, Refused> {
         let view = self.view.ok_or(Refused::because("no camera yet"))?;
-        let options = options(&view, self.samples, self.look);
+        let options = options(&view, self.samples, self.style);
         raster::draw(self.surface, &view, &options, &Silent).map_err(Refused::because)
     }
 }
@@ -94,11 +94,11 @@ impl Method for TrianglesMethod<'_> {
 }
 
 /// What the rasteriser is to draw with.
-pub(super) fn options(view: &RasterCamera, samples: Samples, look: PixelStyle) -> RasterOptions {
+pub(super) fn options(view: &RasterCamera, samples: Samples, style: PixelStyle) -> RasterOptions {
     RasterOptions {
         samples,
-        light: light_of(view, look.shading),
-        background: Some(look.background),
+        light: light_of(view, style.shading),
+        background: Some(style.background),
     }
 }
 

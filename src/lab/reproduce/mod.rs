@@ -3,7 +3,7 @@
 //!
 //! What does not depend on the machine (hashes of pictures, records,
 //! operations) is one list, [`Evidence`]; a rerun compares it. Times are
-//! another. What the image-order paper says and what was found: `spec/lab.md`.
+//! another. The image-order paper's results and ours: `spec/lab.md`.
 
 pub mod figures;
 #[cfg(feature = "cli")]
@@ -184,7 +184,7 @@ pub enum ReproduceError {
     Engine {
         /// The scene.
         scene: String,
-        /// What the machine said.
+        /// The machine's error.
         source: crate::project::EngineError,
     },
 }

@@ -19,7 +19,7 @@ use crate::rays::Rays;
 pub enum Check {
     /// A frame ends within a bound on records.
     Ends,
-    /// A frame whose set-up says that it cannot overflow does not.
+    /// A frame whose set-up guarantees that it cannot overflow does not.
     Headroom,
     /// Under `exact` the picture is the oracle's, at every level of detail.
     Exact,
@@ -31,9 +31,9 @@ pub enum Check {
     /// Nothing is seen that lies behind what the oracle sees.
     Order,
     /// What is seen is before the eye and at its sample.
-    StageLevel,
+    Place,
     /// Vertices are the specification's, bit for bit.
-    Book,
+    Specification,
     /// Vertices are within the bounds on their error.
     Bound,
     /// The fast engine draws the same bits.
@@ -49,8 +49,8 @@ impl Check {
         Self::Missing,
         Self::Holes,
         Self::Order,
-        Self::StageLevel,
-        Self::Book,
+        Self::Place,
+        Self::Specification,
         Self::Bound,
         Self::Engines,
     ];
@@ -65,14 +65,14 @@ impl Check {
             Self::Missing => "missing",
             Self::Holes => "holes",
             Self::Order => "order",
-            Self::StageLevel => "place",
-            Self::Book => "book",
+            Self::Place => "place",
+            Self::Specification => "specification",
             Self::Bound => "bound",
             Self::Engines => "engines",
         }
     }
 
-    /// What it says.
+    /// The details.
     #[must_use]
     pub fn about(self) -> &'static str {
         match self {
@@ -86,10 +86,10 @@ impl Check {
                 "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no record met the level bound"
             }
             Self::Order => "nothing is seen that the oracle's voxel hides",
-            Self::StageLevel => {
+            Self::Place => {
                 "what is seen is before the eye and no more than the rule allows from its sample"
             }
-            Self::Book => "vertices are the specification's, bit for bit",
+            Self::Specification => "vertices are the specification's, bit for bit",
             Self::Bound => "vertices are within the bounds on their error",
             Self::Engines => "the fast engine draws the machine's bits",
         }
@@ -269,7 +269,7 @@ pub(crate) fn check(
     outcome.records = stat("records");
     let right = oracle.picture(graph, &setup);
     outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
-    let seen = Seen {
+    let seen = CheckedFrame {
         setup: &setup,
         frame: &frame,
         right: &right,
@@ -290,7 +290,7 @@ pub(crate) fn check(
 }
 
 /// A frame beside the right one.
-struct Seen<'s> {
+struct CheckedFrame<'s> {
     setup: &'s FrameSetup,
     frame: &'s Frame,
     right: &'s Frame,
@@ -300,7 +300,7 @@ struct Seen<'s> {
 
 type Voxel = [i32; 4];
 
-impl Seen<'_> {
+impl CheckedFrame<'_> {
     fn is_exact(&self) -> bool {
         self.setup.options.coverage == Coverage::Exact
     }
@@ -455,7 +455,7 @@ impl Seen<'_> {
                     "behind the eye"
                 };
                 outcome.fail(
-                    Check::StageLevel,
+                    Check::Place,
                     format!("sample ({x}, {y}) shows {voxel:?}, which is {what}"),
                 );
                 return;
@@ -543,7 +543,7 @@ fn check_vertices(
     subject: &dyn Subject,
     case: &Case,
     graph: &Graph,
-    seen: &Seen<'_>,
+    seen: &CheckedFrame<'_>,
     outcome: &mut Outcome,
 ) {
     let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
@@ -555,18 +555,18 @@ fn check_vertices(
     let mut found = Vertices::default();
     for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
         let way = path(seen.setup, voxel, salt);
-        vertex::look(subject, seen.setup, &bounds, &way, &mut found);
+        vertex::check_path(subject, seen.setup, &bounds, &way, &mut found);
     }
     outcome.worst = found.worst;
-    if let Some(detail) = found.not_by_the_book {
-        outcome.fail(Check::Book, detail);
+    if let Some(detail) = found.differs {
+        outcome.fail(Check::Specification, detail);
     }
     if let Some(detail) = found.beyond {
         outcome.fail(Check::Bound, detail);
     }
 }
 
-fn check_engines(graph: &Graph, seen: &Seen<'_>, outcome: &mut Outcome) {
+fn check_engines(graph: &Graph, seen: &CheckedFrame<'_>, outcome: &mut Outcome) {
     // What the fast engine does not draw it hands to the machine.
     if !seen.is_exact() || !seen.setup.has_headroom {
         return;

@@ -4,13 +4,13 @@
 //! `sweep` runs a [`SweepPlan`]; what fails is shrunk to a small [`Case`], a line
 //! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
 
-mod book;
 pub mod case;
 mod check;
 #[cfg(test)]
 mod mutants;
 pub mod scene;
 mod shrink;
+mod specified;
 pub(crate) mod subject;
 pub(crate) mod sweep;
 #[cfg(feature = "cli")]

@@ -244,10 +244,10 @@ impl StressScene {
 }
 
 /// Takes voxels' indices.
-type Taker<'t> = dyn FnMut([i32; 3]) + 't;
+type VoxelSink<'t> = dyn FnMut([i32; 3]) + 't;
 
 /// A graph of the voxels that `give` hands on.
-fn built(give: &mut dyn FnMut(&mut Taker<'_>)) -> Result<Graph, String> {
+fn built(give: &mut dyn FnMut(&mut VoxelSink<'_>)) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,
     });

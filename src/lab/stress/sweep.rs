@@ -160,7 +160,7 @@ pub struct Tally {
     pub cases: u64,
     /// Those with a picture.
     pub drawn: u64,
-    /// Those that an overflow ended, at a place that is told.
+    /// Those that an overflow ended, with its place.
     pub trapped: u64,
     /// Those that the set-up refused.
     pub refused: u64,
@@ -232,7 +232,7 @@ pub struct Failed {
     pub case: String,
     /// A smaller one that fails too, where it was looked for.
     pub minimal: Option<String>,
-    /// What the smaller one says.
+    /// The smaller one's details.
     pub minimal_detail: Option<String>,
     /// A command that draws its picture, where `render` can.
     pub render: Option<String>,
@@ -257,7 +257,7 @@ pub struct Findings {
     pub failed: Vec<Failed>,
 }
 
-/// Failures that are told in full, of each check in each job.
+/// Failures that are reported in full, of each check in each job.
 const TOLD: usize = 3;
 
 impl Findings {

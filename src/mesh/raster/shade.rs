@@ -98,7 +98,7 @@ pub(super) fn light_of(
     color * light.on(if is_front { normal } else { -normal })
 }
 
-/// A triangle's colours as light, ready to be asked for.
+/// A triangle's colours as light, ready for any point of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
     triangle: Triangle,

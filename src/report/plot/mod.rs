@@ -53,7 +53,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 const WIDTH: u32 = 900;
 /// Height of a panel's title.
 const TITLE_HEIGHT: u32 = 44;
-/// Colours that are told apart also by the colour-blind (Okabe and Ito), and two more.
+/// Colours that are distinguishable also to the colour-blind (Okabe and Ito), and two more.
 const COLORS: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -122,7 +122,7 @@ fn in_short(number: f64) -> String {
         return "0".to_owned();
     }
     if (0.001..10_000.0).contains(&number.abs()) {
-        // Enough digits for thousandths, none that say nothing.
+        // Enough digits for thousandths, none without information.
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {

@@ -43,7 +43,7 @@ impl fmt::Display for Key {
 pub struct KeyRange {
     /// The key.
     pub key: Key,
-    /// Its value where a spec does not say.
+    /// Its default value.
     pub default: u32,
     /// Least value.
     pub least: u32,

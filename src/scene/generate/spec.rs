@@ -110,7 +110,7 @@ impl Spec {
     /// Reads a spec; keys left out have the generator's defaults.
     ///
     /// # Errors
-    /// When the text is no spec; the message says what there is instead.
+    /// When the text is no spec; the message lists what there is.
     pub fn parse(text: &str) -> Result<Self, SpecError> {
         let body = text
             .strip_prefix(PREFIX)
@@ -176,7 +176,7 @@ impl Spec {
         self.settings
     }
 
-    /// Voxels that the scene has at the least: 0 where that takes work to know.
+    /// A lower bound of the scene's voxels: 0 where a better one takes work.
     #[must_use]
     pub fn least_voxels(&self) -> u64 {
         let power = |base: u64| base.saturating_pow(self.settings.depth);
@@ -202,7 +202,7 @@ impl Spec {
     /// Gives every voxel of the scene once, always in the same order.
     ///
     /// File indices are 0 or more. A cyclic scene is walked through: at depth
-    /// 30 that takes years, so ask [`Self::linked`] first.
+    /// 30 that takes years, so try [`Self::linked`] first.
     pub fn voxels(&self, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
         match self.generator.shape {
             Shape::Voxels(make) => make(&self.settings, sink, progress),

@@ -182,7 +182,7 @@ fn build_grid<S: Surface + ?Sized>(
     Ok(grid)
 }
 
-/// The erosion depths of voxels, whatever they say themselves.
+/// The erosion depths of voxels, computed anew whatever is stored in them.
 pub(super) fn depths_of(voxels: &[VoxelRecord], cells: u32, element: Element) -> Vec<u16> {
     let number = |voxel: &VoxelRecord| {
         let [x, y, z] = voxel.cell.map(u32::from);

@@ -20,7 +20,7 @@ pub(super) enum Part {
     Lists,
 }
 
-/// Checks what the file says of a grid, before any of it is read.
+/// Checks a grid's entry, before any of the grid is read.
 pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
     let ensure = |holds: bool, expected| if holds { Ok(()) } else { Err(expected) };
     let is_possible = CellGrid::is_possible(entry.cells, entry.texels);

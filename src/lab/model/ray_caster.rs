@@ -1,4 +1,4 @@
-//! The rival: a ray caster in floating point, drawing the same view, counted
+//! For comparison: a ray caster in floating point, drawing the same view, counted
 //! and priced by the same tables.
 
 use hwmodel::Memory;
@@ -23,7 +23,7 @@ const ASIDE_ENTRIES: u64 = 24;
 
 /// What the ray caster took.
 #[derive(Debug, Clone, Serialize)]
-pub struct Rival {
+pub struct RayCasterReport {
     /// Steps by kind.
     pub counts: FloatRayCounts,
     /// Hits and misses of nodes in a cache like the hardware's.
@@ -72,7 +72,7 @@ pub fn measure(
     hardware: &Hardware,
     prices: &Prices,
     exact: &Frame,
-) -> Result<Rival, ModelError> {
+) -> Result<RayCasterReport, ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut cache = cache_of(hardware).ok();
     let entry = u64::from(hardware.node_cache.entry_bytes);
@@ -82,7 +82,7 @@ pub fn measure(
         }
     });
     let (node_hits, node_misses) = cache.map_or((0, 0), |c| (c.hits(), c.misses()));
-    Ok(Rival {
+    Ok(RayCasterReport {
         counts,
         node_hits,
         node_misses,
