@@ -3,9 +3,9 @@
 use hwmodel::count::Counter;
 use hwmodel::{Memory, Probe, StageLevel};
 
-use super::args::{EngineArgs, EngineName, Isa};
+use super::args::{EngineArgs, EngineName};
 use super::error::{CliError, Kind};
-use crate::fast::{Fast, FastOptions, Instructions, Switches};
+use crate::fast::{Fast, FastOptions, Switches};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::lab::bench::{Candidate, Family, Frames, Variant};
@@ -22,11 +22,7 @@ pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine>>;
 /// # Errors
 /// When this processor or this build does not have it, or it does not draw voxels.
 pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
-    let instructions = match args.isa {
-        Isa::Auto => Instructions::Auto,
-        Isa::Scalar => Instructions::Scalar,
-        Isa::Avx2 => Instructions::Avx2,
-    };
+    let instructions = args.isa;
     if !instructions.are_available() {
         return Err(CliError::new(
             Kind::Run,

@@ -67,10 +67,14 @@ impl Quantity {
 }
 
 /// What gates were chosen for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Goal {
     /// Small area.
+    #[default]
     Area,
     /// Short delay.
     Delay,
