@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use super::{Blend, Frame, NO_NODE};
+use crate::srgb::from_linear;
 
 /// Samples tested together: where none shows anything, no colour is looked up.
 const TOGETHER: usize = 16;
@@ -92,12 +93,7 @@ const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
 static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     std::array::from_fn(|light| {
         let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
-        let encoded = if light <= 0.003_130_8 {
-            12.92 * light
-        } else {
-            1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
-        };
-        libm::round(255.0 * encoded) as u8
+        libm::round(255.0 * from_linear(light)) as u8
     })
 });
 

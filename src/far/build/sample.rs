@@ -18,6 +18,7 @@ use super::grid::Grid;
 use super::rays::Occluders;
 use super::touch::{POINTS, Touched, touched};
 use crate::far::blend::Blend;
+use crate::split_mix::SplitMix;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 3;
@@ -87,20 +88,18 @@ pub(super) struct Shot {
     pub(super) triangle: usize,
 }
 
-/// Chance from a seed: SplitMix64.
-pub(super) struct Chance(u64);
+/// Random numbers of a node.
+pub(super) struct Chance(SplitMix);
 
 impl Chance {
     pub(super) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15)
+        let scrambled = seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15;
+        Self(SplitMix::new(scrambled))
     }
 
     /// 0 to 1, without 1.
     pub(super) fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 }
 

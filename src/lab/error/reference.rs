@@ -12,6 +12,7 @@ use crate::mesh::raster::{self, Pattern, RasterOptions, Samples};
 use crate::picture::{Background, Shader, Shading};
 use crate::project::{Camera, FrameSetup};
 use crate::rays::{Caster, MAX_CASTER_LEVELS};
+use crate::split_mix::mix;
 
 /// How a reference is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -166,19 +167,11 @@ impl Pixels<'_> {
 
     /// The grid point that is taken in a stratum.
     fn place_in(&self, (x, y): (u32, u32)) -> (u32, u32) {
-        let lot = mixed(self.seed ^ mixed(u64::from(x) << 32 | u64::from(y)));
+        let lot = mix(self.seed ^ mix(u64::from(x) << 32 | u64::from(y)));
         let mask = (1u32 << self.jitter_log2) - 1;
         let (dx, dy) = (lot as u32 & mask, (lot >> 32) as u32 & mask);
         (x << self.jitter_log2 | dx, y << self.jitter_log2 | dy)
     }
-}
-
-/// A number whose bits look as if drawn by lot (the finaliser of SplitMix64).
-fn mixed(number: u64) -> u64 {
-    let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ bits >> 31
 }
 
 #[cfg(test)]

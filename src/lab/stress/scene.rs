@@ -7,6 +7,7 @@ use crate::graph::{
     BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, PackedNormal, Silent, Voxel,
 };
 use crate::scene::generate::Spec;
+use crate::split_mix::SplitMix;
 
 /// A scene by its text.
 #[derive(Debug, Clone, PartialEq)]
@@ -129,37 +130,6 @@ impl FromStr for StressScene {
             }
             _ => Err(wrong()),
         }
-    }
-}
-
-/// Random numbers that are the same in every run and on every machine (splitmix64).
-#[derive(Debug, Clone)]
-pub struct Numbers(u64);
-
-impl Numbers {
-    /// Those of a seed.
-    #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// 64 random bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    /// A number from 0 to below `count`, which is 1 or more.
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count.max(1)
-    }
-
-    /// A number from 0 to below 1.
-    pub fn real(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
     }
 }
 
@@ -314,7 +284,7 @@ fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
 
 /// Up to eight nodes, a third of whose children exist, any nodes each.
 fn cyclic(depth: u32, seed: u64) -> Result<Graph, String> {
-    let mut numbers = Numbers::new(seed);
+    let mut numbers = SplitMix::new(seed);
     let nodes = 1 + numbers.below(8);
     let mut graph = LinkedGraph::new(depth);
     for node in 0..nodes {

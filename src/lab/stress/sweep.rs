@@ -7,13 +7,14 @@ use serde::Serialize;
 
 use super::case::Case;
 use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
-use super::scene::{Numbers, StressScene};
+use super::scene::StressScene;
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
 use super::vertex::Worst;
 use super::viewpoint::{Viewpoint, viewpoints};
 use crate::graph::{Graph, Progress};
 use crate::project::{CageKind, Coverage, SetupOptions};
+use crate::split_mix::SplitMix;
 
 /// What is swept.
 #[derive(Debug, Clone, PartialEq)]
@@ -362,7 +363,7 @@ pub(crate) fn sweep_of(
     let mut jobs = Vec::new();
     for (scene, graph) in graphs.iter().enumerate() {
         for &pixels in &plan.pixels {
-            let mut numbers = Numbers::new(plan.seed ^ (scene as u64) << 32);
+            let mut numbers = SplitMix::new(plan.seed ^ (scene as u64) << 32);
             let views = viewpoints(graph.depth, pixels, plan.random_viewpoints, &mut numbers);
             for viewpoint in views {
                 jobs.push(Job {
@@ -394,7 +395,7 @@ pub(crate) fn sweep_of(
 
 fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
     let mut findings = Findings::default();
-    let mut numbers = Numbers::new(job.salt);
+    let mut numbers = SplitMix::new(job.salt);
     let all = rules();
     let strict = STRICT_RULES;
     let mut oracle = Oracle::default();

@@ -10,6 +10,7 @@ use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
 use shiftvox::project::Camera;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
+use shiftvox::split_mix::SplitMix;
 
 /// The test data that are kept beside the repository, if they are there.
 pub fn shared_data() -> Option<PathBuf> {
@@ -82,32 +83,24 @@ pub fn cube(graph: &Graph) -> (DVec3, f64) {
     )
 }
 
-/// Numbers from a seed (SplitMix64): the same on every machine.
+/// Numbers from a seed: the same on every machine.
 #[derive(Debug, Clone)]
-pub struct Dice(u64);
+pub struct Dice(SplitMix);
 
 impl Dice {
     /// The numbers that follow from a seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(SplitMix::new(seed))
     }
 
     /// A number from `low` up to, not including, `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.unit()
     }
 
     /// A whole number below `end`, which is above 0.
     pub fn below(&mut self, end: u32) -> u32 {
-        (self.next() % u64::from(end)) as u32
+        self.0.below(u64::from(end)) as u32
     }
 
     /// One of some choices.
