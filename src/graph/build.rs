@@ -8,11 +8,10 @@
 use rayon::prelude::*;
 
 use super::average::Sum;
+use super::build_error::BuildError;
 use super::normals::Estimate;
 use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
-
-pub use super::pushed::MAX_SIDE;
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -29,31 +28,6 @@ pub enum Normals {
 pub struct BuildOptions {
     /// Where normals come from.
     pub normals: Normals,
-}
-
-/// Why no graph was built.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum BuildError {
-    /// No voxel was pushed.
-    #[error("there are no voxels, so there is nothing to build")]
-    Empty,
-    /// The bounding box is too long.
-    #[error(
-        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
-         are there stray voxels far from the object?"
-    )]
-    TooLarge {
-        /// `x`, `y` or `z`.
-        axis: char,
-        /// Length of the bounding box, voxels.
-        extent: u64,
-    },
-    /// More voxels or nodes than 32 bits number.
-    #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
-    TooMany(u64),
-    /// The world placement makes no sense.
-    #[error("the world origin must be finite and the voxel size finite and above 0")]
-    Placement,
 }
 
 /// Collects voxels and makes a graph of them.

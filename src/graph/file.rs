@@ -11,7 +11,7 @@ use std::sync::Arc;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::vxg::map_file;
+use super::map::map;
 
 /// Sections begin at multiples of this.
 pub(crate) const ALIGNMENT: u64 = 64;
@@ -126,7 +126,7 @@ impl Opened {
     /// Maps all of it.
     pub(crate) fn map(&self) -> Result<Arc<Mmap>, Refused> {
         let doing = "map it into memory";
-        map_file(&self.file).map_err(|source| Refused { doing, source })
+        map(&self.file).map_err(|source| Refused { doing, source })
     }
 }
 

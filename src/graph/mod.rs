@@ -2,10 +2,12 @@
 
 mod average;
 pub mod build;
+mod build_error;
 pub mod cells;
 pub mod external;
 pub(crate) mod file;
 pub mod linked;
+pub(crate) mod map;
 pub mod merge;
 mod morton;
 mod normal;
@@ -18,7 +20,8 @@ pub mod validate;
 mod voxel;
 pub mod vxg;
 
-pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use build::{BuildOptions, Builder, Normals};
+pub use build_error::BuildError;
 pub use cells::Cell;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;

@@ -7,10 +7,8 @@
 
 use rayon::prelude::*;
 
-use super::{BuildError, PackedNormal, morton};
-
-/// Longest side of the bounding box of a set of voxels.
-pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+use super::build_error::{BuildError, MAX_SIDE};
+use super::{PackedNormal, morton};
 
 /// Sides of the bounding box from its lowest to its highest voxel.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {

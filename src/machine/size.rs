@@ -8,7 +8,7 @@ use super::constants::Constants;
 use super::record::{Clip, ImagePlace, Screen};
 use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
-use crate::project::setup::ShiftSum;
+use crate::project::options::ShiftSum;
 
 /// Whether a clip-space cage is at most `limit` samples wide and high, in a node
 /// `below` levels above the samples.

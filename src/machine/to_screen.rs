@@ -7,7 +7,7 @@ use super::blocks::{Block, LEVEL_BITS, PLACES_BITS};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::record::{Clip, ImagePlace, Screen};
-use crate::project::setup::SCREEN_GUARD_SHIFT;
+use crate::project::options::SCREEN_GUARD_SHIFT;
 
 /// Integer bits of a quotient: positions from -4 to 12 node widths.
 const INTEGER_BITS: u32 = 4;

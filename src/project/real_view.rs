@@ -5,10 +5,10 @@ use hwmodel::Format;
 
 use super::camera::{Axes, Camera};
 use super::depths::{self, Edges};
-use super::reach::{Quantised, Reach};
-use super::setup::{
+use super::options::{
     Coverage, MAX_CLIP_FRAC, MAX_SUB_LEVELS, SetupOptions, detail_limit, split_fraction,
 };
+use super::reach::{Quantised, Reach};
 use crate::graph::Placement;
 
 /// The view of the object in real numbers.

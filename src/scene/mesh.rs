@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::open::OpenError;
+use super::open_error::OpenError;
 use super::{FileKind, SceneError, SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};

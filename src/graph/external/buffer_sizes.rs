@@ -1,6 +1,5 @@
-//! How a limit of memory is shared out.
+//! The sizes of all buffers, from a limit of memory.
 
-use super::halo::{MAX_BLOCK_SHIFT, block_bytes};
 use super::record::MAX_RUN;
 
 /// What the program itself takes: code, stacks, what the allocator keeps.
@@ -15,6 +14,15 @@ const CLUSTER_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
 /// Streams to temporary files that may be open together: four for each of 21
 /// levels, and a few.
 const SPOOLS: u64 = 96;
+
+/// Largest blocks: 128 clusters, 512 voxels a side.
+const MAX_BLOCK_SHIFT: u32 = 7;
+
+/// Bytes of a block: its grid, and its clusters if all are there.
+fn block_bytes(shift: u32) -> u64 {
+    let side = 1u64 << shift;
+    (side + 2).pow(3) * 8 + side.pow(3) * 16
+}
 
 /// Sizes of the buffers of an external build.
 ///

@@ -12,15 +12,6 @@ use super::runs::{Merge, Sorter};
 use crate::graph::morton;
 use crate::graph::normals::cluster::{Cluster, Surroundings, put};
 
-/// Largest blocks: 128 clusters, 512 voxels a side.
-pub(super) const MAX_BLOCK_SHIFT: u32 = 7;
-
-/// Bytes of a block: its grid, and its clusters if all are there.
-pub(super) fn block_bytes(shift: u32) -> u64 {
-    let side = 1u64 << shift;
-    (side + 2).pow(3) * 8 + side.pow(3) * 16
-}
-
 /// Bits of a coordinate in a block's grid, one cluster wider on each side.
 fn slot_bits(shift: u32) -> u32 {
     if shift == 0 { 2 } else { shift + 1 }

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::list::{GENERATORS, Generator, Key, Shape};
+use super::list::{GENERATORS, Generator, Shape};
+use super::settings::{Key, Settings};
 use crate::graph::{Graph, GraphView, Progress, Voxel};
 
 /// What every spec begins with.
@@ -13,17 +14,6 @@ pub const PREFIX: &str = "gen:";
 pub struct Spec {
     generator: &'static Generator,
     settings: Settings,
-}
-
-/// The numbers of a spec; a key that the generator does not take is 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Settings {
-    /// Levels of the scene (iterations for `menger`).
-    pub depth: u32,
-    /// Which of the random scenes.
-    pub seed: u32,
-    /// Filled voxels, percent.
-    pub density: u32,
 }
 
 /// Why a line is no spec.
@@ -86,24 +76,6 @@ fn keys(generator: &str) -> String {
         })
         .collect();
     list.join(", ")
-}
-
-impl Settings {
-    fn of(&self, key: Key) -> u32 {
-        match key {
-            Key::Depth => self.depth,
-            Key::Seed => self.seed,
-            Key::Density => self.density,
-        }
-    }
-
-    fn set(&mut self, key: Key, value: u32) {
-        match key {
-            Key::Depth => self.depth = value,
-            Key::Seed => self.seed = value,
-            Key::Density => self.density = value,
-        }
-    }
 }
 
 impl Spec {
