@@ -1,7 +1,7 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
 //! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed.
-//! Who ends the program on a signal calls [`remove_unfinished`] first. What a killed or crashed process left
+//! A signal handler that ends the program calls [`remove_unfinished`] first. What a killed or crashed process left
 //! behind is removed by the next one that writes to the folder: such a file is known by its name and by
 //! its lock, which ends with the process that held it.
 
@@ -41,55 +41,55 @@ fn failed(path: &Path, source: io::Error) -> WholeError {
     }
 }
 
-/// What this process has begun.
-struct Begun {
+/// What this process is writing.
+struct InProgress {
     /// Temporary files and folders that have not got their names yet.
     unfinished: Vec<PathBuf>,
-    /// Folders in which it has looked for what others left behind.
+    /// Folders that were searched for what other processes left behind.
     tidied: Vec<PathBuf>,
 }
 
-static BEGUN: Mutex<Begun> = Mutex::new(Begun {
+static IN_PROGRESS: Mutex<InProgress> = Mutex::new(InProgress {
     unfinished: Vec::new(),
     tidied: Vec::new(),
 });
 
-fn begun() -> MutexGuard<'static, Begun> {
-    // Lists of names: whoever panicked left them usable.
-    BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
+fn in_progress() -> MutexGuard<'static, InProgress> {
+    // Lists of names, usable even after a panic.
+    IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes all that this process has begun to write, then calls `end`, during which no file gets its name:
-/// for who ends the program.
+/// for signal handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
-    let mut begun = begun();
-    for path in begun.unfinished.drain(..) {
-        // Gone already, or not ours to remove: there is nobody to tell.
+    let mut in_progress = in_progress();
+    for path in in_progress.unfinished.drain(..) {
+        // Gone already, or not ours to remove: nothing can be done about it.
         let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
     }
     end()
 }
 
-/// A temporary file or folder, noted until this is dropped.
+/// A temporary file or folder, listed for removal until this is dropped.
 #[derive(Debug)]
-pub struct Noted(PathBuf);
+pub struct TemporaryGuard(PathBuf);
 
-impl Noted {
-    /// Notes one that was just made.
+impl TemporaryGuard {
+    /// Lists one that was just made.
     #[must_use]
     pub fn new(path: &Path) -> Self {
-        begun().unfinished.push(path.to_owned());
+        in_progress().unfinished.push(path.to_owned());
         Self(path.to_owned())
     }
 }
 
-impl Drop for Noted {
+impl Drop for TemporaryGuard {
     fn drop(&mut self) {
-        begun().unfinished.retain(|path| *path != self.0);
+        in_progress().unfinished.retain(|path| *path != self.0);
     }
 }
 
-/// Whether a file may be written: to ask before long work.
+/// Whether a file may be written; called before long work.
 ///
 /// # Errors
 /// [`WholeError::Exists`] where something is there already and may not be overwritten.
@@ -120,24 +120,29 @@ pub fn write_with(
     };
     fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
     tidy(folder);
-    let (mut file, noted) = temporary(folder, path).map_err(|e| failed(folder, e))?;
+    let (mut file, guard) = temporary(folder, path).map_err(|e| failed(folder, e))?;
     fill(file.as_file_mut()).map_err(|e| failed(path, e))?;
     let (_open, temporary) = file.into_parts();
-    keep(temporary, path, overwrite, noted)
+    keep(temporary, path, overwrite, guard)
 }
 
 /// Gives a temporary file its name.
-fn keep(temporary: TempPath, path: &Path, overwrite: bool, noted: Noted) -> Result<(), WholeError> {
+fn keep(
+    temporary: TempPath,
+    path: &Path,
+    overwrite: bool,
+    guard: TemporaryGuard,
+) -> Result<(), WholeError> {
     let kept = {
         // Not while the program is being ended.
-        let _begun = begun();
+        let _in_progress = in_progress();
         if overwrite {
             temporary.persist(path)
         } else {
             temporary.persist_noclobber(path)
         }
     };
-    drop(noted);
+    drop(guard);
     match kept {
         Ok(()) => Ok(()),
         Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => {
@@ -148,7 +153,7 @@ fn keep(temporary: TempPath, path: &Path, overwrite: bool, noted: Noted) -> Resu
 }
 
 /// A temporary file for a place, locked for as long as it is open.
-fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Noted)> {
+fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, TemporaryGuard)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let end = (0..=name.len().min(MOST_NAME))
         .rev()
@@ -164,11 +169,11 @@ fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Noted)> {
     }
     loop {
         let file = builder.tempfile_in(folder)?;
-        let noted = Noted::new(file.path());
+        let guard = TemporaryGuard::new(file.path());
         // Where there are no locks, nobody takes it for left behind either.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
-            return Ok((file, noted));
+            return Ok((file, guard));
         }
         // Another process was quicker and took it for one.
     }
@@ -177,11 +182,11 @@ fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Noted)> {
 /// Removes what ended processes left in a folder, the first time that this one writes to it.
 fn tidy(folder: &Path) {
     {
-        let mut begun = begun();
-        if begun.tidied.iter().any(|known| known == folder) {
+        let mut in_progress = in_progress();
+        if in_progress.tidied.iter().any(|known| known == folder) {
             return;
         }
-        begun.tidied.push(folder.to_owned());
+        in_progress.tidied.push(folder.to_owned());
     }
     // Whatever cannot be read or removed stays: it does not stand in the way.
     let Ok(entries) = fs::read_dir(folder) else {

@@ -8,7 +8,7 @@ mod sealed;
 use libfuzzer_sys::fuzz_target;
 use shiftvox::far::FarFile;
 use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
-use shiftvox::mesh::raster::View;
+use shiftvox::mesh::raster::RasterCamera;
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&choice, rest)) = bytes.split_first() else {
@@ -32,7 +32,7 @@ fuzz_target!(|bytes: &[u8]| {
     let mut viewer = FarViewer::new(&file);
     // From far, where voxels show, and from near, where triangles do.
     for (distance, voxel_px) in [(300.0, 16.0), (0.6, 1.0)] {
-        let view = View {
+        let view = RasterCamera {
             eye: (low + high) / 2.0 - forward * distance * size,
             right: glam::DVec3::X,
             up: glam::DVec3::Y,

@@ -13,9 +13,9 @@ mod sums;
 pub use sums::{AccessCount, Accesses, OpCount};
 
 use crate::Format;
-use crate::probe::{Memory, OpClass, Operand, Place, Probe, Stage};
+use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
-/// Octree levels that are told apart, 0..=63; deeper ones count as the last.
+/// Octree levels that are counted apart, 0..=63; deeper ones count as the last.
 pub const LEVELS: usize = 64;
 
 const CLASSES: usize = OpClass::ALL.len();
@@ -24,7 +24,7 @@ const MEMORIES: usize = Memory::ALL.len();
 
 /// Counts that stand together: operations of one stage by class, short
 /// operands of one stage by number of bits, or accesses of one stage by memory.
-type Row = [u64; 8];
+type CountRow = [u64; 8];
 
 /// First row, each of one row a stage, of words, of words with their carry, of
 /// wide words, of these with their carry,
@@ -55,7 +55,7 @@ struct Table {
 ///
 /// What a [`Datapath`](crate::Datapath) reports is counted at the level of the
 /// record that has its turn (0 before the first), which is that of its place;
-/// operations that are told to [`Probe::op`] directly go by their place.
+/// operations passed to [`Probe::op`] directly go by their level.
 ///
 /// ```
 /// use hwmodel::count::Counter;
@@ -77,7 +77,7 @@ struct Table {
 #[derive(Debug, Clone)]
 pub struct Counter {
     /// Counts of each set since it passed to its level.
-    fresh: [[Row; ROWS]; SETS],
+    fresh: [[CountRow; ROWS]; SETS],
     /// Level at which each set counts, 0..LEVELS.
     levels: [usize; SETS],
     /// The set that counts now, 0..SETS.
@@ -85,7 +85,7 @@ pub struct Counter {
     /// Widths of the operands of `SIZED`.
     widths: [u32; 4],
     /// By level.
-    settled: Vec<[Row; ROWS]>,
+    settled: Vec<[CountRow; ROWS]>,
     /// One for each other width, in the order in which they were met.
     tables: Vec<Table>,
     records: [u64; LEVELS],
@@ -94,11 +94,11 @@ pub struct Counter {
 impl Default for Counter {
     fn default() -> Self {
         Self {
-            fresh: [[Row::default(); ROWS]; SETS],
+            fresh: [[CountRow::default(); ROWS]; SETS],
             levels: std::array::from_fn(|set| set),
             set: 0,
             widths: [0; 4],
-            settled: vec![[Row::default(); ROWS]; LEVELS],
+            settled: vec![[CountRow::default(); ROWS]; LEVELS],
             tables: Vec::new(),
             records: [0; LEVELS],
         }
@@ -147,7 +147,7 @@ impl Counter {
             for level in 0..LEVELS {
                 for stage in 0..STAGES {
                     let row = std::mem::take(&mut self.settled[level][first + stage]);
-                    if row != Row::default() {
+                    if row != CountRow::default() {
                         let table = self.table_of(bits);
                         add_and_clear(&mut self.tables[table].counts[level][stage], &mut { row });
                     }
@@ -165,7 +165,7 @@ impl Counter {
 
     /// Counts operations whose kind of operand is not known beforehand.
     #[inline(never)]
-    fn count(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn count(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let table = self.table_of(bits);
         let counts = &mut self.tables[table].counts[clamped(place.level)];
         counts[place.stage as usize][class as usize] += u64::from(times);
@@ -191,12 +191,12 @@ impl Probe for Counter {
     }
 
     #[inline]
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         self.count(class, bits, place, times);
     }
 
     #[inline(always)]
-    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         let stage = place.stage as usize;
         let first = match operand {
             Operand::Word => SIZED[0],
@@ -212,12 +212,12 @@ impl Probe for Counter {
     }
 
     #[inline(always)]
-    fn read(&mut self, memory: Memory, _address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, _address: u64, place: StageLevel) {
         self.count_fresh(READS + place.stage as usize, memory as usize);
     }
 
     #[inline(always)]
-    fn write(&mut self, memory: Memory, _address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, _address: u64, place: StageLevel) {
         self.count_fresh(WRITES + place.stage as usize, memory as usize);
     }
 

@@ -1,12 +1,12 @@
 //! The datapath: every arithmetic step of the machine is one call here.
 //!
-//! Each call does one operation on words, tells the probe, and applies the
+//! Each call does one operation on words, reports it to the probe, and applies the
 //! overflow policy. There is no call that multiplies and none that divides;
 //! the restoring divide is built by its user from [`Datapath::divide_step`].
 
 use crate::probe::Memory;
 use crate::{
-    Format, Number, OpClass, Operand, Overflow, Place, Probe, Stage, WideWord, Wires, Word,
+    Format, Number, OpClass, Operand, Overflow, Probe, Stage, StageLevel, WideWord, Wires, Word,
 };
 
 /// The operation during which a word overflowed.
@@ -45,7 +45,7 @@ pub struct Trap {
     /// The operation.
     pub op: TrapOp,
     /// Stage and octree level.
-    pub place: Place,
+    pub place: StageLevel,
     /// Number of the record within the frame, from 0.
     pub record: u64,
     /// Width of the word that overflowed, in bits.
@@ -59,7 +59,7 @@ pub struct Datapath<P: Probe> {
     policy: Overflow,
     /// 64 less the width: shifting left and right by it sign-extends a word.
     spare: [u32; 2],
-    place: Place,
+    place: StageLevel,
     record: u64,
     trap: Option<Trap>,
     overflows: u64,
@@ -74,7 +74,7 @@ impl<P: Probe> Datapath<P> {
             format,
             policy,
             spare: [64 - format.bits(), 64 - format.wide().bits()],
-            place: Place {
+            place: StageLevel {
                 stage: Stage::Pop,
                 level: 0,
             },
@@ -93,7 +93,7 @@ impl<P: Probe> Datapath<P> {
 
     /// Where it is at work.
     #[inline(always)]
-    pub(crate) fn place(&self) -> Place {
+    pub(crate) fn place(&self) -> StageLevel {
         self.place
     }
 

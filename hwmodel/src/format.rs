@@ -109,6 +109,7 @@ impl Format {
 /// What a result outside the format becomes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Overflow {
     /// The machine stops with an error that names operation, stage and record.
     #[default]

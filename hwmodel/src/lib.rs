@@ -1,8 +1,8 @@
 //! Words, datapath and counters of a light hardware: adders, shifts, logic
 //! and compares; no multiplier, no divider, no floating point.
 //!
-//! This crate is the ground floor of `shiftvox`. It knows nothing of voxels
-//! beyond the words *record*, *stage* and *level*.
+//! This crate is the ground floor of `shiftvox`. It does not depend on
+//! the renderer and knows voxels only by the words *record*, *stage* and *level*.
 //!
 //! Every operation is a call on a [`Datapath`]; a [`Probe`] sees it, and a
 //! result that does not fit its word goes by the [`Overflow`] policy:
@@ -56,6 +56,6 @@ mod word;
 pub use datapath::{Datapath, Trap, TrapOp};
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
 pub use narrow::Narrow;
-pub use probe::{Memory, NoProbe, OpClass, Operand, Place, Probe, Stage};
+pub use probe::{Memory, NoProbe, OpClass, Operand, Probe, Stage, StageLevel};
 pub use tap::{Short, Signal, SignalKind, Wires};
 pub use word::{Number, WideWord, Word};

@@ -175,14 +175,14 @@ impl Memory {
 
 /// Where an operation happens: the stage and the octree level of the record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Place {
+pub struct StageLevel {
     /// Stage of the record loop.
     pub stage: Stage,
     /// Octree level of the record that is worked on, 0 = root.
     pub level: u32,
 }
 
-/// What an operation works on, as far as the line that calls for it says. The
+/// What an operation works on, as far as the calling line determines it. The
 /// datapath's format has the widths that go with it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Operand {
@@ -205,11 +205,11 @@ pub enum Operand {
 /// All methods do nothing by default, and [`Probe::ENABLED`] lets the
 /// datapath leave the calls out altogether.
 pub trait Probe {
-    /// Whether anything listens.
+    /// Whether the probe does anything.
     const ENABLED: bool = true;
 
-    /// Whether anything listens at the borders of blocks. Apart from
-    /// [`Probe::ENABLED`], so that who counts operations pays nothing for it.
+    /// Whether the probe takes the borders of blocks. Separate from
+    /// [`Probe::ENABLED`], so that counting operations alone costs no more.
     const TAPS: bool = false;
 
     /// A datapath of this format is built around the probe.
@@ -220,7 +220,7 @@ pub trait Probe {
 
     /// `times` operations of one class on words of `bits` bits were executed.
     #[inline]
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let _ = (class, bits, place, times);
     }
 
@@ -231,20 +231,20 @@ pub trait Probe {
     /// A probe that is faster for knowing the kind has a method of its own;
     /// for all others it is [`Probe::op`], once.
     #[inline]
-    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         let _ = operand;
         self.op(class, bits, place, 1);
     }
 
     /// A memory was read.
     #[inline]
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         let _ = (memory, address, place);
     }
 
     /// A memory was written.
     #[inline]
-    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         let _ = (memory, address, place);
     }
 
@@ -254,7 +254,7 @@ pub trait Probe {
         let _ = (index, level);
     }
 
-    /// Whether [`Probe::tap`] is wanted by now; asked only where `TAPS` is set.
+    /// Whether [`Probe::tap`] should be called now; used only where `TAPS` is set.
     #[inline]
     fn is_tapping(&self) -> bool {
         Self::TAPS
@@ -286,22 +286,22 @@ impl<P: Probe> Probe for &mut P {
     }
 
     #[inline]
-    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         (**self).op_on(operand, class, bits, place);
     }
 
     #[inline]
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         (**self).op(class, bits, place, times);
     }
 
     #[inline]
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         (**self).read(memory, address, place);
     }
 
     #[inline]
-    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         (**self).write(memory, address, place);
     }
 
@@ -333,7 +333,7 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     }
 
     #[inline]
-    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: Place) {
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
         if A::ENABLED {
             self.0.op_on(operand, class, bits, place);
         }
@@ -343,7 +343,7 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     }
 
     #[inline]
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         if A::ENABLED {
             self.0.op(class, bits, place, times);
         }
@@ -353,7 +353,7 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     }
 
     #[inline]
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         if A::ENABLED {
             self.0.read(memory, address, place);
         }
@@ -363,7 +363,7 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     }
 
     #[inline]
-    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         if A::ENABLED {
             self.0.write(memory, address, place);
         }

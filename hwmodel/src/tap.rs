@@ -2,7 +2,7 @@
 //!
 //! A machine shows the border of a block with [`Datapath::tap`](crate::Datapath::tap); a
 //! [`Probe`](crate::Probe) whose `TAPS` is set takes rows of [`Signal`]s from there. Nothing
-//! comes back, and where nobody listens nothing is left of the call.
+//! comes back, and without such a probe the call compiles to nothing.
 
 use crate::{Format, Narrow, WideWord, Word};
 

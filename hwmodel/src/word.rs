@@ -4,7 +4,7 @@
 /// One machine word, in units of the last place of its [`Format`](crate::Format).
 ///
 /// It has no operators at all: every operation is a call on a
-/// [`Datapath`](crate::Datapath), which checks the width and tells a probe.
+/// [`Datapath`](crate::Datapath), which checks the width and reports to a probe.
 /// There is no multiplication and no division to call:
 ///
 /// ```compile_fail,E0369

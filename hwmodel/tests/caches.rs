@@ -1,7 +1,7 @@
 //! Caches and miss curves against the plainest possible models.
 
 use hwmodel::memory::{Cache, MemoryProbe, MissCurve, Widths};
-use hwmodel::{Memory, Place, Probe, Stage};
+use hwmodel::{Memory, Probe, Stage, StageLevel};
 use proptest::prelude::*;
 
 /// A cache as a list of lists, the line used last at the end.
@@ -158,7 +158,7 @@ fn shapes_that_are_no_caches() {
     assert_eq!(Cache::new(64, 1, 64).unwrap().hit_rate(), None);
 }
 
-const PLACE: Place = Place {
+const PLACE: StageLevel = StageLevel {
     stage: Stage::Pop,
     level: 0,
 };

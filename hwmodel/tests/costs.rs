@@ -7,7 +7,7 @@ use hwmodel::cost::{
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
-use hwmodel::{Memory, OpClass, Place, Probe, Stage};
+use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 
 fn shipped() -> CostTable {
     CostTable::load_shipped().expect("well-formed tables")
@@ -409,7 +409,7 @@ fn what_is_no_table() {
     }
 }
 
-const PLACE: Place = Place {
+const PLACE: StageLevel = StageLevel {
     stage: Stage::ChildBox,
     level: 3,
 };
@@ -476,7 +476,7 @@ fn spans_in_pairs() {
     let mut counter = Counter::new();
     counter.op(OpClass::MinMax, 32, PLACE, 3 * 14);
     counter.op(OpClass::Select, 32, PLACE, 1);
-    let to_screen = Place {
+    let to_screen = StageLevel {
         stage: Stage::ToScreen,
         ..PLACE
     };

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use common::*;
 use hwmodel::count::{Accesses, Counter, LEVELS};
-use hwmodel::{Datapath, Memory, OpClass, Overflow, Place, Probe, Stage, WideWord, Word};
+use hwmodel::{Datapath, Memory, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word};
 use proptest::prelude::*;
 
 type Cells = BTreeMap<(u32, u32, Stage, OpClass), u64>;
@@ -24,15 +24,15 @@ fn level(level: u32) -> u32 {
 }
 
 impl Probe for Plain {
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let cell = (bits, level(place.level), place.stage, class);
         *self.ops.entry(cell).or_default() += u64::from(times);
     }
-    fn read(&mut self, memory: Memory, _: u64, place: Place) {
+    fn read(&mut self, memory: Memory, _: u64, place: StageLevel) {
         let cell = (level(place.level), place.stage, memory);
         self.accesses.entry(cell).or_default().reads += 1;
     }
-    fn write(&mut self, memory: Memory, _: u64, place: Place) {
+    fn write(&mut self, memory: Memory, _: u64, place: StageLevel) {
         let cell = (level(place.level), place.stage, memory);
         self.accesses.entry(cell).or_default().writes += 1;
     }
@@ -188,7 +188,7 @@ proptest! {
 #[test]
 fn sums_by_any_key() {
     let mut counter = Counter::new();
-    let place = |stage, level| Place { stage, level };
+    let place = |stage, level| StageLevel { stage, level };
     counter.op(OpClass::Add, 24, place(Stage::Centre, 2), 3);
     counter.op(OpClass::Add, 200, place(Stage::Draw, 2), 4);
     counter.op(OpClass::Shift, 24, place(Stage::Draw, 64), 5);

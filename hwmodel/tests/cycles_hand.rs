@@ -14,7 +14,7 @@ mod cycles_common;
 
 use cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{
-    Cause, ContextReport, Hardware, Recorder, Region, START, TraceLimit, VisitSpan, simulate,
+    Cause, ContextReport, Hardware, ImageNode, Recorder, START, TraceLimit, VisitSpan, simulate,
 };
 use hwmodel::{Memory, OpClass, Stage};
 
@@ -63,7 +63,7 @@ buffer = 1
 drain_interval = 4
 "#;
 
-const ORIGIN: Region = Region {
+const ORIGIN: ImageNode = ImageNode {
     level: 0,
     x: 0,
     y: 0,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use cycles_common::{Does, Listed, Node};
 use hwmodel::cycles::{
-    Cache, CycleReport, Hardware, Independence, NoObserver, Recorder, Region, StackOverflow,
+    Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
     TraceLimit, Unit, simulate,
 };
 use hwmodel::{Memory, OpClass, Stage};
@@ -57,10 +57,10 @@ fn does(dice: &mut Dice) -> Vec<Does> {
 }
 
 /// A part of a region, or all of it.
-fn part_of(region: Region, dice: &mut Dice) -> Region {
-    let mut part = region;
+fn part_of(image_node: ImageNode, dice: &mut Dice) -> ImageNode {
+    let mut part = image_node;
     while part.level < 6 && dice.one_in(2) {
-        part = Region {
+        part = ImageNode {
             level: part.level + 1,
             x: part.x << 1 | dice.below(2) as u32,
             y: part.y << 1 | dice.below(2) as u32,
@@ -73,18 +73,18 @@ fn part_of(region: Region, dice: &mut Dice) -> Region {
 fn records(seed: u64, most: u64) -> Vec<Node> {
     let mut dice = Dice(seed);
     let mut nodes = vec![Node::default(), Node::default()];
-    nodes[0].children.push((1, 0, Region::default()));
-    let mut regions = vec![Region::default(); 2];
+    nodes[0].children.push((1, 0, ImageNode::default()));
+    let mut image_nodes = vec![ImageNode::default(); 2];
     let mut at = 1;
     while at < nodes.len() {
         nodes[at].does = does(&mut dice);
         for place in 0..8 {
             if (nodes.len() as u64) < most && dice.one_in(3) {
-                let region = part_of(regions[at], &mut dice);
+                let image_node = part_of(image_nodes[at], &mut dice);
                 let child = nodes.len() as u32;
-                nodes[at].children.push((child, place, region));
+                nodes[at].children.push((child, place, image_node));
                 nodes.push(Node::default());
-                regions.push(region);
+                image_nodes.push(image_node);
             }
         }
         at += 1;
@@ -232,7 +232,7 @@ proptest! {
             for (i, later) in node.children.iter().enumerate() {
                 for earlier in &node.children[..i] {
                     let same_class = class(earlier.1) == class(later.1);
-                    let shift = |a: Region, b: Region| a.level.saturating_sub(b.level);
+                    let shift = |a: ImageNode, b: ImageNode| a.level.saturating_sub(b.level);
                     let (a, b) = (earlier.2, later.2);
                     let disjoint = a.x >> shift(a, b) != b.x >> shift(b, a)
                         || a.y >> shift(a, b) != b.y >> shift(b, a);

@@ -6,7 +6,7 @@ mod cycles_common;
 use std::collections::BTreeMap;
 
 use cycles_common::{Does, Listed, Node};
-use hwmodel::cycles::{Hardware, Recorder, Region, START, TraceLimit, VisitSpan, simulate};
+use hwmodel::cycles::{Hardware, ImageNode, Recorder, START, TraceLimit, VisitSpan, simulate};
 use hwmodel::{Memory, OpClass, Stage};
 
 /// Three generations of eight children.
@@ -18,7 +18,7 @@ fn records() -> Vec<Node> {
         Does::Write(Stage::Push, Memory::Stack, 0),
     ];
     let mut nodes = vec![Node::default()];
-    nodes[0].children.push((1, 0, Region::default()));
+    nodes[0].children.push((1, 0, ImageNode::default()));
     for at in 1..=73u32 {
         let children = if at <= 9 {
             (at - 1) * 8 + 2..at * 8 + 2
@@ -29,7 +29,7 @@ fn records() -> Vec<Node> {
             does: does.clone(),
             children: children
                 .zip(0u8..)
-                .map(|(item, place)| (item, place, Region::default()))
+                .map(|(item, place)| (item, place, ImageNode::default()))
                 .collect(),
         });
     }

@@ -6,10 +6,10 @@ mod common;
 use common::*;
 use hwmodel::count::Counter;
 use hwmodel::{
-    Datapath, Memory, NoProbe, Number, OpClass, Overflow, Place, Probe, Stage, WideWord, Word,
+    Datapath, Memory, NoProbe, Number, OpClass, Overflow, Probe, Stage, StageLevel, WideWord, Word,
 };
 
-const PLACE: Place = Place {
+const PLACE: StageLevel = StageLevel {
     stage: Stage::QuadtreeFit,
     level: 7,
 };
@@ -105,7 +105,7 @@ fn operations_of_words_alone() {
 #[test]
 fn memories_and_records_are_passed_on() {
     let mut dp = Datapath::new(format(32), Overflow::Trap, Log::default());
-    let before = Place {
+    let before = StageLevel {
         stage: Stage::Pop,
         level: 0,
     };
@@ -172,13 +172,13 @@ struct Deaf;
 
 impl Probe for Deaf {
     const ENABLED: bool = false;
-    fn op(&mut self, _: OpClass, _: u32, _: Place, _: u32) {
+    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {
         panic!("nobody listens");
     }
-    fn read(&mut self, _: Memory, _: u64, _: Place) {
+    fn read(&mut self, _: Memory, _: u64, _: StageLevel) {
         panic!("nobody listens");
     }
-    fn write(&mut self, _: Memory, _: u64, _: Place) {
+    fn write(&mut self, _: Memory, _: u64, _: StageLevel) {
         panic!("nobody listens");
     }
     fn record(&mut self, _: u64, _: u32) {

@@ -4,7 +4,7 @@
 mod common;
 
 use common::*;
-use hwmodel::{Datapath, NoProbe, Overflow, Place, Stage, Trap, TrapOp, WideWord, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Stage, StageLevel, Trap, TrapOp, WideWord, Word};
 
 /// The trap of one operation, run in a place of its own.
 fn trap_of(bits: u32, run: impl Fn(&mut Datapath<NoProbe>)) -> Option<Trap> {
@@ -24,7 +24,7 @@ fn a_trap_names_operation_place_record_and_width() {
             i64::try_from(end).expect("64 bits at most")
         };
         let expected = |op, bits| {
-            let place = Place {
+            let place = StageLevel {
                 stage: Stage::VertexPool,
                 level: 5,
             };

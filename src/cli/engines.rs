@@ -1,11 +1,11 @@
 //! The only place of the command line that makes engines.
 
 use hwmodel::count::Counter;
-use hwmodel::{Memory, Place, Probe};
+use hwmodel::{Memory, Probe, StageLevel};
 
-use super::args::{EngineArgs, EngineName, Isa};
+use super::args::{EngineArgs, EngineName};
 use super::error::{CliError, Kind};
-use crate::fast::{Fast, FastOptions, Instructions, Switches};
+use crate::fast::{Fast, FastOptions, Switches};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::lab::bench::{Candidate, Family, Frames, Variant};
@@ -22,11 +22,7 @@ pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine>>;
 /// # Errors
 /// When this processor or this build does not have it, or it does not draw voxels.
 pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
-    let instructions = match args.isa {
-        Isa::Auto => Instructions::Auto,
-        Isa::Scalar => Instructions::Scalar,
-        Isa::Avx2 => Instructions::Avx2,
-    };
+    let instructions = args.isa;
     if !instructions.are_available() {
         return Err(CliError::new(
             Kind::Run,
@@ -306,16 +302,16 @@ const MACHINE_VARIANTS: &[Variant] = &[
 /// The nodes that the machine fetches for a frame.
 fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
     /// Notes the nodes in the order in which they are read.
-    struct Noted(Vec<u32>);
-    impl Probe for Noted {
-        fn read(&mut self, memory: Memory, address: u64, _: Place) {
+    struct TemporaryGuard(Vec<u32>);
+    impl Probe for TemporaryGuard {
+        fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
             if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
                 self.0.push(node);
             }
         }
     }
     let mut frame = Frame::nodes_only(setup.width, setup.height);
-    let noted = Noted(Vec::new());
+    let noted = TemporaryGuard(Vec::new());
     let (_, noted) = Machine::default().render_probed(graph, setup, &mut frame, noted)?;
     Ok(noted.0)
 }

@@ -10,7 +10,7 @@ use super::engines;
 use super::error::CliError;
 use super::scenes::{self, Scene};
 use crate::drawing::{
-    self, Drawable, FarDrawing, FarLook, GraphDrawing, GraphLook, TexturedDrawing, TexturedLook,
+    self, Drawable, FarDrawing, FarStyle, GraphDrawing, GraphStyle, TexturedDrawing, TexturedStyle,
     milliseconds_since,
 };
 use crate::far::FarFile;
@@ -176,23 +176,23 @@ impl Opened {
         Ok(match &self.content {
             Content::Graph(scene) => Box::new(of_graph(scene, args)?),
             Content::Far(file) => {
-                let look = FarLook {
+                let style = FarStyle {
                     voxel_px: args.engine.rules.mesh_lod(),
                     aa_log2,
                     opacity: args.engine.far_opacity.unwrap_or_default(),
                     shading,
                     background,
                 };
-                Box::new(FarDrawing::new(file, look))
+                Box::new(FarDrawing::new(file, style))
             }
             Content::Textured(file) => {
-                let look = TexturedLook {
+                let style = TexturedStyle {
                     erosion: erosion(args.engine)?,
                     aa_log2,
                     shading,
                     background,
                 };
-                Box::new(TexturedDrawing::new(file, look))
+                Box::new(TexturedDrawing::new(file, style))
             }
         })
     }
@@ -206,7 +206,7 @@ pub(super) fn of_graph<'s>(
     scene: &'s Scene,
     args: &DrawArgs<'_>,
 ) -> Result<GraphDrawing<'s>, CliError> {
-    let look = GraphLook {
+    let style = GraphStyle {
         options: args.engine.rules.options(args.picture.aa_log2()),
         shading: args.picture.shade,
         background: args.picture.background.unwrap_or_default(),
@@ -214,7 +214,7 @@ pub(super) fn of_graph<'s>(
         is_hashed: args.is_hashed,
     };
     let maker = engines::maker(args.engine)?;
-    Ok(GraphDrawing::new(&scene.graph, scene.up, look, maker))
+    Ok(GraphDrawing::new(&scene.graph, scene.up, style, maker))
 }
 
 fn erosion(args: &EngineArgs) -> Result<drawing::Erosion, CliError> {

@@ -154,7 +154,7 @@ pub(super) fn counts(counter: &Counter) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hwmodel::{Place, Probe};
+    use hwmodel::{Probe, StageLevel};
 
     #[test]
     fn order_statistics() {
@@ -166,7 +166,7 @@ mod tests {
     #[test]
     fn the_count_table_adds_up() {
         let mut counter = Counter::new();
-        let place = |stage| Place { stage, level: 0 };
+        let place = |stage| StageLevel { stage, level: 0 };
         counter.op(OpClass::Add, 64, place(Stage::Centre), 1200);
         counter.op(OpClass::Add, 64, place(Stage::Draw), 34);
         counter.op(OpClass::Shift, 64, place(Stage::Draw), 5);

@@ -147,13 +147,13 @@ fn again(folder: &Path, console: &Console) -> Result<(), CliError> {
 }
 
 /// All that a run found.
-struct Found {
+struct Results {
     config: Config,
     drawn: Vec<Drawn>,
     evidence: Vec<Evidence>,
     table_one: Vec<Timed>,
     objects: Vec<Timed>,
-    order: Vec<(&'static str, ablation::Row)>,
+    order: Vec<(&'static str, ablation::AblationRow)>,
     /// Names, captions and pictures.
     pictures: Vec<(String, String, Vec<u8>)>,
 }
@@ -232,7 +232,7 @@ fn one_plot(panel: Panel) -> Result<String, CliError> {
     Ok(plot::svg(&[panel])?)
 }
 
-fn find(config: Config, console: &Console) -> Result<Found, CliError> {
+fn find(config: Config, console: &Console) -> Result<Results, CliError> {
     let subjects = open(&config, console)?;
     let (family, order_alone) = (engines::order_family(2), engines::order_family(1));
     let all = Engines {
@@ -254,7 +254,7 @@ fn find(config: Config, console: &Console) -> Result<Found, CliError> {
         .collect();
     let order = reproduce::order(&compared, config.object_side, &all, &mut harness)?;
     let pictures = pictures(&config, &subjects, &drawn)?;
-    Ok(Found {
+    Ok(Results {
         evidence: drawn.iter().map(|d| d.evidence.clone()).collect(),
         drawn,
         config,
@@ -307,7 +307,7 @@ fn pictures(
     Ok(all)
 }
 
-fn document(found: &Found, context: &Context) -> Value {
+fn document(found: &Results, context: &Context) -> Value {
     let options = SetupOptions::default();
     let mut fields = context.json(found.config.schedule(), &options);
     let order: Vec<Value> = found
@@ -324,7 +324,7 @@ fn document(found: &Found, context: &Context) -> Value {
     report::document("reproduce", fields)
 }
 
-fn page(found: &Found, context: &Context, plots: &[(&str, String)]) -> String {
+fn page(found: &Results, context: &Context, plots: &[(&str, String)]) -> String {
     let mut page = Page::new("The paper's results, reproduced");
     page.lines(&context.command_line());
     page.text(
@@ -407,7 +407,7 @@ fn page(found: &Found, context: &Context, plots: &[(&str, String)]) -> String {
     page.finish()
 }
 
-fn key_figures(found: &Found) -> Vec<(String, String)> {
+fn key_figures(found: &Results) -> Vec<(String, String)> {
     let mut figures = Vec::new();
     if let Some(law) = tables::paper_law() {
         figures.push((

@@ -11,7 +11,7 @@ use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::report;
 use crate::lab::stress::{
-    self, Case, End, Findings, Hold, Outcome, Plan, Scene, panels, rows, summary, tables,
+    self, Case, End, Findings, Hold, Outcome, StressScene, SweepPlan, panels, rows, summary, tables,
 };
 use crate::picture::store;
 use crate::report::html::Page;
@@ -23,7 +23,7 @@ pub(super) struct StressArgs {
     /// Scenes: generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
     /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
     #[arg(value_name = "SCENE", value_parser = scene)]
-    scenes: Vec<Scene>,
+    scenes: Vec<StressScene>,
     /// Chooses viewpoints and rules; the same seed gives the same sweep
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -54,7 +54,7 @@ pub(super) struct StressArgs {
     export: ExportArgs,
 }
 
-fn scene(text: &str) -> Result<Scene, String> {
+fn scene(text: &str) -> Result<StressScene, String> {
     text.parse()
 }
 
@@ -128,8 +128,8 @@ pub(super) fn run(
     ))
 }
 
-fn plan(args: &StressArgs, from_config: &[String]) -> Result<Plan, CliError> {
-    let mut plan = Plan::new(args.seed, args.thorough);
+fn plan(args: &StressArgs, from_config: &[String]) -> Result<SweepPlan, CliError> {
+    let mut plan = SweepPlan::new(args.seed, args.thorough);
     if !args.scenes.is_empty() {
         plan.scenes.clone_from(&args.scenes);
     } else if !from_config.is_empty() {
@@ -155,7 +155,7 @@ fn plan(args: &StressArgs, from_config: &[String]) -> Result<Plan, CliError> {
     Ok(plan)
 }
 
-fn document(plan: &Plan, findings: &Findings, context: &Context) -> serde_json::Value {
+fn document(plan: &SweepPlan, findings: &Findings, context: &Context) -> serde_json::Value {
     let table = rows(plan, findings);
     let rows: Vec<serde_json::Value> = table
         .rows
@@ -202,7 +202,7 @@ fn document(plan: &Plan, findings: &Findings, context: &Context) -> serde_json::
 }
 
 fn page(
-    plan: &Plan,
+    plan: &SweepPlan,
     findings: &Findings,
     context: &Context,
     tables: &[crate::report::Table],

@@ -84,7 +84,7 @@ fn describe(file: &TexturedFile, name: &str) -> Value {
 }
 
 fn describe_grid(grid: &Grid<'_>) -> Value {
-    let lattice = grid.lattice();
+    let lattice = grid.cell_grid();
     let [voxels, lists, textures] = grid.bytes();
     let [projected, afresh] = grid.projected();
     let row = |row: &LevelRow| {
@@ -139,7 +139,7 @@ fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     let head = head.map(String::from).to_vec();
     let rows = (0..file.grids()).map(|number| {
         let grid = file.grid(number);
-        let lattice = grid.lattice();
+        let lattice = grid.cell_grid();
         vec![
             format!("{} ({})", lattice.cells(), element_name(grid.element())),
             lattice.texels().to_string(),
@@ -156,7 +156,7 @@ fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
         let [projected, afresh] = grid.projected();
         parts.push(format!(
             "grid {}: {} texels projected, slice by slice; {} had each volume been projected afresh",
-            grid.lattice().cells(),
+            grid.cell_grid().cells(),
             grouped(projected),
             grouped(afresh)
         ));

@@ -11,7 +11,7 @@ use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::{outputs, report, scenes};
-use crate::drawing::{Drawable, TrianglesDrawing, TrianglesLook, milliseconds_since};
+use crate::drawing::{Drawable, TrianglesDrawing, TrianglesStyle, milliseconds_since};
 use crate::mesh::raster::{Pattern, Samples};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::{Background, Buffer, Shading, store};
@@ -85,8 +85,8 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
     let load_ms = milliseconds_since(started);
     let size = args.size.map_or((512, 512), |s| (s.width, s.height));
-    let look = args.look()?;
-    let mut drawing = TrianglesDrawing::new(&mesh, up, look, console.progress());
+    let style = args.style()?;
+    let mut drawing = TrianglesDrawing::new(&mesh, up, style, console.progress());
     let camera = args.camera.camera(&drawing.bounds(), up, size, 0.0);
     let at_output = |error| CliError::from(error).at(args.output.display());
     drawing.draw(&camera, 1).map_err(at_output)?;
@@ -117,7 +117,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
             "mesh": args.mesh,
             "output": args.output,
             "triangles": mesh.triangles().len(),
-            "samples": look.samples.per_pixel(),
+            "samples": style.samples.per_pixel(),
             "camera": camera_line(&camera),
             "load_ms": load_ms,
             "draw_ms": draw_ms,
@@ -139,14 +139,14 @@ impl TrianglesArgs {
         std::iter::once(self.output.clone()).chain(beside).collect()
     }
 
-    fn look(&self) -> Result<TrianglesLook, CliError> {
+    fn style(&self) -> Result<TrianglesStyle, CliError> {
         let pattern = match self.pattern {
             PatternName::Regular => Pattern::Regular,
             PatternName::Stratified => Pattern::Stratified { seed: self.seed },
         };
         // The flag takes numbers of samples only that there are.
         let samples = self.samples.parse().unwrap_or(16);
-        Ok(TrianglesLook {
+        Ok(TrianglesStyle {
             samples: Samples::new(samples, pattern).map_err(CliError::usage)?,
             shading: if self.flat {
                 Shading::Flat

@@ -3,15 +3,15 @@
 use serde_json::{Value, json};
 
 use super::mesh_view::{light_of, picture_of_far, view_of};
-use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
+use super::{DrawError, Drawable, Figures, KeptPicture, Shown, check_samples, timed};
 use crate::far::FarFile;
-use crate::far::view::{Counts, FarViewer, Opacity, ViewOptions};
+use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 
 /// What far voxels are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FarLook {
+pub struct FarStyle {
     /// Largest voxel, pixels; above 0.
     pub voxel_px: f64,
     /// Samples per pixel and axis, as a power of two.
@@ -28,18 +28,18 @@ pub struct FarLook {
 pub struct FarDrawing<'f> {
     file: &'f FarFile,
     viewer: FarViewer<'f>,
-    look: FarLook,
-    kept: Option<Kept>,
+    style: FarStyle,
+    kept: Option<KeptPicture>,
 }
 
 impl<'f> FarDrawing<'f> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(file: &'f FarFile, look: FarLook) -> Self {
+    pub fn new(file: &'f FarFile, style: FarStyle) -> Self {
         Self {
             file,
             viewer: FarViewer::new(file),
-            look,
+            style,
             kept: None,
         }
     }
@@ -57,21 +57,21 @@ impl Drawable for FarDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.look.aa_log2)?;
+        check_samples(camera, self.style.aa_log2)?;
         let view = view_of(camera, self.file.bounds())?;
         let options = ViewOptions {
-            voxel_px: self.look.voxel_px,
-            samples_across: 1 << self.look.aa_log2,
-            opacity: self.look.opacity,
-            light: light_of(&view, self.look.shading),
-            background: self.look.background.color(),
+            voxel_px: self.style.voxel_px,
+            samples_across: 1 << self.style.aa_log2,
+            opacity: self.style.opacity,
+            light: light_of(&view, self.style.shading),
+            background: self.style.background.color(),
             ..ViewOptions::default()
         };
         let ((picture, counts), times_ms) = timed(runs, || {
             let (drawn, counts) = self.viewer.draw(&view, &options)?;
             Ok((picture_of_far(drawn), counts))
         })?;
-        self.kept = Some(Kept {
+        self.kept = Some(KeptPicture {
             picture,
             counters: counters(&counts),
             times_ms,
@@ -101,7 +101,7 @@ pub fn resident(file: &FarFile) -> Option<Value> {
     }))
 }
 
-fn counters(counts: &Counts) -> Figures {
+fn counters(counts: &FarCounts) -> Figures {
     let counters = [
         ("nodes_visited", counts.visited),
         ("nodes_outside", counts.outside),

@@ -17,7 +17,7 @@ use crate::project::{
 
 /// What a voxel graph is drawn with.
 #[derive(Debug, Clone, PartialEq)]
-pub struct GraphLook {
+pub struct GraphStyle {
     /// Rules and words.
     pub options: SetupOptions,
     /// Light.
@@ -35,7 +35,7 @@ pub struct GraphLook {
 pub struct GraphDrawing<'g> {
     graph: &'g Graph,
     up: Up,
-    look: GraphLook,
+    style: GraphStyle,
     engine: Box<dyn Fn() -> Box<dyn Engine> + 'g>,
     viewer: Viewer<'g, Box<dyn Engine>>,
     /// What the viewer's frames hold.
@@ -61,24 +61,24 @@ impl<'g> GraphDrawing<'g> {
     pub fn new(
         graph: &'g Graph,
         up: Up,
-        look: GraphLook,
+        style: GraphStyle,
         engine: impl Fn() -> Box<dyn Engine> + 'g,
     ) -> Self {
         let of_voxels = [Buffer::Depth, Buffer::Normal, Buffer::Voxel];
-        let wants = |buffer: &Buffer| look.buffers.contains(buffer);
+        let wants = |buffer: &Buffer| style.buffers.contains(buffer);
         let contents = if wants(&Buffer::Records) {
             Contents::Records
-        } else if look.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
+        } else if style.is_hashed || of_voxels.iter().any(wants) || !graph.links.is_empty() {
             Contents::Voxels
         } else {
             // A fifth of the memory. Colours depend on voxels where a node has
-            // no normal, and the graph then says where the node is.
+            // no normal, and the node's place follows from the graph.
             Contents::Nodes
         };
         Self {
             graph,
             up,
-            look,
+            style,
             viewer: Viewer::new(graph.view(), engine(), contents),
             engine: Box::new(engine),
             contents,
@@ -91,7 +91,7 @@ impl<'g> GraphDrawing<'g> {
     /// # Errors
     /// When the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
-        check_samples(camera, self.look.options.aa_log2)?;
+        check_samples(camera, self.style.options.aa_log2)?;
         let Graph {
             placement, depth, ..
         } = self.graph;
@@ -99,7 +99,7 @@ impl<'g> GraphDrawing<'g> {
             camera,
             placement,
             *depth,
-            &self.look.options,
+            &self.style.options,
         )?)
     }
 
@@ -126,11 +126,11 @@ impl<'g> GraphDrawing<'g> {
         // A frame that is not there has no samples.
         let frame = self.viewer.frame();
         let frame = frame.ok_or(ResolveError::Size(0, 0, setup.width, setup.height))?;
-        let GraphLook {
+        let GraphStyle {
             shading,
             background,
             ..
-        } = self.look;
+        } = self.style;
         Resolver::new(frame, self.graph, setup, shading, background)
     }
 
@@ -165,7 +165,7 @@ impl Drawable for GraphDrawing<'_> {
         };
         let mut started = Instant::now();
         let is_shown = self.viewer.shows(&setup);
-        let light = lights(self.graph, &setup, self.look.shading);
+        let light = lights(self.graph, &setup, self.style.shading);
         let mut stats = self.viewer.render_lit(&setup, &light)?;
         let mut draw_ms = milliseconds_since(started);
         started = Instant::now();
@@ -173,7 +173,7 @@ impl Drawable for GraphDrawing<'_> {
             Some(last) => last.pixels,
             None => match self.pixels(&setup) {
                 Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
-                    // The graph does not say it: once more, with voxels.
+                    // The graph does not determine it: once more, with voxels.
                     self.contents = Contents::Voxels;
                     let engine = (self.engine)();
                     self.viewer = Viewer::new(self.graph.view(), engine, self.contents);

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use crate::far::view::FarPicture;
-use crate::mesh::raster::{Light, NO_TRIANGLE, RasterPicture, View};
+use crate::mesh::raster::{Light, NO_TRIANGLE, RasterCamera, RasterPicture};
 use crate::picture::{AMBIENT, KEY_LIGHT, Picture, Shading};
 use crate::project::{Camera, CameraError};
 
@@ -15,13 +15,13 @@ const NEAR: f64 = 1e-6;
 ///
 /// # Errors
 /// When the camera has no direction or a number that is not finite.
-pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, CameraError> {
+pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<RasterCamera, CameraError> {
     let axes = camera.axes()?;
     let farthest = (camera.eye - low)
         .abs()
         .max((high - camera.eye).abs())
         .length();
-    Ok(View {
+    Ok(RasterCamera {
         eye: camera.eye,
         right: axes.right,
         up: axes.up,
@@ -35,7 +35,7 @@ pub fn view_of(camera: &Camera, (low, high): (DVec3, DVec3)) -> Result<View, Cam
 
 /// The key light of all engines, which moves with the camera; none for flat shading.
 #[must_use]
-pub fn light_of(view: &View, shading: Shading) -> Option<Light> {
+pub fn light_of(view: &RasterCamera, shading: Shading) -> Option<Light> {
     let key = KEY_LIGHT.normalize();
     let light = Light {
         towards: view.right * key.x + view.up * key.y - view.forward * key.z,

@@ -1,7 +1,7 @@
 //! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels, triangles.
 //!
-//! A [`Drawable`] is data, an engine and its options. It is asked for a picture with a camera, and what it
-//! [shows](Drawable::shown) is the same for all methods: colours, buffers, times and counters.
+//! A [`Drawable`] is data, an engine and its options. It draws a picture from a camera, and what it
+//! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and counters.
 
 mod far;
 mod graph;
@@ -20,10 +20,10 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use far::{FarDrawing, FarLook, resident};
-pub use graph::{GraphDrawing, GraphLook};
-pub use textured::{Erosion, TexturedDrawing, TexturedLook};
-pub use triangles::{TrianglesDrawing, TrianglesLook, bounds_of_mesh};
+pub use far::{FarDrawing, FarStyle, resident};
+pub use graph::{GraphDrawing, GraphStyle};
+pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
+pub use triangles::{TrianglesDrawing, TrianglesStyle, bounds_of_mesh};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {
@@ -53,7 +53,7 @@ pub type Figures = Vec<(&'static str, Value)>;
 pub struct Shown<'d> {
     /// The colours.
     pub pixels: Cow<'d, Pixels>,
-    /// All buffers, made as they are asked for.
+    /// All buffers, made on demand.
     pub buffers: Buffers<'d>,
     /// Pixels that show something at their middle sample.
     pub pixels_drawn: usize,
@@ -61,7 +61,7 @@ pub struct Shown<'d> {
     pub times_ms: &'d [f64],
     /// What was counted of one frame.
     pub counters: Figures,
-    /// What this method alone tells.
+    /// Figures of this method alone.
     pub details: Figures,
 }
 
@@ -119,7 +119,7 @@ pub enum DrawError {
     /// A file of textured voxels has no grid with so many cells.
     #[error("the file has no grid of {cells} cells")]
     NoGrid {
-        /// The number that was asked for.
+        /// The requested number.
         cells: u32,
         /// The numbers that there are.
         has: Vec<u32>,
@@ -168,13 +168,13 @@ pub fn milliseconds_since(started: Instant) -> f64 {
 
 /// A picture that a method of meshes drew.
 #[derive(Debug)]
-struct Kept {
+struct KeptPicture {
     picture: Picture,
     counters: Figures,
     times_ms: Vec<f64>,
 }
 
-impl Kept {
+impl KeptPicture {
     fn shown(&self, details: Figures) -> Shown<'_> {
         let picture = &self.picture;
         Shown {

@@ -3,13 +3,13 @@
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, Figures, Kept, Shown, check_samples, timed};
-use crate::mesh::raster::{Pattern, Samples, View};
+use super::{DrawError, Drawable, Figures, KeptPicture, Shown, check_samples, timed};
+use crate::mesh::raster::{Pattern, RasterCamera, Samples};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 use crate::textured::TexturedFile;
 use crate::textured::record::Primitive;
-use crate::textured::view::{Counts, Detail, ViewOptions, choose_grid, draw};
+use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
 
 /// How often voxels are eroded.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +30,7 @@ pub enum Erosion {
 
 /// What textured voxels are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TexturedLook {
+pub struct TexturedStyle {
     /// Level of detail.
     pub erosion: Erosion,
     /// Samples per pixel and axis, as a power of two.
@@ -44,27 +44,27 @@ pub struct TexturedLook {
 /// A file of textured voxels that is drawn, once or from many cameras.
 pub struct TexturedDrawing<'f> {
     file: &'f TexturedFile,
-    look: TexturedLook,
-    kept: Option<Kept>,
+    style: TexturedStyle,
+    kept: Option<KeptPicture>,
 }
 
 impl<'f> TexturedDrawing<'f> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(file: &'f TexturedFile, look: TexturedLook) -> Self {
+    pub fn new(file: &'f TexturedFile, style: TexturedStyle) -> Self {
         Self {
             file,
-            look,
+            style,
             kept: None,
         }
     }
 
-    fn detail(&self, view: &View) -> Result<Detail, DrawError> {
-        let (level, cells) = match self.look.erosion {
+    fn detail(&self, view: &RasterCamera) -> Result<Detail, DrawError> {
+        let (level, cells) = match self.style.erosion {
             Erosion::Auto { texel_px } => return Ok(Detail::Auto { texel_px }),
             Erosion::Level { level, cells } => (level, cells),
         };
-        let cells_of = |grid: usize| self.file.grid(grid).lattice().cells();
+        let cells_of = |grid: usize| self.file.grid(grid).cell_grid().cells();
         let grid = match cells {
             None => choose_grid(self.file, view, level),
             Some(cells) => (0..self.file.grids())
@@ -96,20 +96,20 @@ impl Drawable for TexturedDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.look.aa_log2)?;
+        check_samples(camera, self.style.aa_log2)?;
         let view = view_of(camera, self.file.bounds())?;
         // Which grid fits the view is part of the work.
         let ((picture, counts), times_ms) = timed(runs, || {
             let options = ViewOptions {
                 detail: self.detail(&view)?,
-                samples: Samples::new(1 << (2 * self.look.aa_log2), Pattern::Regular)?,
-                light: light_of(&view, self.look.shading),
-                background: self.look.background.color(),
+                samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
+                light: light_of(&view, self.style.shading),
+                background: self.style.background.color(),
             };
             let (drawn, counts) = draw(self.file, &view, &options)?;
             Ok((picture_of_triangles(drawn), counts))
         })?;
-        self.kept = Some(Kept {
+        self.kept = Some(KeptPicture {
             picture,
             counters: counters(self.file, &counts),
             times_ms,
@@ -123,9 +123,9 @@ impl Drawable for TexturedDrawing<'_> {
     }
 }
 
-fn counters(file: &TexturedFile, counts: &Counts) -> Figures {
+fn counters(file: &TexturedFile, counts: &TexturedCounts) -> Figures {
     let choice = &counts.choice;
-    let cells = file.grid(choice.grid).lattice().cells();
+    let cells = file.grid(choice.grid).cell_grid().cells();
     vec![
         ("grid", json!(cells)),
         ("erosion", json!(choice.level)),

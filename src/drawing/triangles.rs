@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, Kept, Shown, timed};
+use super::{DrawError, Drawable, KeptPicture, Shown, timed};
 use crate::graph::Progress;
 use crate::mesh::Mesh;
 use crate::mesh::raster::{self, RasterOptions, Samples};
@@ -13,7 +13,7 @@ use crate::project::{Bounds, Camera, Up};
 
 /// What triangles are drawn with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrianglesLook {
+pub struct TrianglesStyle {
     /// Samples of a pixel.
     pub samples: Samples,
     /// Light.
@@ -26,20 +26,20 @@ pub struct TrianglesLook {
 pub struct TrianglesDrawing<'m> {
     mesh: &'m Mesh,
     up: Up,
-    look: TrianglesLook,
+    style: TrianglesStyle,
     progress: &'m dyn Progress,
-    kept: Option<Kept>,
+    kept: Option<KeptPicture>,
     coverage: Vec<f32>,
 }
 
 impl<'m> TrianglesDrawing<'m> {
     /// Nothing is drawn yet.
     #[must_use]
-    pub fn new(mesh: &'m Mesh, up: Up, look: TrianglesLook, progress: &'m dyn Progress) -> Self {
+    pub fn new(mesh: &'m Mesh, up: Up, style: TrianglesStyle, progress: &'m dyn Progress) -> Self {
         Self {
             mesh,
             up,
-            look,
+            style,
             progress,
             kept: None,
             coverage: Vec::new(),
@@ -66,15 +66,15 @@ impl Drawable for TrianglesDrawing<'_> {
         self.kept = None;
         let view = view_of(camera, self.mesh.bounds())?;
         let options = RasterOptions {
-            samples: self.look.samples,
-            light: light_of(&view, self.look.shading),
-            background: self.look.background.color(),
+            samples: self.style.samples,
+            light: light_of(&view, self.style.shading),
+            background: self.style.background.color(),
         };
         let (mut drawn, times_ms) = timed(runs, || {
             Ok(raster::draw(self.mesh, &view, &options, self.progress)?)
         })?;
         self.coverage = std::mem::take(&mut drawn.coverage);
-        self.kept = Some(Kept {
+        self.kept = Some(KeptPicture {
             picture: picture_of_triangles(drawn),
             counters: vec![("triangles", json!(self.mesh.triangles().len()))],
             times_ms,

@@ -60,10 +60,10 @@ pub const RECORD_BYTES: [usize; 6] = [11, 12, 15, 33, 34, 37];
 /// Bytes of the opacities in a voxel of each list: the scalar, and six of four bits.
 pub const OPACITY_BYTES: [usize; 6] = [0, 1, 4, 0, 1, 4];
 
-/// Steps of an opacity of a main direction: four bits, finer than tens of rays tell.
+/// Steps of an opacity of a main direction: four bits, finer than tens of rays can measure.
 const SIX_STEPS: f64 = 15.0;
 
-/// What a voxel looks like.
+/// A voxel's colours and normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(
     clippy::large_enum_variant,
@@ -115,7 +115,7 @@ impl Shader {
 pub struct Voxel {
     /// Place in the node's grid.
     pub place: [u8; 3],
-    /// What it looks like.
+    /// Its colours and normals.
     pub shader: Shader,
     /// Opacity seen from each main direction, 0 to 1.
     pub opacity: [f64; DIRECTIONS],

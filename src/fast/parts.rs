@@ -26,7 +26,7 @@ enum Kind {
     #[default]
     Plain,
     /// Each part is a node, which the graph's links name; or a child is solid.
-    Looked,
+    Linked,
     /// The node is solid: all parts are it.
     Solid,
 }
@@ -122,7 +122,7 @@ impl Parts {
             first: graph.first.get(node as usize).copied().unwrap_or(0),
             node,
             mask,
-            kind: Kind::Looked,
+            kind: Kind::Linked,
             ..Self::default()
         };
         for octant in (0..8u8).filter(|octant| mask >> octant & 1 != 0) {

@@ -1,10 +1,11 @@
-//! The quickest picture: each sample's own colour, unlit, as a window wants it.
+//! The quickest picture: each sample's own colour, unlit, ready for display in a window.
 
 use std::sync::LazyLock;
 
 use super::{Blend, Frame, NO_NODE};
+use crate::srgb::from_linear;
 
-/// Samples that are looked at together: where none shows anything, none is looked up.
+/// Samples tested together: where none shows anything, no colour is looked up.
 const TOGETHER: usize = 16;
 /// Samples that are worth a thread's while.
 const SHARE: usize = 1 << 15;
@@ -92,12 +93,7 @@ const ENCODED_SIZE: usize = 1 << ENCODED_BITS;
 static ENCODED: LazyLock<[u8; ENCODED_SIZE]> = LazyLock::new(|| {
     std::array::from_fn(|light| {
         let light = (light as f64 + 0.5) / ENCODED_SIZE as f64;
-        let encoded = if light <= 0.003_130_8 {
-            12.92 * light
-        } else {
-            1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
-        };
-        libm::round(255.0 * encoded) as u8
+        libm::round(255.0 * from_linear(light)) as u8
     })
 });
 

@@ -25,7 +25,7 @@ pub struct Frame {
     pub node: Vec<u32>,
     /// Object coordinates of the seen voxel's lowest corner, in finest
     /// voxels, and its octree level (0 = root); or [`NO_VOXEL`]. Empty where
-    /// voxels are not wanted ([`Frame::nodes_only`]).
+    /// voxels are not stored ([`Frame::nodes_only`]).
     pub voxel: Vec<[i32; 4]>,
     /// Share of the records worked on for this sample, if it was asked for:
     /// a record counts 1, spread evenly over its quadtree node's samples.
@@ -54,7 +54,7 @@ impl Default for Blend {
 }
 
 impl Frame {
-    /// An empty frame; `with_records` asks for the records of each sample.
+    /// An empty frame; `with_records`: with the records of each sample.
     #[must_use]
     pub fn new(width: u32, height: u32, with_records: bool) -> Self {
         let samples = width as usize * height as usize;
@@ -68,8 +68,8 @@ impl Frame {
         }
     }
 
-    /// An empty frame whose `voxel` stays empty: for who wants nodes alone,
-    /// a fifth of the memory to write. Engines then tell of no voxels.
+    /// An empty frame whose `voxel` stays empty, for uses that need nodes alone:
+    /// a fifth of the memory to write. Engines then store no voxels.
     #[must_use]
     pub fn nodes_only(width: u32, height: u32) -> Self {
         Self {

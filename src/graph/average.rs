@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use glam::DVec3;
 
 use super::PackedNormal;
+use crate::srgb::to_linear;
 
 /// Linear light of full intensity.
 const FULL: f64 = 16_777_215.0;
@@ -19,12 +20,7 @@ const UNIT_NORMAL: f64 = 1_048_576.0;
 /// Linear light of each sRGB value, rounded.
 static LINEAR: LazyLock<[u32; 256]> = LazyLock::new(|| {
     std::array::from_fn(|value| {
-        let encoded = value as f64 / 255.0;
-        let linear = if encoded <= 0.040_45 {
-            encoded / 12.92
-        } else {
-            libm::pow((encoded + 0.055) / 1.055, 2.4)
-        };
+        let linear = to_linear(value as f64 / 255.0);
         libm::round(linear * FULL) as u32
     })
 });

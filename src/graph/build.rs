@@ -8,11 +8,10 @@
 use rayon::prelude::*;
 
 use super::average::Sum;
+use super::build_error::BuildError;
 use super::normals::Estimate;
-use super::records::{Record, Records, extent};
+use super::pushed::{PushedVoxel, PushedVoxels, extent};
 use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
-
-pub use super::records::MAX_SIDE;
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -31,31 +30,6 @@ pub struct BuildOptions {
     pub normals: Normals,
 }
 
-/// Why no graph was built.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-pub enum BuildError {
-    /// No voxel was pushed.
-    #[error("there are no voxels, so there is nothing to build")]
-    Empty,
-    /// The bounding box is too long.
-    #[error(
-        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
-         are there stray voxels far from the object?"
-    )]
-    TooLarge {
-        /// `x`, `y` or `z`.
-        axis: char,
-        /// Length of the bounding box, voxels.
-        extent: u64,
-    },
-    /// More voxels or nodes than 32 bits number.
-    #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
-    TooMany(u64),
-    /// The world placement makes no sense.
-    #[error("the world origin must be finite and the voxel size finite and above 0")]
-    Placement,
-}
-
 /// Collects voxels and makes a graph of them.
 ///
 /// Holds 20 bytes for each voxel pushed, and room for at most two million
@@ -64,7 +38,7 @@ pub enum BuildError {
 #[derive(Debug)]
 pub struct Builder {
     options: BuildOptions,
-    records: Records,
+    records: PushedVoxels,
     min: [i32; 3],
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
@@ -77,7 +51,7 @@ impl Builder {
     pub fn new(options: BuildOptions) -> Self {
         Self {
             options,
-            records: Records::default(),
+            records: PushedVoxels::default(),
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
@@ -114,7 +88,7 @@ impl Builder {
             let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
             let sequence = self.pushed as u32;
             self.records
-                .push(Record::new(voxel.index, sequence, voxel.color, normal));
+                .push(PushedVoxel::new(voxel.index, sequence, voxel.color, normal));
         }
         self.pushed += 1;
     }
@@ -219,7 +193,7 @@ struct Tree {
 impl Tree {
     /// Shape and finest level, from sorted records.
     fn build(
-        records: Vec<Record>,
+        records: Vec<PushedVoxel>,
         depth: u32,
         progress: &dyn Progress,
     ) -> Result<Self, BuildError> {
@@ -299,7 +273,7 @@ pub(super) fn first_new_level(before: Option<u64>, key: u64, depth: u32) -> u32 
 }
 
 /// The first node of each level, and the end.
-fn level_starts(records: &[Record], depth: u32) -> Result<Vec<u32>, BuildError> {
+fn level_starts(records: &[PushedVoxel], depth: u32) -> Result<Vec<u32>, BuildError> {
     let begun = records
         .par_windows(2)
         .fold(

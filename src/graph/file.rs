@@ -11,7 +11,7 @@ use std::sync::Arc;
 use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::vxg::map_file;
+use super::map::map;
 
 /// Sections begin at multiples of this.
 pub(crate) const ALIGNMENT: u64 = 64;
@@ -26,7 +26,7 @@ pub enum FileError {
         file: PathBuf,
         /// What was tried.
         doing: &'static str,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The file is not as it should be.
@@ -75,7 +75,7 @@ impl FileError {
         }
     }
 
-    /// What the system says of a file.
+    /// The system's error for a file.
     pub(crate) fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
         Self::Io {
             file: path.to_owned(),
@@ -126,7 +126,7 @@ impl Opened {
     /// Maps all of it.
     pub(crate) fn map(&self) -> Result<Arc<Mmap>, Refused> {
         let doing = "map it into memory";
-        map_file(&self.file).map_err(|source| Refused { doing, source })
+        map(&self.file).map_err(|source| Refused { doing, source })
     }
 }
 
@@ -339,7 +339,7 @@ pub(crate) fn check_padding(
 /// Writes header and sections, in the order of the file, with zeros between.
 ///
 /// # Errors
-/// What the writer says; a machine that stores the highest byte first.
+/// The writer's byte order; a machine that stores the highest byte first.
 pub(crate) fn write<'s>(
     format: &Format,
     header: &[u8; HEADER_BYTES],

@@ -20,12 +20,12 @@ use super::{Graph, MAX_DEPTH, PackedNormal, Placement};
 pub struct LinkedGraph {
     depth: u32,
     root: u32,
-    nodes: Vec<Node>,
+    nodes: Vec<LinkedNode>,
     placement: Placement,
 }
 
 #[derive(Debug, Clone)]
-struct Node {
+struct LinkedNode {
     color: [u8; 3],
     normal: PackedNormal,
     children: [Option<u32>; 8],
@@ -93,7 +93,7 @@ impl LinkedGraph {
         children: [Option<u32>; 8],
     ) -> u32 {
         let number = self.nodes.len().min(u32::MAX as usize) as u32;
-        self.nodes.push(Node {
+        self.nodes.push(LinkedNode {
             color,
             normal,
             children,

@@ -4,7 +4,7 @@
 //! colours, normals and opacities. In a graph stored level by level, levels are merged
 //! from the finest up, so each node is looked at once; two equal nodes of different levels stay
 //! apart. In any other graph, cyclic ones included, nodes start out equal and
-//! are told apart by their children's differences until no more are found.
+//! are distinguished by their children's differences until no more are found.
 //!
 //! Nodes of the result are numbered in the order in which a walk by levels
 //! from the root meets them, so the root is node 0, and nodes and children that
@@ -255,7 +255,7 @@ fn rebuild(graph: &Graph, class: &[u32]) -> Graph {
     if ordered {
         level_start.push(merged.len() as u32);
         // Nodes that nothing leads to are left out. If a level had no others, it is
-        // empty now, which the level table cannot say; the graph is as sound without.
+        // empty now, which the level table cannot express; the graph is as sound without it.
         if level_start.len() == graph.depth as usize + 2 {
             merged.level_start = level_start;
         }

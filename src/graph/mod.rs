@@ -2,23 +2,27 @@
 
 mod average;
 pub mod build;
+mod build_error;
+pub mod cells;
 pub mod external;
 pub(crate) mod file;
 pub mod linked;
+pub(crate) mod map;
 pub mod merge;
 mod morton;
 mod normal;
 mod normals;
 mod opacity;
 mod progress;
-mod records;
+mod pushed;
 mod store;
 pub mod validate;
 mod voxel;
 pub mod vxg;
-pub mod walk;
 
-pub use build::{BuildError, BuildOptions, Builder, Normals};
+pub use build::{BuildOptions, Builder, Normals};
+pub use build_error::BuildError;
+pub use cells::Cell;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
@@ -27,7 +31,6 @@ pub use progress::{Progress, Silent};
 pub use store::Store;
 pub use validate::Invalid;
 pub use voxel::Voxel;
-pub use walk::Cell;
 
 /// Deepest level that a graph may have: voxel coordinates stay within `i32`.
 pub const MAX_DEPTH: u32 = 30;
@@ -208,10 +211,10 @@ impl GraphView<'_> {
 
     /// Child `octant` (`x << 2 | y << 1 | z`) of a node, if there is one.
     ///
-    /// A leaf has none here; that it points to itself is for the renderer to say.
+    /// A leaf has no children here; the renderer may treat it as its own child.
     /// Never panics, whatever a damaged file holds: a child list that leaves
     /// the file reads as no child, and a child without a node as a leaf
-    /// ([`Graph::color_of`] then says black).
+    /// ([`Graph::color_of`] is then black).
     #[inline]
     #[must_use]
     pub fn child(&self, node: u32, octant: u8) -> Option<u32> {

@@ -3,7 +3,7 @@
 //! The sphere is projected to the octahedron `|x| + |y| + |z| = 1`, its lower
 //! half is folded over the upper, and the square that results is a grid of
 //! 255 by 255 points. A byte holds `-127..=127` as `1..=255`; no byte is ever
-//! 0 in a normal, so the value 0 is free to say that there is none. The six
+//! 0 in a normal, so the value 0 is free to mean "no normal". The six
 //! axes are exact. Of the four grid points around a direction the nearest is
 //! taken: the error stays below 0.7 degrees.
 

@@ -3,8 +3,8 @@
 /// Opacity of a voxel along the six main directions, four bits each: 0 lets all
 /// through, 15 nothing.
 ///
-/// Byte `k` is for axis `k`: its low half for who looks from the side of low
-/// coordinates, its high half for who looks from the side of high ones.
+/// Byte `k` is for axis `k`: its low half is the opacity seen from the side of low
+/// coordinates, its high half that seen from the side of high ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(transparent)]
 pub struct Opacity(pub [u8; 3]);

@@ -1,6 +1,6 @@
-//! How long work tells how far it is, without knowing who listens.
+//! Progress of long work, reported without knowledge of how it is shown.
 
-/// Told by long work how far it is. All calls may come from any thread.
+/// Receives the progress of long work. Calls may come from any thread.
 pub trait Progress: Sync {
     /// A piece of work begins: what it is, and how many steps it has (0: unknown).
     fn begin(&self, what: &str, steps: u64);
@@ -10,7 +10,7 @@ pub trait Progress: Sync {
     fn end(&self);
 }
 
-/// Nobody listens.
+/// Ignores all progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 

@@ -8,7 +8,7 @@ use super::{Graph, MAX_DEPTH};
 pub struct Invalid {
     /// Field of [`Graph`].
     pub array: &'static str,
-    /// Entry of the array; 0 for a field that is none.
+    /// Entry of the array; 0 for a field that is not an array.
     pub index: usize,
     /// What should have been there, and what was.
     pub expected: String,
@@ -149,8 +149,8 @@ impl Graph {
     }
 
     /// Whether children are as they should be in a tree stored level by level,
-    /// with lengths and levels that are; false of other graphs. What is wrong is
-    /// for others to say: this looks with few steps a node.
+    /// whose lengths and levels are sound; false for other graphs. A quick test
+    /// that does not find out what is wrong.
     fn is_sound_tree(&self) -> bool {
         if self.level_start.is_empty() || !self.links.is_empty() {
             return false;

@@ -1,7 +1,7 @@
 //! How far a vertex can be from where it should be: bounds that are derived
 //! in `spec/bounds.md`, in real numbers, from the camera.
 //!
-//! Nothing here knows how the machine computes. What it does know are the
+//! Nothing here depends on how the machine computes. It uses the
 //! widths of the numbers that the machine holds: the fraction bits of clip
 //! vectors and of screen positions.
 

@@ -4,6 +4,7 @@
 pub mod bench;
 pub mod bounds;
 pub mod error;
+pub mod far_path;
 pub mod flicker;
 pub mod float_rays;
 pub mod methods;
@@ -11,4 +12,3 @@ pub mod model;
 pub mod reproduce;
 pub mod stress;
 pub mod vertex_error;
-pub mod walk;

@@ -24,7 +24,7 @@ pub const MAX_DEPTH: u32 = 7;
 
 /// A named view of the unit cube `[0, 1]^3`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct View {
+pub struct NamedCamera {
     /// What a table calls it.
     pub name: String,
     /// The camera, in cube sides.
@@ -46,9 +46,9 @@ pub struct LevelError {
 
 /// One view's errors, by growing number of exact levels from 0.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ViewError {
+pub struct CameraVertexErrors {
     /// The view.
-    pub view: View,
+    pub view: NamedCamera,
     /// Its errors.
     pub levels: Vec<LevelError>,
 }
@@ -59,7 +59,7 @@ pub struct VertexErrorTable {
     /// Octree levels of the cube's lattice, which has `(2^depth + 1)^3` vertices.
     pub depth: u32,
     /// Rows.
-    pub rows: Vec<ViewError>,
+    pub rows: Vec<CameraVertexErrors>,
 }
 
 /// Why there is no table.
@@ -103,7 +103,7 @@ pub const STANDARD_EXACT_LEVELS: u32 = 4;
 /// around the cube fills the picture. The fourth stands 0.3 sides before a
 /// face, seven eighths along its width and at half its height, and sees 60 degrees.
 #[must_use]
-pub fn standard_views() -> Vec<View> {
+pub fn standard_views() -> Vec<NamedCamera> {
     let centre = DVec3::splat(0.5);
     let camera = |eye: DVec3, fov_degrees: f64| Camera {
         eye,
@@ -114,9 +114,9 @@ pub fn standard_views() -> Vec<View> {
         height: SIDE_PX,
     };
     let direction = DVec3::new(1.0, 0.9, 0.6).normalize();
-    let mut views: Vec<View> = [1.5, 4.0, 16.0]
+    let mut views: Vec<NamedCamera> = [1.5, 4.0, 16.0]
         .into_iter()
-        .map(|away: f64| View {
+        .map(|away: f64| NamedCamera {
             name: format!("{away} sides away"),
             camera: camera(
                 centre + direction * (away + 0.5),
@@ -124,7 +124,7 @@ pub fn standard_views() -> Vec<View> {
             ),
         })
         .collect();
-    views.push(View {
+    views.push(NamedCamera {
         name: "0.3 sides from a face".to_owned(),
         camera: camera(DVec3::new(0.875, -0.3, 0.5), 60.0),
     });
@@ -146,7 +146,7 @@ pub fn standard_table() -> Result<VertexErrorTable, VertexErrorError> {
 /// [`VertexErrorError`]: levels out of range (`exact_levels <= depth <=`
 /// [`MAX_DEPTH`]), a camera that cannot see, or a vertex that is not before it.
 pub fn vertex_error(
-    views: &[View],
+    views: &[NamedCamera],
     depth: u32,
     exact_levels: u32,
 ) -> Result<VertexErrorTable, VertexErrorError> {
@@ -163,14 +163,18 @@ pub fn vertex_error(
     Ok(VertexErrorTable { depth, rows })
 }
 
-fn row(view: &View, depth: u32, exact_levels: u32) -> Result<ViewError, VertexErrorError> {
+fn row(
+    view: &NamedCamera,
+    depth: u32,
+    exact_levels: u32,
+) -> Result<CameraVertexErrors, VertexErrorError> {
     let setup = set_up(&view.camera, depth)?;
     let behind = || VertexErrorError::BehindEye(view.name.clone());
     let truth = project_all(&view.camera, depth)?.ok_or_else(behind)?;
     let unit_px = libm::ldexp(1.0, -(setup.format.frac() as i32));
     let levels = (0..=exact_levels)
         .map(|exact_levels| {
-            let lattice = Lattice::projected(&setup, exact_levels).ok_or_else(behind)?;
+            let lattice = ScreenVertices::projected(&setup, exact_levels).ok_or_else(behind)?;
             let lattice = lattice.halved(depth - exact_levels);
             let mut errors: Vec<f64> = lattice
                 .vertices
@@ -191,7 +195,7 @@ fn row(view: &View, depth: u32, exact_levels: u32) -> Result<ViewError, VertexEr
             })
         })
         .collect::<Result<_, VertexErrorError>>()?;
-    Ok(ViewError {
+    Ok(CameraVertexErrors {
         view: view.clone(),
         levels,
     })
@@ -242,12 +246,12 @@ fn lattice_points(cells: i64) -> impl Iterator<Item = [i64; 3]> {
 /// Screen positions (x, y) of `(cells + 1)^3` vertices, x slowest, z fastest,
 /// in the units of the set-up's format.
 #[derive(Debug, Clone, PartialEq)]
-struct Lattice {
+struct ScreenVertices {
     cells: usize,
     vertices: Vec<[i64; 2]>,
 }
 
-impl Lattice {
+impl ScreenVertices {
     /// The lattice of octree level `level`, every vertex projected: the
     /// quotient of its clip vector's integers, rounded down. `None` where a
     /// vertex is not before the eye.
@@ -379,7 +383,7 @@ mod tests {
             let setup = set_up(&view.camera, DEPTH).expect("a view");
             let mut compared = 0;
             for exact_levels in 0..=DEPTH {
-                let lattice = Lattice::projected(&setup, exact_levels)
+                let lattice = ScreenVertices::projected(&setup, exact_levels)
                     .expect("a cube before the eye")
                     .halved(DEPTH - exact_levels);
                 let mut changing = setup.clone();
@@ -446,7 +450,7 @@ mod tests {
     fn the_table_reads_well() {
         let table = VertexErrorTable {
             depth: 5,
-            rows: vec![ViewError {
+            rows: vec![CameraVertexErrors {
                 view: standard_views().remove(1),
                 levels: vec![LevelError {
                     exact_levels: 0,

@@ -35,7 +35,7 @@ const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
 /// How a voxel's three sides are seen.
 #[derive(Debug, Clone, Copy)]
-struct Aim {
+struct VisibleSides {
     /// By axis, sixteenths of the outline that the side counts for.
     counts: [Narrow; 3],
     /// By axis, whether the side's share is so large that the side, if it is
@@ -43,7 +43,7 @@ struct Aim {
     is_seen: [bool; 3],
 }
 
-impl Aim {
+impl VisibleSides {
     /// Of a voxel between two corners.
     fn new<P: Probe>(
         dp: &mut Datapath<P>,
@@ -192,7 +192,7 @@ fn plus_product<P: Probe>(
 
 /// What a voxel adds to each sample that it is drawn at.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ink {
+pub(super) struct BlendColor {
     weight: Narrow,
     /// Linear light, 0 to 65535 a channel.
     light: [Narrow; 3],
@@ -200,14 +200,14 @@ pub(super) struct Ink {
 
 /// The state of a sample after it took a voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Taken {
+pub(super) struct BlendOutcome {
     /// Whether the voxel is the first that the sample took.
     pub(super) is_first: bool,
     /// Whether the sample is opaque enough.
     pub(super) is_full: bool,
 }
 
-impl Ink {
+impl BlendColor {
     /// Of a voxel with these opacities and this light; `None` if its weight is
     /// zero and it adds nothing. `eye_floor`: the eye in the units of `cube`.
     pub(super) fn of_voxel<P: Probe>(
@@ -220,12 +220,12 @@ impl Ink {
     ) -> Option<Self> {
         dp.stage(Stage::Blend);
         dp.read(Memory::Attribute, u64::from(cube.node));
-        let aim = Aim::new(dp, eye, &cube.min, &cube.max);
+        let sides = VisibleSides::new(dp, eye, &cube.min, &cube.max);
         let high = std::array::from_fn(|k| {
             let centre = dp.midpoint(cube.min[k], cube.max[k]);
             !dp.lt(eye_floor[k], centre)
         });
-        let weight = aim.weight(dp, opacity, high);
+        let weight = sides.weight(dp, opacity, high);
         let light = light.map(|channel| Narrow::from_host(u32::from(channel)));
         let is_seen = !dp.le_narrow(WEIGHT_BITS, weight, Narrow::ZERO);
         is_seen.then_some(Self { weight, light })
@@ -237,7 +237,7 @@ impl Ink {
         dp: &mut Datapath<P>,
         at: u64,
         sample: &mut Blend,
-    ) -> Taken {
+    ) -> BlendOutcome {
         dp.stage(Stage::Blend);
         dp.read(Memory::Accumulator, at);
         let left = Narrow::from_host(u32::from(sample.left));
@@ -270,6 +270,6 @@ impl Ink {
             ),
         );
         dp.write(Memory::Accumulator, at);
-        Taken { is_first, is_full }
+        BlendOutcome { is_first, is_full }
     }
 }

@@ -3,7 +3,7 @@
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
-use super::alpha::Ink;
+use super::alpha::BlendColor;
 use super::blocks::Block;
 use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
@@ -17,7 +17,7 @@ pub(super) struct Paint {
     /// The voxel's lowest corner in finest voxels, and its level.
     pub(super) voxel: [i32; 4],
     /// What it adds to a sample, where voxels are blended; `None`: it is opaque.
-    pub(super) ink: Option<Ink>,
+    pub(super) ink: Option<BlendColor>,
 }
 
 /// The picture, the fill vectors, and counts of what was drawn.
@@ -115,7 +115,7 @@ impl<'f> Canvas<'f> {
         &mut self,
         dp: &mut Datapath<P>,
         at: usize,
-        ink: &Ink,
+        ink: &BlendColor,
         paint: &Paint,
     ) -> bool {
         let Some(blend) = &mut self.frame.blend else {

@@ -4,14 +4,14 @@
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
 use super::blocks::Block;
-use super::lattice::Lattice;
+use super::cage::CageCoordinate;
 use super::planes;
-use super::record::{Clip, Cube, Place, Planes, Pose, Record};
+use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
 use super::state::State;
 use super::watch::Watch;
 use crate::project::Coverage;
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Makes a record's children and pushes those that can be seen.
     pub(super) fn subdivide(&mut self, record: &Record<L>) {
         self.counts.subdivided += 1;
@@ -116,7 +116,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
         (x, y, w): (&L::Pool, &L::Pool, &L::Pool),
         planes: &Planes,
         child: Cube,
-        parent_place: Place,
+        parent_place: ImagePlace,
     ) -> bool {
         let of_child = |pool| L::child(pool, octant as usize);
         let (x, y, w) = (of_child(x), of_child(y), of_child(w));
@@ -141,24 +141,24 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
         x: &L::Pool,
         y: &L::Pool,
         child: Cube,
-        parent_place: Place,
+        parent_place: ImagePlace,
     ) -> bool {
-        let lattices = || [x, y].map(|pool| L::child(pool, octant as usize));
-        let spans = lattices().map(|lattice| {
-            let span = lattice.span(&mut self.dp);
-            self.dp.tap(Block::ChildSpan, &lattice, &span);
+        let coordinates = || [x, y].map(|pool| L::child(pool, octant as usize));
+        let spans = coordinates().map(|coordinate| {
+            let span = coordinate.span(&mut self.dp);
+            self.dp.tap(Block::ChildSpan, &coordinate, &span);
             span
         });
-        self.push_screen(child, parent_place, spans, lattices)
+        self.push_screen(child, parent_place, spans, coordinates)
     }
 }
 
 /// One coordinate of the vertices of a record's children.
 #[inline(always)]
-fn pool<P: Probe, L: Lattice>(dp: &mut Datapath<P>, lattice: &L) -> L::Pool {
-    let pool = lattice.pool(dp);
+fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate: &L) -> L::Pool {
+    let pool = coordinate.pool(dp);
     if P::TAPS {
-        dp.tap(Block::VertexPool, lattice, &L::all(&pool));
+        dp.tap(Block::VertexPool, coordinate, &L::all(&pool));
     }
     pool
 }

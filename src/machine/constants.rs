@@ -5,7 +5,7 @@
 
 use hwmodel::{Datapath, Probe, WideWord, Word};
 
-use crate::project::setup::ShiftSum;
+use crate::project::options::ShiftSum;
 use crate::project::vector::cross;
 use crate::project::{Coverage, FrameSetup};
 

@@ -2,8 +2,8 @@
 
 use hwmodel::{NoProbe, Probe};
 
+use super::cage::{CageCoordinate, CornerAndEdges, Corners};
 use super::heat::Heat;
-use super::lattice::{CornerAndEdges, Corners, Lattice};
 use super::options::MachineOptions;
 use super::state::State;
 use crate::frame::{FillVectors, Frame};
@@ -26,7 +26,7 @@ struct SizedFill {
 }
 
 impl Machine {
-    /// A machine that works as `options` say.
+    /// A machine with these options.
     #[must_use]
     pub fn new(options: MachineOptions) -> Self {
         Self {
@@ -81,8 +81,8 @@ impl Machine {
         }
     }
 
-    /// Draws a frame in cages of lattice `L`, in at most `most` records.
-    pub(super) fn run_as<P: Probe, L: Lattice>(
+    /// Draws a frame in cages of type `L`, in at most `most` records.
+    pub(super) fn run_as<P: Probe, L: CageCoordinate>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,

@@ -17,25 +17,24 @@
 //!
 //! Each file imports files named before it only:
 //!
-//! - data: `blocks`, `options`, `lattice`, `record`, `constants`;
-//! - steps on words: `shifts`, `planes`, `quadrants`, `fit`,
+//! - data: `blocks`, `options`, `cage`, `record`, `constants`;
+//! - steps on words: `shifts`, `planes`, `quadrants`, `smallest_node`,
 //!   `to_screen`, `size`, `alpha`, `canvas`;
 //! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
 //!   `verdict`, `children`, `record_loop`;
 //! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
-//! - `instruments`, which watch the machine or drive it in another way. It
-//!   knows nothing of them.
+//! - `instruments`, which watch the machine or drive it in another way. The
+//!   machine does not depend on them.
 
 mod alpha;
 mod blocks;
+mod cage;
 mod canvas;
 mod children;
 mod constants;
 mod engine;
-mod fit;
 mod heat;
 mod instruments;
-mod lattice;
 mod options;
 mod planes;
 mod push;
@@ -44,6 +43,7 @@ mod record;
 mod record_loop;
 mod shifts;
 mod size;
+mod smallest_node;
 mod state;
 mod to_screen;
 mod undrawn;

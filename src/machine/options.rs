@@ -1,10 +1,10 @@
-//! How the machine works, apart from what a frame asks for.
+//! Settings of the machine that are not part of a frame set-up.
 
 use hwmodel::Overflow;
 
 use crate::project::OCCLUSION_ORDER;
 
-/// How the machine works, apart from what the picture asks for.
+/// Settings of the machine that are not part of a frame set-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MachineOptions {
     /// What a result that does not fit its word becomes.

@@ -3,21 +3,21 @@
 
 use hwmodel::{Memory, Probe, Stage, Word};
 
-use super::fit::{self, Fill};
-use super::lattice::Lattice;
-use super::record::{Clip, Cube, Place, Planes, Pose, Record, Screen};
+use super::cage::CageCoordinate;
+use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
+use super::smallest_node::{self, Fill};
 use super::state::State;
 use super::watch::Watch;
 use crate::project::Coverage;
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Makes the record of the whole object and pushes it.
     pub(super) fn push_object(&mut self) {
         let c = &self.constants;
         let dp = &mut self.dp;
-        let mut lattice =
+        let mut coordinate =
             |coordinate: usize| L::from_frame(dp, c.origin[coordinate], c.edges[coordinate]);
-        let (x, y, w) = (lattice(0), lattice(1), lattice(2));
+        let (x, y, w) = (coordinate(0), coordinate(1), coordinate(2));
         let (w_min, w_max) = w.span(dp);
         let side = dp.load(1i64 << (c.depth + c.sub_levels));
         let cube = Cube {
@@ -32,7 +32,13 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
             edge: c.edge_planes,
             axis_c: c.axis_c,
         };
-        self.push_clip(cube, Place::ROOT, Clip { x, y, w, w_min }, planes, w_max);
+        self.push_clip(
+            cube,
+            ImagePlace::ROOT,
+            Clip { x, y, w, w_min },
+            planes,
+            w_max,
+        );
     }
 
     /// Pushes a record in clip space, if it is before the eye and the fit,
@@ -41,7 +47,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
     pub(super) fn push_clip(
         &mut self,
         cube: Cube,
-        from: Place,
+        from: ImagePlace,
         mut clip: Clip<L>,
         mut planes: Planes,
         w_max: Word,
@@ -56,28 +62,28 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
             reject: self.options.reject_filled,
         };
         let (dp, constants) = (&mut self.dp, &self.constants);
-        let found = fit::clip(dp, constants, &fill, from, &mut clip, &mut planes);
+        let found = smallest_node::clip(dp, constants, &fill, from, &mut clip, &mut planes);
         self.push_at(found, cube, || Pose::Clip(clip, planes))
     }
 
-    /// The same in screen space, where all is before the eye. `lattices` gives
+    /// The same in screen space, where all is before the eye. `coordinates` gives
     /// the vertices' x and y: selected once more, which costs nothing in
     /// hardware, since most children are rejected and need not be kept till then.
     #[inline(always)]
     pub(super) fn push_screen(
         &mut self,
         cube: Cube,
-        from: Place,
+        from: ImagePlace,
         spans: [(Word, Word); 2],
-        lattices: impl FnOnce() -> [L; 2],
+        coordinates: impl FnOnce() -> [L; 2],
     ) -> bool {
         let fill = Fill {
             vectors: self.canvas.fill,
             reject: self.options.reject_filled,
         };
-        let found = fit::screen(&mut self.dp, &self.constants, &fill, from, &spans);
+        let found = smallest_node::screen(&mut self.dp, &self.constants, &fill, from, &spans);
         self.push_at(found, cube, || {
-            let [x, y] = lattices();
+            let [x, y] = coordinates();
             Pose::Screen(Screen { x, y, spans })
         })
     }
@@ -86,7 +92,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
     #[inline(always)]
     fn push_at(
         &mut self,
-        found: Option<Place>,
+        found: Option<ImagePlace>,
         cube: Cube,
         pose: impl FnOnce() -> Pose<L>,
     ) -> bool {

@@ -9,8 +9,8 @@
 use hwmodel::{Datapath, Probe, Short, Word};
 
 use super::blocks::{Block, LEVEL_BITS, NODE_BITS, PLACES_BITS};
+use super::cage::CageCoordinate;
 use super::constants::{Constants, Margin};
-use super::lattice::Lattice;
 use super::record::{Clip, Spans};
 use super::shifts::margin;
 use crate::frame::QuadNode;
@@ -52,7 +52,7 @@ fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
 
 /// The quadrants of its node that a clip-space box overlaps, and its x and y
 /// relative to the far halves, for [`clip_in_quadrant`].
-pub(super) fn of_clip<P: Probe, L: Lattice>(
+pub(super) fn of_clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,
@@ -66,7 +66,7 @@ pub(super) fn of_clip<P: Probe, L: Lattice>(
 
 /// Clip-space vertices relative to a quadrant of their node: `far`, which
 /// [`of_clip`] returned, in a far half, doubled in a near one.
-pub(super) fn clip_in_quadrant<P: Probe, L: Lattice>(
+pub(super) fn clip_in_quadrant<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
     quadrant: u8,
@@ -102,7 +102,7 @@ pub(super) fn of_screen<P: Probe>(
 
 /// `2x - w` of a clip-space cage, and the halves of the node, `below` levels
 /// above the samples, that its box overlaps.
-fn bisect<P: Probe, L: Lattice>(
+fn bisect<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     below: u32,
@@ -163,7 +163,7 @@ fn bisect<P: Probe, L: Lattice>(
 /// Reports the test of a clip-space box against a bisector. `kind`: whether
 /// the comparisons are closed, and whether both halves must hold the sample.
 #[inline(always)]
-fn tap_bisector<P: Probe, L: Lattice>(
+fn tap_bisector<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     box_and_margin: (&L, &L, &L),
     kind: (bool, bool),
@@ -178,7 +178,7 @@ fn tap_bisector<P: Probe, L: Lattice>(
 }
 
 /// The margin `w / 2^places` of each vertex of a cage.
-pub(super) fn margins<P: Probe, L: Lattice>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
+pub(super) fn margins<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, w: &L, places: i32) -> L {
     let margins = w.map(|w| margin(dp, w, places));
     let places = Short::signed(places, PLACES_BITS);
     dp.tap(Block::MarginGrow, &(w, places), &margins);
@@ -186,7 +186,7 @@ pub(super) fn margins<P: Probe, L: Lattice>(dp: &mut Datapath<P>, w: &L, places:
 }
 
 /// The closed halves that a box, widened by `margin`, overlaps.
-fn closed<P: Probe, L: Lattice>(dp: &mut Datapath<P>, relative: &L, margin: &L) -> Halves {
+fn closed<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, relative: &L, margin: &L) -> Halves {
     let lowered = relative.zip(margin, |v, m| dp.sub(v, m));
     let raised = relative.zip(margin, |v, m| dp.add(v, m));
     let (low, _) = lowered.span(dp);

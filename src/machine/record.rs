@@ -10,7 +10,7 @@ use crate::frame::QuadNode;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record<L> {
     pub(super) cube: Cube,
-    pub(super) place: Place,
+    pub(super) place: ImagePlace,
     pub(super) pose: Pose<L>,
 }
 
@@ -34,14 +34,14 @@ pub(super) struct Cube {
 
 /// A position in the image: the smallest quadtree node found for a box.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct ImagePlace {
     pub(super) quad: QuadNode,
     /// Whether the box lies inside the node. If not, it leaves the picture's
     /// root where it leaves the node.
     pub(super) inside: bool,
 }
 
-impl Place {
+impl ImagePlace {
     /// The whole image, of a box that may leave it.
     pub(super) const ROOT: Self = Self {
         quad: QuadNode::ROOT,

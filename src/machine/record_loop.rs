@@ -2,10 +2,10 @@
 
 use hwmodel::{Memory, Probe, Short, Stage};
 
-use super::alpha::Ink;
+use super::alpha::BlendColor;
 use super::blocks::Block;
+use super::cage::CageCoordinate;
 use super::canvas::Paint;
-use super::lattice::Lattice;
 use super::planes::Silhouette;
 use super::record::{Pose, Record};
 use super::size;
@@ -17,14 +17,14 @@ use crate::frame::quadtree::FULL;
 use crate::project::EngineError;
 
 /// What is left to do of a record.
-enum Left {
+enum RemainingWork {
     /// Nothing: it is drawn, hidden or dropped.
     Nothing,
     /// To push its children.
     Children,
 }
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Draws the object in at most `most_records` turns. Returns whether that
     /// was enough.
     ///
@@ -61,8 +61,8 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
         };
         let left = self.draw_or_drop(&mut stack[address], address as u64);
         let record = match left {
-            Left::Nothing => None,
-            Left::Children => Some(stack[address]),
+            RemainingWork::Nothing => None,
+            RemainingWork::Children => Some(stack[address]),
         };
         stack.truncate(address);
         self.stack = stack;
@@ -74,7 +74,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
     /// Draws a record or drops it, unless its children are needed to decide what
     /// is seen of it. `address`: the record's, on the stack.
     #[inline(always)]
-    fn draw_or_drop(&mut self, record: &mut Record<L>, address: u64) -> Left {
+    fn draw_or_drop(&mut self, record: &mut Record<L>, address: u64) -> RemainingWork {
         self.dp.begin_record(self.counts.records, record.cube.level);
         self.counts.records += 1;
         self.watch.turn(record.place.quad);
@@ -91,7 +91,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
                 .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
             if full {
                 self.counts.already_full += 1;
-                return Left::Nothing;
+                return RemainingWork::Nothing;
             }
         }
 
@@ -109,9 +109,9 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
             Verdict::DrawSolid => self.draw_solid(record),
             Verdict::Drop => {}
             Verdict::Subdivide if self.is_hidden(record) => self.counts.hidden += 1,
-            Verdict::Subdivide => return Left::Children,
+            Verdict::Subdivide => return RemainingWork::Children,
         }
-        Left::Nothing
+        RemainingWork::Nothing
     }
 
     /// Changes a record from clip space to screen space, if it may.
@@ -172,7 +172,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
                 self.graph.light_of(cube.node),
             );
             let eye_floor = &self.constants.eye_floor;
-            ink = Ink::of_voxel(&mut self.dp, eye, eye_floor, cube, opacity, light);
+            ink = BlendColor::of_voxel(&mut self.dp, eye, eye_floor, cube, opacity, light);
             self.dp.stage(Stage::Draw);
             if ink.is_none() {
                 return;
@@ -185,7 +185,7 @@ impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
     }
 
     /// What a record shows where it is drawn: the voxel that it is a part of.
-    fn paint(&self, record: &Record<L>, ink: Option<Ink>) -> Paint {
+    fn paint(&self, record: &Record<L>, ink: Option<BlendColor>) -> Paint {
         let cube = &record.cube;
         let side_log2 = self.constants.depth - cube.voxel_level;
         let [x, y, z] = cube.min.map(|min| {

@@ -3,12 +3,12 @@
 use hwmodel::{Datapath, Probe, Short, Word};
 
 use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
+use super::cage::CageCoordinate;
 use super::constants::Constants;
-use super::lattice::Lattice;
-use super::record::{Clip, Place, Screen};
+use super::record::{Clip, ImagePlace, Screen};
 use super::shifts::sum_of_shifts;
 use crate::frame::QuadNode;
-use crate::project::setup::ShiftSum;
+use crate::project::options::ShiftSum;
 
 /// Whether a clip-space cage is at most `limit` samples wide and high, in a node
 /// `below` levels above the samples.
@@ -17,7 +17,7 @@ use crate::project::setup::ShiftSum;
 /// `(E_X - x E_W) / W`, so the sum over the edges of the greater of `|E_X|` and
 /// `|E_X - E_W|`, divided by the least `W`, bounds the size. Conservative: a few
 /// cages just within the limit are taken for larger.
-pub(super) fn clip_at_most<P: Probe, L: Lattice>(
+pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,
     limit: &ShiftSum,
@@ -55,7 +55,7 @@ fn magnitude<P: Probe>(dp: &mut Datapath<P>, a: Word) -> Word {
 /// Whether a screen-space box is at most `limit` wide and high, in units of
 /// screen positions.
 #[inline]
-pub(super) fn screen_at_most<P: Probe, L: Lattice>(
+pub(super) fn screen_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     screen: &Screen<L>,
     limit: Word,
@@ -71,10 +71,10 @@ pub(super) fn screen_at_most<P: Probe, L: Lattice>(
 
 /// The sample that holds the centre of a clip-space cage, whose depth is `w`, by
 /// bisection from its quadtree node on; `None` outside the picture's root.
-pub(super) fn clip_sample<P: Probe, L: Lattice>(
+pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    place: Place,
+    place: ImagePlace,
     clip: &Clip<L>,
     w: Word,
 ) -> Option<QuadNode> {
@@ -109,16 +109,16 @@ pub(super) fn clip_sample<P: Probe, L: Lattice>(
 
 /// The sample that holds the centre of a screen-space cage: its integer bits.
 /// `None` outside the picture's root.
-pub(super) fn screen_sample<P: Probe, L: Lattice>(
+pub(super) fn screen_sample<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    place: Place,
+    place: ImagePlace,
     screen: &Screen<L>,
 ) -> Option<QuadNode> {
     let below = constants.levels - place.quad.level;
-    let mut column = |lattice: &L, node: u32| {
-        let centre = lattice.centre(dp);
-        dp.tap(Block::CageCentre, lattice, &centre);
+    let mut column = |coordinate: &L, node: u32| {
+        let centre = coordinate.centre(dp);
+        dp.tap(Block::CageCentre, coordinate, &centre);
         let position = dp.shr(centre, constants.screen_frac);
         let first = Word::from_host(i64::from(node) << below);
         let last = Word::from_host((i64::from(node + 1) << below) - 1);

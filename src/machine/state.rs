@@ -3,9 +3,9 @@
 
 use hwmodel::{Datapath, Probe, Stage};
 
+use super::cage::CageCoordinate;
 use super::canvas::Canvas;
 use super::constants::Constants;
-use super::lattice::Lattice;
 use super::options::MachineOptions;
 use super::record::Record;
 use super::watch::Watch;
@@ -15,7 +15,7 @@ use crate::project::{FrameSetup, Stats};
 
 /// Counts of a frame, by the names in [`State::finish`].
 #[derive(Debug, Default)]
-pub(super) struct Counts {
+pub(super) struct RecordCounts {
     pub(super) records: u64,
     pub(super) subdivided: u64,
     pub(super) already_full: u64,
@@ -29,7 +29,7 @@ pub(super) struct Counts {
     pub(super) deepest_stack: u64,
 }
 
-/// All that the record loop works on, in cages of lattice `L`.
+/// All that the record loop works on, in cages of type `L`.
 pub(super) struct State<'a, P: Probe, L, W> {
     pub(super) dp: Datapath<P>,
     pub(super) constants: Constants,
@@ -37,11 +37,11 @@ pub(super) struct State<'a, P: Probe, L, W> {
     pub(super) graph: &'a GraphView<'a>,
     pub(super) canvas: Canvas<'a>,
     pub(super) stack: Vec<Record<L>>,
-    pub(super) counts: Counts,
+    pub(super) counts: RecordCounts,
     pub(super) watch: W,
 }
 
-impl<'a, P: Probe, L: Lattice, W: Watch> State<'a, P, L, W> {
+impl<'a, P: Probe, L: CageCoordinate, W: Watch> State<'a, P, L, W> {
     /// The state of a frame before the first record: the stack is empty. `fill`
     /// and `frame` have the set-up's size and are cleared.
     pub(super) fn new(
@@ -62,7 +62,7 @@ impl<'a, P: Probe, L: Lattice, W: Watch> State<'a, P, L, W> {
             graph,
             canvas: Canvas::new(fill, frame),
             stack: Vec::new(),
-            counts: Counts::default(),
+            counts: RecordCounts::default(),
             watch,
         }
     }

@@ -4,10 +4,10 @@
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
 use super::blocks::{Block, LEVEL_BITS, PLACES_BITS};
+use super::cage::CageCoordinate;
 use super::constants::Constants;
-use super::lattice::Lattice;
-use super::record::{Clip, Place, Screen};
-use crate::project::setup::SCREEN_GUARD_SHIFT;
+use super::record::{Clip, ImagePlace, Screen};
+use crate::project::options::SCREEN_GUARD_SHIFT;
 
 /// Integer bits of a quotient: positions from -4 to 12 node widths.
 const INTEGER_BITS: u32 = 4;
@@ -16,11 +16,11 @@ const OFFSET_SHIFT: u32 = 2;
 
 /// Whether a record of octree level `level` may change: it is far enough away,
 /// and not too far beyond the picture's edges.
-pub(super) fn may_change<P: Probe, L: Lattice>(
+pub(super) fn may_change<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     level: u32,
-    place: Place,
+    place: ImagePlace,
     clip: &Clip<L>,
 ) -> bool {
     let Some(least) = constants.screen_depth[level as usize] else {
@@ -33,10 +33,10 @@ pub(super) fn may_change<P: Probe, L: Lattice>(
 }
 
 /// The vertices in screen space, of a record that may change.
-pub(super) fn change<P: Probe, L: Lattice>(
+pub(super) fn change<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    place: Place,
+    place: ImagePlace,
     clip: &Clip<L>,
 ) -> Screen<L> {
     let bits = constants.levels - place.quad.level + constants.screen_frac;
@@ -61,10 +61,10 @@ pub(super) fn change<P: Probe, L: Lattice>(
 /// Whether the box leaves the picture by no more than the bound on the
 /// deviation allows for: an eighth of its side; four times its side where the
 /// tolerance is infinite.
-fn within_guard<P: Probe, L: Lattice>(
+fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    place: Place,
+    place: ImagePlace,
     clip: &Clip<L>,
 ) -> bool {
     let level = place.quad.level as i32;

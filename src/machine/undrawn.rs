@@ -4,8 +4,8 @@
 
 use hwmodel::{Datapath, Memory, Probe, Stage};
 
+use super::cage::CageCoordinate;
 use super::constants::Constants;
-use super::lattice::Lattice;
 use super::quadrants;
 use super::record::{Clip, Pose, Record, Spans};
 use super::state::State;
@@ -13,7 +13,7 @@ use super::watch::Watch;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// The first sample of a record's box that is not drawn yet.
     #[inline]
     pub(super) fn first_undrawn(&mut self, record: &Record<L>) -> Option<QuadNode> {
@@ -96,7 +96,7 @@ fn first<P: Probe, B: ImageBox>(
     first_inlined(dp, constants, fill, quad, of)
 }
 
-impl<L: Lattice> ImageBox for Clip<L> {
+impl<L: CageCoordinate> ImageBox for Clip<L> {
     type Tested = [L; 2];
 
     fn quadrants<P: Probe>(

@@ -4,7 +4,7 @@
 use hwmodel::Probe;
 
 use super::blocks::Block;
-use super::lattice::Lattice;
+use super::cage::CageCoordinate;
 use super::record::{Pose, Record};
 use super::size;
 use super::state::State;
@@ -26,7 +26,7 @@ pub(super) enum Verdict {
     Subdivide,
 }
 
-impl<P: Probe, L: Lattice, W: Watch> State<'_, P, L, W> {
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Applies the frame's drawing rule to a record, and level of detail, which
     /// may make it solid.
     pub(super) fn verdict(&mut self, record: &mut Record<L>) -> Verdict {

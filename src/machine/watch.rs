@@ -6,8 +6,8 @@
 
 use crate::frame::QuadNode;
 
-/// Is told what happens to records. Every method does nothing by default, so
-/// that nothing is left of the calls where nobody watches: `()`.
+/// Receives what happens to records. Every method does nothing by default, so
+/// that the calls compile to nothing for the watch `()`.
 pub(super) trait Watch {
     /// The turn of a record begins, whose quadtree node is `quad`.
     fn turn(&mut self, quad: QuadNode) {

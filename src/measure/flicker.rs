@@ -26,7 +26,7 @@ impl LinearPicture {
         }
     }
 
-    /// A picture of light, row by row from the top left; as long as the size says.
+    /// A picture of light, row by row from the top left; as long as the size requires.
     #[must_use]
     pub fn new(width: u32, height: u32, rgb: Vec<[f32; 3]>) -> Self {
         Self {

@@ -18,8 +18,9 @@ use rayon::prelude::*;
 
 use super::SizeError;
 use super::color::{Colors, check_sizes, on_black};
+use crate::srgb::to_linear;
 
-/// Pixels in a degree of the field of vision that FLIP is told for by its
+/// Pixels in a degree of the field of vision that FLIP is evaluated for by its
 /// authors: a display 0.7 m wide with 3840 pixels, seen from 0.7 m away.
 pub const PIXELS_PER_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
 
@@ -149,12 +150,7 @@ fn hyab(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 /// Linear light of a byte of sRGB.
 fn linear(byte: u8) -> f64 {
-    let value = f64::from(byte) / 255.0;
-    if value > 0.04045 {
-        libm::pow((value + 0.055) / 1.055, 2.4)
-    } else {
-        value / 12.92
-    }
+    to_linear(f64::from(byte) / 255.0)
 }
 
 const XYZ_OF_RGB: [[f64; 3]; 3] = [

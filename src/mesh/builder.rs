@@ -19,7 +19,7 @@ pub struct BadIndex {
 
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
-/// Left out, counted and told as a warning: triangles with a coordinate that
+/// Left out, counted and reported as a warning: triangles with a coordinate that
 /// is infinite or not a number, triangles without area (two equal corners, or
 /// all three on a line), triangles whose material has opacity 0.
 #[derive(Debug, Default)]

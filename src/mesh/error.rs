@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh file, said so that the user can act on it.
+//! What can be wrong with a mesh file, in terms that the user can act on.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub enum MeshError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// The content breaks its format's rules, or says something that no mesh can mean.
+    /// The content breaks its format's rules, or has a value that no mesh can have.
     #[error(transparent)]
     Invalid(Box<MeshFault>),
     /// The content is sound but larger than this program handles.
@@ -66,7 +66,7 @@ pub struct MeshFault {
     pub part: String,
     /// Where that is.
     pub place: Place,
-    /// What the format, or this program, asks for there.
+    /// What the format, or this program, expects there.
     pub expected: String,
     /// What is there instead.
     pub found: String,

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::srgb::to_linear;
+
 /// How the numbers of a colour in a file are meant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
@@ -49,25 +51,16 @@ impl Material {
             name: name.into(),
             diffuse: color.map(|value| match space {
                 ColorSpace::Linear => unit(value),
-                ColorSpace::Srgb => decode(f64::from(unit(value))) as f32,
+                ColorSpace::Srgb => to_linear(f64::from(unit(value))) as f32,
             }),
             alpha: if alpha.is_nan() { 1.0 } else { unit(alpha) },
         }
     }
 }
 
-/// Linear light, 0 to 1, of an sRGB value, 0 to 1 (IEC 61966-2-1).
-fn decode(value: f64) -> f64 {
-    if value <= 0.040_45 {
-        value / 12.92
-    } else {
-        libm::pow((value + 0.055) / 1.055, 2.4)
-    }
-}
-
 /// Linear light of each sRGB byte.
 static LINEAR: LazyLock<[f32; 256]> =
-    LazyLock::new(|| std::array::from_fn(|byte| decode(byte as f64 / 255.0) as f32));
+    LazyLock::new(|| std::array::from_fn(|byte| to_linear(byte as f64 / 255.0) as f32));
 
 /// Linear light of an sRGB byte.
 #[must_use]

@@ -85,7 +85,7 @@ impl Mesh {
         (point(self.low), point(self.high))
     }
 
-    /// What the user should know although the file could be read, one sentence each.
+    /// Warnings about a file that could be read, one sentence each.
     #[must_use]
     pub fn warnings(&self) -> &[String] {
         &self.warnings

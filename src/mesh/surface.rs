@@ -18,7 +18,7 @@ pub struct Triangle {
     pub alpha: f64,
 }
 
-/// Triangles that are asked for one by one.
+/// Triangles, accessed by number.
 pub trait Surface: Sync {
     /// Number of triangles.
     fn len(&self) -> usize;
@@ -31,13 +31,13 @@ pub trait Surface: Sync {
     /// Positions of the corners of triangle `number`, which is below [`Surface::len`].
     fn corners(&self, number: usize) -> [DVec3; 3];
 
-    /// All there is to know of triangle `number`, which is below [`Surface::len`].
+    /// All attributes of triangle `number`, which is below [`Surface::len`].
     fn triangle(&self, number: usize) -> Triangle;
 
     /// Lowest and highest corner of the box around all triangles.
     fn bounds(&self) -> (DVec3, DVec3);
 
-    /// Whether triangle `number` is textured: then the rasteriser asks
+    /// Whether triangle `number` is textured: then the rasteriser calls
     /// [`Surface::texture`] at each point of it. No triangle of a mesh is.
     fn is_textured(&self, _number: usize) -> bool {
         false

@@ -2,6 +2,8 @@
 
 use std::sync::LazyLock;
 
+use crate::srgb::to_linear;
+
 /// Numbers that 16 bits of linear light are.
 const LIGHTS: usize = 1 << 16;
 
@@ -54,15 +56,6 @@ impl Linear {
     #[inline]
     pub(super) fn encode_16(&self, light: [u32; 3]) -> [u8; 3] {
         light.map(|value| self.nearest[usize::from(value as u16)])
-    }
-}
-
-/// Linear light, 0..=1, of an sRGB value, 0..=1 (IEC 61966-2-1).
-fn to_linear(value: f64) -> f64 {
-    if value <= 0.040_45 {
-        value / 12.92
-    } else {
-        libm::pow((value + 0.055) / 1.055, 2.4)
     }
 }
 

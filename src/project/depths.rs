@@ -7,7 +7,7 @@
 //! voxel of twice the side looks the same, so one ratio of side to depth
 //! serves all levels.
 
-use super::setup::SCREEN_GUARD_SHIFT;
+use super::options::SCREEN_GUARD_SHIFT;
 
 /// Clip vectors of a finest voxel's edges, and the picture they are seen in.
 pub(super) struct Edges {

@@ -22,10 +22,10 @@ pub enum EngineError {
 /// What an engine counted of one frame: names and numbers, in a fixed order.
 pub type Stats = Vec<(&'static str, u64)>;
 
-/// Draws a frame from its recorded input, of which alone, and of the graph, the picture is made.
+/// Draws a frame. The picture depends on the frame set-up and the graph alone.
 pub trait Engine {
-    /// Draws like [`Engine::render`] and tells of no counts: what an engine
-    /// does to tell is then not done, nor timed.
+    /// Draws like [`Engine::render`] without counters: work that an engine does
+    /// only for counters is left out, and not timed.
     ///
     /// # Errors
     /// As [`Engine::render`].
@@ -104,7 +104,7 @@ mod tests {
     use crate::graph::Placement;
     use crate::project::{Camera, SetupOptions};
 
-    /// Marks what it was asked for.
+    /// Records which method was called.
     struct Marks;
 
     impl Engine for Marks {

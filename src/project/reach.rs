@@ -23,9 +23,9 @@ pub(super) struct Reach {
 impl Reach {
     /// The reach over the object's eight corners; intermediate vertices lie between.
     /// `None` where it does not fit 127 bits.
-    pub(super) fn of(view: &Quantised, depth: u32) -> Option<Self> {
-        let origin = view.origin.map(i128::from);
-        let edge = view.edge.map(|e| e.map(i128::from));
+    pub(super) fn of(quantised: &Quantised, depth: u32) -> Option<Self> {
+        let origin = quantised.origin.map(i128::from);
+        let edge = quantised.edge.map(|e| e.map(i128::from));
         let along = edge.map(|e| e.map(|c| c << depth));
         let mut reach = Self {
             position: 0,
@@ -79,9 +79,9 @@ pub(super) struct Eye {
 impl Eye {
     /// Solves `origin + sum u_k edge_k = 0` by Cramer's rule, in units of
     /// `2^-sub_levels`. `None`: beyond 127 bits; `Some(None)`: no volume.
-    pub(super) fn solve(view: &Quantised, sub_levels: u32) -> Option<Option<Self>> {
-        let edge = view.edge.map(|e| e.map(i128::from));
-        let minus_origin = view.origin.map(|c| -i128::from(c));
+    pub(super) fn solve(quantised: &Quantised, sub_levels: u32) -> Option<Option<Self>> {
+        let edge = quantised.edge.map(|e| e.map(i128::from));
+        let minus_origin = quantised.origin.map(|c| -i128::from(c));
         let determinant = |m: &[[i128; 3]; 3]| -> Option<i128> {
             let minor = cross(m[1], m[2]);
             (0..3).try_fold(0i128, |sum, c| {

@@ -1,7 +1,7 @@
-//! A picture that stays: drawn anew when the set-up is another, and else left.
+//! A picture that is kept: drawn anew when the set-up changes, else left as it is.
 //!
-//! That a frame is unchanged is not found out by looking at buffers and
-//! pointers; it cannot be otherwise. A [`Viewer`] owns the engine and the
+//! That an unchanged set-up means an unchanged picture is guaranteed by
+//! ownership, not found by comparing buffers. A [`Viewer`] owns the engine and the
 //! frame, hands the frame out to be read alone, and borrows the graph for as
 //! long as it lives, so that nothing that the picture depends on can change
 //! but the set-up, and two set-ups can be compared.
@@ -59,7 +59,7 @@ pub struct Viewer<'g, E> {
     /// The set-up of what `frame` shows; none before the first drawing, while
     /// an engine draws, and after one that failed.
     shown: Option<FrameSetup>,
-    /// What the engine counted of what `frame` shows, where it was asked.
+    /// The engine's counters of what `frame` shows, if they were asked for.
     stats: Option<Stats>,
 }
 

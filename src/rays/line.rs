@@ -26,11 +26,11 @@
 //! the eye) and has no sign. `g_k` always has one, as its plane is not zero.
 
 use super::number::Number;
-use super::view::View;
+use super::ray_frame::RayFrame;
 
 /// The line of one sample.
 pub(super) struct Line<'v, N> {
-    view: &'v View,
+    view: &'v RayFrame,
     /// `f_j(0)`.
     pub(super) at_origin: [N; 3],
     /// `g_k`.
@@ -51,7 +51,7 @@ pub(super) struct Cube<N> {
 }
 
 impl<'v, N: Number> Line<'v, N> {
-    pub(super) fn new(view: &'v View, i: u32, j: u32) -> Self {
+    pub(super) fn new(view: &'v RayFrame, i: u32, j: u32) -> Self {
         let ray = view.ray(i, j);
         let slope = view.normal.map(|plane| N::dot(plane, ray));
         let slope_sign = [0, 1, 2].map(|k| sign(slope[k], || view.normal[k]));

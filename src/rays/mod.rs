@@ -9,8 +9,8 @@
 
 mod line;
 mod number;
-mod view;
-mod walk;
+mod ray_frame;
+mod search;
 
 use rayon::prelude::*;
 
@@ -19,8 +19,8 @@ use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
 use number::{Number, Wide};
-use view::View;
-use walk::Walk;
+use ray_frame::RayFrame;
+use search::Search;
 
 /// The exact oracle.
 #[derive(Debug, Clone, Copy, Default)]
@@ -35,7 +35,7 @@ impl Engine for Rays {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<Stats, EngineError> {
-        let view = View::new(setup);
+        let view = RayFrame::new(setup);
         let tested = if view.fits_i128() {
             render_rows::<i128>(graph, &view, frame)
         } else {
@@ -49,15 +49,15 @@ impl Engine for Rays {
     }
 }
 
-/// Single rays of a frame: what [`Rays`] draws, asked for sample by sample,
+/// Single rays of a frame: what [`Rays`] draws, sample by sample,
 /// for pictures of so many samples that no frame would hold them.
 pub struct Caster<'g> {
     graph: &'g GraphView<'g>,
-    view: View,
+    view: RayFrame,
     is_narrow: bool,
 }
 
-/// Most levels of an image root whose rays can be asked for: components of
+/// Most levels of an image root whose rays can be cast: components of
 /// rays are at most `2^18`.
 pub const MAX_CASTER_LEVELS: u32 = 17;
 
@@ -70,7 +70,7 @@ impl<'g> Caster<'g> {
     #[must_use]
     pub fn new(graph: &'g GraphView<'g>, setup: &FrameSetup) -> Self {
         debug_assert!(setup.levels <= MAX_CASTER_LEVELS);
-        let view = View::new(setup);
+        let view = RayFrame::new(setup);
         let is_narrow = view.fits_i128();
         Self {
             graph,
@@ -83,15 +83,15 @@ impl<'g> Caster<'g> {
     #[must_use]
     pub fn nearest(&self, x: u32, y: u32) -> Option<(u32, [i32; 4])> {
         if self.is_narrow {
-            Walk::<i128>::new(self.graph, &self.view, x, y).nearest()
+            Search::<i128>::new(self.graph, &self.view, x, y).nearest()
         } else {
-            Walk::<Wide>::new(self.graph, &self.view, x, y).nearest()
+            Search::<Wide>::new(self.graph, &self.view, x, y).nearest()
         }
     }
 }
 
 /// Draws every row, on all threads; returns how many cubes were tested.
-fn render_rows<N: Number>(graph: &GraphView<'_>, view: &View, frame: &mut Frame) -> u64 {
+fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Frame) -> u64 {
     let width = frame.width as usize;
     if width == 0 {
         return 0;
@@ -117,7 +117,7 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &View, frame: &mut Frame)
         .map(|(j, ((nodes, voxels), mut records))| {
             let mut tested_in_row = 0u64;
             for i in 0..width {
-                let mut walk = Walk::<N>::new(graph, view, i as u32, j as u32);
+                let mut walk = Search::<N>::new(graph, view, i as u32, j as u32);
                 let seen = walk.nearest();
                 (nodes[i], voxels[i]) = seen.unwrap_or((NO_NODE, NO_VOXEL));
                 if let Some(records) = &mut records {
@@ -171,7 +171,7 @@ mod tests {
         };
         for eye in [[8.0, -8.0, 8.0], [3.0, 2.0, 4.0], [16.0, 0.0, 0.5]] {
             let setup = set_up(eye, 4);
-            let view = View::new(&setup);
+            let view = RayFrame::new(&setup);
             assert!(view.fits_i128());
             let mut narrow = Frame::new(32, 32, true);
             let mut wide = narrow.clone();
@@ -186,7 +186,7 @@ mod tests {
             let spare = numbers.map(|c| c.abs().leading_zeros()).min().unwrap_or(0) - 2;
             huge.origin_clip = setup.origin_clip.map(|c| c << spare);
             huge.edge_clip = setup.edge_clip.map(|e| e.map(|c| c << spare));
-            assert!(!View::new(&huge).fits_i128());
+            assert!(!RayFrame::new(&huge).fits_i128());
             let mut from_huge = narrow.clone();
             Rays.render(&graph, &huge, &mut from_huge)
                 .expect("never fails");

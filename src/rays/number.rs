@@ -3,7 +3,7 @@
 //! A line function is a plane (three integers of at most 127 bits) times a
 //! ray direction (three integers of at most 2^18). All but the most extreme
 //! views stay within `i128`; [`Wide`] holds the others. Which one a frame
-//! needs is decided once, from the bound in [`super::view::View`].
+//! needs is decided once, from the bound in [`super::ray_frame::RayFrame`].
 
 use std::ops::{Add, Sub};
 

@@ -14,7 +14,7 @@ pub enum Cell {
     Count(u64),
     /// A number, and the digits after the point that people see.
     Number(f64, #[serde(skip)] usize),
-    /// There is nothing to say.
+    /// Empty.
     None,
 }
 

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::generate::Spec;
 use super::mesh::{MeshSummary, Ready, SameFolder};
-use super::open::{OpenError, OpenOptions};
+use super::open::OpenOptions;
+use super::open_error::OpenError;
 use super::{FileKind, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
 

@@ -24,8 +24,8 @@ pub(super) const DETECT_BYTES: usize = 4096;
 pub enum FileKind {
     /// MagicaVoxel or VoxelShop model.
     Vox,
-    /// PLY: a cloud of voxel indices. [`detect`] cannot see the faces of a mesh and says this of both;
-    /// [`SceneFile`](super::SceneFile) reads the header and tells them apart.
+    /// PLY: a cloud of voxel indices. [`detect`] does not see the faces of a mesh and returns this for both;
+    /// [`SceneFile`](super::SceneFile) reads the header and distinguishes them.
     Ply,
     /// PLY with faces: a mesh.
     PlyMesh,
@@ -130,7 +130,7 @@ pub(super) fn detect_with_length(prefix: &[u8], length: u64) -> Option<FileKind>
 }
 
 /// As [`detect_with_length`]; of what begins like no known format a name that ends in `.stl` is
-/// believed: nothing else tells a binary STL that was cut short, and its reader says what is missing.
+/// believed: nothing else identifies a binary STL that was cut short, and its reader reports what is missing.
 #[must_use]
 pub(super) fn detect_named(prefix: &[u8], length: u64, name: &Path) -> Option<FileKind> {
     let is_stl = name

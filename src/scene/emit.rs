@@ -30,7 +30,7 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Hands one voxel on. `place` says which part of the file it comes from, and at which byte that is.
+    /// Hands one voxel on. `place`: which part of the file it comes from, and at which byte that is.
     #[inline]
     pub(crate) fn voxel(
         &mut self,

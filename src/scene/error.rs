@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file, said so that the user can act on it.
+//! What can be wrong with a scene file, in terms that the user can act on.
 
 use std::fmt;
 
@@ -17,7 +17,7 @@ pub enum SceneError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// The content breaks its format's rules, or says something that no voxel scene can mean.
+    /// The content breaks its format's rules, or has a value that no voxel scene can have.
     #[error(transparent)]
     Invalid(Box<Fault>),
     /// The content is sound but larger than this program handles.
@@ -95,7 +95,7 @@ pub struct Fault {
     pub part: String,
     /// Byte offset from the beginning of the file.
     pub offset: u64,
-    /// What the format, or this program, asks for there.
+    /// What the format, or this program, expects there.
     pub expected: String,
     /// What is there instead.
     pub found: String,
@@ -135,7 +135,7 @@ impl Fault {
     }
 }
 
-/// What went wrong below the level that knows the file's name.
+/// What went wrong below the level at which the file's name is known.
 #[derive(Debug)]
 pub(crate) enum Problem {
     /// See [`SceneError::Invalid`].

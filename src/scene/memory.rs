@@ -4,7 +4,7 @@
 /// pushed and sorted, 5 in the graph. Surfaces take 29 (`spec/graph.md`).
 const LEAST_BYTES: u64 = 25;
 
-/// Memory that this process can still take, bytes; none where the system does not tell.
+/// Memory that this process can still take, bytes; none where the system does not report it.
 #[must_use]
 pub fn available() -> Option<u64> {
     let info = std::fs::read_to_string("/proc/meminfo").ok()?;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use glam::DVec3;
 
-use super::open::OpenError;
+use super::open_error::OpenError;
 use super::{FileKind, SceneError, SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
@@ -60,7 +60,7 @@ pub struct MeshSummary {
     pub y_up: bool,
 }
 
-/// Reads a mesh file, for its triangles; says too whether +Y is up in it.
+/// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
 ///
 /// # Errors
 /// Where it cannot be read, is no mesh, breaks its format's rules or holds
@@ -142,7 +142,7 @@ impl Ready {
         self.mesh.bytes()
     }
 
-    /// World position and size of voxels, as the builders want them.
+    /// World position and size of voxels, as the builders take them.
     pub(super) fn placement(&self) -> ([f64; 3], f64) {
         self.grid.placement()
     }
@@ -153,7 +153,7 @@ impl Ready {
         graph.opacity = opacities.into();
     }
 
-    /// Hands on the voxels and says what there was.
+    /// Hands on the voxels and returns a summary.
     pub(super) fn voxels(
         &self,
         sink: &mut dyn FnMut(Voxel),

@@ -23,6 +23,7 @@ mod mesh;
 mod mesh;
 mod npy;
 mod open;
+mod open_error;
 mod options;
 mod ply;
 mod ply_write;
@@ -37,7 +38,8 @@ pub use memory::available as available_memory;
 #[cfg(feature = "mesh")]
 pub use mesh::read_mesh;
 pub use mesh::{MeshOptions, MeshSummary};
-pub use open::{OpenError, OpenOptions, Opened, open, open_bytes, open_source};
+pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
+pub use open_error::OpenError;
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};

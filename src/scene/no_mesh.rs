@@ -3,7 +3,7 @@
 use std::io::{Read, Seek};
 use std::path::Path;
 
-use super::open::OpenError;
+use super::open_error::OpenError;
 use super::{SceneFile, SceneInfo};
 use crate::graph::{Graph, Progress, Voxel};
 

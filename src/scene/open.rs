@@ -3,13 +3,12 @@
 
 use std::io::{Read, Seek};
 
-use super::generate::{Spec, SpecError};
+use super::generate::Spec;
 use super::memory;
 use super::mesh::{Beside, MeshOptions, MeshSummary, Nothing, Ready, SameFolder};
-use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
-use crate::graph::{BuildError, BuildOptions, Builder, ExternalError, Graph, Progress, vxg};
-#[cfg(feature = "mesh")]
-use crate::mesh::{MeshError, voxelize::GridError};
+use super::open_error::OpenError;
+use super::{FileKind, ReadOptions, SceneFile, SceneInfo, Source};
+use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 
 /// Graph files up to this size are checked in full when they are opened;
 /// larger ones are mapped, and only the pages that a picture needs are read.
@@ -35,91 +34,6 @@ pub struct Opened {
     pub info: Option<SceneInfo>,
     /// What the mesh was, where it was one.
     pub mesh: Option<MeshSummary>,
-}
-
-/// Why a scene could not be opened.
-#[derive(Debug, thiserror::Error)]
-pub enum OpenError {
-    /// The specification names no scene.
-    #[error(transparent)]
-    Spec(#[from] SpecError),
-    /// The file could not be read, or holds no voxels that can be.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The file is a damaged graph.
-    #[error(transparent)]
-    Graph(#[from] vxg::VxgError),
-    /// The file is a mesh, and this build reads none.
-    #[cfg(not(feature = "mesh"))]
-    #[error("{0}: this is a mesh; build with the feature `mesh` to open it")]
-    NoMeshes(String),
-    /// The file is a mesh that cannot be read.
-    #[cfg(feature = "mesh")]
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The mesh cannot be voxelised.
-    #[cfg(feature = "mesh")]
-    #[error("{source_name}: {error}")]
-    Grid {
-        /// The scene, as the user named it.
-        source_name: String,
-        /// What is wrong with it, or with the number of levels.
-        error: GridError,
-    },
-    /// The voxels make no graph.
-    #[error("{source_name}: {error}")]
-    Build {
-        /// The scene, as the user named it.
-        source_name: String,
-        /// What is wrong with them.
-        error: BuildError,
-    },
-    /// The voxels make no `.vxg` file.
-    #[error("{source_name}: {error}")]
-    External {
-        /// The scene, as the user named it.
-        source_name: String,
-        /// What is wrong with them, or with the place to write to.
-        error: ExternalError,
-    },
-    /// More voxels than can be built in memory.
-    #[error(
-        "{source_name}: {voxels} voxels or more take at least {needed} bytes of memory while they are built, \
-         and {available} are free"
-    )]
-    TooMany {
-        /// The scene, as the user named it.
-        source_name: String,
-        /// Voxels that there are at the least.
-        voxels: u64,
-        /// Bytes that they take at the least.
-        needed: u64,
-        /// Bytes of memory that were free when reading began.
-        available: u64,
-    },
-}
-
-impl OpenError {
-    /// Whether the input is sound and only too large.
-    #[must_use]
-    pub fn is_limit(&self) -> bool {
-        match self {
-            Self::TooMany { .. } => true,
-            Self::Build { error, .. }
-            | Self::External {
-                error: ExternalError::Build(error),
-                ..
-            } => !matches!(error, BuildError::Empty),
-            Self::Scene(error) => error.is_limit(),
-            #[cfg(not(feature = "mesh"))]
-            Self::NoMeshes(_) => false,
-            #[cfg(feature = "mesh")]
-            Self::Mesh(error) => error.is_limit(),
-            #[cfg(feature = "mesh")]
-            Self::Grid { error, .. } => matches!(error, GridError::TooMany(_)),
-            Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
-        }
-    }
 }
 
 /// Opens a file, or makes the scene of a `gen:` specification.
@@ -259,7 +173,7 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
 /// Voxels on their way into a graph.
 struct Gathered {
     builder: Builder,
-    /// Free memory at the beginning, where the system tells.
+    /// Free memory at the beginning, where the system reports it.
     available: Option<u64>,
     /// Most voxels that fit it.
     most: u64,

@@ -78,7 +78,7 @@ pub struct SceneInfo {
     pub has_colors: bool,
     /// Whether the voxels have normals.
     pub has_normals: bool,
-    /// What a user should know although the file could be read, one sentence each.
+    /// Warnings about a file that could be read, one sentence each.
     pub warnings: Vec<String>,
 }
 

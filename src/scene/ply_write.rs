@@ -63,7 +63,7 @@ pub fn write_ply<W: Write + Seek>(
     Ok(count)
 }
 
-/// The line that says how many vertices there are, and a comment that makes the two equally long for every count.
+/// The line with the number of vertices, and a comment that makes the two equally long for every count.
 fn count_lines(count: u64) -> Vec<u8> {
     let count = count.to_string();
     let filler = "-".repeat(COUNT_DIGITS - count.len());

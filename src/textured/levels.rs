@@ -7,7 +7,7 @@
 //! by when they first show, and a surfel is there from one level to another.
 //! Going from level to level, either way, is choosing another number.
 
-use super::lattice::{ACROSS, is_positive_half};
+use super::cell_grid::{ACROSS, is_positive_half};
 use super::record::{CLEAR, VoxelRecord};
 
 /// A face of a voxel that some levels show.

@@ -3,20 +3,20 @@
 //!
 //! [`build()`] makes one of triangles: voxels with the primitives inside them,
 //! their erosion depths, and the six half-scene textures, computed slice by
-//! slice from the inside out. [`store`] is the `.tvx` file; [`levels`] says
+//! slice from the inside out. [`store`] is the `.tvx` file; [`levels`] computes
 //! what a level of detail shows; [`view`] draws it. Rules, and where the image-order paper
 //! leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a
 //! texel sees is decided in integers.
 
 pub mod build;
-pub mod lattice;
+pub mod cell_grid;
 pub mod levels;
 pub mod record;
 pub mod store;
 pub mod view;
 
 pub use build::{BuildError, BuildOptions, build};
-pub use lattice::Lattice;
+pub use cell_grid::CellGrid;
 pub use store::{TexturedError, TexturedFile};
 
 use glam::DVec3;

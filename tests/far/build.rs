@@ -4,7 +4,7 @@ use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, ViewOptions};
 use shiftvox::far::{BuildError, BuildOptions, FarFile, build};
 use shiftvox::graph::Silent;
-use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
+use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::city::{city, far, light, on_threads, options, view};
 
@@ -75,7 +75,7 @@ fn voxels_shrink_from_level_to_level() {
 }
 
 /// Root mean square difference of the channels to 256 samples a pixel.
-fn error(file: &FarFile, view: &View, options: &ViewOptions) -> f64 {
+fn error(file: &FarFile, view: &RasterCamera, options: &ViewOptions) -> f64 {
     let reference = raster::draw(
         &city(),
         view,
@@ -96,7 +96,7 @@ fn error(file: &FarFile, view: &View, options: &ViewOptions) -> f64 {
     (pairs.map(square).sum::<f64>() / picture.rgba.len() as f64).sqrt()
 }
 
-fn shown(view: &View, voxel_px: f64) -> ViewOptions {
+fn shown(view: &RasterCamera, voxel_px: f64) -> ViewOptions {
     ViewOptions {
         voxel_px,
         light: light(view),

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use shiftvox::far::{BuildOptions, FarData, build};
 use shiftvox::graph::Silent;
-use shiftvox::mesh::raster::{Light, View};
+use shiftvox::mesh::raster::{Light, RasterCamera};
 use shiftvox::mesh::{Material, Mesh, MeshBuilder};
 
 fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
@@ -106,13 +106,13 @@ pub(crate) fn far_behind_wall(options: &BuildOptions) -> FarData {
 }
 
 /// A view of the city from an angle around it and a distance.
-pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> View {
+pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> RasterCamera {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let target = DVec3::new(20.0, 2.0, 21.0);
     let eye = target + DVec3::new(sin, height, cos).normalize() * distance;
     let forward = (target - eye).normalize();
     let right = forward.cross(DVec3::Y).normalize();
-    View {
+    RasterCamera {
         eye,
         right,
         up: right.cross(forward),
@@ -125,7 +125,7 @@ pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> View 
 }
 
 /// From above, behind the eye.
-pub(crate) fn light(view: &View) -> Option<Light> {
+pub(crate) fn light(view: &RasterCamera) -> Option<Light> {
     let towards = (view.up + view.right * 0.5 - view.forward).normalize();
     let ambient = 90;
     Some(Light { towards, ambient })

@@ -7,7 +7,7 @@ use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox::far::{BuildOptions, FarFile, build};
 use shiftvox::graph::Silent;
-use shiftvox::lab::walk::{Plan, camera};
+use shiftvox::lab::far_path::{FarPathPlan, camera};
 use shiftvox::mesh::LoadOptions;
 use shiftvox::scene;
 
@@ -49,7 +49,7 @@ fn nothing_but_time_changes_on_a_walk() {
         let file = FarFile::open(&path).unwrap();
         let budget = bytes[0].len() as u64 / 4;
         let within = FarFile::open_within(&path, budget);
-        let plan = Plan {
+        let plan = FarPathPlan {
             frames: 24,
             size: (160, 90),
             voxel_px: 1.0,

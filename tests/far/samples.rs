@@ -4,7 +4,7 @@ use shiftvox::far::FarFile;
 use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarPicture, FarViewer, Opacity, ViewError, ViewOptions};
 use shiftvox::graph::Silent;
-use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
+use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::city::{city, far, light, options, view};
 
@@ -14,7 +14,7 @@ fn file() -> FarFile {
 
 fn draw(
     file: &FarFile,
-    view: &View,
+    view: &RasterCamera,
     samples_across: u32,
     voxel_px: f64,
     opacity: Opacity,
@@ -48,7 +48,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
             let view = view(30.0, 0.5, distance, 48);
             let picture = draw(&file, &view, across, 1.0, opacity);
             // The same, drawn larger: what is a pixel there is a sample here.
-            let larger = View {
+            let larger = RasterCamera {
                 focal_px: view.focal_px * f64::from(across),
                 width: view.width * across,
                 height: view.height * across,
@@ -87,7 +87,7 @@ fn a_pixel_is_the_mean_of_its_samples() {
 }
 
 /// Root mean square distance of linear light from 256 samples a pixel.
-fn error(picture: &FarPicture, view: &View) -> f64 {
+fn error(picture: &FarPicture, view: &RasterCamera) -> f64 {
     let options = RasterOptions {
         samples: Samples::new(256, Pattern::Stratified { seed: 3 }).unwrap(),
         light: light(view),

@@ -1,7 +1,7 @@
 //! The view: culling, late answers, threads and batches never change a picture.
 
 use shiftvox::far::store::encode;
-use shiftvox::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
+use shiftvox::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
 use shiftvox::far::{BuildOptions, FarFile};
 use shiftvox::graph::Silent;
 use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples};
@@ -85,7 +85,7 @@ fn hidden_branches_cost_no_work() {
     let (second, culled) = draw(&mut viewer, true);
     assert!(picture == first && picture == second);
     assert!(culled.hidden > 0);
-    let drawn = |counts: &Counts| counts.voxel_nodes + counts.leaves;
+    let drawn = |counts: &FarCounts| counts.voxel_nodes + counts.leaves;
     // A branch is asked for once, and nothing below it is looked at.
     assert!(
         culled.hidden + drawn(&culled) < drawn(&all),
@@ -268,7 +268,7 @@ fn what_cannot_be_drawn_is_refused() {
         let refused = FarViewer::new(&file).draw(&view, &options);
         assert!(matches!(refused, Err(ViewError::VoxelSize(_))));
     }
-    let empty = raster::View { width: 0, ..view };
+    let empty = raster::RasterCamera { width: 0, ..view };
     let refused = FarViewer::new(&file).draw(&empty, &ViewOptions::default());
     assert!(matches!(refused, Err(ViewError::Raster(_))));
 }

@@ -107,7 +107,7 @@ fn small_objects_of_every_depth() {
     }
 }
 
-/// Solids, walls, wires and hills, cut in blocks of one brick and more.
+/// Solids, walls, wires and hills, cut in blocks of one cluster and more.
 #[test]
 fn generated_scenes_are_the_same_in_any_memory() {
     let scenes = [

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use glam::DVec3;
-use hwmodel::{Memory, Place, Probe};
+use hwmodel::{Memory, Probe, StageLevel};
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, vxg};
 use shiftvox::machine::Machine;
@@ -26,7 +26,7 @@ const PAGE: u64 = 4096;
 struct Fetched(BTreeSet<u64>);
 
 impl Probe for Fetched {
-    fn read(&mut self, memory: Memory, address: u64, _: Place) {
+    fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
         if memory == Memory::Node {
             self.0.insert(address);
         }

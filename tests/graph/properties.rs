@@ -327,7 +327,7 @@ fn normals_of_faces_walls_and_edges() {
 
 #[test]
 fn normals_are_the_same_wherever_the_object_lies() {
-    // Bricks fall differently over the object as it moves by a voxel.
+    // Clusters fall differently over the object as it moves by a voxel.
     let ball = solid(21, |p| (p - DVec3::splat(10.0)).length() < 9.3);
     let plain = build(&ball);
     for shift in 1..4 {

@@ -4,7 +4,7 @@
 use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::lab::bounds::{Bounds, Cube, Space, Widths, worst_host_px};
-use shiftvox::lab::stress::{Case, Check, Hold, Scene, run_case};
+use shiftvox::lab::stress::{Case, Check, Hold, StressScene, run_case};
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 
 use crate::common::{any_camera, tolerance_of};
@@ -40,7 +40,7 @@ fn any_options() -> impl Strategy<Value = SetupOptions> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(150))]
 
-    /// On any frame: vertices by the book, and within their bounds.
+    /// On any frame: vertices as specified, and within their bounds.
     #[test]
     fn no_vertex_is_beyond_its_bound(
         depth in 1..7u32,
@@ -52,10 +52,10 @@ proptest! {
         let mut camera = camera;
         camera.eye *= scale;
         camera.target *= scale;
-        let scene: Scene = format!("plane:{depth},1,3,5").parse().unwrap();
+        let scene: StressScene = format!("plane:{depth},1,3,5").parse().unwrap();
         let case = Case { scene, camera, shift, options };
         let outcome = run_case(&case, 100_000).unwrap();
-        for check in [Check::Book, Check::Bound] {
+        for check in [Check::Specification, Check::Bound] {
             prop_assert!(!outcome.fails(check), "{case}: {:?}", outcome.failures);
         }
         for worst in outcome.worst {

@@ -41,7 +41,7 @@ use crate::common::*;
 use hwmodel::cost::{Costing, MinMaxUnits, Tally, tallies};
 use hwmodel::count::Counter;
 use hwmodel::memory::{MemoryProbe, Widths};
-use hwmodel::{Memory, NoProbe, OpClass, Place, Probe, Stage};
+use hwmodel::{Memory, NoProbe, OpClass, Probe, Stage, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::{Machine, MachineOptions};
@@ -78,7 +78,7 @@ impl ByRecord {
 }
 
 impl Probe for ByRecord {
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         if let Some(turn) = self.turns.last() {
             assert_eq!(place.level, turn.level);
         }
@@ -86,10 +86,10 @@ impl Probe for ByRecord {
             self.note(place.stage, Event::Op(class, bits));
         }
     }
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.note(place.stage, Event::Read(memory, address));
     }
-    fn write(&mut self, memory: Memory, _: u64, place: Place) {
+    fn write(&mut self, memory: Memory, _: u64, place: StageLevel) {
         self.note(place.stage, Event::Write(memory));
     }
     fn record(&mut self, index: u64, level: u32) {
@@ -415,7 +415,7 @@ fn the_frame_s_record_in_clip_space() {
     });
 }
 
-/// The fit in clip space, where a lattice has `numbers` numbers and its span
+/// The fit in clip space, where a cage coordinate has `numbers` numbers and its span
 /// takes `min_max` and `adds`.
 fn check_clip_fit(name: &str, setup: &FrameSetup, turn: &Turn, [numbers, min_max, adds]: [u64; 3]) {
     let bits = setup.format.bits();
@@ -434,7 +434,7 @@ fn check_clip_fit(name: &str, setup: &FrameSetup, turn: &Turn, [numbers, min_max
         ]),
         "{name}"
     );
-    // Beyond those of the tests, a lattice's worth for each left half.
+    // Beyond those of the tests, a cage coordinate's worth for each left half.
     let doubled = shifts - 2 * numbers * tests;
     assert_eq!(doubled % numbers, 0, "{name}");
     assert!(doubled <= 2 * numbers * tests, "{name}");

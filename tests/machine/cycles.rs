@@ -10,7 +10,7 @@ use crate::common::*;
 use crate::scenes;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
-    Child, Hardware, Independence, LANES, NoObserver, Progress, Recorder, Region, TraceLimit,
+    Child, Hardware, ImageNode, Independence, LANES, NoObserver, Progress, Recorder, TraceLimit,
     scaling,
 };
 use hwmodel::{Memory, OpClass, Stage};
@@ -175,7 +175,7 @@ fn cycles_classes_are_independent_by_geometry() {
     let child = |place: usize| Child {
         item: 0,
         place: place as u8,
-        region: Region::default(),
+        image_node: ImageNode::default(),
     };
     let mut allowed = 0;
     for later in 0..8 {

@@ -1,23 +1,23 @@
 //! The sweep: the same in every run, and clean on the machine as it is.
 
 use shiftvox::graph::Silent;
-use shiftvox::lab::stress::{Case, End, Key, Plan, run_case, sweep};
+use shiftvox::lab::stress::{Case, End, Key, SweepPlan, run_case, sweep};
 
-fn small(seed: u64) -> Plan {
+fn small(seed: u64) -> SweepPlan {
     let scenes = [
         "gen:shell,depth=3",
         "solid:4",
         "cyclic:7,2",
         "gen:sierpinski,depth=30",
     ];
-    Plan {
+    SweepPlan {
         scenes: scenes.map(|text| text.parse().unwrap()).into(),
         bits: vec![16, 24, 48],
         pixels: vec![20],
         random_viewpoints: 1,
         rules: 2,
         most_records: 100_000,
-        ..Plan::new(seed, false)
+        ..SweepPlan::new(seed, false)
     }
 }
 

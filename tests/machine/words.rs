@@ -43,7 +43,7 @@ const TO_HOST: [Allowed; 6] = [
     ),
     allowed(
         "instruments/descent.rs",
-        "let mut vertices = |lattice: L| lattice.vertices(dp).map(Word::to_host);",
+        "let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);",
         "vertices read by an experiment; nothing of it goes back",
     ),
     allowed(
@@ -61,15 +61,15 @@ const TO_HOST: [Allowed; 6] = [
 /// Lines that show words to a probe, or could take numbers from what is shown.
 const SHOWN: [Allowed; 8] = [
     allowed(
-        "lattice.rs",
+        "cage.rs",
         "use hwmodel::{Datapath, Probe, Signal, Wires, Word};",
         "for the lines below",
     ),
-    allowed("lattice.rs", SHOW, "a cage is its words, in order"),
-    allowed("lattice.rs", "self.0.show(to);", "its eight corners"),
-    allowed("lattice.rs", SHOW, "a cage is its words, in order"),
+    allowed("cage.rs", SHOW, "a cage is its words, in order"),
+    allowed("cage.rs", "self.0.show(to);", "its eight corners"),
+    allowed("cage.rs", SHOW, "a cage is its words, in order"),
     allowed(
-        "lattice.rs",
+        "cage.rs",
         "(self.corner, self.edges).show(to);",
         "its corner and its edges",
     ),
@@ -81,12 +81,12 @@ const SHOWN: [Allowed; 8] = [
     allowed(
         "instruments/mutants.rs",
         SHOW,
-        "an injured lattice is its words too",
+        "a mutated cage is its words too",
     ),
     allowed(
         "instruments/mutants.rs",
         "self.0.show(to);",
-        "those of the lattice",
+        "those of the cage",
     ),
 ];
 
@@ -118,11 +118,11 @@ const PRODUCTS: [Allowed; 12] = [
         "f64::from(self.records[quad.address()]) / samples",
         HEAT,
     ),
-    allowed("lattice.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
-    allowed("lattice.rs", "let at = 3 * j + k;", INDEX),
-    allowed("lattice.rs", "let at = 9 * i + k;", INDEX),
-    allowed("lattice.rs", "let at = 9 * i + 3 * j;", INDEX),
-    allowed("lattice.rs", "pool[low + 9 * a + 3 * b + c]", INDEX),
+    allowed("cage.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
+    allowed("cage.rs", "let at = 3 * j + k;", INDEX),
+    allowed("cage.rs", "let at = 9 * i + k;", INDEX),
+    allowed("cage.rs", "let at = 9 * i + 3 * j;", INDEX),
+    allowed("cage.rs", "pool[low + 9 * a + 3 * b + c]", INDEX),
     allowed(
         "planes.rs",
         "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
@@ -318,7 +318,7 @@ fn products_are_recognised() {
         "*v = dp.select(right, beyond, doubled);",
         "let (a, b) = (*x, &*y);",
         "let (rest, bit) = dp.divide_step(remainder, w, false);",
-        "use super::fit::*;",
+        "use super::smallest_node::*;",
     ] {
         assert!(!has_product(line), "{line}");
     }

@@ -9,17 +9,17 @@ use obvhs::ray::{Ray, RayHit};
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
 use shiftvox::mesh::raster::{
-    self, Light, NO_TRIANGLE, Pattern, RasterOptions, RasterPicture, Samples, View,
+    self, Light, NO_TRIANGLE, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
 };
 use shiftvox::mesh::{LoadOptions, Mesh, MeshBuilder, Surface};
 use shiftvox::scene;
 
 use super::shapes::{ball, cuboid, mesh_of, model, point, soup};
 
-fn view(eye: DVec3, target: DVec3, size: [u32; 2]) -> View {
+fn view(eye: DVec3, target: DVec3, size: [u32; 2]) -> RasterCamera {
     let forward = (target - eye).normalize();
     let right = forward.cross(DVec3::Y).normalize();
-    View {
+    RasterCamera {
         eye,
         right,
         up: right.cross(forward),
@@ -39,12 +39,12 @@ fn plain(per_pixel: u32) -> RasterOptions {
     }
 }
 
-fn draw<S: Surface>(surface: &S, view: &View, options: &RasterOptions) -> RasterPicture {
+fn draw<S: Surface>(surface: &S, view: &RasterCamera, options: &RasterOptions) -> RasterPicture {
     raster::draw(surface, view, options, &Silent).unwrap()
 }
 
 /// One unit of the plane z = 0 is `64` pixels, and the origin is the middle of the picture.
-fn facing() -> View {
+fn facing() -> RasterCamera {
     view(DVec3::Z, DVec3::ZERO, [64, 64])
 }
 
@@ -115,7 +115,7 @@ fn inside_a_room_there_is_no_gap() {
     ] {
         for per_pixel in [1, 16] {
             // The wall is half a thousandth away.
-            let view = View {
+            let view = RasterCamera {
                 near: 1e-5,
                 ..view(eye, target, [90, 70])
             };
@@ -138,7 +138,7 @@ fn inside_a_room_there_is_no_gap() {
 }
 
 /// The ray through a place of the picture, one unit deep.
-fn ray_of(view: &View, x: f64, y: f64) -> DVec3 {
+fn ray_of(view: &RasterCamera, x: f64, y: f64) -> DVec3 {
     view.forward
         + view.right * ((x - f64::from(view.width) / 2.0) / view.focal_px)
         + view.up * ((f64::from(view.height) / 2.0 - y) / view.focal_px)
@@ -216,7 +216,7 @@ proptest! {
 /// Pixels that rasteriser and ray caster see differently although no edge of
 /// what either sees is within `near_px` of the sample, and of these those
 /// whose depths differ too; and all that differ.
-fn against_rays(mesh: &Mesh, view: &View, near_px: f64) -> (usize, usize) {
+fn against_rays(mesh: &Mesh, view: &RasterCamera, near_px: f64) -> (usize, usize) {
     let picture = draw(mesh, view, &plain(1));
     let soup = soup(mesh);
     let triangles: Vec<obvhs::triangle::Triangle> = soup
@@ -273,7 +273,7 @@ fn against_rays(mesh: &Mesh, view: &View, near_px: f64) -> (usize, usize) {
 }
 
 /// Pixels from a sample to the nearest edge of a triangle in the picture.
-fn distance_to_edges(view: &View, corners: [DVec3; 3], sample: DVec2) -> f64 {
+fn distance_to_edges(view: &RasterCamera, corners: [DVec3; 3], sample: DVec2) -> f64 {
     let seen = corners.map(|corner| {
         let offset = corner - view.eye;
         let depth = offset.dot(view.forward);
@@ -410,17 +410,17 @@ fn threads_change_nothing_and_wrong_views_are_refused() {
     let one = pool(1).install(|| draw(&mesh, &view, &plain(4)));
     assert_eq!(one, pool(3).install(|| draw(&mesh, &view, &plain(4))));
     for wrong in [
-        View { width: 0, ..view },
-        View {
+        RasterCamera { width: 0, ..view },
+        RasterCamera {
             height: 32769,
             ..view
         },
-        View { near: 0.0, ..view },
-        View {
+        RasterCamera { near: 0.0, ..view },
+        RasterCamera {
             focal_px: f64::NAN,
             ..view
         },
-        View {
+        RasterCamera {
             eye: DVec3::NAN,
             ..view
         },

@@ -4,7 +4,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
 use shiftvox::mesh::Mesh;
-use shiftvox::mesh::raster::{self, Pattern, RasterOptions, Samples, View};
+use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::shapes::mesh_of;
 
@@ -71,7 +71,7 @@ fn mesh(triangles: &[[Point; 3]]) -> Mesh {
 
 /// The share of each pixel's samples that see anything, times their number.
 fn covered(mesh: &Mesh, per_pixel: u32) -> Vec<u32> {
-    let view = View {
+    let view = RasterCamera {
         eye: DVec3::Z,
         right: DVec3::X,
         up: DVec3::Y,

@@ -38,7 +38,7 @@ fn files_hold_what_was_built() {
     for (number, built) in data.grids.iter().enumerate() {
         let grid = file.grid(number);
         assert_eq!(grid.voxels(), built.voxels);
-        assert_eq!(grid.lattice().cells(), built.cells);
+        assert_eq!(grid.cell_grid().cells(), built.cells);
         assert_eq!(grid.projected(), [built.projected, built.projected_afresh]);
         for texture in 0..grid.textures() {
             let at = texture as usize * 4;

@@ -48,7 +48,7 @@ fn check(file: &TexturedFile) {
         assert_eq!(found, shown, "level {level}");
         assert_eq!(found.len(), levels.primitives(level).len());
         // Of each column and half, the first voxel from outside.
-        let cells = grid.lattice().cells();
+        let cells = grid.cell_grid().cells();
         let mut faces = BTreeSet::new();
         for voxel in levels.eroded(level)..voxels.len() {
             for axis in 0..3 {

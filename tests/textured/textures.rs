@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use shiftvox::graph::PackedNormal;
 use shiftvox::mesh::Mesh;
 use shiftvox::textured::record::{CLEAR, NEVER, Texel};
-use shiftvox::textured::{Element, Lattice, TexturedData};
+use shiftvox::textured::{CellGrid, Element, TexturedData};
 
 use super::scenes::{balls, built, color_of, mesh_of, random_triangles, small_grids};
 
@@ -42,7 +42,7 @@ fn along(points: [[i128; 2]; 3], depths: [i128; 3], p: [i128; 2]) -> i128 {
 /// What a texel sees of the slices from the middle of the grid to `slice`.
 fn seen(
     corners: &[[[i64; 3]; 3]],
-    lattice: &Lattice,
+    lattice: &CellGrid,
     axis: usize,
     slice: u32,
     texel: [u32; 2],
@@ -84,7 +84,7 @@ fn seen(
 /// how many texels were compared, and how many see something.
 fn compare(mesh: &Mesh, data: &TexturedData) -> [u64; 2] {
     let grid = &data.grids[0];
-    let lattice = Lattice::around(data.low, data.high, grid.cells, grid.texels);
+    let lattice = CellGrid::around(data.low, data.high, grid.cells, grid.texels);
     let corners: Vec<[[i64; 3]; 3]> = data
         .primitives
         .iter()

@@ -4,7 +4,7 @@ use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox::mesh::Mesh;
 use shiftvox::mesh::raster::{
-    self, NO_TRIANGLE, Pattern, RasterOptions, RasterPicture, Samples, View,
+    self, NO_TRIANGLE, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
 };
 use shiftvox::textured::view::{Choice, Detail, ViewError, ViewOptions, choose, choose_grid, draw};
 use shiftvox::textured::{BuildOptions, Element, TexturedFile, build};
@@ -12,7 +12,7 @@ use shiftvox::textured::{BuildOptions, Element, TexturedFile, build};
 use super::file::rayon_pool;
 use super::scenes::{balls, built, file_of, mesh_of};
 
-fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> View {
+fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
     let forward = (target - eye).normalize();
     let helper = if forward.y.abs() > 0.9 {
         DVec3::X
@@ -20,7 +20,7 @@ fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> View {
         DVec3::Y
     };
     let right = forward.cross(helper).normalize();
-    View {
+    RasterCamera {
         eye,
         right,
         up: right.cross(forward),
@@ -41,7 +41,7 @@ fn options(level: u32) -> ViewOptions {
     }
 }
 
-fn mesh_picture(mesh: &Mesh, view: &View) -> RasterPicture {
+fn mesh_picture(mesh: &Mesh, view: &RasterCamera) -> RasterPicture {
     let options = RasterOptions {
         samples: Samples::new(1, Pattern::Regular).unwrap(),
         light: None,
@@ -88,7 +88,7 @@ fn along_an_axis_levels_cover_what_the_mesh_covers() {
             let full = covered(&mesh_picture(&mesh, &view));
             assert!(count(&full) > 10_000);
             // A texel; and as much again for the last bit of perspective.
-            let texel = file.grid(0).lattice().texel_size() * view.focal_px / 3990.0;
+            let texel = file.grid(0).cell_grid().texel_size() * view.focal_px / 3990.0;
             let leaning = (high - low).length() / 4000.0 * 5.0 * view.focal_px / 4000.0;
             let radius = (texel + leaning).ceil() as usize + 1;
             assert!(radius <= 4, "{radius}");
@@ -110,7 +110,7 @@ fn along_an_axis_levels_cover_what_the_mesh_covers() {
 fn from_anywhere_levels_cover_no_more_than_a_cell_around_the_mesh() {
     let mesh = balls();
     let file = file_of(&built(&mesh, 16, 16, Element::Cube));
-    let cell = file.grid(0).lattice().cell_size().length();
+    let cell = file.grid(0).cell_grid().cell_size().length();
     let last = file.grid(0).levels().last();
     let (mut missing, mut extra, mut all) = (0, 0, 0);
     for i in 0..12 {
@@ -200,7 +200,7 @@ fn any_camera_is_drawn_the_same_on_any_number_of_threads() {
     let file = file_of(&built(&balls(), 16, 4, Element::Cube));
     let (low, high) = file.bounds();
     let centre = middle(&file);
-    let cell = file.grid(0).lattice().corner([4, 4, 4]);
+    let cell = file.grid(0).cell_grid().corner([4, 4, 4]);
     let cameras = [
         ("inside", centre, low),
         ("on a corner of cells", cell, high),

@@ -2,6 +2,8 @@
 //! significant digits; `,.1` both. What follows a space is put behind: `.1 %`. With braces the pattern is a sentence
 //! and each brace a figure: `{.1} to {.1}`.
 
+use shiftvox::report::grouped;
+
 use super::expression::Figure;
 
 /// Prints figures by a pattern.
@@ -48,7 +50,7 @@ fn one_figure(figure: &Figure, pattern: &str) -> Result<String, String> {
     let wrong = || format!("what is the pattern `{pattern}`?");
     let signed = format.starts_with('+');
     let format = format.trim_start_matches('+');
-    let grouped = format.starts_with(',');
+    let is_grouped = format.starts_with(',');
     let format = format.trim_start_matches(',');
     let decimals = if let Some(digits) = format.strip_prefix('s') {
         let digits: i32 = digits.parse().map_err(|_| wrong())?;
@@ -69,7 +71,7 @@ fn one_figure(figure: &Figure, pattern: &str) -> Result<String, String> {
         return Ok("-".to_owned());
     }
     let mut text = format!("{:.decimals$}", number.abs());
-    if grouped {
+    if is_grouped {
         text = group(&text);
     }
     let zero = text.chars().all(|c| !c.is_ascii_digit() || c == '0');
@@ -83,14 +85,8 @@ fn one_figure(figure: &Figure, pattern: &str) -> Result<String, String> {
 
 fn group(text: &str) -> String {
     let (whole, fraction) = text.split_at(text.find('.').unwrap_or(text.len()));
-    let mut grouped = String::new();
-    for (index, digit) in whole.chars().enumerate() {
-        if index > 0 && (whole.len() - index).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped + fraction
+    let digits: Result<u128, _> = whole.parse();
+    digits.map_or_else(|_| whole.to_owned(), grouped) + fraction
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! Two tables ship with the crate: `tables/area.toml` (gates, by synthesis
 //! with an open standard-cell library) and `tables/energy.toml` (picojoules,
 //! as published). Rows of a user's own come before both. Nothing is guessed
-//! in silence: a [`Cost`] names the rows that it comes from and says whether
+//! in silence: a [`Cost`] names the rows that it comes from and whether
 //! it lies between or beyond them, and an operation without rows is an error.
 
 mod rows;

@@ -67,10 +67,14 @@ impl Quantity {
 }
 
 /// What gates were chosen for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default, Serialize, Deserialize,
+)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Goal {
     /// Small area.
+    #[default]
     Area,
     /// Short delay.
     Delay,
@@ -208,7 +212,7 @@ struct File {
 
 /// One figure of one row.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
+pub(super) struct CostRow {
     pub(super) width: Option<u32>,
     pub(super) bytes: Option<u64>,
     pub(super) low: f64,
@@ -225,7 +229,7 @@ pub(super) type Key = (Quantity, String, Option<Goal>);
 #[derive(Debug, Default)]
 pub(super) struct Parsed {
     pub(super) quadratic: Vec<String>,
-    pub(super) rows: BTreeMap<Key, Vec<Row>>,
+    pub(super) rows: BTreeMap<Key, Vec<CostRow>>,
 }
 
 /// Largest figure: no sum over a frame leaves what a number holds.
@@ -241,7 +245,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
         file: file.to_owned(),
         message: error.to_string(),
     })?;
-    let mut rows = BTreeMap::<Key, Vec<Row>>::new();
+    let mut rows = BTreeMap::<Key, Vec<CostRow>>::new();
     for row in &parsed.row {
         let wrong = |problem| CostError::Row {
             file: file.to_owned(),
@@ -309,7 +313,7 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Parsed, CostError> {
                 ));
             }
             let source = parsed.sources.get(&row.source).unwrap_or(&row.source);
-            together.push(Row {
+            together.push(CostRow {
                 width: row.width,
                 bytes: row.bytes,
                 low,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the hardware finds a span: the least and the greatest of `n` values.
 ///
-/// The machine asks for `n - 1` minima and `n - 1` maxima. Units that do one
+/// The machine executes `n - 1` minima and `n - 1` maxima. Units that do one
 /// of them each do just that: for the eight vertices of a cage 7 + 7, each a
 /// compare and a select. Taken in pairs, one compare orders two values and
 /// serves both their minimum and their maximum; then the smaller ones go on to
@@ -19,11 +19,13 @@ use serde::{Deserialize, Serialize};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum MinMaxUnits {
-    /// Each minimum and each maximum by itself.
+    /// Each minimum and each maximum by itself: 7 and 7 for eight values.
     #[default]
+    #[cfg_attr(feature = "clap", value(name = "trees"))]
     Each,
-    /// Values in pairs first.
+    /// Values in pairs first: 10 compares and 14 selects. Corner cages alone.
     Pairs,
 }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-use super::rows::{CostError, Goal, Key, Parsed, Quantity, Row, parse};
+use super::rows::{CostError, CostRow, Goal, Key, Parsed, Quantity, parse};
 
 /// How a figure comes from its rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -31,7 +31,7 @@ pub struct Cost {
     pub high: f64,
     /// How it comes from its rows.
     pub fit: Fit,
-    /// Whether a row derives its figure from another source's, as the source says.
+    /// Whether a row derives its figure from another source's, as the row's source states.
     pub derived: bool,
     /// The rows in words, with the file that has them.
     pub rows: String,
@@ -75,14 +75,14 @@ impl Cost {
 /// "#;
 /// let table = table.with_overrides("mine.toml", mine)?;
 /// assert_eq!(table.area("add", 32, Goal::Area)?.value, 200.0);
-/// // What is not there is an error that says where to add it.
+/// // A missing row is an error that names where to add it.
 /// let error = table.energy("cube_root", 32).unwrap_err().to_string();
 /// assert!(error.contains("`cube_root`") && error.contains("energy.toml"));
 /// # Ok::<(), hwmodel::cost::CostError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CostTable {
-    rows: BTreeMap<Key, Vec<Row>>,
+    rows: BTreeMap<Key, Vec<CostRow>>,
     quadratic: BTreeSet<String>,
 }
 
@@ -193,7 +193,7 @@ impl CostTable {
         }
         let square = self.quadratic.contains(operation) && quantity != Quantity::DelayPs;
         let measure = |width: u32| f64::from(width).powi(if square { 2 } else { 1 });
-        let rows: Vec<(f64, &Row)> = rows
+        let rows: Vec<(f64, &CostRow)> = rows
             .into_iter()
             .filter_map(|row| row.width.map(|width| (measure(width), row)))
             .collect();
@@ -226,7 +226,7 @@ impl CostTable {
     pub fn memory_energy(&self, operation: &str, bytes: u64, bits: u32) -> Result<Cost, CostError> {
         let quantity = Quantity::EnergyPj;
         let (rows, _) = self.rows_of(quantity, operation, bits, None)?;
-        let rows: Vec<(f64, &Row)> = rows
+        let rows: Vec<(f64, &CostRow)> = rows
             .into_iter()
             .filter_map(|row| row.bytes.map(|bytes| ((bytes as f64).sqrt(), row)))
             .collect();
@@ -264,7 +264,7 @@ impl CostTable {
         operation: &str,
         width: u32,
         goal: Option<Goal>,
-    ) -> Result<(Vec<&Row>, Option<Goal>), CostError> {
+    ) -> Result<(Vec<&CostRow>, Option<Goal>), CostError> {
         for goal in [goal, None] {
             if let Some(rows) = self.rows.get(&(quantity, operation.to_owned(), goal)) {
                 return Ok((rows.iter().collect(), goal));
@@ -294,7 +294,7 @@ fn missing(quantity: Quantity, operation: &str, width: u32, goal: Option<Goal>) 
 
 /// The rows next to a place, each with its part; rows are in order of place
 /// and there is one at least.
-fn weigh<'a>(rows: &[(f64, &'a Row)], at: f64) -> (Vec<(&'a Row, f64)>, Fit) {
+fn weigh<'a>(rows: &[(f64, &'a CostRow)], at: f64) -> (Vec<(&'a CostRow, f64)>, Fit) {
     if let Some(&(_, row)) = rows.iter().find(|row| row.0 == at) {
         return (vec![(row, 1.0)], Fit::Row);
     }
@@ -317,10 +317,10 @@ fn cost(
     quantity: Quantity,
     operation: &str,
     goal: Option<Goal>,
-    weights: &[(&Row, f64)],
+    weights: &[(&CostRow, f64)],
     fit: Fit,
 ) -> Cost {
-    let sum = |figure: fn(&Row) -> f64| -> f64 {
+    let sum = |figure: fn(&CostRow) -> f64| -> f64 {
         let parts = weights.iter().map(|&(row, weight)| weight * figure(row));
         parts.sum::<f64>().max(0.0)
     };

@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Counter, LEVELS, READS, Row, SETS, SHORT, SIZED, WRITES};
+use super::{CountRow, Counter, LEVELS, READS, SETS, SHORT, SIZED, WRITES};
 use crate::probe::{Memory, OpClass, Stage};
 
 /// How often operations of one kind were executed at one place.
@@ -189,7 +189,7 @@ impl Counter {
     }
 
     /// One row, with what is not settled yet.
-    fn row(&self, level: usize, row: usize) -> Row {
+    fn row(&self, level: usize, row: usize) -> CountRow {
         let mut sum = self.settled[level][row];
         let set = level % SETS;
         if level == self.levels[set] {
@@ -217,7 +217,7 @@ impl Counter {
     }
 }
 
-fn add(sums: &mut Row, row: &Row) {
+fn add(sums: &mut CountRow, row: &CountRow) {
     for (sum, count) in sums.iter_mut().zip(row) {
         *sum += count;
     }

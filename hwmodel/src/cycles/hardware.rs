@@ -168,7 +168,7 @@ pub struct Pixels {
     pub drain_interval: u32,
 }
 
-/// Why a description is none.
+/// Why a description is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum HardwareError {
     /// Not TOML, or not of these fields.
@@ -193,7 +193,7 @@ pub enum HardwareError {
         /// The class, as in the file.
         class: String,
     },
-    /// A class of operation that is said to take units and none.
+    /// A class of operation that is listed both with units and without.
     #[error(
         "hardware description: `{class}` is among `wires`, which take no units, \
          and has a [units.{class}]; take out one"

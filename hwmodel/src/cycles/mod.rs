@@ -110,4 +110,4 @@ pub use report::{
 pub use scaling::{LANES, ScalingRow, scaling};
 pub use simulate::{SimulationError, simulate};
 pub use trace::{Recorder, TraceLimit};
-pub use turn::{Child, Region, TurnLog, Workload};
+pub use turn::{Child, ImageNode, TurnLog, Workload};

@@ -33,7 +33,7 @@ pub struct VisitSpan {
 /// Watches a simulation. Its methods do nothing by default, and where
 /// [`Observer::ENABLED`] is false the first two are not called at all.
 pub trait Observer {
-    /// Whether it wants visits and queues.
+    /// Whether visits and queues are reported to it.
     const ENABLED: bool = true;
 
     /// A visit begins; its whole course is known by then. Visits come in the

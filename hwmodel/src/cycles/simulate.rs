@@ -10,7 +10,7 @@ use super::report::{
     Stalls,
 };
 use super::tasks::Tasks;
-use super::turn::{Child, Plan, STAGES, Workload};
+use super::turn::{Child, STAGES, TurnVisits, Workload};
 use super::wheel::Wheel;
 use crate::Stage;
 
@@ -24,7 +24,7 @@ pub enum SimulationError<E> {
     /// The workload failed.
     #[error(transparent)]
     Workload(#[from] E),
-    /// The hardware is none.
+    /// The hardware's description is invalid.
     #[error(transparent)]
     Hardware(HardwareError),
     /// A stack without room, on hardware that does not spill.
@@ -44,7 +44,7 @@ pub enum SimulationError<E> {
 
 /// A lane's block of one stage.
 #[derive(Debug, Clone, Copy)]
-struct Block {
+struct StageUnit {
     free_at: u64,
     /// Contexts that wait, in order; the first has its event set.
     first: u32,
@@ -55,7 +55,7 @@ struct Block {
 struct Context {
     lane: u32,
     number: u32,
-    plan: Plan,
+    plan: TurnVisits,
     children: Vec<Child>,
     /// The visit that is next or under way.
     visit: usize,
@@ -103,7 +103,7 @@ struct Simulation<'a, W, O> {
     wheel: Wheel,
     contexts: Vec<Context>,
     lanes: Vec<Lane>,
-    blocks: Vec<[Block; STAGES]>,
+    units: Vec<[StageUnit; STAGES]>,
     memories: Memories,
     tasks: Tasks,
     stages: Vec<StageReport>,
@@ -134,7 +134,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             idle: u64::MAX >> (64 - hardware.contexts),
             ..Lane::default()
         };
-        let block = Block {
+        let unit = StageUnit {
             free_at: 0,
             first: NONE,
             last: NONE,
@@ -155,7 +155,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             idle: contexts.len() as u64,
             contexts,
             lanes: (0..hardware.lanes).map(|_| lane()).collect(),
-            blocks: vec![[block; STAGES]; hardware.lanes as usize],
+            units: vec![[unit; STAGES]; hardware.lanes as usize],
             memories: Memories::new(hardware),
             tasks: Tasks::new(hardware.independence),
             stages: Stage::ALL.map(stage).into(),
@@ -187,7 +187,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             if at_end {
                 self.end_turn(now, context)?;
             } else {
-                self.come(now, context);
+                self.arrive(now, context);
             }
         }
         Ok(now)
@@ -243,28 +243,28 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
 
     /// A record comes to a block, or to the head of its line.
     #[inline]
-    fn come(&mut self, now: u64, context: u32) {
+    fn arrive(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         let stage = of.plan.visits[of.visit].stage as usize;
-        let block = &mut self.blocks[of.lane as usize][stage];
+        let unit = &mut self.units[of.lane as usize][stage];
         if of.granted {
             of.granted = false;
             let next = of.behind;
             of.behind = NONE;
-            block.first = next;
+            unit.first = next;
             self.begin(now, context);
             if next != NONE {
                 self.grant(next);
             }
-        } else if block.first == NONE && block.free_at <= now {
+        } else if unit.first == NONE && unit.free_at <= now {
             self.begin(now, context);
-        } else if block.first == NONE {
-            block.first = context;
-            block.last = context;
+        } else if unit.first == NONE {
+            unit.first = context;
+            unit.last = context;
             self.grant(context);
         } else {
-            let last = block.last;
-            block.last = context;
+            let last = unit.last;
+            unit.last = context;
             self.contexts[last as usize].behind = context;
         }
     }
@@ -274,7 +274,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
         let stage = of.plan.visits[of.visit].stage as usize;
-        let free_at = self.blocks[of.lane as usize][stage].free_at;
+        let free_at = self.units[of.lane as usize][stage].free_at;
         self.wheel.set(free_at, context);
     }
 
@@ -310,7 +310,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             // What follows goes to the stack of its own lane.
             of.from = of.lane;
         }
-        self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
+        self.units[of.lane as usize][visit.stage as usize].free_at = frees;
         if O::ENABLED {
             self.observer.visit(&VisitSpan {
                 record: of.record,

@@ -32,7 +32,7 @@ struct Task {
 
 /// A record about to have its turn.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Taken {
+pub(super) struct StartedTask {
     pub(super) item: u32,
     pub(super) lane: u32,
     pub(super) spilled: bool,
@@ -91,9 +91,9 @@ impl Tasks {
     }
 
     #[inline]
-    pub(super) fn get(&self, task: u32) -> Taken {
+    pub(super) fn get(&self, task: u32) -> StartedTask {
         let task = &self.tasks[task as usize];
-        Taken {
+        StartedTask {
             item: task.item,
             lane: task.lane,
             spilled: task.spilled,
@@ -114,7 +114,7 @@ impl Tasks {
     }
 
     /// The end of a turn that would have taken `alone` cycles without
-    /// contention. Its children lie on the stack of `lane`; `spills` says how
+    /// contention. Its children lie on the stack of `lane`; `spills`: how
     /// many of them, the nearest (last pushed) ones, found no entry. Tasks
     /// that have become ready are appended to `ready`, the one to go last first.
     #[inline]

@@ -2,15 +2,15 @@
 
 use super::hardware::{Hardware, Independence};
 use super::memories::Latencies;
-use crate::{Memory, OpClass, Place, Probe, Stage};
+use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = Stage::ALL.len();
 const CLASSES: usize = OpClass::ALL.len();
-/// Widths of operations that are told apart; wider ones count as this less one.
+/// Widths of operations that are counted apart; wider ones count as this less one.
 const WIDTHS: usize = 128;
 
-/// What is simulated: something that works on records, one turn each, and
-/// knows what a turn does only by doing it.
+/// What is simulated: something that works on records, one turn each. What
+/// a turn costs is known only after it has been executed.
 ///
 /// The simulator calls [`Workload::turn`] in the order of simulated time, so
 /// that a record finds things as they are when its turn begins.
@@ -39,17 +39,17 @@ pub trait Workload {
 /// A record that a turn left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Child {
-    /// What the workload knows it by.
+    /// The workload's number for it.
     pub item: u32,
     /// Its place in the occlusion order, 0 (nearest) to 7.
     pub place: u8,
     /// Its part of the picture, within its parent's.
-    pub region: Region,
+    pub image_node: ImageNode,
 }
 
 /// A node of a quadtree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Region {
+pub struct ImageNode {
     /// Level, 0 = root.
     pub level: u32,
     /// Column among `2^level`.
@@ -58,7 +58,7 @@ pub struct Region {
     pub y: u32,
 }
 
-impl Region {
+impl ImageNode {
     /// Whether neither region holds the other.
     #[inline]
     #[must_use]
@@ -82,7 +82,7 @@ impl Independence {
     pub fn allows(self, earlier: &Child, later: &Child) -> bool {
         let class = |child: &Child| CLASS_OF_PLACE[usize::from(child.place & 7)];
         let classes = || class(earlier) == class(later);
-        let image = || earlier.region.is_disjoint(later.region);
+        let image = || earlier.image_node.is_disjoint(later.image_node);
         match self {
             Self::None => false,
             Self::Classes => classes(),
@@ -194,7 +194,7 @@ impl TurnLog {
 
     /// Takes the turn's visits and accesses, and forgets them.
     #[inline]
-    pub(super) fn take(&mut self, plan: &mut Plan) {
+    pub(super) fn take(&mut self, plan: &mut TurnVisits) {
         plan.visits.clear();
         plan.accesses.clear();
         plan.alone = 0;
@@ -207,7 +207,7 @@ impl TurnLog {
     }
 
     #[inline]
-    fn take_stage(&mut self, stage: Stage, plan: &mut Plan) {
+    fn take_stage(&mut self, stage: Stage, plan: &mut TurnVisits) {
         let (mut occupied, mut latency) = (1, 0);
         let mut sum = Done::default();
         let of = stage as usize;
@@ -256,7 +256,7 @@ impl TurnLog {
 
 impl Probe for TurnLog {
     #[inline(always)]
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         let (stage, class) = (place.stage as usize, class as usize);
         let width = (bits as usize).min(WIDTHS - 1);
         let passes = self.passes_of[stage][class][width];
@@ -267,12 +267,12 @@ impl Probe for TurnLog {
     }
 
     #[inline]
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.access(memory, address, place.stage, false);
     }
 
     #[inline]
-    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.access(memory, address, place.stage, true);
     }
 }
@@ -294,7 +294,7 @@ pub(super) struct Visit {
 
 /// A turn's visits, in order.
 #[derive(Debug, Default)]
-pub(super) struct Plan {
+pub(super) struct TurnVisits {
     pub(super) visits: Vec<Visit>,
     pub(super) accesses: Vec<Access>,
     /// Cycles if it waits for nothing.

@@ -4,12 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use super::MissCurve;
 use super::touched::Touched;
-use crate::{Memory, OpClass, Operand, Place, Probe};
+use crate::{Memory, OpClass, Operand, Probe, StageLevel};
 
 const MEMORIES: usize = Memory::ALL.len();
 
 /// Bits of what a pixel has so far where voxels are blended: nine of how much
-/// it still lets through, 24 of each colour. The rule says how many, no format.
+/// it still lets through, 24 of each colour. Fixed by the drawing rule, whatever the format.
 pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
 
 /// Bits that one access of each memory moves.
@@ -141,7 +141,7 @@ impl MemoryProbe {
         self.touched[memory as usize].distinct()
     }
 
-    /// Miss curves, in the order in which they were asked for.
+    /// Miss curves, in the order in which they were requested.
     #[must_use]
     pub fn curves(&self) -> &[(Memory, MissCurve)] {
         &self.curves
@@ -176,17 +176,17 @@ impl MemoryProbe {
 
 impl Probe for MemoryProbe {
     #[inline(always)]
-    fn op(&mut self, _: OpClass, _: u32, _: Place, _: u32) {}
+    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {}
 
     #[inline(always)]
-    fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: Place) {}
+    fn op_on(&mut self, _: Operand, _: OpClass, _: u32, _: StageLevel) {}
 
-    fn read(&mut self, memory: Memory, address: u64, _: Place) {
+    fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
         self.reads[memory as usize] += 1;
         self.access(memory, address);
     }
 
-    fn write(&mut self, memory: Memory, address: u64, _: Place) {
+    fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
         self.writes[memory as usize] += 1;
         if memory == Memory::Stack {
             let depth = usize::try_from(address).map_or(MAX_DEPTH, |at| at.min(MAX_DEPTH - 1) + 1);

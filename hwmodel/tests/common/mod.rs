@@ -4,8 +4,8 @@
 #![allow(dead_code, reason = "each test uses a part of it")]
 
 use hwmodel::{
-    Datapath, Format, MAX_BITS, MIN_BITS, Memory, NoProbe, Number, OpClass, Overflow, Place, Probe,
-    WideWord, Word,
+    Datapath, Format, MAX_BITS, MIN_BITS, Memory, NoProbe, Number, OpClass, Overflow, Probe,
+    StageLevel, WideWord, Word,
 };
 use proptest::prelude::*;
 
@@ -141,9 +141,9 @@ pub fn any_wide_pair() -> impl Strategy<Value = (u32, i64, i64)> {
 /// One thing that a probe was told.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Event {
-    Op(OpClass, u32, Place, u32),
-    Read(Memory, u64, Place),
-    Write(Memory, u64, Place),
+    Op(OpClass, u32, StageLevel, u32),
+    Read(Memory, u64, StageLevel),
+    Write(Memory, u64, StageLevel),
     Record(u64, u32),
 }
 
@@ -152,13 +152,13 @@ pub enum Event {
 pub struct Log(pub Vec<Event>);
 
 impl Probe for Log {
-    fn op(&mut self, class: OpClass, bits: u32, place: Place, times: u32) {
+    fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
         self.0.push(Event::Op(class, bits, place, times));
     }
-    fn read(&mut self, memory: Memory, address: u64, place: Place) {
+    fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.0.push(Event::Read(memory, address, place));
     }
-    fn write(&mut self, memory: Memory, address: u64, place: Place) {
+    fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.0.push(Event::Write(memory, address, place));
     }
     fn record(&mut self, index: u64, level: u32) {

@@ -4,8 +4,8 @@
 
 use std::convert::Infallible;
 
-use hwmodel::cycles::{Child, Hardware, Region, TurnLog, Workload};
-use hwmodel::{Memory, OpClass, Place, Probe, Stage};
+use hwmodel::cycles::{Child, Hardware, ImageNode, TurnLog, Workload};
+use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 
 /// What a record does in its turn.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub enum Does {
 #[derive(Debug, Clone, Default)]
 pub struct Node {
     pub does: Vec<Does>,
-    pub children: Vec<(u32, u8, Region)>,
+    pub children: Vec<(u32, u8, ImageNode)>,
 }
 
 /// Record 0 of the list is the workload's start.
@@ -45,17 +45,17 @@ impl<'a> Listed<'a> {
     fn does(&mut self, item: u32, children: &mut Vec<Child>) {
         let node = &self.nodes[item as usize];
         for does in &node.does {
-            let at = |stage| Place { stage, level: 0 };
+            let at = |stage| StageLevel { stage, level: 0 };
             match *does {
                 Does::Ops(stage, class, bits, times) => self.log.op(class, bits, at(stage), times),
                 Does::Read(stage, memory, address) => self.log.read(memory, address, at(stage)),
                 Does::Write(stage, memory, address) => self.log.write(memory, address, at(stage)),
             }
         }
-        let child = |&(item, place, region): &(u32, u8, Region)| Child {
+        let child = |&(item, place, image_node): &(u32, u8, ImageNode)| Child {
             item,
             place,
-            region,
+            image_node,
         };
         children.extend(node.children.iter().map(child));
     }

@@ -10,6 +10,7 @@ use super::scene::SceneArgs;
 use super::setting::{Setting, word};
 use super::values::Tolerance;
 use crate::far::view::Opacity;
+use crate::fast::Instructions;
 use crate::project::{CageKind, Coverage, SetupOptions};
 
 /// Which engine draws.
@@ -26,30 +27,6 @@ pub enum EngineName {
     Far,
     /// Textured voxels, of a .tvx file; see `convert`.
     Textured,
-}
-
-/// What a result that does not fit a word becomes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum OverflowName {
-    /// An error that names operation, stage and record.
-    #[default]
-    Trap,
-    /// Its lowest bits.
-    Wrap,
-    /// The nearest word.
-    Saturate,
-}
-
-/// Which instructions the fast engine uses. Never changes a bit of output.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-pub enum Isa {
-    /// The best that the processor has.
-    #[default]
-    Auto,
-    /// Plain Rust.
-    Scalar,
-    /// AVX2.
-    Avx2,
 }
 
 /// How often textured voxels are eroded: a number, or `auto`.
@@ -113,7 +90,7 @@ pub struct RuleArgs {
     pub frac: Option<u32>,
     /// What a result that does not fit a word becomes [default: trap]
     #[arg(long, value_enum)]
-    pub overflow: Option<OverflowName>,
+    pub overflow: Option<Overflow>,
 }
 
 /// The engine and what it computes with.
@@ -128,7 +105,7 @@ pub struct EngineArgs {
     pub rules: RuleArgs,
     /// Instructions of the fast engine; never changes a bit of output
     #[arg(long, value_enum, default_value_t)]
-    pub isa: Isa,
+    pub isa: Instructions,
     /// What --engine far uses opacities for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     pub far_opacity: Option<Opacity>,
@@ -187,11 +164,7 @@ impl RuleArgs {
     /// What the datapath does with a result that does not fit.
     #[must_use]
     pub fn overflow(&self) -> Overflow {
-        match self.overflow.unwrap_or_default() {
-            OverflowName::Trap => Overflow::Trap,
-            OverflowName::Wrap => Overflow::Wrap,
-            OverflowName::Saturate => Overflow::Saturate,
-        }
+        self.overflow.unwrap_or_default()
     }
 
     /// Settings that the engines of voxels have alone.
@@ -203,7 +176,7 @@ impl RuleArgs {
             ("tolerance", tolerance.to_string().into()),
             ("coverage", word(&options.coverage)),
             ("bits", i64::from(options.bits).into()),
-            ("overflow", word(&self.overflow.unwrap_or_default())),
+            ("overflow", word(&self.overflow())),
         ];
         settings.extend(self.frac.map(|frac| ("frac", i64::from(frac).into())));
         settings
@@ -222,7 +195,7 @@ impl EngineArgs {
             ("bits", self.rules.bits.is_some()),
             ("frac", self.rules.frac.is_some()),
             ("overflow", self.rules.overflow.is_some()),
-            ("isa", self.isa != Isa::Auto),
+            ("isa", self.isa != Instructions::Auto),
             ("far-opacity", self.far_opacity.is_some()),
             ("erosion", self.erosion.is_some()),
             ("erosion-grid", self.erosion_grid.is_some()),
@@ -242,7 +215,9 @@ impl EngineArgs {
         if self.erosion.is_some() || self.erosion_grid.is_some() {
             return Err("--erosion and --erosion-grid are for .tvx files".to_owned());
         }
-        if self.isa != Isa::Auto && self.engine.is_some_and(|engine| engine != EngineName::Fast) {
+        if self.isa != Instructions::Auto
+            && self.engine.is_some_and(|engine| engine != EngineName::Fast)
+        {
             return Err("--isa is for --engine fast".to_owned());
         }
         Ok(())

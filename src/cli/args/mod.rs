@@ -9,7 +9,7 @@ mod setting;
 mod values;
 
 pub use camera::{CameraArgs, ViewName, camera_line, camera_settings};
-pub use engine::{EngineArgs, EngineName, Erosion, Isa, OverflowName, RuleArgs};
+pub use engine::{EngineArgs, EngineName, Erosion, RuleArgs};
 pub use output::OutputArgs;
 pub use picture::PictureArgs;
 pub use scene::SceneArgs;

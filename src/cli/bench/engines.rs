@@ -1,4 +1,4 @@
-//! `bench engines`: the engines and a stand-in rival, side by side.
+//! `bench engines`: the engines and a ray caster in floating point, side by side.
 
 use serde_json::json;
 
@@ -9,7 +9,7 @@ use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::bench::{Harness, Plan, engines as experiment, measure};
+use crate::lab::bench::{BenchPlan, Harness, engines as experiment, measure};
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 1024;
@@ -27,7 +27,7 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let plan = Plan {
+    let plan = BenchPlan {
         sizes: &sizes,
         threads,
         options,

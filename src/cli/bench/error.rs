@@ -15,7 +15,9 @@ use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
-use crate::lab::error::{self as experiment, Look, Method, Plan, SceneErrors, VoxelMethod};
+use crate::lab::error::{
+    self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, VoxelMethod,
+};
 use crate::project::{CageKind, Coverage, SetupOptions};
 use crate::report::html::Page;
 
@@ -292,14 +294,14 @@ pub(super) fn run(
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let context = Context::now();
     context.warn(console);
-    let plan = Plan {
+    let plan = ErrorPlan {
         size,
         schedule: Schedule {
             warmup: args.warmup,
             runs: args.runs,
         },
         strata_log2: args.reference.strata_log2(),
-        look: Look::default(),
+        style: PixelStyle::default(),
     };
     let options = args.select.options();
     let mut scenes = Vec::new();
@@ -307,13 +309,13 @@ pub(super) fn run(
         let subject = subjects::open(name, &args.camera, &scene_args, size, console)?;
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods = if args.meshes.has_voxels(mesh.is_some()) {
-            methods(&args.select, &options, &subject, plan.look)
+            methods(&args.select, &options, &subject, plan.style)
         } else {
             Vec::new()
         };
         let mut references = experiment::References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look)?);
+            methods.extend(args.meshes.methods(mesh, plan.style)?);
             references = experiment::References::of_triangles(&mesh.mesh);
         }
         let progress = console.progress();
@@ -344,7 +346,7 @@ fn methods<'s>(
     select: &SelectArgs,
     options: &[SetupOptions],
     subject: &'s Subject,
-    look: Look,
+    style: PixelStyle,
 ) -> Vec<Box<dyn Method + 's>> {
     let asked = |name: &str| match select.engines.as_slice() {
         [] => name == engines::FAST.name,
@@ -359,7 +361,7 @@ fn methods<'s>(
                 &subject.graph,
                 engine,
                 options,
-                look,
+                style,
             )));
         }
     }

@@ -13,8 +13,8 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{Look, Method, References, VoxelMethod};
-use crate::lab::flicker::{self as experiment, Films, Motion, Plan};
+use crate::lab::error::{Method, PixelStyle, References, VoxelMethod};
+use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{CageKind, Coverage, SetupOptions};
 use crate::report::html::Page;
 
@@ -125,18 +125,23 @@ pub(super) fn run(
     pictures::check(&args.page, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
-    let plan = Plan {
+    let plan = FilmPlan {
         size,
         frames: args.frames,
         strata_log2: samples.ilog2(),
-        look: Look::default(),
+        style: PixelStyle::default(),
     };
     let mut films = Vec::new();
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
         let method = |options| -> Box<dyn Method + '_> {
-            Box::new(VoxelMethod::new(&subject.graph, engine, options, plan.look))
+            Box::new(VoxelMethod::new(
+                &subject.graph,
+                engine,
+                options,
+                plan.style,
+            ))
         };
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
@@ -148,7 +153,7 @@ pub(super) fn run(
         // The first frame is the same for all motions.
         let mut references = References::default();
         if let Some(mesh) = &mesh {
-            methods.extend(args.meshes.methods(mesh, plan.look)?);
+            methods.extend(args.meshes.methods(mesh, plan.style)?);
             references = References::of_triangles(&mesh.mesh);
         }
         for motion in args.motions() {

@@ -15,7 +15,7 @@ use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{Look, Method};
+use crate::lab::error::{Method, PixelStyle};
 use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
 use crate::mesh::Mesh;
 
@@ -114,12 +114,12 @@ impl MeshMethodArgs {
     pub(super) fn methods<'m>(
         &self,
         scene: &'m MeshScene,
-        look: Look,
+        style: PixelStyle,
     ) -> Result<Vec<Box<dyn Method + 'm>>, CliError> {
         let mut methods: Vec<Box<dyn Method + 'm>> = Vec::new();
         if self.has(FamilyName::Triangles) {
             for samples in TRIANGLE_SAMPLES {
-                let method = TrianglesMethod::new(&scene.mesh, samples, look);
+                let method = TrianglesMethod::new(&scene.mesh, samples, style);
                 methods.push(Box::new(method.map_err(|e| CliError::new(Kind::Run, e))?));
             }
         }
@@ -137,7 +137,7 @@ impl MeshMethodArgs {
                         opacity,
                         voxel_px,
                     };
-                    Box::new(FarMethod::new(file, settings, look))
+                    Box::new(FarMethod::new(file, settings, style))
                 }));
             }
         }

@@ -21,11 +21,11 @@ use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
-use crate::lab::error::{Look, Method, Refused, VoxelMethod};
+use crate::lab::error::{Method, PixelStyle, Refused, VoxelMethod};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, Plan, TexturedMethod,
-    TrianglesMethod,
+    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
+    TexturedMethod, TrianglesMethod,
 };
 use crate::mesh::{Mesh, Surface};
 use crate::project::{Coverage, SetupOptions};
@@ -108,7 +108,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     }
     let context = Context::now();
     context.warn(console);
-    let plan = Plan {
+    let plan = MethodsPlan {
         halvings: (size.0.min(size.1) / args.least).ilog2(),
         schedule: Schedule {
             warmup: args.warmup,
@@ -116,7 +116,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
         },
         frames: args.frames,
         motion: Motion::Pan { pixels: 0.125 },
-        look: Look::default(),
+        style: PixelStyle::default(),
     };
     let mut meshes = Vec::new();
     for name in &args.meshes {
@@ -216,12 +216,12 @@ fn methods<'m>(
     args: &MethodsArgs,
     mesh: &'m Mesh,
     made: &'m Made,
-    look: Look,
+    style: PixelStyle,
 ) -> Result<Vec<Candidate<'m>>, Refused> {
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
         for samples in TRIANGLE_SAMPLES {
-            let method = TrianglesMethod::new(mesh, samples, look)?;
+            let method = TrianglesMethod::new(mesh, samples, style)?;
             let label = format!("triangles, {samples}");
             all.push(candidate(label, mesh.bytes(), 0.0, method));
         }
@@ -246,7 +246,7 @@ fn methods<'m>(
                 _ => opaque,
             };
             let engine = (engines::FAST.name, engines::FAST.make);
-            let method = VoxelMethod::new(graph, engine, options, look);
+            let method = VoxelMethod::new(graph, engine, options, style);
             all.push(candidate(label, graph.bytes(), *ms, method));
         }
     }
@@ -261,19 +261,19 @@ fn methods<'m>(
                 opacity,
                 ..FarSettings::default()
             };
-            let method = FarMethod::new(file, settings, look);
+            let method = FarMethod::new(file, settings, style);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
     if let Some([(paper, paper_ms), (file, ms)]) = &made.textured {
         for level in 0..2 {
-            let method = TexturedMethod::new(paper, Detail::Level { grid: 0, level }, 1, look)?;
+            let method = TexturedMethod::new(paper, Detail::Level { grid: 0, level }, 1, style)?;
             let label = format!("textured 16, eroded {level}");
             all.push(candidate(label, paper.len(), *paper_ms, method));
         }
         for samples in [1, 4] {
             let detail = Detail::Auto { texel_px: 1.0 };
-            let method = TexturedMethod::new(file, detail, samples, look)?;
+            let method = TexturedMethod::new(file, detail, samples, style)?;
             let label = format!("textured auto, {samples}");
             all.push(candidate(label, file.len(), *ms, method));
         }
@@ -285,13 +285,13 @@ fn measure(
     args: &MethodsArgs,
     name: &str,
     size: (u32, u32),
-    plan: &Plan,
+    plan: &MethodsPlan,
     console: &Console,
 ) -> Result<MeshMethods, CliError> {
     let (mesh, up) = scenes::read_mesh(name, &args.scene, console.progress())?;
     let camera = args.camera.camera(&bounds_of_mesh(&mesh), up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
-    let all = methods(args, &mesh, &made, plan.look).map_err(|e| CliError::new(Kind::Run, e))?;
+    let all = methods(args, &mesh, &made, plan.style).map_err(|e| CliError::new(Kind::Run, e))?;
     let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let surface: &dyn Surface = &mesh;
     let progress = console.progress();

@@ -13,7 +13,7 @@ use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::scaling::{self as experiment, Growing, Growth};
-use crate::lab::bench::{Harness, Plan, Scan, measure};
+use crate::lab::bench::{BenchPlan, Harness, Scan, measure};
 
 /// Arguments of `bench scaling`.
 #[derive(Debug, Args)]
@@ -90,7 +90,7 @@ pub(super) fn run(
     let (schedule, options) = (args.measure.schedule(), args.measure.options());
     let context = Context::now();
     context.warn(console);
-    let mut plan = Plan {
+    let mut plan = BenchPlan {
         sizes: &picture_sizes,
         threads,
         options,

@@ -14,7 +14,7 @@ use crate::cli::report;
 use crate::drawing::resident;
 use crate::far::FarFile;
 use crate::far::view::Opacity;
-use crate::lab::walk::{self as experiment, Plan};
+use crate::lab::far_path::{self as experiment, FarPathPlan};
 
 /// Arguments of `bench walk`.
 #[derive(Debug, Args)]
@@ -57,7 +57,7 @@ pub(super) struct WalkArgs {
 
 pub(super) fn run(args: &WalkArgs, console: &Console) -> Result<(), CliError> {
     export::check(&args.export)?;
-    let plan = Plan {
+    let plan = FarPathPlan {
         frames: args.frames,
         size: args.size.map_or((640, 360), |s| (s.width, s.height)),
         voxel_px: args.lod,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
@@ -37,26 +37,6 @@ pub(in crate::cli) struct ModelArgs {
     pub(super) rules: RuleArgs,
 }
 
-/// What gates are chosen for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum GoalName {
-    /// Small area.
-    #[default]
-    Area,
-    /// Short delay.
-    Delay,
-}
-
-/// How the span of eight values is found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
-enum SpanName {
-    /// 7 minima and 7 maxima.
-    #[default]
-    Trees,
-    /// In pairs: 10 compares and 14 selects. Corner cages alone.
-    Pairs,
-}
-
 /// The hardware, and what its parts cost.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Hardware")]
@@ -72,10 +52,10 @@ pub(super) struct HardwareArgs {
     costs: Option<PathBuf>,
     /// What gates are chosen for
     #[arg(long, value_enum, default_value_t)]
-    goal: GoalName,
+    goal: Goal,
     /// How the span of eight values is found, for energy
     #[arg(long, value_enum, default_value_t)]
-    spans: SpanName,
+    spans: MinMaxUnits,
     /// Count shifts by constants as shifters, not as wires
     #[arg(long)]
     shifters: bool,
@@ -213,15 +193,9 @@ impl HardwareArgs {
                 } else {
                     ShiftUnits::Wires
                 },
-                min_max: match self.spans {
-                    SpanName::Trees => MinMaxUnits::Each,
-                    SpanName::Pairs => MinMaxUnits::Pairs,
-                },
+                min_max: self.spans,
             },
-            goal: match self.goal {
-                GoalName::Area => Goal::Area,
-                GoalName::Delay => Goal::Delay,
-            },
+            goal: self.goal,
         })
     }
 }

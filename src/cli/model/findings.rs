@@ -17,7 +17,7 @@ use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
-use crate::lab::model::rival::{self, Rival};
+use crate::lab::model::ray_caster::{self, RayCasterReport};
 use crate::lab::model::rules::{self, RuleRow};
 use crate::lab::model::sweep::{self, FormatRow};
 use crate::machine::Simulated;
@@ -36,7 +36,7 @@ pub(super) struct Findings {
     pub(super) differing: u64,
     pub(super) cost: FrameCost,
     pub(super) area: Breakdown,
-    pub(super) rival: Rival,
+    pub(super) ray_caster: RayCasterReport,
     /// Wrong samples of the machine's picture.
     pub(super) wrong: crate::measure::CoverageError,
     pub(super) claims: Vec<Claim>,
@@ -93,7 +93,7 @@ pub(super) fn find(
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = rules::true_setup(graph, &camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
-    let rival = rival::measure(graph, &setup, &hardware, prices, &exact)?;
+    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, &exact)?;
     let wrong = frame::error(&counted.frame, &exact);
     progress.end();
 
@@ -152,7 +152,7 @@ pub(super) fn find(
         differing,
         cost,
         area,
-        rival,
+        ray_caster,
         wrong,
         claims,
         rules,

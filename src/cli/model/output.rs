@@ -61,7 +61,7 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
         &found.simulated,
         &found.cost,
         found.area.total,
-        Some(&found.rival),
+        Some(&found.ray_caster),
     );
     let panels = panels(found);
     if let Some(path) = &args.files.stats {
@@ -115,7 +115,7 @@ fn panels(found: &Findings) -> Vec<Panel> {
         plots::operations(&found.counted),
         plots::cycles(cycles),
         plots::roofline(&found.counted, cycles, &found.hardware),
-        plots::energy(&found.cost, Some(&found.rival.cost)),
+        plots::energy(&found.cost, Some(&found.ray_caster.cost)),
         plots::miss_curve(&found.counted),
     ];
     if !found.lanes.is_empty() {
@@ -172,7 +172,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "coverage_error": found.wrong,
             "cost": found.cost,
             "area": found.area,
-            "ray_caster": found.rival,
+            "ray_caster": found.ray_caster,
             "claims": found.claims,
             "rules": found.rules,
             "formats": found.formats,

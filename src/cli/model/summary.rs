@@ -19,7 +19,7 @@ pub(super) fn summary(found: &Findings) -> Table {
     );
     let cycles = &found.simulated.cycles;
     let (energy, low, high) = found.cost.total();
-    let ray = found.rival.cost.total().0;
+    let ray = found.ray_caster.cost.total().0;
     let bits = found.counted.record_bits();
     let mut row = |what: &str, figure: String| {
         table.rows.push(vec![Cell::from(what), Cell::Text(figure)]);
@@ -128,7 +128,7 @@ pub(super) fn summary(found: &Findings) -> Table {
             "{} of {}; the ray caster {}",
             found.wrong.extra + found.wrong.missing,
             grouped(found.wrong.covered),
-            found.rival.error.extra + found.rival.error.missing
+            found.ray_caster.error.extra + found.ray_caster.error.missing
         ),
     );
     table
@@ -146,7 +146,7 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
         tables::stages(&found.counted, cycles),
         tables::memories(&found.counted, &found.widths, cycles),
         tables::bounds(cycles),
-        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.rival),
+        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.ray_caster),
         tables::claims(&found.claims),
     ];
     if !found.rules.is_empty() {
@@ -189,17 +189,17 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::breakdown(
             "Energy of the ray caster's operations",
             "pj",
-            &found.rival.cost.operations,
+            &found.ray_caster.cost.operations,
         ),
         tables::breakdown(
             "Energy of the ray caster's memories on the chip",
             "pj",
-            &found.rival.cost.on_chip,
+            &found.ray_caster.cost.on_chip,
         ),
         tables::breakdown(
             "Energy of the ray caster's outer memory",
             "pj",
-            &found.rival.cost.outer,
+            &found.ray_caster.cost.outer,
         ),
     ]
 }

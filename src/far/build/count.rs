@@ -7,7 +7,7 @@
 //! a voxel are spread evenly, whatever is around it.
 //!
 //! A large object of which a voxel has but a corner goes on behind it: such a
-//! pass says nothing of the object, and does not count (the image-order paper's Fig. 3b).
+//! pass is no evidence about the object, and does not count (the image-order paper's Fig. 3b).
 
 use glam::DVec3;
 
@@ -72,7 +72,7 @@ impl Counted {
         six.map(|v| v[0])
     }
 
-    /// How many probes of equal weight would know as much.
+    /// How many probes of equal weight carry the same information.
     pub(super) fn independent(&self) -> f64 {
         if self.square_weight > 0.0 {
             self.weight * self.weight / self.square_weight
@@ -102,7 +102,7 @@ impl Target<'_> {
         plane: impl Fn(usize) -> DVec3,
         seen: &mut [Seen],
     ) {
-        let axes: Vec<DVec3> = seen.iter().map(|seen| main_normal(&seen.looks)).collect();
+        let axes: Vec<DVec3> = seen.iter().map(|seen| main_normal(&seen.samples)).collect();
         let mut is_aim = vec![false; self.grid.len()];
         for &aim in aims {
             is_aim[aim as usize] = true;

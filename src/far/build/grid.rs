@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Cubes from `origin`, as many along each axis as `cells` says (1 to 255).
+/// Cubes from `origin`, `cells` along each axis (1 to 255).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     /// Lowest corner, world units.
@@ -89,7 +89,7 @@ impl Grid {
     }
 
     /// The voxels along a ray, with the distances (in voxels) at which it enters and leaves each.
-    pub(super) fn along(&self, from: DVec3, direction: DVec3) -> Walk {
+    pub(super) fn along(&self, from: DVec3, direction: DVec3) -> GridTraversal {
         let cells = DVec3::from_array(self.cells.map(f64::from));
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for k in 0..3 {
@@ -113,7 +113,7 @@ impl Grid {
             let plane = f64::from(at[k] + i32::from(direction[k] > 0.0));
             (plane - from[k]) / direction[k]
         });
-        Walk {
+        GridTraversal {
             cells: self.cells.map(i32::from),
             at,
             next,
@@ -127,7 +127,7 @@ impl Grid {
 
 /// Voxels along a ray, one after the other.
 #[derive(Debug, Clone)]
-pub(super) struct Walk {
+pub(super) struct GridTraversal {
     cells: [i32; 3],
     at: [i32; 3],
     next: [f64; 3],
@@ -146,7 +146,7 @@ pub(super) struct Crossing {
     pub(super) leave: f64,
 }
 
-impl Iterator for Walk {
+impl Iterator for GridTraversal {
     type Item = Crossing;
 
     fn next(&mut self) -> Option<Crossing> {

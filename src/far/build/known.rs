@@ -1,11 +1,11 @@
-//! Known answers: voxels whose opacity one can say without shooting rays.
+//! Tests with known answers: voxels whose opacity follows without shooting rays.
 
 use glam::DVec3;
 
 use super::grid::Grid;
 use super::rays::Occluders;
-use super::sample::{MOST_LOOKS, Rays, Sampled, Seen, Target};
-use super::{fit, look_at};
+use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled, Seen, Target};
+use super::{shader_fit, surface_sample};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind};
 use crate::mesh::{Mesh, MeshBuilder, Surface};
@@ -61,9 +61,10 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         let [a, b, c] = corners(i);
         (b - a).cross(c - a).normalize()
     };
-    let look =
-        |i: usize, point: DVec3, eye: DVec3| look_at(&mesh.triangle(i), point, eye, plane(i));
-    target.sample(Rays::InAll(rays), u32::MAX, 7, corners, look, plane)
+    let sample_at = |i: usize, point: DVec3, eye: DVec3| {
+        surface_sample(&mesh.triangle(i), point, eye, plane(i))
+    };
+    target.sample(Rays::InAll(rays), u32::MAX, 7, corners, sample_at, plane)
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
@@ -88,7 +89,7 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
         let [x, y, _] = seen.place;
         // The rim's voxels are filled in part.
         if (1..7).contains(&x) && (1..7).contains(&y) {
-            let fitted = fit::fit(seen, Blend::Squares, Opacity::Six);
+            let fitted = shader_fit::fit(seen, Blend::Squares, Opacity::Six);
             inner += 1;
             opaque += u32::from(fitted.voxel.opacity_kind == OpacityKind::Opaque);
             let opacity = seen.counted.six();
@@ -181,8 +182,8 @@ fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
     assert_eq!((hidden.seen.len(), hidden.hits), (0, 0));
     assert_eq!(
         hidden.rays,
-        8 * MOST_LOOKS,
-        "all look and there is nothing to probe"
+        8 * MOST_VISIBILITY_RAYS,
+        "all are visibility rays and there is nothing to probe"
     );
     let both = all(&boxes(&[core, shell]), unit([8; 3]), 20_000);
     assert!(
@@ -212,7 +213,7 @@ fn what_a_window_shows_is_found_from_what_is_beside_it() {
     ];
     // So few rays that probes, which find something too, do not find all.
     let sampled = sampled(&boxes(&room), 12, unit([16, 16, 3]), 7000, Blend::Cosines);
-    // The window is a hundred and fiftieth of what is around a voxel, or less: 24 random looks
+    // The window is a hundred and fiftieth of what is around a voxel, or less: 24 random rays
     // would find one voxel in seven, and with probes one in five. All 144 can be seen.
     assert_eq!(sampled.touched, 144);
     assert!(sampled.seen.len() > 72, "{}", sampled.seen.len());

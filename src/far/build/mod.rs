@@ -4,10 +4,10 @@
 //! threads: a node's rays depend on its number and on nothing else.
 
 mod count;
-mod fit;
 mod grid;
 mod rays;
 mod sample;
+mod shader_fit;
 mod split;
 mod touch;
 
@@ -26,13 +26,13 @@ use super::record::{LeafTriangle, Node, Opacity, triangle_bytes};
 use crate::graph::{PackedNormal, Progress};
 use crate::mesh::{Surface, barycentric, linear_to_srgb};
 use rays::Occluders;
-use sample::{Look, Rays, Target};
+use sample::{Rays, SurfaceSample, Target};
 use split::{Branch, split};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BuildOptions {
-    /// Rays of all nodes together; `None`: as many as look for what is seen, and
+    /// Rays of all nodes together; `None`: as many as find what is visible, and
     /// [`RAYS_PER_VOXEL`] for each voxel that is.
     pub rays: Option<u64>,
     /// Nodes with fewer triangles are leaves; 2 or more.
@@ -135,10 +135,10 @@ pub fn build<S: Surface + ?Sized>(
         let [a, b, c] = corners(place);
         (b - a).cross(c - a).normalize_or(DVec3::Z)
     };
-    let look = |place: usize, point: DVec3, towards_eye: DVec3| {
+    let sample_at = |place: usize, point: DVec3, towards_eye: DVec3| {
         let mut triangle = surface.triangle(order[place] as usize);
         triangle.corners = triangle.corners.map(|p| p - centre);
-        look_at(&triangle, point, towards_eye, plane(place))
+        surface_sample(&triangle, point, towards_eye, plane(place))
     };
     let built: Vec<(Node, Vec<u8>)> = branches
         .par_iter()
@@ -146,13 +146,13 @@ pub fn build<S: Surface + ?Sized>(
         .map(|(number, branch)| {
             let mut node = outline(branch, centre);
             if branch.children.is_none() {
-                // Every triangle is in one leaf: progress is told by these.
+                // Every triangle is in one leaf: progress is counted by these.
                 progress.advance(branch.count as u64);
                 return (node, Vec::new());
             }
             let target = target(branch);
             let seed = number as u64;
-            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, look, plane);
+            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, sample_at, plane);
             let voxels = keep(&mut node, &target.grid, &sampled, options);
             (node, voxels)
         })
@@ -217,12 +217,12 @@ fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
 }
 
 /// Normal and colour of a triangle at a point, seen from a side.
-fn look_at(
+fn surface_sample(
     triangle: &crate::mesh::Triangle,
     point: DVec3,
     towards_eye: DVec3,
     plane: DVec3,
-) -> Look {
+) -> SurfaceSample {
     let shares = barycentric(&triangle.corners, point);
     let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
     let face = if plane.dot(towards_eye) >= 0.0 {
@@ -231,7 +231,7 @@ fn look_at(
         -plane
     };
     let normal = blend(&triangle.normals).normalize_or(face);
-    Look {
+    SurfaceSample {
         towards_eye,
         normal: if normal.dot(face) < 0.0 {
             -normal
@@ -267,14 +267,14 @@ fn keep(
 ) -> Vec<u8> {
     let mut lists: [Vec<u8>; 6] = Default::default();
     let mut square_error = 0.0;
-    let mut looks = 0;
+    let mut samples = 0;
     for seen in &sampled.seen {
-        let fitted = fit::fit(seen, options.shader_blend, options.opacity);
+        let fitted = shader_fit::fit(seen, options.shader_blend, options.opacity);
         let list = fitted.voxel.list();
         fitted.voxel.write(&mut lists[list]);
         node.counts[list] += 1;
         square_error += fitted.square_error;
-        looks += seen.looks.len();
+        samples += seen.samples.len();
         node.crossings = node.crossings.saturating_add(seen.counted.crossings);
     }
     node.origin = grid.origin.as_vec3().to_array();
@@ -283,7 +283,7 @@ fn keep(
     node.touched = sampled.touched;
     node.rays = sampled.rays;
     node.hits = sampled.hits;
-    node.error = libm::sqrt(square_error / f64::from(looks.max(1) as u32)) as f32;
+    node.error = libm::sqrt(square_error / f64::from(samples.max(1) as u32)) as f32;
     lists.concat()
 }
 

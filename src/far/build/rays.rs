@@ -21,7 +21,7 @@ pub(super) struct Occluders {
 
 /// A triangle that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Meeting {
+pub(super) struct TriangleHit {
     /// Distance along the ray.
     pub(super) distance: f64,
     /// Number of the triangle, as they were given.
@@ -45,7 +45,7 @@ impl Occluders {
     }
 
     /// The nearest triangle along a unit direction.
-    pub(super) fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<Meeting> {
+    pub(super) fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<TriangleHit> {
         let ray = Ray::new(origin.as_vec3a(), direction.as_vec3a(), 0.0, f32::INFINITY);
         let mut hit = RayHit::none();
         self.bvh.ray_traverse(ray, &mut hit, |ray, place| {
@@ -57,7 +57,7 @@ impl Occluders {
         if !hit.t.is_finite() || hit.primitive_id == u32::MAX {
             return None;
         }
-        Some(Meeting {
+        Some(TriangleHit {
             distance: f64::from(hit.t),
             triangle: self.bvh.primitive_indices[hit.primitive_id as usize] as usize,
         })

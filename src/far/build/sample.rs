@@ -1,6 +1,6 @@
 //! Rays at a node: which of its voxels are seen, and what of them.
 //!
-//! First *looks* are aimed at points of what is in each voxel, from random
+//! First *visibility rays* are aimed at points of what is in each voxel, from random
 //! directions and from those from which a neighbour was seen, until one gets
 //! there: a voxel that none reaches is dropped.
 //! Then *probes* are aimed at random points of the outlines of the voxels that
@@ -18,18 +18,19 @@ use super::grid::Grid;
 use super::rays::Occluders;
 use super::touch::{POINTS, Touched, touched};
 use crate::far::blend::Blend;
+use crate::split_mix::SplitMix;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
 const STEPS_TO_S: u32 = 3;
-/// Most looks from random directions at a voxel that none reached yet.
-pub(super) const MOST_LOOKS: u32 = 24;
-/// Most looks at it from where neighbours were seen: what one window lets a ray
+/// Most visibility rays from random directions at a voxel that none reached yet.
+pub(super) const MOST_VISIBILITY_RAYS: u32 = 24;
+/// Most of them from where neighbours were seen: what one window lets a ray
 /// through to lies side by side, and a random direction seldom finds the window.
 pub(super) const MOST_FOLLOWED: u8 = 24;
 
-/// What a ray saw at its end.
+/// The surface at a ray's end.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Look {
+pub(super) struct SurfaceSample {
     /// Unit vector to the eye.
     pub(super) towards_eye: DVec3,
     /// Unit normal on the eye's side.
@@ -42,7 +43,7 @@ pub(super) struct Look {
 #[derive(Debug)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
-    pub(super) looks: Vec<Look>,
+    pub(super) samples: Vec<SurfaceSample>,
     pub(super) counted: Counted,
 }
 
@@ -73,7 +74,7 @@ pub(super) struct Target<'t> {
 pub(super) enum Rays {
     /// So many probes for each voxel that is seen.
     PerVoxel(u32),
-    /// So many in all, of which at most half look.
+    /// So many in all, of which at most half are visibility rays.
     InAll(u32),
 }
 
@@ -87,25 +88,23 @@ pub(super) struct Shot {
     pub(super) triangle: usize,
 }
 
-/// Chance from a seed: SplitMix64.
-pub(super) struct Chance(u64);
+/// Random numbers of a node.
+pub(super) struct Chance(SplitMix);
 
 impl Chance {
     pub(super) fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15)
+        let scrambled = seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15;
+        Self(SplitMix::new(scrambled))
     }
 
     /// 0 to 1, without 1.
     pub(super) fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        self.0.unit()
     }
 }
 
 impl Target<'_> {
-    /// Shoots rays. `look` says normal and colour of a triangle at a point,
+    /// Shoots rays. `sample_at` gives normal and colour of a triangle at a point,
     /// `plane` a triangle's unit normal; at most `most` rays are shot.
     pub(super) fn sample(
         &self,
@@ -113,23 +112,24 @@ impl Target<'_> {
         most: u32,
         seed: u64,
         corners: impl Fn(usize) -> [DVec3; 3],
-        look: impl Fn(usize, DVec3, DVec3) -> Look,
+        sample_at: impl Fn(usize, DVec3, DVec3) -> SurfaceSample,
         plane: impl Fn(usize) -> DVec3,
     ) -> Sampled {
         let mut chance = Chance::new(seed);
         let touched = touched(&self.grid, self.own.clone().map(corners), &mut chance);
         let mut is_seen = vec![false; self.grid.len()];
-        let most_looks = match rays {
+        let most_visibility_rays = match rays {
             Rays::PerVoxel(_) => most / 2,
             Rays::InAll(rays) => rays.min(most).div_ceil(2),
         };
-        let mut shots = self.look(&touched, most_looks, &mut chance, &mut is_seen);
-        let looks = shots.len();
+        let mut shots =
+            self.find_visible(&touched, most_visibility_rays, &mut chance, &mut is_seen);
+        let visibility_rays = shots.len();
         let aims = numbers(&is_seen);
-        let left = most - looks as u32;
+        let left = most - visibility_rays as u32;
         let probes = match rays {
             Rays::PerVoxel(probes) => left.min(probes.saturating_mul(aims.len() as u32)),
-            Rays::InAll(rays) => left.min(rays.saturating_sub(looks as u32)),
+            Rays::InAll(rays) => left.min(rays.saturating_sub(visibility_rays as u32)),
         };
         self.probe(&aims, probes, &mut chance, &mut shots, &mut is_seen);
         let mut slot = vec![u32::MAX; self.grid.len()];
@@ -138,7 +138,7 @@ impl Target<'_> {
             slot[number as usize] = seen.len() as u32;
             seen.push(Seen {
                 place: self.grid.place(number as usize),
-                looks: Vec::new(),
+                samples: Vec::new(),
                 counted: Counted::default(),
             });
         }
@@ -150,9 +150,10 @@ impl Target<'_> {
             hits += 1;
             let point = self.grid.world(shot.from + shot.direction * shot.end);
             let at = &mut seen[slot[self.grid.number(place)] as usize];
-            at.looks.push(look(shot.triangle, point, -shot.direction));
+            at.samples
+                .push(sample_at(shot.triangle, point, -shot.direction));
         }
-        self.count(&shots[looks..], &slot, &aims, plane, &mut seen);
+        self.count(&shots[visibility_rays..], &slot, &aims, plane, &mut seen);
         Sampled {
             seen,
             touched: touched.len() as u32,
@@ -176,8 +177,8 @@ impl Target<'_> {
         last
     }
 
-    /// Looks at every voxel until one look reaches something in it.
-    fn look(
+    /// Aims visibility rays at every voxel until one reaches something in it.
+    fn find_visible(
         &self,
         touched: &[Touched],
         most: u32,
@@ -185,7 +186,7 @@ impl Target<'_> {
         is_seen: &mut [bool],
     ) -> Vec<Shot> {
         let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
-        let mut looks = Looks {
+        let mut rays = VisibilityRays {
             shots: Vec::new(),
             most: most as usize,
             is_seen,
@@ -195,33 +196,33 @@ impl Target<'_> {
         };
         for (slot, voxel) in touched.iter().enumerate() {
             // Fewer than 2^24 voxels in a grid.
-            looks.slot[voxel.number as usize] = slot as u32;
+            rays.slot[voxel.number as usize] = slot as u32;
         }
-        for turn in 0..MOST_LOOKS {
+        for turn in 0..MOST_VISIBILITY_RAYS {
             for (voxel, directions) in touched.iter().zip(&starts) {
-                if !looks.is_seen[voxel.number as usize] {
+                if !rays.is_seen[voxel.number as usize] {
                     let point = voxel.points[turn as usize % POINTS];
-                    looks.shoot(self, point, directions.at(turn));
+                    rays.shoot(self, point, directions.at(turn));
                 }
             }
-            self.follow(touched, &mut looks);
+            self.follow(touched, &mut rays);
         }
-        looks.shots
+        rays.shots
     }
 
-    /// Looks at neighbours of voxels that were just seen, from where these were, until that finds no more.
-    fn follow(&self, touched: &[Touched], looks: &mut Looks<'_>) {
-        while let Some((number, direction)) = looks.fresh.pop_front() {
+    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no more are found.
+    fn follow(&self, touched: &[Touched], rays: &mut VisibilityRays<'_>) {
+        while let Some((number, direction)) = rays.fresh.pop_front() {
             for neighbour in self.grid.neighbours(number as usize) {
-                let slot = looks.slot[neighbour];
-                if slot == u32::MAX || looks.is_seen[neighbour] {
+                let slot = rays.slot[neighbour];
+                if slot == u32::MAX || rays.is_seen[neighbour] {
                     continue;
                 }
-                let followed = &mut looks.followed[slot as usize];
+                let followed = &mut rays.followed[slot as usize];
                 if *followed < MOST_FOLLOWED {
                     let point = touched[slot as usize].points[usize::from(*followed) % POINTS];
                     *followed += 1;
-                    looks.shoot(self, point, direction);
+                    rays.shoot(self, point, direction);
                 }
             }
         }
@@ -286,8 +287,8 @@ impl Target<'_> {
     }
 }
 
-/// Looks at a node, as they are taken.
-struct Looks<'l> {
+/// The visibility rays of a node, as they are shot.
+struct VisibilityRays<'l> {
     shots: Vec<Shot>,
     /// How many there may be.
     most: usize,
@@ -295,14 +296,14 @@ struct Looks<'l> {
     is_seen: &'l mut [bool],
     /// Of each voxel of the grid, its number among those touched.
     slot: Vec<u32>,
-    /// Of each voxel that is touched, how often it was looked at from where a neighbour was seen.
+    /// Of each voxel that is touched, how often it was aimed at from where a neighbour was seen.
     followed: Vec<u8>,
     /// Voxels that were just seen, and along which direction.
     fresh: VecDeque<(u32, DVec3)>,
 }
 
-impl Looks<'_> {
-    /// Looks at a point along a direction, unless there were enough looks.
+impl VisibilityRays<'_> {
+    /// Aims a ray at a point along a direction, unless there were enough rays.
     fn shoot(&mut self, target: &Target<'_>, point: DVec3, direction: DVec3) {
         if self.shots.len() >= self.most {
             return;
@@ -357,11 +358,11 @@ fn entry(place: [u8; 3], direction: DVec3, chance: &mut Chance) -> DVec3 {
 }
 
 /// The direction in which normals agree best, whichever side they were seen from.
-pub(super) fn main_normal(looks: &[Look]) -> DVec3 {
+pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
     let mut columns = [DVec3::ZERO; 3];
     let mut sum = DVec3::ZERO;
-    for look in looks {
-        let n = look.normal;
+    for sample in samples {
+        let n = sample.normal;
         let aligned = if n.dot(sum) < 0.0 { -n } else { n };
         sum += aligned;
         for k in 0..3 {

@@ -12,7 +12,7 @@ use crate::mesh::Surface;
 
 /// Slices along an axis.
 const SLICES: usize = 32;
-/// Below this level triangles are halved by number, whatever the heuristic says.
+/// Below this level triangles are halved by number, whatever the heuristic would choose.
 const MOST_LEVELS: u32 = 64;
 /// Triangles from which on two halves are split by two threads.
 const PARALLEL: usize = 4096;

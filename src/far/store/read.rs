@@ -16,7 +16,7 @@ use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
-use crate::graph::vxg::release;
+use crate::graph::map::release;
 
 /// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
 const BROUGHT_IN: u64 = 64 << 10;

@@ -14,7 +14,7 @@ use crate::graph::file::{self, HEADER_BYTES};
 /// ([`crate::picture::store::write_with`]).
 ///
 /// # Errors
-/// What the writer says; a machine that stores the highest byte first.
+/// The writer's byte order; a machine that stores the highest byte first.
 pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
     let places = layout(
         data.nodes.len() as u64,

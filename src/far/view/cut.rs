@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Counts, in_view, on_picture};
+use super::{FarCounts, in_view, on_picture};
 use crate::far::store::FarFile;
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 
 /// A node of the cut.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ pub(super) struct Outline {
 
 impl Outline {
     /// Of a box, and everything within `margin` of it.
-    fn of(view: &View, low: DVec3, high: DVec3, margin: f64) -> Self {
+    fn of(view: &RasterCamera, low: DVec3, high: DVec3, margin: f64) -> Self {
         let (low, high) = (low - DVec3::splat(margin), high + DVec3::splat(margin));
         let mut bounds = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
         let (mut depth, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -66,7 +66,7 @@ impl Outline {
         }
     }
 
-    fn is_outside(&self, view: &View) -> bool {
+    fn is_outside(&self, view: &RasterCamera) -> bool {
         if self.farthest < view.near {
             return true;
         }
@@ -81,14 +81,14 @@ impl Outline {
 
 /// A node in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Found {
+pub(super) enum CutNode {
     /// It is drawn: as voxels, or a leaf as triangles.
     Drawn(Chosen),
     /// Its children are. The outline holds all that is below.
     Branch(Chosen),
 }
 
-impl Found {
+impl CutNode {
     pub(super) fn chosen(&self) -> &Chosen {
         let (Self::Drawn(chosen) | Self::Branch(chosen)) = self;
         chosen
@@ -98,19 +98,19 @@ impl Found {
 /// Where a node's children's voxels may reach beyond its own grid, in its voxels.
 const BRANCH_MARGIN: f64 = 2.0;
 
-/// Says of each node whether it is drawn.
+/// Decides of each node whether it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cut<'f> {
     pub(super) file: &'f FarFile,
-    pub(super) view: View,
+    pub(super) view: RasterCamera,
     /// Whose cut it is.
-    pub(super) cut_of: View,
+    pub(super) cut_of: RasterCamera,
     pub(super) voxel_px: f64,
 }
 
 impl Cut<'_> {
-    /// Looks at a node; `None` if it is beside or behind the picture.
-    pub(super) fn look(&self, number: usize, counts: &mut Counts) -> Option<Found> {
+    /// Classifies a node; `None` if it is beside or behind the picture.
+    pub(super) fn classify(&self, number: usize, counts: &mut FarCounts) -> Option<CutNode> {
         counts.visited += 1;
         let node = &self.file.nodes()[number];
         let centre = self.file.centre();
@@ -141,21 +141,21 @@ impl Cut<'_> {
             outline,
         };
         Some(if is_drawn {
-            Found::Drawn(chosen)
+            CutNode::Drawn(chosen)
         } else {
-            Found::Branch(chosen)
+            CutNode::Branch(chosen)
         })
     }
 
     /// All nodes that are drawn, hidden or not.
-    pub(super) fn all(&self, counts: &mut Counts) -> Vec<Chosen> {
+    pub(super) fn all(&self, counts: &mut FarCounts) -> Vec<Chosen> {
         let mut drawn = Vec::new();
         let mut waiting = vec![0];
         while let Some(number) = waiting.pop() {
-            match self.look(number, counts) {
+            match self.classify(number, counts) {
                 None => {}
-                Some(Found::Drawn(chosen)) => drawn.push(chosen),
-                Some(Found::Branch(_)) => waiting.extend(self.children(number)),
+                Some(CutNode::Drawn(chosen)) => drawn.push(chosen),
+                Some(CutNode::Branch(_)) => waiting.extend(self.children(number)),
             }
         }
         drawn

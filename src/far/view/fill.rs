@@ -1,7 +1,7 @@
 //! What is drawn so far, as a pyramid: the greatest depth of each square of pixels.
 
 use super::cut::Outline;
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 
 /// Squares along a side that a query looks at, at most.
 const SQUARES: usize = 4;
@@ -21,7 +21,7 @@ pub(super) struct Fill {
 }
 
 impl Fill {
-    pub(super) fn of(depth: &[f32], view: &View) -> Self {
+    pub(super) fn of(depth: &[f32], view: &RasterCamera) -> Self {
         let mut levels = vec![Level {
             width: view.width as usize,
             height: view.height as usize,
@@ -48,8 +48,8 @@ impl Fill {
         Self { levels }
     }
 
-    /// Whether everything in an outline is behind what is drawn. Says no where it does not know.
-    pub(super) fn hides(&self, view: &View, outline: &Outline) -> bool {
+    /// Whether everything in an outline is behind what is drawn. False where that is not certain.
+    pub(super) fn hides(&self, view: &RasterCamera, outline: &Outline) -> bool {
         let Some([low, high]) = outline.pixels else {
             return false;
         };
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn only_what_is_behind_everything_is_hidden() {
-        let view = View {
+        let view = RasterCamera {
             eye: DVec3::ZERO,
             right: DVec3::X,
             up: DVec3::Y,

@@ -2,8 +2,8 @@
 //!
 //! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
 //! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
-//!    above, number below, the least counts. That does not depend on who comes
-//!    first, hence neither on threads nor on what was found hidden.
+//!    above, number below, the least counts. That does not depend on the order
+//!    of drawing, hence neither on threads nor on what was found hidden.
 //! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
 //!    hierarchy that are behind it are left out, with all below.
 //! 4. The winners' colours, then transparent voxels over them, back to front.
@@ -21,12 +21,12 @@ use glam::DVec3;
 
 pub use super::record::Opacity;
 use super::store::{FarError, FarFile};
-use crate::mesh::raster::{Light, RasterError, View};
+use crate::mesh::raster::{Light, RasterCamera, RasterError};
 use crate::mesh::{linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
-use visible::{Memory, Walked};
+use visible::{VisibilityHistory, VisibleNodes};
 
 /// How far voxels are drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,8 +102,8 @@ pub struct FarPicture {
 
 /// What a frame took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counts {
-    /// Nodes that were looked at.
+pub struct FarCounts {
+    /// Nodes that were visited.
     pub visited: u64,
     /// Nodes of those beside or behind the picture.
     pub outside: u64,
@@ -111,7 +111,7 @@ pub struct Counts {
     pub voxel_nodes: u64,
     /// Nodes drawn as triangles.
     pub leaves: u64,
-    /// Nodes and branches that were found hidden; nothing below them was looked at.
+    /// Nodes and branches that were found hidden; nothing below them was visited.
     pub hidden: u64,
     /// Queries whether a node or branch is hidden.
     pub queries: u64,
@@ -130,7 +130,7 @@ pub struct Counts {
 #[derive(Debug)]
 pub struct FarViewer<'f> {
     file: &'f FarFile,
-    memory: Memory,
+    memory: VisibilityHistory,
 }
 
 impl<'f> FarViewer<'f> {
@@ -139,7 +139,7 @@ impl<'f> FarViewer<'f> {
     pub fn new(file: &'f FarFile) -> Self {
         Self {
             file,
-            memory: Memory::new(file.nodes().len()),
+            memory: VisibilityHistory::new(file.nodes().len()),
         }
     }
 
@@ -155,9 +155,9 @@ impl<'f> FarViewer<'f> {
     /// See [`ViewError`].
     pub fn draw(
         &mut self,
-        view: &View,
+        view: &RasterCamera,
         options: &ViewOptions,
-    ) -> Result<(FarPicture, Counts), ViewError> {
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
         self.draw_with_cut_of(view, view, options)
     }
 
@@ -168,10 +168,10 @@ impl<'f> FarViewer<'f> {
     /// See [`ViewError`].
     pub fn draw_with_cut_of(
         &mut self,
-        view: &View,
-        cut_of: &View,
+        view: &RasterCamera,
+        cut_of: &RasterCamera,
         options: &ViewOptions,
-    ) -> Result<(FarPicture, Counts), ViewError> {
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
             return Err(ViewError::VoxelSize(options.voxel_px));
         }
@@ -180,7 +180,7 @@ impl<'f> FarViewer<'f> {
             return Err(ViewError::Samples(across));
         }
         let (pixels, view) = (view, &samples::finer(view, across));
-        let mut counts = Counts::default();
+        let mut counts = FarCounts::default();
         let cut = Cut {
             file: self.file,
             view: *view,
@@ -194,7 +194,7 @@ impl<'f> FarViewer<'f> {
         } else {
             let drawn = cut.all(&mut counts);
             opaque.draw(&drawn, &mut counts)?;
-            Walked {
+            VisibleNodes {
                 drawn,
                 branches: Vec::new(),
             }
@@ -282,7 +282,7 @@ impl Pixel {
 }
 
 /// Right, up and depth of a point.
-fn in_view(view: &View, point: DVec3) -> DVec3 {
+fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
     let offset = point - view.eye;
     DVec3::new(
         offset.dot(view.right),
@@ -292,7 +292,7 @@ fn in_view(view: &View, point: DVec3) -> DVec3 {
 }
 
 /// Where a point of a view is in the picture, pixels from the top left corner.
-fn on_picture(view: &View, seen: DVec3) -> [f64; 2] {
+fn on_picture(view: &RasterCamera, seen: DVec3) -> [f64; 2] {
     [
         f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
         f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,

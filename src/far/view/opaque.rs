@@ -8,12 +8,12 @@ use rayon::prelude::*;
 
 use super::cut::Chosen;
 use super::splat::Places;
-use super::{Counts, Opacity, Pixel, ViewError, ViewOptions};
+use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
 use crate::graph::{PackedNormal, Silent};
 use crate::mesh::raster::{
-    self, NO_TRIANGLE, Pattern, RasterError, RasterOptions, RasterPicture, Samples, View,
+    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
 };
 use crate::mesh::{Surface, Triangle, srgb_to_linear};
 
@@ -24,7 +24,7 @@ const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
 /// numbers do) and number of the nearest voxel or triangle.
 pub(super) struct Opaque<'f> {
     file: &'f FarFile,
-    view: View,
+    view: RasterCamera,
     options: ViewOptions,
     words: Vec<AtomicU64>,
     /// Pictures of the batches' triangles, with the numbers of these.
@@ -35,7 +35,7 @@ pub(super) struct Opaque<'f> {
 impl<'f> Opaque<'f> {
     pub(super) fn new(
         file: &'f FarFile,
-        view: &View,
+        view: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<Self, ViewError> {
         let side = 1..=raster::MAX_SIDE;
@@ -64,7 +64,7 @@ impl<'f> Opaque<'f> {
     pub(super) fn draw<N: Borrow<Chosen> + Sync>(
         &mut self,
         nodes: impl IntoIterator<Item = N>,
-        counts: &mut Counts,
+        counts: &mut FarCounts,
     ) -> Result<(), ViewError> {
         let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
         let (leaves, inner): (Vec<Chosen>, Vec<Chosen>) = nodes

@@ -1,11 +1,11 @@
 //! More than one sample a pixel: the view of a picture of samples, and pixels from it.
 
 use super::Pixel;
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 
 /// The same view, with so many samples along each axis of a pixel for pixels.
-pub(super) fn finer(view: &View, across: u32) -> View {
-    View {
+pub(super) fn finer(view: &RasterCamera, across: u32) -> RasterCamera {
+    RasterCamera {
         focal_px: view.focal_px * f64::from(across),
         width: view.width.saturating_mul(across),
         height: view.height.saturating_mul(across),

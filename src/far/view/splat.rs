@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{in_view, on_picture};
 use crate::far::record::Node;
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 
 /// Where the voxels of a node are.
 #[derive(Debug, Clone, Copy)]
@@ -35,7 +35,7 @@ impl Places {
     }
 
     /// The direction from the middle of a voxel to the eye.
-    pub(super) fn towards_eye(&self, view: &View, place: &[u8]) -> DVec3 {
+    pub(super) fn towards_eye(&self, view: &RasterCamera, place: &[u8]) -> DVec3 {
         (view.eye - self.middle(place)).normalize_or(-view.forward)
     }
 
@@ -49,7 +49,7 @@ impl Places {
     }
 
     /// The square of a voxel; `None` before the near plane.
-    pub(super) fn square(&self, view: &View, place: &[u8]) -> Option<Square> {
+    pub(super) fn square(&self, view: &RasterCamera, place: &[u8]) -> Option<Square> {
         let seen = in_view(view, self.middle(place));
         if seen.z < view.near {
             return None;
@@ -70,7 +70,7 @@ impl Places {
 impl Square {
     /// First pixel and the one after the last, right and down, of those whose
     /// middles it covers, when it is made a pixel large at least.
-    pub(super) fn pixels(&self, view: &View) -> [[usize; 2]; 2] {
+    pub(super) fn pixels(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
         let half = self.half.max(0.5);
         let range = |k: usize, side: u32| {
             let most = f64::from(side);
@@ -83,7 +83,7 @@ impl Square {
     }
 
     /// First pixel and the one after the last of those that it touches.
-    pub(super) fn touched(&self, view: &View) -> [[usize; 2]; 2] {
+    pub(super) fn touched(&self, view: &RasterCamera) -> [[usize; 2]; 2] {
         let range = |k: usize, side: u32| {
             let most = f64::from(side);
             let low = (self.middle[k] - self.half).floor().clamp(0.0, most) as usize;

@@ -15,7 +15,7 @@ use super::{Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 
 /// Rows that a thread draws at a time.
 const BAND: usize = 16;
@@ -28,10 +28,10 @@ struct Splat {
     rows: [usize; 2],
 }
 
-/// Draws; says how many voxels. `nodes` in any order.
+/// Draws; returns how many voxels. `nodes` in any order.
 pub(super) fn draw(
     file: &FarFile,
-    view: &View,
+    view: &RasterCamera,
     options: &ViewOptions,
     nodes: &[&Chosen],
     pixels: &mut [Pixel],
@@ -59,7 +59,7 @@ pub(super) fn draw(
 
 fn splats(
     file: &FarFile,
-    view: &View,
+    view: &RasterCamera,
     options: &ViewOptions,
     number: usize,
 ) -> Result<Vec<Splat>, ViewError> {
@@ -101,7 +101,7 @@ fn opacity(voxel: &Voxel, square: &Square, blend: Blend, mode: Opacity) -> f64 {
     }
 }
 
-fn blend(splat: &Splat, view: &View, [top, bottom]: [usize; 2], pixels: &mut [Pixel]) {
+fn blend(splat: &Splat, view: &RasterCamera, [top, bottom]: [usize; 2], pixels: &mut [Pixel]) {
     let width = view.width as usize;
     let [[x0, y0], [x1, y1]] = splat.square.touched(view);
     let depth = splat.square.depth as f32;

@@ -1,33 +1,32 @@
 //! What is worth drawing: the hierarchy walked front to back, without what is hidden.
 //!
-//! A branch that was visible in the last frame is walked without a question, and
-//! its nodes are drawn first. Of any other branch the box is asked for against
-//! what is drawn by then; if it is hidden, nothing below it is looked at. Answers
-//! come late, as on a GPU: a batch is asked for against the picture of some
-//! batches before. What is left out is behind what is drawn, in every pixel, so
+//! A branch that was visible in the last frame is walked without a test, and
+//! its nodes are drawn first. Any other branch's box is tested against what is
+//! drawn by then; if it is hidden, nothing below it is visited. Results come
+//! late, as on a GPU: a batch is tested against the picture of some batches before. What is left out is behind what is drawn, in every pixel, so
 //! neither memory nor lateness can change the picture.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use super::cut::{Chosen, Cut, Found};
+use super::cut::{Chosen, Cut, CutNode};
 use super::fill::Fill;
 use super::opaque::Opaque;
-use super::{Counts, ViewError};
+use super::{FarCounts, ViewError};
 
 /// Nodes of the first batch of those that were not visible; each next has twice as many.
 const FIRST_BATCH: usize = 16;
 
 /// Which nodes were visible, frame by frame.
 #[derive(Debug, Clone)]
-pub(super) struct Memory {
+pub(super) struct VisibilityHistory {
     /// The last frame in which each node was visible; 0: none.
     seen_in: Vec<u32>,
     /// The last frame that was drawn.
     frame: u32,
 }
 
-impl Memory {
+impl VisibilityHistory {
     pub(super) fn new(nodes: usize) -> Self {
         Self {
             seen_in: vec![0; nodes],
@@ -67,7 +66,7 @@ impl Memory {
 }
 
 /// What was found worth drawing.
-pub(super) struct Walked {
+pub(super) struct VisibleNodes {
     /// Nodes that were drawn.
     pub(super) drawn: Vec<Chosen>,
     /// Branches whose children were looked at, parents before children.
@@ -75,23 +74,23 @@ pub(super) struct Walked {
 }
 
 /// A branch or node that waits; the nearest comes first.
-struct Waiting(Found);
+struct QueueEntry(CutNode);
 
-impl PartialEq for Waiting {
+impl PartialEq for QueueEntry {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Waiting {}
+impl Eq for QueueEntry {}
 
-impl PartialOrd for Waiting {
+impl PartialOrd for QueueEntry {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Waiting {
+impl Ord for QueueEntry {
     fn cmp(&self, other: &Self) -> Ordering {
         let (a, b) = (self.0.chosen(), other.0.chosen());
         b.distance
@@ -103,25 +102,25 @@ impl Ord for Waiting {
 /// Walks and draws.
 pub(super) fn walk(
     cut: &Cut<'_>,
-    memory: &Memory,
+    memory: &VisibilityHistory,
     late: usize,
     opaque: &mut Opaque<'_>,
-    counts: &mut Counts,
-) -> Result<Walked, ViewError> {
-    let mut walked = Walked {
+    counts: &mut FarCounts,
+) -> Result<VisibleNodes, ViewError> {
+    let mut walked = VisibleNodes {
         drawn: Vec::new(),
         branches: Vec::new(),
     };
     let mut waiting = BinaryHeap::new();
     let mut known = vec![0];
     while let Some(number) = known.pop() {
-        let Some(found) = cut.look(number, counts) else {
+        let Some(found) = cut.classify(number, counts) else {
             continue;
         };
         match found {
-            _ if !memory.was_visible(number) => waiting.push(Waiting(found)),
-            Found::Drawn(chosen) => walked.drawn.push(chosen),
-            Found::Branch(_) => {
+            _ if !memory.was_visible(number) => waiting.push(QueueEntry(found)),
+            CutNode::Drawn(chosen) => walked.drawn.push(chosen),
+            CutNode::Branch(_) => {
                 walked.branches.push(number);
                 known.extend(cut.children(number));
             }
@@ -134,7 +133,7 @@ pub(super) fn walk(
         let fill = &fills[(fills.len() - 1).saturating_sub(late)];
         let mut visible = Vec::new();
         while visible.len() < batch
-            && let Some(Waiting(found)) = waiting.pop()
+            && let Some(QueueEntry(found)) = waiting.pop()
         {
             counts.queries += 1;
             if fill.hides(&cut.view, &found.chosen().outline) {
@@ -142,12 +141,12 @@ pub(super) fn walk(
                 continue;
             }
             match found {
-                Found::Drawn(chosen) => visible.push(chosen),
-                Found::Branch(chosen) => {
+                CutNode::Drawn(chosen) => visible.push(chosen),
+                CutNode::Branch(chosen) => {
                     walked.branches.push(chosen.number);
                     let children = cut.children(chosen.number).into_iter();
-                    let found = children.filter_map(|child| cut.look(child, counts));
-                    waiting.extend(found.map(Waiting));
+                    let found = children.filter_map(|child| cut.classify(child, counts));
+                    waiting.extend(found.map(QueueEntry));
                 }
             }
         }

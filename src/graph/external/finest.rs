@@ -5,31 +5,31 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
+use super::buffer_sizes::BufferSizes;
 use super::halo::{Grid, hand_on};
-use super::plan::Plan;
 use super::record;
 use super::runs::{Merge, Sorter};
 use super::scratch::{Scratch, Spool};
-use super::tree::{BrickNodes, Node, TreeWriter};
+use super::tree::{ClusterNodes, FinishedNode, TreeWriter};
 use crate::graph::average::Sum;
-use crate::graph::normals::fill_brick;
+use crate::graph::normals::fill_cluster;
 use crate::graph::{Normals, PackedNormal, Progress, morton};
 
-/// Bricks that a thread takes at once.
+/// Clusters that a thread takes at once.
 const PART: usize = 64;
 /// Voxels between two calls of [`Progress::advance`].
 const STEP: u64 = 1 << 16;
 
-/// All voxels in Morton order, and the bricks that they fill.
+/// All voxels in Morton order, and the clusters that they fill.
 #[derive(Debug)]
 pub(super) struct Finest {
     /// Three bytes a voxel.
     pub(super) color: Spool,
     /// Own normals, two bytes a voxel, little-endian.
     own_normal: Spool,
-    /// Morton key and Morton word of each brick.
-    bricks: Spool,
-    /// Brick copies for the blocks beside their own.
+    /// Morton key and Morton word of each cluster.
+    clusters: Spool,
+    /// Cluster copies for the blocks beside their own.
     halo: Sorter,
     pub(super) voxels: u64,
     /// Whether a voxel has no normal of its own.
@@ -41,21 +41,21 @@ impl Finest {
     pub(super) fn take(
         mut sorted: Merge,
         depth: u32,
-        plan: &Plan,
+        sizes: &BufferSizes,
         scratch: &Arc<Scratch>,
         progress: &dyn Progress,
     ) -> io::Result<Self> {
-        let spool = || Spool::new(scratch, plan.spool_bytes);
+        let spool = || Spool::new(scratch, sizes.spool_bytes);
         let mut finest = Self {
             color: spool(),
             own_normal: spool(),
-            bricks: spool(),
-            halo: Sorter::new(scratch, plan.halo_records)?,
+            clusters: spool(),
+            halo: Sorter::new(scratch, sizes.halo_records)?,
             voxels: 0,
             lacking: false,
         };
-        let blocks_bits = depth.saturating_sub(2).saturating_sub(plan.block_shift);
-        let mut brick = None;
+        let blocks_bits = depth.saturating_sub(2).saturating_sub(sizes.block_shift);
+        let mut cluster = None;
         while let Some(voxel) = sorted.next()? {
             let key = record::key(voxel);
             let normal = record::normal(voxel);
@@ -67,24 +67,29 @@ impl Finest {
                 progress.advance(STEP);
             }
             let bit = 1u64 << (key & 63);
-            brick = match brick {
+            cluster = match cluster {
                 Some((same, word)) if same == key >> 6 => Some((same, word | bit)),
                 other => {
-                    finest.push(other, plan, blocks_bits)?;
+                    finest.push(other, sizes, blocks_bits)?;
                     Some((key >> 6, bit))
                 }
             };
         }
-        finest.push(brick, plan, blocks_bits)?;
+        finest.push(cluster, sizes, blocks_bits)?;
         Ok(finest)
     }
 
-    fn push(&mut self, brick: Option<(u64, u64)>, plan: &Plan, blocks_bits: u32) -> io::Result<()> {
-        let Some((key, word)) = brick else {
+    fn push(
+        &mut self,
+        cluster: Option<(u64, u64)>,
+        sizes: &BufferSizes,
+        blocks_bits: u32,
+    ) -> io::Result<()> {
+        let Some((key, word)) = cluster else {
             return Ok(());
         };
-        self.bricks.push(bytemuck::bytes_of(&[key, word]))?;
-        hand_on(key, word, plan.block_shift, blocks_bits, &mut self.halo)
+        self.clusters.push(bytemuck::bytes_of(&[key, word]))?;
+        hand_on(key, word, sizes.block_shift, blocks_bits, &mut self.halo)
     }
 
     /// Estimates normals, averages, and writes the tree. Gives back colours
@@ -94,38 +99,38 @@ impl Finest {
         tree: &mut TreeWriter,
         normals: Normals,
         centre: [f64; 3],
-        plan: &Plan,
+        sizes: &BufferSizes,
         scratch: &Arc<Scratch>,
         progress: &dyn Progress,
     ) -> io::Result<[Spool; 2]> {
-        let shift = plan.block_shift;
+        let shift = sizes.block_shift;
         let estimated = normals == Normals::FromSurface && self.lacking;
         let mut grid = if estimated {
-            Some(Grid::new(shift, self.halo.merged(plan, scratch)?))
+            Some(Grid::new(shift, self.halo.merged(sizes, scratch)?))
         } else {
             None
         };
-        let mut worked = Worked {
+        let mut worked = FinestInProgress {
             color: self.color,
             own_normal: self.own_normal,
-            normal: Spool::new(scratch, plan.spool_bytes),
+            normal: Spool::new(scratch, sizes.spool_bytes),
             voxels: 0,
             centre,
         };
-        let mut blocks = Blocks {
-            bricks: self.bricks,
+        let mut blocks = BlockReader {
+            clusters: self.clusters,
             shift,
             piece: Vec::new(),
             next: 0,
             offset: 0,
-            piece_bricks: plan.spool_bytes / 16,
+            piece_clusters: sizes.spool_bytes / 16,
         };
         let mut block = Vec::new();
         while let Some(block_key) = blocks.next(&mut block)? {
             if let Some(grid) = &mut grid {
                 grid.fill(block_key, &block)?;
             }
-            for chunk in block.chunks(plan.chunk_bricks) {
+            for chunk in block.chunks(sizes.chunk_clusters) {
                 progress.advance(worked.work(chunk, grid.as_ref(), tree)?);
             }
         }
@@ -133,45 +138,45 @@ impl Finest {
     }
 }
 
-/// Bricks, read a block at a time.
-struct Blocks {
-    bricks: Spool,
+/// Clusters, read a block at a time.
+struct BlockReader {
+    clusters: Spool,
     shift: u32,
     piece: Vec<[u64; 2]>,
     next: usize,
     /// Where the next piece begins, bytes.
     offset: u64,
-    piece_bricks: usize,
+    piece_clusters: usize,
 }
 
-impl Blocks {
-    /// The next brick, which stays the next one.
+impl BlockReader {
+    /// The next cluster, which stays the next one.
     fn peek(&mut self) -> io::Result<Option<[u64; 2]>> {
         if self.next == self.piece.len() {
-            let left = (self.bricks.len() - self.offset) / 16;
+            let left = (self.clusters.len() - self.offset) / 16;
             // At most a piece.
-            let count = left.min(self.piece_bricks as u64) as usize;
+            let count = left.min(self.piece_clusters as u64) as usize;
             self.piece.resize(count, [0; 2]);
             self.next = 0;
             let bytes = bytemuck::cast_slice_mut(&mut self.piece);
-            self.bricks.read(self.offset, bytes)?;
+            self.clusters.read(self.offset, bytes)?;
             self.offset += 16 * count as u64;
         }
         Ok(self.piece.get(self.next).copied())
     }
 
-    /// Reads a block's bricks and gives its Morton key; none at the end.
+    /// Reads a block's clusters and gives its Morton key; none at the end.
     fn next(&mut self, block: &mut Vec<[u64; 2]>) -> io::Result<Option<u64>> {
         block.clear();
         let Some([first, _]) = self.peek()? else {
             return Ok(None);
         };
         let block_key = first >> (3 * self.shift);
-        while let Some(brick) = self.peek()? {
-            if brick[0] >> (3 * self.shift) != block_key {
+        while let Some(cluster) = self.peek()? {
+            if cluster[0] >> (3 * self.shift) != block_key {
                 break;
             }
-            block.push(brick);
+            block.push(cluster);
             self.next += 1;
         }
         Ok(Some(block_key))
@@ -179,7 +184,7 @@ impl Blocks {
 }
 
 /// The finest level while it is worked on.
-struct Worked {
+struct FinestInProgress {
     color: Spool,
     own_normal: Spool,
     normal: Spool,
@@ -188,28 +193,28 @@ struct Worked {
     centre: [f64; 3],
 }
 
-/// A few bricks and their voxels.
-struct Part<'c> {
-    bricks: &'c [[u64; 2]],
+/// A few clusters and their voxels.
+struct ClusterBatch<'c> {
+    clusters: &'c [[u64; 2]],
     color: &'c [[u8; 3]],
     normal: &'c mut [PackedNormal],
 }
 
-impl Worked {
-    /// Works on the next bricks; gives the number of their voxels.
+impl FinestInProgress {
+    /// Works on the next clusters; gives the number of their voxels.
     fn work(
         &mut self,
-        bricks: &[[u64; 2]],
+        clusters: &[[u64; 2]],
         grid: Option<&Grid>,
         tree: &mut TreeWriter,
     ) -> io::Result<u64> {
-        let voxels_of = |bricks: &[[u64; 2]]| -> usize {
-            bricks
+        let voxels_of = |clusters: &[[u64; 2]]| -> usize {
+            clusters
                 .iter()
-                .map(|brick| brick[1].count_ones() as usize)
+                .map(|cluster| cluster[1].count_ones() as usize)
                 .sum()
         };
-        let voxels = voxels_of(bricks);
+        let voxels = voxels_of(clusters);
         let mut color = vec![[0u8; 3]; voxels];
         let mut normal = vec![PackedNormal::NONE; voxels];
         self.color.read(3 * self.voxels, color.as_flattened_mut())?;
@@ -218,25 +223,25 @@ impl Worked {
         swap_on_big_endian(&mut normal);
 
         let (mut color_rest, mut normal_rest) = (&color[..], &mut normal[..]);
-        let mut parts = Vec::with_capacity(bricks.len().div_ceil(PART));
-        for bricks in bricks.chunks(PART) {
-            let count = voxels_of(bricks);
+        let mut parts = Vec::with_capacity(clusters.len().div_ceil(PART));
+        for clusters in clusters.chunks(PART) {
+            let count = voxels_of(clusters);
             let (color, rest) = color_rest.split_at(count);
             color_rest = rest;
             let (normal, rest) = std::mem::take(&mut normal_rest).split_at_mut(count);
             normal_rest = rest;
-            parts.push(Part {
-                bricks,
+            parts.push(ClusterBatch {
+                clusters,
                 color,
                 normal,
             });
         }
-        let nodes: Vec<Vec<BrickNodes>> = parts
+        let nodes: Vec<Vec<ClusterNodes>> = parts
             .into_par_iter()
             .map(|part| part.nodes(grid, self.centre))
             .collect();
-        for (brick, nodes) in bricks.iter().zip(nodes.iter().flatten()) {
-            tree.push(brick[0], brick[1].count_ones(), nodes)?;
+        for (cluster, nodes) in clusters.iter().zip(nodes.iter().flatten()) {
+            tree.push(cluster[0], cluster[1].count_ones(), nodes)?;
         }
         swap_on_big_endian(&mut normal);
         self.normal.push(bytemuck::cast_slice(&normal))?;
@@ -254,12 +259,12 @@ fn swap_on_big_endian(normals: &mut [PackedNormal]) {
     }
 }
 
-impl Part<'_> {
+impl ClusterBatch<'_> {
     /// Estimates normals where there is a grid, and averages.
-    fn nodes(self, grid: Option<&Grid>, centre: [f64; 3]) -> Vec<BrickNodes> {
-        let mut all = Vec::with_capacity(self.bricks.len());
+    fn nodes(self, grid: Option<&Grid>, centre: [f64; 3]) -> Vec<ClusterNodes> {
+        let mut all = Vec::with_capacity(self.clusters.len());
         let (mut color, mut normal) = (self.color, self.normal);
-        for &[key, word] in self.bricks {
+        for &[key, word] in self.clusters {
             let count = word.count_ones() as usize;
             let (own_color, rest) = color.split_at(count);
             color = rest;
@@ -267,7 +272,7 @@ impl Part<'_> {
             normal = rest;
             if let Some(grid) = grid {
                 let corner = morton::at(key).map(|c| (c << 2) as i32);
-                fill_brick(centre, &grid.window(key), word, corner, own_normal);
+                fill_cluster(centre, &grid.surroundings(key), word, corner, own_normal);
             }
             all.push(averages(word, own_color, own_normal));
         }
@@ -275,9 +280,9 @@ impl Part<'_> {
     }
 }
 
-/// The nodes of a brick's octants and the sum of all its voxels.
-fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> BrickNodes {
-    let mut nodes = BrickNodes {
+/// The nodes of a cluster's octants and the sum of all its voxels.
+fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> ClusterNodes {
+    let mut nodes = ClusterNodes {
         mask: 0,
         octants: Vec::with_capacity(8),
         sum: Sum::default(),
@@ -293,7 +298,7 @@ fn averages(word: u64, color: &[[u8; 3]], normal: &[PackedNormal]) -> BrickNodes
             sum.add_voxel(color, normal);
         }
         nodes.mask |= 1 << octant;
-        nodes.octants.push(Node::new(mask, &sum));
+        nodes.octants.push(FinishedNode::new(mask, &sum));
         nodes.sum.add(&sum);
     }
     nodes

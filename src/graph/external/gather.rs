@@ -11,7 +11,7 @@ use std::thread::JoinHandle;
 
 use rayon::prelude::*;
 
-use super::plan::Plan;
+use super::buffer_sizes::BufferSizes;
 use super::record::{key, moved, placed, pushed};
 use super::runs::{Merge, Runs};
 use super::scratch::Scratch;
@@ -23,7 +23,7 @@ type Sorted = io::Result<(Vec<u128>, Runs)>;
 /// Pushed voxels.
 #[derive(Debug)]
 pub(super) struct Gather {
-    plan: Plan,
+    sizes: BufferSizes,
     scratch: Arc<Scratch>,
     buffer: Vec<u128>,
     /// The run before, while it is sorted and written beside the pushing.
@@ -38,9 +38,9 @@ pub(super) struct Gather {
 }
 
 impl Gather {
-    pub(super) fn new(plan: Plan, scratch: Arc<Scratch>) -> Self {
+    pub(super) fn new(sizes: BufferSizes, scratch: Arc<Scratch>) -> Self {
         Self {
-            plan,
+            sizes,
             scratch,
             buffer: Vec::new(),
             running: None,
@@ -63,10 +63,10 @@ impl Gather {
             self.max[axis] = self.max[axis].max(voxel.index[axis]);
         }
         if self.buffer.capacity() == 0 {
-            self.buffer.reserve_exact(self.plan.run_records);
+            self.buffer.reserve_exact(self.sizes.run_records);
         }
         self.buffer.push(pushed(voxel, self.buffer.len()));
-        if self.buffer.len() >= self.plan.run_records
+        if self.buffer.len() >= self.sizes.run_records
             && let Err(error) = self.spill()
         {
             self.failure = Some(error);
@@ -123,7 +123,7 @@ impl Gather {
         }
         drop((buffer, std::mem::take(&mut self.buffer)));
         let count = runs.len();
-        let merge = runs.merged(&self.plan, &self.scratch)?;
+        let merge = runs.merged(&self.sizes, &self.scratch)?;
         progress.end();
         Ok((merge, count))
     }
@@ -132,7 +132,7 @@ impl Gather {
 /// Nothing is written any more once the builder is gone.
 impl Drop for Gather {
     fn drop(&mut self) {
-        // Whatever it says, nobody wants the run.
+        // Its result is not needed any more.
         let _ = self.waited();
     }
 }

@@ -1,48 +1,39 @@
-//! Blocks of bricks, and the bricks around a block.
+//! Blocks of clusters, and the clusters around a block.
 //!
-//! A voxel's normal needs the bricks around its own. Bricks are worked on in
-//! Morton order, a block at a time: a cube of `2^shift` bricks a side, which
-//! is one stretch of that order. The neighbours of a brick at a block's face
-//! are somewhere else in the order, so such a brick is handed to the blocks
+//! A voxel's normal needs the clusters around its own. Clusters are worked on in
+//! Morton order, a block at a time: a cube of `2^shift` clusters a side, which
+//! is one stretch of that order. The neighbours of a cluster at a block's face
+//! are somewhere else in the order, so such a cluster is handed to the blocks
 //! beside it too: sorted by block, these copies come when their block does.
 
 use std::io;
 
 use super::runs::{Merge, Sorter};
 use crate::graph::morton;
-use crate::graph::normals::brick::{Brick, Window, put};
+use crate::graph::normals::cluster::{Cluster, Surroundings, put};
 
-/// Largest blocks: 128 bricks, 512 voxels a side.
-pub(super) const MAX_BLOCK_SHIFT: u32 = 7;
-
-/// Bytes of a block: its grid, and its bricks if all are there.
-pub(super) fn block_bytes(shift: u32) -> u64 {
-    let side = 1u64 << shift;
-    (side + 2).pow(3) * 8 + side.pow(3) * 16
-}
-
-/// Bits of a coordinate in a block's grid, one brick wider on each side.
+/// Bits of a coordinate in a block's grid, one cluster wider on each side.
 fn slot_bits(shift: u32) -> u32 {
     if shift == 0 { 2 } else { shift + 1 }
 }
 
-/// Hands a brick to the blocks beside its own; `blocks_bits`: bits of a
+/// Hands a cluster to the blocks beside its own; `blocks_bits`: bits of a
 /// block's coordinate, so that none outside the object is given any.
 pub(super) fn hand_on(
-    brick_key: u64,
+    cluster_key: u64,
     word: u64,
     shift: u32,
     blocks_bits: u32,
     sorter: &mut Sorter,
 ) -> io::Result<()> {
     let side = 1i64 << shift;
-    let at = morton::at(brick_key).map(i64::from);
+    let at = morton::at(cluster_key).map(i64::from);
     let within = at.map(|c| c & (side - 1));
     if within.iter().all(|&c| c > 0 && c < side - 1) || blocks_bits == 0 {
         return Ok(());
     }
     let block = at.map(|c| c >> shift);
-    let rows = Brick::from(word).by_rows;
+    let rows = Cluster::from(word).by_rows;
     let reaches = |axis: usize, step: i64| match step {
         -1 => within[axis] == 0,
         1 => within[axis] == side - 1,
@@ -64,7 +55,7 @@ pub(super) fn hand_on(
     Ok(())
 }
 
-/// The bricks of a block and around it, by rows; 0 where there is none.
+/// The clusters of a block and around it, by rows; 0 where there is none.
 #[derive(Debug)]
 pub(super) struct Grid {
     shift: u32,
@@ -93,10 +84,10 @@ impl Grid {
         (at[0] * side + at[1]) * side + at[2]
     }
 
-    /// A brick's place in the grid of its block.
-    fn place_of(&self, brick_key: u64) -> usize {
+    /// A cluster's place in the grid of its block.
+    fn place_of(&self, cluster_key: u64) -> usize {
         let within = (1u32 << self.shift) - 1;
-        self.place(morton::at(brick_key).map(|c| (c & within) as usize + 1))
+        self.place(morton::at(cluster_key).map(|c| (c & within) as usize + 1))
     }
 
     fn set(&mut self, place: usize, rows: u64) {
@@ -105,14 +96,14 @@ impl Grid {
         self.filled.push(place as u32);
     }
 
-    /// Takes the next block: its bricks with their Morton words, and what
+    /// Takes the next block: its clusters with their Morton words, and what
     /// other blocks have handed to it.
-    pub(super) fn fill(&mut self, block: u64, bricks: &[[u64; 2]]) -> io::Result<()> {
+    pub(super) fn fill(&mut self, block: u64, clusters: &[[u64; 2]]) -> io::Result<()> {
         for place in self.filled.drain(..) {
             self.words[place as usize] = 0;
         }
-        for &[brick_key, word] in bricks {
-            self.set(self.place_of(brick_key), Brick::from(word).by_rows);
+        for &[cluster_key, word] in clusters {
+            self.set(self.place_of(cluster_key), Cluster::from(word).by_rows);
         }
         let bits = slot_bits(self.shift);
         let mask = (1u64 << bits) - 1;
@@ -128,7 +119,7 @@ impl Grid {
                 self.ahead = Some(copy);
                 return Ok(());
             }
-            // Blocks without a brick are passed by.
+            // Blocks without a cluster are passed by.
             if of == block {
                 let slot = [2, 1, 0].map(|axis| (key >> (axis * bits) & mask) as usize);
                 self.set(self.place(slot), copy as u64);
@@ -136,14 +127,14 @@ impl Grid {
         }
     }
 
-    /// The voxels around a brick of the block.
-    pub(super) fn window(&self, brick_key: u64) -> Window {
+    /// The voxels around a cluster of the block.
+    pub(super) fn surroundings(&self, cluster_key: u64) -> Surroundings {
         let side = (1usize << self.shift) + 2;
-        let place = self.place_of(brick_key);
-        let mut rows = Window::default();
+        let place = self.place_of(cluster_key);
+        let mut rows = Surroundings::default();
         for neighbour in 0..27 {
             let [x, y, z] = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
-            // The brick is never at the grid's border.
+            // The cluster is never at the grid's border.
             let word = self.words[place + (x * side + y) * side + z - (side + 1) * side - 1];
             if word != 0 {
                 put(&mut rows, neighbour, word);

@@ -4,7 +4,7 @@ use std::io;
 use std::sync::Arc;
 
 use super::scratch::{Scratch, Spool};
-use super::tree::Level;
+use super::tree::LevelArrays;
 use crate::graph::{BuildError, Graph, Placement};
 
 /// All that the file is made of.
@@ -12,7 +12,7 @@ pub(super) struct Built {
     pub(super) depth: u32,
     /// Runs that the voxels were sorted in.
     pub(super) runs: u64,
-    pub(super) levels: Vec<Level>,
+    pub(super) levels: Vec<LevelArrays>,
     /// Nodes of each level.
     pub(super) counts: Vec<u64>,
     /// Of the finest level.

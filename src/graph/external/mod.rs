@@ -7,18 +7,18 @@
 //! 1. `gather`: voxels are pushed, sorted in runs as large as memory allows,
 //!    and spilled;
 //! 2. `runs`: the runs are merged in Morton order;
-//! 3. `finest`: the voxels' attributes and the bricks of 4^3 that they fill
-//!    are written, a brick at the face of its block once more for each block
+//! 3. `finest`: the voxels' attributes and the clusters of 4^3 that they fill
+//!    are written, a cluster at the face of its block once more for each block
 //!    beside it (`halo`);
 //! 4. `finest` and `tree`: a block at a time, normals are estimated, and the
 //!    nodes of each level written as they are complete;
 //! 5. `join`: the levels become the sections of the file.
 
+mod buffer_sizes;
 mod finest;
 mod gather;
 mod halo;
 mod join;
-mod plan;
 mod record;
 mod runs;
 mod scratch;
@@ -28,13 +28,13 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::records::extent;
+use super::pushed::extent;
 use super::vxg::{self, VxgError};
 use super::{BuildError, BuildOptions, Placement, Progress, Voxel};
+use buffer_sizes::BufferSizes;
 use finest::Finest;
 use gather::Gather;
 use join::Built;
-use plan::Plan;
 use scratch::Scratch;
 use tree::TreeWriter;
 
@@ -61,7 +61,7 @@ pub enum ExternalError {
     Temporary {
         /// Their folder.
         folder: PathBuf,
-        /// What the system says.
+        /// The system's error.
         source: io::Error,
     },
     /// The file could not be written.
@@ -92,7 +92,7 @@ pub struct ExternalReport {
 #[derive(Debug)]
 pub struct ExternalBuilder {
     options: ExternalOptions,
-    plan: Plan,
+    sizes: BufferSizes,
     scratch: Arc<Scratch>,
     gather: Gather,
 }
@@ -101,12 +101,12 @@ impl ExternalBuilder {
     /// A builder without voxels.
     #[must_use]
     pub fn new(options: ExternalOptions) -> Self {
-        let plan = Plan::new(options.memory);
+        let sizes = BufferSizes::new(options.memory);
         let scratch = Scratch::new(options.temporary.clone());
         Self {
-            gather: Gather::new(plan, Arc::clone(&scratch)),
+            gather: Gather::new(sizes, Arc::clone(&scratch)),
             options,
-            plan,
+            sizes,
             scratch,
         }
     }
@@ -124,7 +124,7 @@ impl ExternalBuilder {
     }
 
     /// Adds a voxel; it replaces an earlier one at the same index. If a
-    /// temporary file cannot be written, [`Self::finish`] says so.
+    /// temporary file cannot be written, [`Self::finish`] returns the error.
     pub fn push(&mut self, voxel: Voxel) {
         self.gather.push(&voxel);
     }
@@ -191,7 +191,7 @@ impl ExternalBuilder {
     fn build(self, extent: [u64; 3], progress: &dyn Progress) -> Result<Built, ExternalError> {
         let Self {
             options,
-            plan,
+            sizes,
             scratch,
             gather,
         } = self;
@@ -204,18 +204,18 @@ impl ExternalBuilder {
         let pushed = gather.pushed;
         let (sorted, runs) = gather.merged(progress).map_err(refused)?;
         progress.begin("merge voxels", pushed);
-        let finest = Finest::take(sorted, depth, &plan, &scratch, progress).map_err(refused)?;
+        let finest = Finest::take(sorted, depth, &sizes, &scratch, progress).map_err(refused)?;
         progress.end();
         let voxels = finest.voxels;
         if voxels >= u64::from(u32::MAX) {
             return Err(BuildError::TooMany(voxels).into());
         }
-        let mut tree = TreeWriter::new(depth, &scratch, plan.spool_bytes);
+        let mut tree = TreeWriter::new(depth, &scratch, sizes.spool_bytes);
         let centre = extent.map(|side| side as f64 / 2.0);
         progress.begin("estimate normals, average", voxels);
         let normals = options.build.normals;
         let [color, normal] = finest
-            .finish(&mut tree, normals, centre, &plan, &scratch, progress)
+            .finish(&mut tree, normals, centre, &sizes, &scratch, progress)
             .map_err(refused)?;
         let (levels, counts) = tree.finish().map_err(refused)?;
         progress.end();

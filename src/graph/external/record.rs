@@ -9,7 +9,7 @@
 //!
 //! So equal keys come with the last pushed first.
 
-use crate::graph::records::MAX_SIDE;
+use crate::graph::build_error::MAX_SIDE;
 use crate::graph::{PackedNormal, Voxel, morton};
 
 /// Most records in a run: their numbers take 24 bits.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::plan::Plan;
+use super::buffer_sizes::BufferSizes;
 use super::record::key;
 use super::scratch::{Scratch, ScratchFile};
 
@@ -73,15 +73,19 @@ impl Runs {
     }
 
     /// All records in order; of equal keys, the one of the last run stays.
-    pub(super) fn merged(mut self, plan: &Plan, scratch: &Arc<Scratch>) -> io::Result<Merge> {
-        while self.runs.len() > plan.fan_in {
+    pub(super) fn merged(
+        mut self,
+        sizes: &BufferSizes,
+        scratch: &Arc<Scratch>,
+    ) -> io::Result<Merge> {
+        while self.runs.len() > sizes.fan_in {
             let mut fewer = Self::new(scratch)?;
             let mut block = Vec::new();
             let all = std::mem::take(&mut self.runs);
             // Neighbours stay neighbours, so later runs stay later ones.
-            for group in all.chunks(plan.fan_in) {
+            for group in all.chunks(sizes.fan_in) {
                 let offset = fewer.file.len();
-                let mut merge = Merge::new(self.file, group, plan.merge_bytes)?;
+                let mut merge = Merge::new(self.file, group, sizes.merge_bytes)?;
                 while let Some(record) = merge.next()? {
                     block.push(record);
                     if block.len() as u64 * RECORD_BYTES >= merge.reader_bytes {
@@ -98,7 +102,7 @@ impl Runs {
             self = fewer;
         }
         let runs = std::mem::take(&mut self.runs);
-        Merge::new(self.file, &runs, plan.merge_bytes)
+        Merge::new(self.file, &runs, sizes.merge_bytes)
     }
 }
 
@@ -223,10 +227,14 @@ impl Sorter {
     }
 
     /// All records in order.
-    pub(super) fn merged(mut self, plan: &Plan, scratch: &Arc<Scratch>) -> io::Result<Merge> {
+    pub(super) fn merged(
+        mut self,
+        sizes: &BufferSizes,
+        scratch: &Arc<Scratch>,
+    ) -> io::Result<Merge> {
         self.spill()?;
         drop(self.buffer);
-        self.runs.merged(plan, scratch)
+        self.runs.merged(sizes, scratch)
     }
 }
 
@@ -244,10 +252,10 @@ mod tests {
         let folder = tempfile::tempdir()?;
         let scratch = Scratch::new(folder.path().to_owned());
         for fan_in in [2, 3, 7, 100] {
-            let plan = Plan {
+            let sizes = BufferSizes {
                 fan_in,
                 merge_bytes: 16 * fan_in,
-                ..Plan::new(0)
+                ..BufferSizes::new(0)
             };
             let mut runs = Runs::new(&scratch)?;
             let mut expected = std::collections::BTreeMap::new();
@@ -261,7 +269,7 @@ mod tests {
             }
             runs.add(&[])?;
             assert_eq!(runs.len(), 41);
-            let mut merge = runs.merged(&plan, &scratch)?;
+            let mut merge = runs.merged(&sizes, &scratch)?;
             for (_, record) in expected {
                 assert_eq!(merge.next()?, Some(record), "{fan_in}");
             }

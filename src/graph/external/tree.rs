@@ -1,6 +1,6 @@
 //! The tree's levels, each written as its nodes are closed.
 //!
-//! Bricks come in Morton order. Of the nodes above them, one a level is open
+//! Clusters come in Morton order. Of the nodes above them, one a level is open
 //! at a time. Nodes of a level are opened, closed and written in one order,
 //! so a node's number within its level is known when it is opened, and the
 //! number of its first child when that is: only the level's first node has to
@@ -16,13 +16,13 @@ use crate::graph::build::first_new_level;
 
 /// A finished node without its child list.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct FinishedNode {
     pub(super) mask: u8,
     pub(super) color: [u8; 3],
     pub(super) normal: PackedNormal,
 }
 
-impl Node {
+impl FinishedNode {
     /// A node that shows the average of what was added up.
     pub(super) fn new(mask: u8, sum: &Sum) -> Self {
         Self {
@@ -33,20 +33,20 @@ impl Node {
     }
 }
 
-/// What a brick adds to the tree.
+/// What a cluster adds to the tree.
 #[derive(Debug, Clone)]
-pub(super) struct BrickNodes {
+pub(super) struct ClusterNodes {
     /// Which octants hold voxels.
     pub(super) mask: u8,
     /// A node for each of them.
-    pub(super) octants: Vec<Node>,
+    pub(super) octants: Vec<FinishedNode>,
     /// All voxels added up.
     pub(super) sum: Sum,
 }
 
 /// The nodes of a level above the finest.
 #[derive(Debug)]
-pub(super) struct Level {
+pub(super) struct LevelArrays {
     pub(super) mask: Spool,
     /// Number of the first child within its level, `u32`.
     pub(super) first: Spool,
@@ -66,10 +66,10 @@ struct Open {
 #[derive(Debug)]
 pub(super) struct TreeWriter {
     depth: u32,
-    levels: Vec<Level>,
+    levels: Vec<LevelArrays>,
     /// Nodes begun at each level, the finest included.
     begun: Vec<u64>,
-    /// The open node of each level above the bricks.
+    /// The open node of each level above the clusters.
     open: Vec<Open>,
     before: Option<u64>,
 }
@@ -80,7 +80,7 @@ impl TreeWriter {
         Self {
             depth,
             levels: (0..depth)
-                .map(|_| Level {
+                .map(|_| LevelArrays {
                     mask: spool(),
                     first: spool(),
                     color: spool(),
@@ -93,13 +93,13 @@ impl TreeWriter {
         }
     }
 
-    /// Adds the next brick: `voxels` of them, in the nodes that it has. An
-    /// object of less than two levels is one octant of one brick, or a voxel.
+    /// Adds the next cluster: `voxels` of them, in the nodes that it has. An
+    /// object of less than two levels is one octant of one cluster, or a voxel.
     pub(super) fn push(
         &mut self,
-        brick_key: u64,
+        cluster_key: u64,
         voxels: u32,
-        nodes: &BrickNodes,
+        nodes: &ClusterNodes,
     ) -> io::Result<()> {
         let finest = self.depth as usize;
         let mut first = self.begun[finest];
@@ -114,35 +114,39 @@ impl TreeWriter {
             self.write(octants, *node, first)?;
             first += u64::from(node.mask.count_ones());
         }
-        let Some(brick_level) = octants.checked_sub(1) else {
+        let Some(cluster_level) = octants.checked_sub(1) else {
             return Ok(());
         };
-        self.open_above(brick_key, brick_level)?;
-        self.begun[brick_level] += 1;
-        self.write(brick_level, Node::new(nodes.mask, &nodes.sum), first_octant)?;
+        self.open_above(cluster_key, cluster_level)?;
+        self.begun[cluster_level] += 1;
+        self.write(
+            cluster_level,
+            FinishedNode::new(nodes.mask, &nodes.sum),
+            first_octant,
+        )?;
         if let Some(parent) = self.open.last_mut() {
-            parent.mask |= 1 << (brick_key & 7);
+            parent.mask |= 1 << (cluster_key & 7);
             parent.sum.add(&nodes.sum);
         }
         Ok(())
     }
 
-    /// Closes the nodes above the last brick that the next is not below, and
+    /// Closes the nodes above the last cluster that the next is not below, and
     /// opens its own.
-    fn open_above(&mut self, brick_key: u64, brick_level: usize) -> io::Result<()> {
-        let new_level = first_new_level(self.before, brick_key, brick_level as u32) as usize;
+    fn open_above(&mut self, cluster_key: u64, cluster_level: usize) -> io::Result<()> {
+        let new_level = first_new_level(self.before, cluster_key, cluster_level as u32) as usize;
         if self.before.is_some() {
             self.close(new_level)?;
         }
-        self.before = Some(brick_key);
-        for level in new_level..brick_level {
+        self.before = Some(cluster_key);
+        for level in new_level..cluster_level {
             self.open[level] = Open {
                 first: self.begun[level + 1],
                 ..Open::default()
             };
             self.begun[level] += 1;
             if let Some(above) = level.checked_sub(1) {
-                let octant = brick_key >> (3 * (brick_level - level)) & 7;
+                let octant = cluster_key >> (3 * (cluster_level - level)) & 7;
                 self.open[above].mask |= 1 << octant;
             }
         }
@@ -153,7 +157,7 @@ impl TreeWriter {
     fn close(&mut self, from: usize) -> io::Result<()> {
         for level in (from..self.open.len()).rev() {
             let Open { mask, first, sum } = self.open[level];
-            self.write(level, Node::new(mask, &sum), first)?;
+            self.write(level, FinishedNode::new(mask, &sum), first)?;
             if let Some(above) = level.checked_sub(1) {
                 self.open[above].sum.add(&sum);
             }
@@ -161,7 +165,7 @@ impl TreeWriter {
         Ok(())
     }
 
-    fn write(&mut self, level: usize, node: Node, first: u64) -> io::Result<()> {
+    fn write(&mut self, level: usize, node: FinishedNode, first: u64) -> io::Result<()> {
         let to = &mut self.levels[level];
         to.mask.push(&[node.mask])?;
         // More than 32 bits are refused at the end.
@@ -171,7 +175,7 @@ impl TreeWriter {
     }
 
     /// The levels above the finest, and the number of nodes of each level.
-    pub(super) fn finish(mut self) -> io::Result<(Vec<Level>, Vec<u64>)> {
+    pub(super) fn finish(mut self) -> io::Result<(Vec<LevelArrays>, Vec<u64>)> {
         if self.before.is_some() {
             self.close(0)?;
         }

@@ -13,19 +13,19 @@
 //! are all covered: it cannot be seen, and has no part in the normals of
 //! coarser nodes.
 //!
-//! Speed comes from bricks of 4^3 voxels, 64 bits each: the node two levels
+//! Speed comes from clusters of 4^3 voxels, 64 bits each: the node two levels
 //! above the finest, its children's masks its bits. Its 26 neighbours come
 //! down the tree with it: a child's neighbours are children of its parent's
-//! neighbours. In a brick, a row of five voxels is an entry of a table.
+//! neighbours. In a cluster, a row of five voxels is an entry of a table.
 
-pub(super) mod brick;
+pub(super) mod cluster;
 mod moments;
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::{PackedNormal, Progress};
-use brick::{Brick, MORTON_TO_XYZ, Window, enclosed, put};
+use cluster::{Cluster, MORTON_TO_XYZ, Surroundings, enclosed, put};
 use moments::Moments;
 
 /// `neighbours` where there is no node.
@@ -62,23 +62,23 @@ impl Estimate<'_> {
             return;
         }
         progress.begin("estimate normals", normals.len() as u64);
-        if let Some(brick_level) = self.depth.checked_sub(2) {
-            self.fill_bricks(brick_level, normals, progress);
+        if let Some(cluster_level) = self.depth.checked_sub(2) {
+            self.fill_clusters(cluster_level, normals, progress);
         } else {
-            // One brick holds it all; a smaller object lies in its low corner.
-            let brick = Brick::from(self.mask.first().map_or(1, |&mask| u64::from(mask)));
-            let mut rows = Window::default();
-            put(&mut rows, SELF, brick.by_rows);
-            fill_brick(self.centre, &rows, brick.morton, [0; 3], normals);
+            // One cluster holds it all; a smaller object lies in its low corner.
+            let cluster = Cluster::from(self.mask.first().map_or(1, |&mask| u64::from(mask)));
+            let mut rows = Surroundings::default();
+            put(&mut rows, SELF, cluster.by_rows);
+            fill_cluster(self.centre, &rows, cluster.morton, [0; 3], normals);
         }
         progress.end();
     }
 
-    fn fill_bricks(&self, level: u32, normals: &mut [PackedNormal], progress: &dyn Progress) {
-        let first_brick = self.level_start[level as usize];
-        let bricks: Vec<Brick> = (first_brick..self.level_start[level as usize + 1])
+    fn fill_clusters(&self, level: u32, normals: &mut [PackedNormal], progress: &dyn Progress) {
+        let first_cluster = self.level_start[level as usize];
+        let clusters: Vec<Cluster> = (first_cluster..self.level_start[level as usize + 1])
             .into_par_iter()
-            .map(|node| self.brick(node))
+            .map(|node| self.cluster(node))
             .collect();
         let (split_level, pieces) = self.pieces(level);
 
@@ -92,11 +92,11 @@ impl Estimate<'_> {
             work.push((piece, mine));
         }
         work.into_par_iter().for_each(|(piece, own)| {
-            let mut walk = Walk {
+            let mut walk = PieceNormals {
                 estimate: self,
-                brick_level: level,
-                first_brick,
-                bricks: &bricks,
+                cluster_level: level,
+                first_cluster,
+                clusters: &clusters,
                 next: 0,
                 normals: own,
             };
@@ -105,18 +105,18 @@ impl Estimate<'_> {
         });
     }
 
-    fn brick(&self, node: u32) -> Brick {
+    fn cluster(&self, node: u32) -> Cluster {
         let (first, mask) = (self.first[node as usize], self.mask[node as usize]);
         let octants = (0..8).filter(|octant| mask >> octant & 1 == 1);
         let morton = octants.zip(first..).fold(0u64, |word, (octant, child)| {
             word | u64::from(self.mask[child as usize]) << (8 * octant)
         });
-        Brick::from(morton)
+        Cluster::from(morton)
     }
 
-    /// Nodes of the deepest level, no deeper than the bricks, that has few
+    /// Nodes of the deepest level, no deeper than the clusters, that has few
     /// enough of them; in Morton order.
-    fn pieces(&self, brick_level: u32) -> (u32, Vec<Piece>) {
+    fn pieces(&self, cluster_level: u32) -> (u32, Vec<Piece>) {
         let mut neighbours = [ABSENT; 27];
         neighbours[SELF] = 0;
         let mut pieces = vec![Piece {
@@ -124,7 +124,7 @@ impl Estimate<'_> {
             neighbours,
         }];
         let mut level = 0;
-        while level < brick_level {
+        while level < cluster_level {
             let below = level as usize + 1;
             if self.level_start[below + 1] - self.level_start[below] > MAX_PIECES as u32 {
                 break;
@@ -192,12 +192,12 @@ impl Estimate<'_> {
     }
 }
 
-/// Writes the normals of those of a brick's voxels that have none; they are
-/// given in Morton order. `corner` is the brick's and `centre` the middle of
+/// Writes the normals of those of a cluster's voxels that have none; they are
+/// given in Morton order. `corner` is the cluster's and `centre` the middle of
 /// the object, both in finest voxels.
-pub(super) fn fill_brick(
+pub(super) fn fill_cluster(
     centre: [f64; 3],
-    rows: &Window,
+    rows: &Surroundings,
     word: u64,
     corner: [i32; 3],
     normals: &mut [PackedNormal],
@@ -239,28 +239,28 @@ const CHILD_NEIGHBOURS: [[(u8, u8); 27]; 8] = {
     table
 };
 
-/// A walk over the bricks of a piece, in Morton order.
-struct Walk<'w> {
+/// A walk over the clusters of a piece, in Morton order.
+struct PieceNormals<'w> {
     estimate: &'w Estimate<'w>,
-    brick_level: u32,
-    first_brick: u32,
-    bricks: &'w [Brick],
+    cluster_level: u32,
+    first_cluster: u32,
+    clusters: &'w [Cluster],
     /// The next voxel of the piece.
     next: usize,
     normals: &'w mut [PackedNormal],
 }
 
-impl Walk<'_> {
+impl PieceNormals<'_> {
     fn descend(&mut self, level: u32, corner: [i32; 3], neighbours: &Neighbours) {
-        if level < self.brick_level {
+        if level < self.cluster_level {
             let estimate = self.estimate;
             estimate.for_children(level, corner, neighbours, |corner, of_child| {
                 self.descend(level + 1, corner, of_child);
             });
             return;
         }
-        let word_of = |node: u32| self.bricks[(node - self.first_brick) as usize];
-        let mut rows = Window::default();
+        let word_of = |node: u32| self.clusters[(node - self.first_cluster) as usize];
+        let mut rows = Surroundings::default();
         for (slot, &node) in neighbours.iter().enumerate() {
             if node != ABSENT {
                 put(&mut rows, slot, word_of(node).by_rows);
@@ -269,7 +269,7 @@ impl Walk<'_> {
         let word = word_of(neighbours[SELF]).morton;
         let end = self.next + word.count_ones() as usize;
         let own = &mut self.normals[self.next..end];
-        fill_brick(self.estimate.centre, &rows, word, corner, own);
+        fill_cluster(self.estimate.centre, &rows, word, corner, own);
         self.next = end;
     }
 }

@@ -1,8 +1,8 @@
-//! Moments of a voxel's neighbourhood, and the normal that they tell.
+//! Moments of a voxel's neighbourhood, and the normal that follows from them.
 
 use glam::DVec3;
 
-use super::brick::Window;
+use super::cluster::Surroundings;
 use crate::graph::PackedNormal;
 
 /// Weight of a voxel by its distance along an axis, -2 to 2.
@@ -12,10 +12,10 @@ const WEIGHT: [i32; 5] = [1, 2, 2, 2, 1];
 const HALF_MASS: i32 = 8 * 8 * 8 / 2;
 /// Mass of a voxel alone.
 const LONE_MASS: i32 = 2 * 2 * 2;
-/// A centre of mass at least this far off, in voxels, tells the normal by
+/// A centre of mass at least this far off, in voxels, gives the normal by
 /// itself: 0.8 is a flat face, 0.5 a wall of two.
 const ONE_SIDED: f64 = 0.6;
-/// How much the centre of mass, in voxels, has to say about which side of a
+/// Weight of the centre of mass, in voxels, in deciding which side of a
 /// wall is out, against the middle of the object.
 const OFFSET_SHARE: f64 = 0.25;
 
@@ -80,9 +80,9 @@ pub(super) struct Moments {
 }
 
 impl Moments {
-    /// Of the voxel at a place of the brick, 0 to 3 along each axis.
+    /// Of the voxel at a place of the cluster, 0 to 3 along each axis.
     #[inline]
-    pub(super) fn around(rows: &Window, [x, y, z]: [usize; 3]) -> Self {
+    pub(super) fn around(rows: &Surroundings, [x, y, z]: [usize; 3]) -> Self {
         // Along x by the table, then along y in each plane, then along z.
         let planes: [[i64; 3]; 5] = std::array::from_fn(|k| {
             let rows = &rows[z + k];
@@ -104,7 +104,7 @@ impl Moments {
         }
     }
 
-    /// The normal; `outward` says which side of a thin wall is preferred.
+    /// The normal; `outward`: which side of a thin wall is preferred.
     pub(super) fn normal(&self, outward: DVec3) -> PackedNormal {
         if self.mass <= LONE_MASS {
             return PackedNormal::NONE;
@@ -164,7 +164,7 @@ fn thinnest(second: &[f64; 6], mean: DVec3) -> [DVec3; 3] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::brick::MORTON_TO_XYZ;
+    use super::super::cluster::MORTON_TO_XYZ;
     use super::*;
 
     #[test]

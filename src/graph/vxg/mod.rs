@@ -12,14 +12,11 @@
 
 mod error;
 mod format;
-mod map;
 mod pages;
 mod read;
 mod write;
 
 pub use error::VxgError;
-pub(in crate::graph) use map::map as map_file;
-pub(crate) use map::release;
 pub use pages::MappedPages;
 pub use read::{from_bytes, is_vxg, open, verify};
 pub(in crate::graph) use write::{check_free, write_pieces};

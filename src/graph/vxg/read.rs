@@ -11,8 +11,8 @@ use super::format::{
     HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, MOST_SECTIONS, SECTIONS, Section, VERSION,
     VERSION_WITH_OPACITY, at, entry_at, layout,
 };
-use super::map::{Access, advise};
 use crate::graph::file::{self, Refused};
+use crate::graph::map::{Access, advise};
 use crate::graph::{Graph, Invalid, Opacity, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).

@@ -20,7 +20,7 @@ pub const WHOLE: &str = "everything on";
 
 /// An engine without one of its techniques, measured.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct AblationRow {
     /// The scene.
     pub scene: String,
     /// Pixels across.
@@ -52,7 +52,7 @@ pub struct Row {
     pub coverage: CoverageError,
 }
 
-impl Row {
+impl AblationRow {
     /// The size in words: `512x512`.
     #[must_use]
     pub fn size(&self) -> String {
@@ -76,11 +76,11 @@ pub fn run(
     families: &[Family],
     reference: &Candidate,
     harness: &mut Harness<'_>,
-) -> Result<Vec<Row>, BenchError> {
+) -> Result<Vec<AblationRow>, BenchError> {
     let setup = subject.setup(size, options)?;
     let right = picture_of(reference, &subject.graph, &setup)?;
     let mut contenders = Vec::new();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<AblationRow> = Vec::new();
     for family in families {
         let whole = family.whole;
         let contender = |variant: &str, setup: FrameSetup, make: super::MakeEngine| {
@@ -168,9 +168,9 @@ fn page_rows(
     families: &[Family],
     right: &[[i32; 4]],
     schedule: Schedule,
-) -> Result<Vec<Row>, BenchError> {
+) -> Result<Vec<AblationRow>, BenchError> {
     let size = (setup.width, setup.height);
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<AblationRow> = Vec::new();
     for family in families {
         let mut needed: Option<(f64, Vec<[i32; 4]>)> = None;
         for (reads_all, variant, about) in pages::VARIANTS {
@@ -198,8 +198,8 @@ fn blank(
     whole: &Candidate,
     variant: &'static str,
     about: &'static str,
-) -> Row {
-    Row {
+) -> AblationRow {
+    AblationRow {
         scene: subject.name.clone(),
         width: size.0,
         height: size.1,
@@ -217,7 +217,7 @@ fn blank(
     }
 }
 
-fn fill_in(row: &mut Row, measured: Measured) {
+fn fill_in(row: &mut AblationRow, measured: Measured) {
     row.wall = measured.wall;
     row.thread = measured.thread;
     row.work = counter(&measured.counters, row.work_unit);
@@ -231,7 +231,7 @@ fn ratio(ms: f64, of_ms: f64) -> f64 {
 
 /// The rows as a table.
 #[must_use]
-pub fn table(rows: &[Row]) -> Table {
+pub fn table(rows: &[AblationRow]) -> Table {
     let columns = [
         "scene",
         "size",
@@ -292,8 +292,8 @@ pub fn legend(families: &[Family]) -> Table {
 /// Bars for each scene.
 #[cfg(feature = "cli")]
 #[must_use]
-pub fn panels(rows: &[Row]) -> Vec<Panel> {
-    let bar = |row: &Row| Bar {
+pub fn panels(rows: &[AblationRow]) -> Vec<Panel> {
+    let bar = |row: &AblationRow| Bar {
         name: format!("{}, {}", row.engine, row.variant),
         value: row.wall.median_ms,
     };

@@ -16,7 +16,7 @@ pub struct Candidate {
     pub name: &'static str,
     /// One line about it.
     pub about: &'static str,
-    /// The counter among its `Stats` that says how much it had to do.
+    /// The counter among its `Stats` that measures its work.
     pub work: &'static str,
     /// Whether more threads make it faster; else it is measured on one.
     pub parallel: bool,
@@ -25,7 +25,7 @@ pub struct Candidate {
 }
 
 /// The nodes that a walk fetches, in its order, each as often as it does.
-pub type Fetched = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
+pub type FetchedNodes = fn(&GraphView<'_>, &FrameSetup) -> Result<Vec<u32>, EngineError>;
 
 /// How a contender comes to a frame, where that is not by the engine alone.
 #[derive(Debug, Clone, Copy, Default)]
@@ -33,10 +33,10 @@ pub enum Frames {
     /// Each is drawn.
     #[default]
     Drawn,
-    /// Each is asked of a viewer, which draws it the first time.
+    /// Each is requested from a viewer, which draws it the first time.
     Kept,
     /// Each is drawn, and the attributes of all these nodes are read.
-    WithAttributesOf(Fetched),
+    WithAttributesOf(FetchedNodes),
 }
 
 /// An engine without one of its techniques.

@@ -66,7 +66,7 @@ fn share(part: u64, of: u64) -> f64 {
 
 /// What frames a step apart have in common.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct CoherenceRow {
     /// The scene.
     pub scene: String,
     /// Pixels across.
@@ -98,7 +98,7 @@ pub fn run(
     steps: &[f64],
     candidate: &Candidate,
     progress: &dyn Progress,
-) -> Result<Vec<Row>, BenchError> {
+) -> Result<Vec<CoherenceRow>, BenchError> {
     let graph = &subject.graph;
     let engine = (candidate.make)(rayon::current_num_threads());
     let mut viewer = Viewer::new(graph.view(), engine, Contents::Nodes);
@@ -128,7 +128,7 @@ pub fn run(
         }
     }
     progress.end();
-    let row = |(&step_degrees, common): (&f64, Common)| Row {
+    let row = |(&step_degrees, common): (&f64, Common)| CoherenceRow {
         scene: subject.name.clone(),
         width: size.0,
         height: size.1,
@@ -155,7 +155,7 @@ pub(in crate::lab) fn turned(camera: &Camera, degrees: f64) -> Camera {
 
 /// The rows as a table.
 #[must_use]
-pub fn table(rows: &[Row]) -> Table {
+pub fn table(rows: &[CoherenceRow]) -> Table {
     let columns = [
         "scene",
         "size",
@@ -186,8 +186,8 @@ pub fn table(rows: &[Row]) -> Table {
 /// Shares by step, a plot for each scene.
 #[cfg(feature = "cli")]
 #[must_use]
-pub fn panels(rows: &[Row]) -> Vec<Panel> {
-    let panel = |rows: &[Row]| {
+pub fn panels(rows: &[CoherenceRow]) -> Vec<Panel> {
+    let panel = |rows: &[CoherenceRow]| {
         let points = rows.iter().flat_map(|row| {
             [
                 ("nodes seen before", row.node_share),

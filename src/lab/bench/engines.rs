@@ -1,4 +1,4 @@
-//! `bench engines`: who is how fast, and how wrong.
+//! `bench engines`: time and errors of each engine.
 
 use super::measure::Timing;
 #[cfg(feature = "cli")]

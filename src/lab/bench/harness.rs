@@ -4,7 +4,7 @@
 //! hits all alike, and a contender does not find the caches as its own last
 //! frame left them. A frame is: clear, traverse, colour of each sample
 //! written. Buffers are made before the first frame and reused. One frame
-//! before those is for the counters and for who wants to look at it.
+//! before those is for the counters and the picture.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -75,7 +75,7 @@ pub struct Measured {
     /// Wall time of a frame.
     pub wall: Summary,
     /// Processor time of the drawing thread; only for contenders on one
-    /// thread, and where the system tells it.
+    /// thread, and where the system measures it.
     pub thread: Option<Summary>,
     /// Counters of one frame.
     pub counters: Stats,
@@ -89,7 +89,7 @@ pub enum BenchError {
     Engine {
         /// The contender.
         who: String,
-        /// What the engine said.
+        /// The engine's error.
         source: EngineError,
     },
     /// A frame cannot be set up.
@@ -124,7 +124,7 @@ pub struct Harness<'p> {
 }
 
 impl<'p> Harness<'p> {
-    /// A harness; `progress` is told of every frame, between frames.
+    /// A harness; `progress` advances with every frame, between frames.
     #[must_use]
     pub fn new(schedule: Schedule, progress: &'p dyn Progress) -> Self {
         Self {
@@ -308,9 +308,9 @@ mod tests {
     use crate::project::{Camera, SetupOptions};
 
     /// Notes its name for each frame and how many threads it finds.
-    struct Scribe(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
+    struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
 
-    impl Engine for Scribe {
+    impl Engine for NameRecorder {
         fn render(
             &mut self,
             _: &GraphView<'_>,
@@ -356,7 +356,7 @@ mod tests {
             graph: &graph,
             setup: setup.clone(),
             threads,
-            drawer: Drawer::Engine(Box::new(Scribe(name, Arc::clone(&notes)))),
+            drawer: Drawer::Engine(Box::new(NameRecorder(name, Arc::clone(&notes)))),
             attributes: Vec::new(),
         };
         let mut contenders = [contender("a", 1), contender("b", 2)];
@@ -372,7 +372,7 @@ mod tests {
         assert_eq!(seen, [(0, 1), (1, 1)]);
         assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
         // Counters are those of the first frame, which is not timed; one
-        // thread's time is told of one thread alone.
+        // thread's time is measured for one thread alone.
         assert_eq!(measured[1].counters, [("frames", 2)]);
         assert_eq!(measured[1].thread, None);
         assert_eq!(measured[0].thread.is_some(), cfg!(unix));

@@ -48,16 +48,16 @@ impl Subject {
 
 /// What is measured of some scenes.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan<'p> {
+pub struct BenchPlan<'p> {
     /// Sizes of the picture, pixels across and down.
     pub sizes: &'p [(u32, u32)],
     /// Thread counts, each 1 or more. Engines that use one thread are measured once, on one.
     pub threads: &'p [usize],
     /// What frames are drawn with.
     pub options: SetupOptions,
-    /// Who draws.
+    /// The engines that draw.
     pub candidates: &'p [Candidate],
-    /// Whose picture is the right one; `None`: coverage is not compared.
+    /// The engine whose picture is the reference; `None`: coverage is not compared.
     pub reference: Option<&'p Candidate>,
 }
 
@@ -129,7 +129,7 @@ pub(super) fn counter(counters: &Stats, name: &str) -> Option<u64> {
 /// When a frame cannot be set up or drawn, or there are no threads.
 pub fn measure(
     subjects: &[Subject],
-    plan: &Plan<'_>,
+    plan: &BenchPlan<'_>,
     harness: &mut Harness<'_>,
 ) -> Result<Vec<Timing>, BenchError> {
     let mut contenders = Vec::new();

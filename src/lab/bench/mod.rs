@@ -2,26 +2,26 @@
 //!
 //! [`harness`] runs whoever competes in turn; [`mod@measure`] makes contenders
 //! of scenes, sizes, engines and thread counts; the experiments [`engines`],
-//! [`scaling`], [`ablation`] and [`coherence`] say what is measured and how it is shown. Engines
-//! come from outside as lists of [`Candidate`]s: nothing here knows one by name.
+//! [`scaling`], [`ablation`] and [`coherence`] define what is measured and how it is shown. Engines
+//! are passed in as lists of [`Candidate`]s: no engine is named here.
 
 pub mod ablation;
 mod candidate;
 mod clock;
 pub mod coherence;
 pub mod engines;
-mod fit;
 pub mod harness;
 pub mod measure;
 mod pages;
+mod power_law;
 pub mod scaling;
 mod scan;
 mod statistics;
 
-pub use candidate::{Candidate, Family, Fetched, Frames, MakeEngine, Variant};
+pub use candidate::{Candidate, Family, FetchedNodes, Frames, MakeEngine, Variant};
 pub use clock::{Clock, Elapsed};
-pub use fit::PowerLaw;
 pub use harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
-pub use measure::{Plan, Subject, Timing, measure};
+pub use measure::{BenchPlan, Subject, Timing, measure};
+pub use power_law::PowerLaw;
 pub use scan::Scan;
 pub use statistics::Summary;

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use super::fit::PowerLaw;
 use super::measure::Timing;
+use super::power_law::PowerLaw;
 #[cfg(feature = "cli")]
 use crate::report::plot::{Chart, Panel, Series};
 use crate::report::{Cell, Table};

@@ -1,9 +1,9 @@
-//! What a few times of the same work say.
+//! Statistics of a few times of the same work.
 
 use serde::Serialize;
 
 /// Order statistics of some times. With times that other work on the machine
-/// can only lengthen, `min` and `median` say more than a mean.
+/// can only lengthen, `min` and `median` are better estimates than a mean.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Summary {
     /// How many times there are.

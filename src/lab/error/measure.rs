@@ -9,7 +9,7 @@ use serde::{Serialize, Serializer};
 use super::method::{Method, Refused, Shown, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
-use super::voxels::Look;
+use super::voxels::PixelStyle;
 use crate::frame::Frame;
 use crate::graph::Progress;
 use crate::lab::bench::{BenchError, Clock, Schedule, Subject, Summary};
@@ -21,7 +21,7 @@ use crate::rays::Rays;
 
 /// What is measured, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct ErrorPlan {
     /// Pixels across and down.
     pub size: (u32, u32),
     /// How often each method draws.
@@ -29,7 +29,7 @@ pub struct Plan {
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
     /// How samples become colours.
-    pub look: Look,
+    pub style: PixelStyle,
 }
 
 /// Seeds of the reference and of the second one, whose distance is the noise floor.
@@ -83,7 +83,7 @@ impl SampleError {
 
 /// A method on a scene.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct MethodErrors {
     /// What the method is called.
     pub method: String,
     /// Its family.
@@ -114,7 +114,7 @@ pub struct SceneErrors {
     /// What a second reference of another seed is from the first.
     pub noise_floor: PictureError,
     /// The methods.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MethodErrors>,
     /// The reference.
     #[serde(skip)]
     pub reference: Arc<Reference>,
@@ -179,7 +179,7 @@ impl<'m> References<'m> {
         subject: &Subject,
         camera: &Camera,
         sampling: Sampling,
-        look: Look,
+        style: PixelStyle,
         progress: &dyn Progress,
     ) -> Result<Arc<Reference>, BenchError> {
         let same = |(scene, from, with, _): &&(String, Camera, Sampling, Arc<Reference>)| {
@@ -189,12 +189,12 @@ impl<'m> References<'m> {
             return Ok(Arc::clone(known));
         }
         let reference = match self.mesh {
-            Some(mesh) => of_triangles(mesh, camera, look, sampling.seed, progress)?,
+            Some(mesh) => of_triangles(mesh, camera, style, sampling.seed, progress)?,
             None => cast(
                 &subject.graph,
                 &truth(subject, camera, 0)?,
-                look.shading,
-                Background::Color(look.background),
+                style.shading,
+                Background::Color(style.background),
                 sampling,
                 progress,
             ),
@@ -240,15 +240,15 @@ impl Exact {
         subject: &Subject,
         camera: &Camera,
         aa_log2: u32,
-        look: Look,
+        style: PixelStyle,
     ) -> Result<Self, BenchError> {
         let setup = truth(subject, camera, aa_log2)?;
         let mut frame = Frame::new(setup.width, setup.height, false);
         let failed = |reason: String| BenchError::Picture(reason);
         Rays.render(&subject.graph.view(), &setup, &mut frame)
             .map_err(|e| failed(e.to_string()))?;
-        let background = Background::Color(look.background);
-        let picture = resolve(&frame, &subject.graph, &setup, look.shading, background)
+        let background = Background::Color(style.background);
+        let picture = resolve(&frame, &subject.graph, &setup, style.shading, background)
             .map_err(|e| failed(e.to_string()))?;
         Ok(Self {
             aa_log2,
@@ -269,7 +269,7 @@ impl Exact {
 pub fn measure(
     subject: &Subject,
     methods: &mut [Box<dyn Method + '_>],
-    plan: &Plan,
+    plan: &ErrorPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
 ) -> Result<SceneErrors, BenchError> {
@@ -282,7 +282,8 @@ pub fn measure(
         strata_log2: plan.strata_log2,
         seed,
     };
-    let mut reference = |seed| references.of(subject, &camera, sampling(seed), plan.look, progress);
+    let mut reference =
+        |seed| references.of(subject, &camera, sampling(seed), plan.style, progress);
     let (reference, second) = (reference(SEEDS[0])?, reference(SEEDS[1])?);
     let judge = Judge::new(&reference);
     let mismatch = |e: crate::measure::SizeError| BenchError::Picture(e.to_string());
@@ -300,7 +301,7 @@ pub fn measure(
         if let Ok(shown) = &drawn
             && !exact.iter().any(|exact| exact.aa_log2 == aa(shown))
         {
-            exact.push(Exact::new(subject, &camera, aa(shown), plan.look)?);
+            exact.push(Exact::new(subject, &camera, aa(shown), plan.style)?);
         }
         shown.push(match drawn {
             Ok(shown) => {
@@ -342,7 +343,7 @@ pub fn measure(
         if outcome.is_err() {
             pictures.push(Vec::new());
         }
-        rows.push(Row {
+        rows.push(MethodErrors {
             method: method.name(),
             family: method.family(),
             settings: method.settings(),

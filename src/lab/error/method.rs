@@ -1,6 +1,6 @@
 //! Who can be measured: anything that draws a picture from a camera.
 //!
-//! An experiment knows nothing of how a picture comes about. It asks a
+//! An experiment does not depend on how a picture is made. It asks a
 //! [`Method`] what it is called and how it is set, sets it up for a camera,
 //! lets it draw frames, which are timed, and lets it show one, which is not.
 
@@ -86,7 +86,7 @@ pub struct Shown {
     /// methods of a family; the first is its work: what the machine-independent
     /// plots have across.
     pub counters: Stats,
-    /// Anything a reader should know, such as who drew in its place.
+    /// Anything a reader should know, such as which engine drew in its place.
     pub remark: Option<String>,
 }
 

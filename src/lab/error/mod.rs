@@ -2,7 +2,7 @@
 //!
 //! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
 //! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene, error and time;
-//! [`beaten_by`] and the plots say which of them are worth having.
+//! [`beaten_by`] and the plots show which of them are worth having.
 
 mod cut;
 mod measure;
@@ -15,7 +15,9 @@ mod vertices;
 mod voxels;
 
 pub use cut::cut_at;
-pub use measure::{Outcome, Plan, References, Row, SampleError, SceneErrors, measure};
+pub use measure::{
+    ErrorPlan, MethodErrors, Outcome, References, SampleError, SceneErrors, measure,
+};
 pub(in crate::lab) use measure::{as_map, outcome_or_reason, race};
 pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
 #[cfg(feature = "cli")]
@@ -26,4 +28,4 @@ pub(in crate::lab) use reference::of_triangles;
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
 pub use tables::{rows, table, vertex_table};
 pub use vertices::vertex_levels;
-pub use voxels::{Look, VoxelMethod, tolerance_in_words};
+pub use voxels::{PixelStyle, VoxelMethod, tolerance_in_words};

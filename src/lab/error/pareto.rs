@@ -2,7 +2,7 @@
 
 #[cfg(feature = "cli")]
 use super::measure::SceneErrors;
-use super::measure::{Outcome, Row};
+use super::measure::{MethodErrors, Outcome};
 #[cfg(feature = "cli")]
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
@@ -43,7 +43,7 @@ const WORTH_MENTIONING: f64 = 0.01;
 /// no more work, no more wrong coverage, no greater error of the picture, and one of
 /// them less by a hundredth or more.
 #[must_use]
-pub fn beaten_by(rows: &[Row]) -> Vec<Option<String>> {
+pub fn beaten_by(rows: &[MethodErrors]) -> Vec<Option<String>> {
     let standings: Vec<_> = rows
         .iter()
         .map(|row| row.outcome.as_ref().ok().map(standing))
@@ -68,7 +68,7 @@ pub fn beaten_by(rows: &[Row]) -> Vec<Option<String>> {
 /// What plots have across.
 #[cfg(feature = "cli")]
 #[derive(Clone, Copy)]
-enum Across {
+enum XAxis {
     Time,
     Work,
 }
@@ -81,7 +81,7 @@ const CLOSE: f64 = 0.12;
 /// What plots have up.
 #[cfg(feature = "cli")]
 #[derive(Clone, Copy)]
-enum Up {
+enum YAxis {
     Light,
     Flip,
     Coverage,
@@ -92,8 +92,8 @@ enum Up {
 #[must_use]
 pub fn panels(scene: &SceneErrors) -> Vec<Panel> {
     let mut panels = Vec::new();
-    for up in [Up::Light, Up::Flip, Up::Coverage] {
-        for across in [Across::Work, Across::Time] {
+    for up in [YAxis::Light, YAxis::Flip, YAxis::Coverage] {
+        for across in [XAxis::Work, XAxis::Time] {
             panels.push(Panel::Chart(chart(scene, across, up)));
         }
     }
@@ -101,25 +101,25 @@ pub fn panels(scene: &SceneErrors) -> Vec<Panel> {
 }
 
 #[cfg(feature = "cli")]
-fn chart(scene: &SceneErrors, across: Across, up: Up) -> Chart {
+fn chart(scene: &SceneErrors, across: XAxis, up: YAxis) -> Chart {
     // Half a sample in a million stands for none, which a logarithm has no place for.
     const NONE: f64 = 0.5;
-    let done: Vec<(&Row, &Outcome)> = scene
+    let done: Vec<(&MethodErrors, &Outcome)> = scene
         .rows
         .iter()
         .filter_map(|row| Some((row, row.outcome.as_ref().ok()?)))
         .collect();
     let place = |outcome: &Outcome| {
         let x = match across {
-            Across::Time => outcome.thread.unwrap_or(outcome.wall).median_ms,
+            XAxis::Time => outcome.thread.unwrap_or(outcome.wall).median_ms,
             // Other families count other things.
-            Across::Work if outcome.samples.is_none() => f64::NAN,
-            Across::Work => work(outcome),
+            XAxis::Work if outcome.samples.is_none() => f64::NAN,
+            XAxis::Work => work(outcome),
         };
         let y = match up {
-            Up::Light => outcome.picture.rms_linear,
-            Up::Flip => outcome.picture.flip,
-            Up::Coverage => {
+            YAxis::Light => outcome.picture.rms_linear,
+            YAxis::Flip => outcome.picture.flip,
+            YAxis::Coverage => {
                 let samples = outcome.samples.map_or(f64::NAN, |s| s.wrong_share());
                 (1e6 * samples).max(if samples.is_nan() { f64::NAN } else { NONE })
             }
@@ -158,16 +158,16 @@ fn chart(scene: &SceneErrors, across: Across, up: Up) -> Chart {
     series.extend(kinds);
     let floor = &scene.noise_floor;
     let (label, level) = match up {
-        Up::Light => (
+        YAxis::Light => (
             "error against the reference: rms, linear light",
             Some(floor.rms_linear),
         ),
-        Up::Flip => ("error against the reference: mean FLIP", Some(floor.flip)),
-        Up::Coverage => ("extra and missing samples per million covered", None),
+        YAxis::Flip => ("error against the reference: mean FLIP", Some(floor.flip)),
+        YAxis::Coverage => ("extra and missing samples per million covered", None),
     };
     let x_label = match across {
-        Across::Time => "ms a frame, one thread (median)",
-        Across::Work => "operations of the machine a frame",
+        XAxis::Time => "ms a frame, one thread (median)",
+        XAxis::Work => "operations of the machine a frame",
     };
     let axis = |label: &str| Axis {
         label: label.to_owned(),

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use super::voxels::Look;
+use super::voxels::PixelStyle;
 use crate::drawing::mesh_view::{light_of, view_of};
 use crate::graph::{Graph, Progress};
 use crate::lab::bench::BenchError;
@@ -12,6 +12,7 @@ use crate::mesh::raster::{self, Pattern, RasterOptions, Samples};
 use crate::picture::{Background, Shader, Shading};
 use crate::project::{Camera, FrameSetup};
 use crate::rays::{Caster, MAX_CASTER_LEVELS};
+use crate::split_mix::mix;
 
 /// How a reference is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +51,7 @@ pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
 /// the frame's level of detail, start from the same integers as the frame:
 /// a pixel's strata are squares of that grid, and each has one of its grid
 /// points drawn by lot. The result depends on frame and sampling alone.
-/// `progress` is told of rows.
+/// `progress` advances by rows.
 #[must_use]
 pub fn cast(
     graph: &Graph,
@@ -75,7 +76,7 @@ pub fn cast(
     };
     progress.begin("casting the reference", u64::from(setup.height));
     let mut rows = Vec::with_capacity(setup.height as usize);
-    // In blocks, so that progress is told from this thread.
+    // In blocks, so that progress is reported from this thread.
     let block = 4 * rayon::current_num_threads().max(1) as u32;
     for first in (0..setup.height).step_by(block as usize) {
         let last = (first + block).min(setup.height);
@@ -104,7 +105,7 @@ pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 pub(in crate::lab) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
-    look: Look,
+    style: PixelStyle,
     seed: u64,
     progress: &dyn Progress,
 ) -> Result<Reference, BenchError> {
@@ -113,8 +114,8 @@ pub(in crate::lab) fn of_triangles(
     let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
     let options = RasterOptions {
         samples: samples.map_err(|e| failed(&e))?,
-        light: light_of(&view, look.shading),
-        background: Some(look.background),
+        light: light_of(&view, style.shading),
+        background: Some(style.background),
     };
     let drawn = raster::draw(surface, &view, &options, progress).map_err(|e| failed(&e))?;
     Ok(Reference {
@@ -166,19 +167,11 @@ impl Pixels<'_> {
 
     /// The grid point that is taken in a stratum.
     fn place_in(&self, (x, y): (u32, u32)) -> (u32, u32) {
-        let lot = mixed(self.seed ^ mixed(u64::from(x) << 32 | u64::from(y)));
+        let lot = mix(self.seed ^ mix(u64::from(x) << 32 | u64::from(y)));
         let mask = (1u32 << self.jitter_log2) - 1;
         let (dx, dy) = (lot as u32 & mask, (lot >> 32) as u32 & mask);
         (x << self.jitter_log2 | dx, y << self.jitter_log2 | dy)
     }
-}
-
-/// A number whose bits look as if drawn by lot (the finaliser of SplitMix64).
-fn mixed(number: u64) -> u64 {
-    let mut bits = number.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    bits = (bits ^ bits >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ bits >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ bits >> 31
 }
 
 #[cfg(test)]

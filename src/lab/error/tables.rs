@@ -1,6 +1,6 @@
 //! What was measured, as tables.
 
-use super::measure::{Outcome, Row, SceneErrors};
+use super::measure::{MethodErrors, Outcome, SceneErrors};
 use super::pareto::beaten_by;
 use super::picture_error::PictureError;
 use crate::measure::Spread;
@@ -63,7 +63,7 @@ fn sample_cells(outcome: Option<&Outcome>) -> Vec<Cell> {
     ]
 }
 
-fn counter(row: &Row, name: &str) -> Cell {
+fn counter(row: &MethodErrors, name: &str) -> Cell {
     let outcome = row.outcome.as_ref().ok();
     outcome
         .and_then(|o| o.counters.iter().find(|(found, _)| *found == name))
@@ -71,7 +71,7 @@ fn counter(row: &Row, name: &str) -> Cell {
         .into()
 }
 
-fn remark(row: &Row) -> Cell {
+fn remark(row: &MethodErrors) -> Cell {
     match &row.outcome {
         Ok(outcome) => outcome.remark.as_deref().map_or(Cell::None, Cell::from),
         Err(refused) => Cell::Text(refused.to_string()),

@@ -16,14 +16,14 @@ use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOption
 
 /// How samples become colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Look {
+pub struct PixelStyle {
     /// Shading.
     pub shading: Shading,
     /// What is behind the object; a colour, so that pictures are opaque.
     pub background: [u8; 3],
 }
 
-impl Default for Look {
+impl Default for PixelStyle {
     fn default() -> Self {
         let background = match Background::default() {
             Background::Color(color) => color,
@@ -45,7 +45,7 @@ pub struct VoxelMethod<'g> {
     engine_name: &'static str,
     make: MakeEngine,
     engine: Box<dyn Engine + Send>,
-    look: Look,
+    style: PixelStyle,
     ready: Option<Ready>,
 }
 
@@ -72,7 +72,7 @@ impl<'g> VoxelMethod<'g> {
         graph: &'g Graph,
         (engine_name, make): (&'static str, MakeEngine),
         options: SetupOptions,
-        look: Look,
+        style: PixelStyle,
     ) -> Self {
         Self {
             graph,
@@ -80,7 +80,7 @@ impl<'g> VoxelMethod<'g> {
             engine_name,
             make,
             engine: make(1),
-            look,
+            style,
             ready: None,
         }
     }
@@ -258,7 +258,7 @@ impl Method for VoxelMethod<'_> {
             return Err(Refused::because("no camera yet"));
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let light = lights(self.graph, setup, self.look.shading);
+        let light = lights(self.graph, setup, self.style.shading);
         let view = GraphView {
             light: &light,
             ..self.graph.view()
@@ -266,8 +266,8 @@ impl Method for VoxelMethod<'_> {
         let drawn = self.engine.render(&view, setup, &mut frame);
         let stats = drawn.map_err(Refused::because)?;
         let handed = stats.iter().any(|(name, _)| *name == "handed_to_machine");
-        let background = Background::Color(self.look.background);
-        let picture = resolve(&frame, self.graph, setup, self.look.shading, background)
+        let background = Background::Color(self.style.background);
+        let picture = resolve(&frame, self.graph, setup, self.style.shading, background)
             .map_err(Refused::because)?;
         let aa_log2 = setup.options.aa_log2;
         Ok(Shown {
@@ -288,7 +288,7 @@ impl Method for VoxelMethod<'_> {
             return Err(Refused::because("no camera yet"));
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let light = lights(self.graph, setup, self.look.shading);
+        let light = lights(self.graph, setup, self.style.shading);
         let view = GraphView {
             light: &light,
             ..self.graph.view()
@@ -296,8 +296,8 @@ impl Method for VoxelMethod<'_> {
         self.engine
             .draw(&view, setup, &mut frame)
             .map_err(Refused::because)?;
-        let background = Background::Color(self.look.background);
-        resolve(&frame, self.graph, setup, self.look.shading, background).map_err(Refused::because)
+        let background = Background::Color(self.style.background);
+        resolve(&frame, self.graph, setup, self.style.shading, background).map_err(Refused::because)
     }
 
     fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
@@ -312,12 +312,12 @@ impl Method for VoxelMethod<'_> {
             FrameSetup::new(camera, placement, depth, options).map_err(Refused::because)
         };
         let cut = cut_at(self.graph, &setup_of(other, &self.options)?);
-        // What the cut says is a solid is one; nothing else is.
+        // Solids are exactly the nodes that the cut stops at.
         let options = SetupOptions {
             lod_px: 0.0,
             ..self.options
         };
-        let mut on_cut = VoxelMethod::new(&cut, (self.engine_name, self.make), options, self.look);
+        let mut on_cut = VoxelMethod::new(&cut, (self.engine_name, self.make), options, self.style);
         on_cut.begin(camera)?;
         on_cut.picture().map(Some)
     }

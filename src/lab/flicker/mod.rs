@@ -1,4 +1,4 @@
-//! Films: how restless pictures are when the camera moves a little.
+//! Films: how much pictures flicker when the camera moves a little.
 //!
 //! *Flicker* is what changes from frame to frame other than in the
 //! reference. *Pop* is what changes in one picture when level of detail decides
@@ -14,7 +14,7 @@ pub use motion::Motion;
 
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Subject};
-use crate::lab::error::{Look, Method, References, Refused, Sampling};
+use crate::lab::error::{Method, PixelStyle, References, Refused, Sampling};
 use crate::measure::{Flicker, LinearPicture, SizeError};
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -24,7 +24,7 @@ use crate::report::{Cell, Table};
 
 /// What is filmed, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct FilmPlan {
     /// Pixels across and down.
     pub size: (u32, u32),
     /// Frames of a film, 2 or more.
@@ -32,7 +32,7 @@ pub struct Plan {
     /// Strata of a reference's pixel along each axis, as a power of two.
     pub strata_log2: u32,
     /// How samples become colours.
-    pub look: Look,
+    pub style: PixelStyle,
 }
 
 /// A film of one method.
@@ -41,13 +41,13 @@ pub struct Film {
     /// What the method is called.
     pub method: String,
     /// What was seen, or why there is no film.
-    pub seen: Result<Restless, String>,
+    pub seen: Result<FilmFlicker, String>,
 }
 
-/// How restless a film is. Linear light from 0 to 1, root of the mean square
+/// How much a film flickers. Linear light from 0 to 1, root of the mean square
 /// over pixels and channels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Restless {
+pub struct FilmFlicker {
     /// Of the whole film.
     pub flicker: f64,
     /// By step, from the second frame on.
@@ -60,7 +60,7 @@ pub struct Restless {
     pub error: f64,
 }
 
-impl Restless {
+impl FilmFlicker {
     /// Steps in which another cut makes another picture. A film without any says nothing of
     /// how much a change of level shows.
     #[must_use]
@@ -99,7 +99,7 @@ pub fn film(
     subject: &Subject,
     motion: Motion,
     methods: &mut [Box<dyn Method + '_>],
-    plan: &Plan,
+    plan: &FilmPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
 ) -> Result<Films, BenchError> {
@@ -122,7 +122,7 @@ pub fn film(
             seed,
         };
         let light = |camera: &Camera| {
-            let reference = references.of(subject, camera, sampling, plan.look, &Silent)?;
+            let reference = references.of(subject, camera, sampling, plan.style, &Silent)?;
             progress.advance(1);
             Ok(LinearPicture::of((
                 reference.width,
@@ -138,7 +138,7 @@ pub fn film(
     let films = methods
         .iter_mut()
         .map(|method| {
-            let seen = restless(method.as_mut(), &cameras, &truth);
+            let seen = film_flicker(method.as_mut(), &cameras, &truth);
             progress.advance(1);
             Film {
                 method: method.name(),
@@ -176,11 +176,11 @@ fn light_of(picture: &Picture) -> LinearPicture {
 }
 
 /// Films one method.
-pub(in crate::lab) fn restless(
+pub(in crate::lab) fn film_flicker(
     method: &mut dyn Method,
     cameras: &[Camera],
     truth: &[LinearPicture],
-) -> Result<Restless, Refused> {
+) -> Result<FilmFlicker, Refused> {
     let mut film = Vec::new();
     let mut pops = Vec::new();
     let cut_of = |method: &mut dyn Method, camera: &Camera| {
@@ -207,7 +207,7 @@ pub(in crate::lab) fn restless(
         .collect::<Result<_, _>>()
         .map_err(Refused::because)?;
     let squares: f64 = pops.iter().map(|pop| pop * pop).sum();
-    Ok(Restless {
+    Ok(FilmFlicker {
         flicker: flicker.rms(),
         flicker_by_step: flicker.by_step(),
         pop: (!pops.is_empty()).then(|| libm::sqrt(squares / pops.len() as f64)),
@@ -278,7 +278,7 @@ pub fn table(films: &[Films]) -> Table {
 #[cfg(feature = "cli")]
 #[must_use]
 pub fn panels(films: &Films) -> Vec<Panel> {
-    type Steps = fn(&Restless) -> &[f64];
+    type Steps = fn(&FilmFlicker) -> &[f64];
     let of = |what: &str, steps: Steps, level: Option<(f64, String)>| {
         let series: Vec<Series> = films
             .films

@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
-pub enum Step {
+pub enum FloatStep {
     /// Two `f32` added or subtracted.
     FloatAdd,
     /// Two `f32` multiplied.
@@ -33,7 +33,7 @@ pub enum Step {
     PixelWrite,
 }
 
-impl Step {
+impl FloatStep {
     /// All kinds, in the order of their discriminants.
     pub const ALL: [Self; 12] = [
         Self::FloatAdd,
@@ -70,10 +70,10 @@ impl Step {
     }
 }
 
-/// Does the ray caster's arithmetic and may count it.
+/// The ray caster's arithmetic, counted or not.
 pub(super) trait Arithmetic {
-    /// Is told of each step.
-    fn count(&mut self, step: Step, times: u32);
+    /// Called for each step.
+    fn count(&mut self, step: FloatStep, times: u32);
 
     /// A node is read.
     fn node(&mut self, node: u32);
@@ -81,49 +81,49 @@ pub(super) trait Arithmetic {
     /// `a + b`.
     #[inline(always)]
     fn add(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatAdd, 1);
+        self.count(FloatStep::FloatAdd, 1);
         a + b
     }
 
     /// `a - b`.
     #[inline(always)]
     fn sub(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatAdd, 1);
+        self.count(FloatStep::FloatAdd, 1);
         a - b
     }
 
     /// `a b`.
     #[inline(always)]
     fn multiply(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatMultiply, 1);
+        self.count(FloatStep::FloatMultiply, 1);
         a * b
     }
 
     /// `a / b`.
     #[inline(always)]
     fn divide(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatDivide, 1);
+        self.count(FloatStep::FloatDivide, 1);
         a / b
     }
 
     /// The larger.
     #[inline(always)]
     fn max(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatMinMax, 1);
+        self.count(FloatStep::FloatMinMax, 1);
         a.max(b)
     }
 
     /// The smaller.
     #[inline(always)]
     fn min(&mut self, a: f32, b: f32) -> f32 {
-        self.count(Step::FloatMinMax, 1);
+        self.count(FloatStep::FloatMinMax, 1);
         a.min(b)
     }
 
     /// `a < b`.
     #[inline(always)]
     fn less(&mut self, a: f32, b: f32) -> bool {
-        self.count(Step::FloatCompare, 1);
+        self.count(FloatStep::FloatCompare, 1);
         a < b
     }
 
@@ -141,7 +141,7 @@ pub(super) struct Plain;
 
 impl Arithmetic for Plain {
     #[inline(always)]
-    fn count(&mut self, _: Step, _: u32) {}
+    fn count(&mut self, _: FloatStep, _: u32) {}
 
     #[inline(always)]
     fn node(&mut self, _: u32) {}

@@ -1,12 +1,12 @@
 //! One ray through the octree.
 
-use super::arithmetic::{Arithmetic, Step};
+use super::arithmetic::{Arithmetic, FloatStep};
 use super::{LEAST_SLOPE, MANTISSA_BITS};
 use crate::graph::GraphView;
 
 /// What is put aside when a ray descends: the node above, and where the ray leaves it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Aside {
+struct StackEntry {
     node: u32,
     exit: f32,
 }
@@ -35,13 +35,13 @@ impl Caster<'_> {
         let mut slope = [0f32; 3];
         let mut bias = [0f32; 3];
         for k in 0..3 {
-            by.count(Step::Logic, 1);
+            by.count(FloatStep::Logic, 1);
             let steep = by.max(direction[k].abs(), LEAST_SLOPE);
             slope[k] = by.divide(-1.0, steep);
             bias[k] = by.multiply(slope[k], origin[k]);
             if by.less(0.0, direction[k]) {
                 mirror |= 4 >> k;
-                by.count(Step::Logic, 1);
+                by.count(FloatStep::Logic, 1);
                 bias[k] = by.times_less(3.0, slope[k], bias[k]);
             }
         }
@@ -61,7 +61,7 @@ impl Caster<'_> {
             return Some((node, [0; 4]));
         }
 
-        let mut stack = [Aside::default(); MANTISSA_BITS as usize + 1];
+        let mut stack = [StackEntry::default(); MANTISSA_BITS as usize + 1];
         // Of the cell looked at: lowest corner in mirrored space, octant in its parent
         // (mirrored), side, and the bit of the mantissa that the side is.
         let mut low = [1f32; 3];
@@ -71,7 +71,7 @@ impl Caster<'_> {
         for k in 0..3 {
             let middle = at(by, 1.5, k);
             if by.less(near, middle) {
-                by.count(Step::Logic, 2);
+                by.count(FloatStep::Logic, 2);
                 octant |= 4 >> k;
                 low[k] = 1.5;
             }
@@ -83,7 +83,7 @@ impl Caster<'_> {
             let leaves = [0, 1, 2].map(|k| at(by, low[k], k));
             let cell_exit = least(by, leaves);
             // The octant, and its bit of the mask.
-            by.count(Step::Logic, 2);
+            by.count(FloatStep::Logic, 2);
             let child_octant = octant ^ mirror;
             if mask >> child_octant & 1 != 0 && !by.less(exit, near) {
                 let child_end = by.min(exit, cell_exit);
@@ -93,16 +93,16 @@ impl Caster<'_> {
                     let level = MANTISSA_BITS - bit;
                     by.node(child);
                     // Its place: the bits of the mask before it, counted and added.
-                    by.count(Step::Logic, 1);
-                    by.count(Step::IntegerAdd, 2);
+                    by.count(FloatStep::Logic, 1);
+                    by.count(FloatStep::IntegerAdd, 2);
                     let child_mask = self.graph.mask(child);
                     if child_mask == 0 || level == self.last_level {
                         return Some((child, self.cell(low, bit, mirror)));
                     }
                     // Descend.
                     if by.less(cell_exit, aside) {
-                        by.count(Step::StackWrite, 1);
-                        stack[bit as usize] = Aside { node, exit };
+                        by.count(FloatStep::StackWrite, 1);
+                        stack[bit as usize] = StackEntry { node, exit };
                     }
                     aside = cell_exit;
                     node = child;
@@ -110,13 +110,13 @@ impl Caster<'_> {
                     octant = 0;
                     bit -= 1;
                     // Bit and exponent less one.
-                    by.count(Step::IntegerAdd, 2);
+                    by.count(FloatStep::IntegerAdd, 2);
                     side *= 0.5;
                     for k in 0..3 {
                         let step = by.multiply(side, slope[k]);
                         let middle = by.add(step, leaves[k]);
                         if by.less(near, middle) {
-                            by.count(Step::Logic, 2);
+                            by.count(FloatStep::Logic, 2);
                             octant |= 4 >> k;
                             // One bit of the mantissa.
                             low[k] += side;
@@ -130,13 +130,13 @@ impl Caster<'_> {
             let mut turned = 0u8;
             for k in 0..3 {
                 if !by.less(cell_exit, leaves[k]) {
-                    by.count(Step::Logic, 1);
+                    by.count(FloatStep::Logic, 1);
                     turned |= 4 >> k;
                     low[k] = by.sub(low[k], side);
                 }
             }
             near = cell_exit;
-            by.count(Step::Logic, 2);
+            by.count(FloatStep::Logic, 2);
             octant ^= turned;
             if octant & turned == 0 {
                 continue;
@@ -145,19 +145,19 @@ impl Caster<'_> {
             let mut differing = 0u32;
             for k in 0..3 {
                 if turned & (4 >> k) != 0 {
-                    by.count(Step::Logic, 2);
+                    by.count(FloatStep::Logic, 2);
                     let before = by.add(low[k], side);
                     differing |= low[k].to_bits() ^ before.to_bits();
                 }
             }
-            by.count(Step::Shift, 1);
+            by.count(FloatStep::Shift, 1);
             bit = 31 - differing.leading_zeros();
             if bit >= MANTISSA_BITS {
                 return None;
             }
-            by.count(Step::IntegerAdd, 1);
+            by.count(FloatStep::IntegerAdd, 1);
             side = f32::from_bits((bit + 127 - MANTISSA_BITS) << MANTISSA_BITS);
-            by.count(Step::StackRead, 1);
+            by.count(FloatStep::StackRead, 1);
             let above = stack[bit as usize];
             node = above.node;
             by.node(node);
@@ -165,8 +165,8 @@ impl Caster<'_> {
             exit = above.exit;
             octant = 0;
             for k in 0..3 {
-                by.count(Step::Shift, 1);
-                by.count(Step::Logic, 2);
+                by.count(FloatStep::Shift, 1);
+                by.count(FloatStep::Logic, 2);
                 let place = low[k].to_bits() >> bit;
                 low[k] = f32::from_bits(place << bit);
                 if place & 1 != 0 {

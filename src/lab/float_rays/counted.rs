@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use super::arithmetic::{Arithmetic, Step};
+use super::arithmetic::{Arithmetic, FloatStep};
 use super::caster::Caster;
 use super::{MAX_LEVEL, Rays};
 use crate::frame::Frame;
@@ -15,56 +15,59 @@ use crate::project::FrameSetup;
 
 /// Steps of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-pub struct Counts {
-    steps: [u64; Step::ALL.len()],
+pub struct FloatRayCounts {
+    steps: [u64; FloatStep::ALL.len()],
     /// Rays cast: one a sample.
     pub rays: u64,
     /// Cells that rays looked at.
     pub cells: u64,
 }
 
-impl Counts {
+impl FloatRayCounts {
     /// Steps of one kind.
     #[must_use]
-    pub fn of(&self, step: Step) -> u64 {
+    pub fn of(&self, step: FloatStep) -> u64 {
         self.steps[step as usize]
     }
 
     /// All steps that are arithmetic, and not accesses to a memory.
     #[must_use]
     pub fn arithmetic(&self) -> u64 {
-        let of = |step: &Step| self.of(*step);
-        Step::ALL[..=Step::Shift as usize].iter().map(of).sum()
+        let of = |step: &FloatStep| self.of(*step);
+        FloatStep::ALL[..=FloatStep::Shift as usize]
+            .iter()
+            .map(of)
+            .sum()
     }
 }
 
-/// Counts, and tells `nodes` of every node that is read.
+/// Counts steps, and calls `nodes` for every node that is read.
 struct Counting<'n> {
-    counts: Counts,
+    counts: FloatRayCounts,
     nodes: &'n mut dyn FnMut(u32),
 }
 
 impl Arithmetic for Counting<'_> {
     #[inline]
-    fn count(&mut self, step: Step, times: u32) {
+    fn count(&mut self, step: FloatStep, times: u32) {
         self.counts.steps[step as usize] += u64::from(times);
     }
 
     #[inline]
     fn node(&mut self, node: u32) {
-        self.counts.steps[Step::NodeRead as usize] += 1;
+        self.counts.steps[FloatStep::NodeRead as usize] += 1;
         (self.nodes)(node);
     }
 }
 
-/// Draws a frame in `f32` and counts what that takes. `nodes` is told of every
-/// node that is read, in order.
+/// Draws a frame in `f32` and counts what that takes. `nodes` is called
+/// for every node that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
     frame: &mut Frame,
     nodes: &mut dyn FnMut(u32),
-) -> Counts {
+) -> FloatRayCounts {
     frame.clear();
     let rays = Rays::new(setup);
     let caster = Caster {
@@ -73,7 +76,7 @@ pub fn count(
         depth: setup.depth,
     };
     let mut by = Counting {
-        counts: Counts::default(),
+        counts: FloatRayCounts::default(),
         nodes,
     };
     let eye = rays.eye.map(|c| c as f32);
@@ -85,7 +88,7 @@ pub fn count(
             let mut steps = 0;
             if let Some((seen, voxel)) = caster.cast(eye, direction, &mut steps, &mut by) {
                 *node = seen;
-                by.count(Step::PixelWrite, 1);
+                by.count(FloatStep::PixelWrite, 1);
                 if let Some(to) = frame.voxel.get_mut(j * width + i) {
                     *to = voxel;
                 }
@@ -140,15 +143,15 @@ mod tests {
         assert_eq!((counts.rays, counts.cells), (4, 0));
         let rays = 4;
         // The inverse of three slopes, and the bias of three planes.
-        assert_eq!(counts.of(Step::FloatDivide), 3 * rays);
+        assert_eq!(counts.of(FloatStep::FloatDivide), 3 * rays);
         // Three biases, and the cube's six planes.
-        assert_eq!(counts.of(Step::FloatMultiply), (3 + 6) * rays);
+        assert_eq!(counts.of(FloatStep::FloatMultiply), (3 + 6) * rays);
         // The six planes, and the step to the next ray.
-        assert_eq!(counts.of(Step::FloatAdd), (6 + 3) * rays);
+        assert_eq!(counts.of(FloatStep::FloatAdd), (6 + 3) * rays);
         // Three least slopes; of three planes the last and the first; 0.
-        assert_eq!(counts.of(Step::FloatMinMax), (3 + 2 + 2 + 1) * rays);
-        assert_eq!(counts.of(Step::FloatCompare), (3 + 1) * rays);
-        assert_eq!(counts.of(Step::NodeRead), 0);
+        assert_eq!(counts.of(FloatStep::FloatMinMax), (3 + 2 + 2 + 1) * rays);
+        assert_eq!(counts.of(FloatStep::FloatCompare), (3 + 1) * rays);
+        assert_eq!(counts.of(FloatStep::NodeRead), 0);
         assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
     }
 
@@ -164,8 +167,8 @@ mod tests {
         let error = CoverageError::between(&counted.voxel, &plain.voxel);
         assert!(error.covered > 1000);
         assert!(error.differing() <= 8, "{error:?}");
-        assert_eq!(counts.of(Step::NodeRead), nodes);
-        assert_eq!(counts.of(Step::PixelWrite), counted.drawn() as u64);
+        assert_eq!(counts.of(FloatStep::NodeRead), nodes);
+        assert_eq!(counts.of(FloatStep::PixelWrite), counted.drawn() as u64);
         let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
         assert!(counts.cells.abs_diff(steps) * 100 < steps);
     }

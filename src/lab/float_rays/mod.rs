@@ -14,17 +14,17 @@ mod arithmetic;
 mod caster;
 mod counted;
 
+pub use arithmetic::FloatStep;
 use arithmetic::Plain;
-pub use arithmetic::Step;
 use caster::Caster;
-pub use counted::{Counts, count};
+pub use counted::{FloatRayCounts, count};
 
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::GraphView;
 use crate::project::vector::cross;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
-/// Bits of an `f32`'s mantissa, hence levels that positions can tell apart.
+/// Bits of an `f32`'s mantissa, hence levels that positions can resolve.
 const MANTISSA_BITS: u32 = 23;
 /// Deepest level that is looked at; nodes there are drawn as one voxel.
 pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
@@ -174,7 +174,7 @@ mod tests {
             FrameSetup::new(&camera, placement, graph.depth, &SetupOptions::default()).unwrap();
         let mut exact = Frame::new(256, 256, false);
         let mut float = exact.clone();
-        // It knows no level of detail.
+        // It has no level of detail.
         let whole = setup.without_detail();
         Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
         let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();

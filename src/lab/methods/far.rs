@@ -2,9 +2,9 @@
 
 use crate::drawing::mesh_view::{light_of, picture_of_far, view_of};
 use crate::far::FarFile;
-use crate::far::view::{Counts, FarPicture, FarViewer, Opacity, ViewOptions};
-use crate::lab::error::{Look, Method, Refused, Shown};
-use crate::mesh::raster::View;
+use crate::far::view::{FarCounts, FarPicture, FarViewer, Opacity, ViewOptions};
+use crate::lab::error::{Method, PixelStyle, Refused, Shown};
+use crate::mesh::raster::RasterCamera;
 use crate::picture::Picture;
 use crate::project::Camera;
 
@@ -37,30 +37,30 @@ pub struct FarMethod<'f> {
     file: &'f FarFile,
     viewer: FarViewer<'f>,
     settings: FarSettings,
-    look: Look,
-    view: Option<View>,
+    style: PixelStyle,
+    view: Option<RasterCamera>,
 }
 
 impl<'f> FarMethod<'f> {
     /// Of a file.
     #[must_use]
-    pub fn new(file: &'f FarFile, settings: FarSettings, look: Look) -> Self {
+    pub fn new(file: &'f FarFile, settings: FarSettings, style: PixelStyle) -> Self {
         Self {
             file,
             viewer: FarViewer::new(file),
             settings,
-            look,
+            style,
             view: None,
         }
     }
 
-    fn drawn(&mut self, cut_of: Option<&View>) -> Result<(FarPicture, Counts), Refused> {
+    fn drawn(&mut self, cut_of: Option<&RasterCamera>) -> Result<(FarPicture, FarCounts), Refused> {
         let view = self.view.ok_or(Refused::because("no camera yet"))?;
         let options = ViewOptions {
             voxel_px: self.settings.voxel_px,
             opacity: self.settings.opacity,
-            light: light_of(&view, self.look.shading),
-            background: Some(self.look.background),
+            light: light_of(&view, self.style.shading),
+            background: Some(self.style.background),
             ..ViewOptions::default()
         };
         let cut_of = cut_of.unwrap_or(&view);

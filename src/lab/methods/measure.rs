@@ -6,17 +6,17 @@ use super::distance::at_distance;
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Schedule, Summary};
 use crate::lab::error::{
-    Judge, Look, Method, PictureError, Reference, Refused, Shown, as_map, of_triangles,
+    Judge, Method, PictureError, PixelStyle, Reference, Refused, Shown, as_map, of_triangles,
     outcome_or_reason, race,
 };
-use crate::lab::flicker::{Motion, restless};
+use crate::lab::flicker::{Motion, film_flicker};
 use crate::measure::LinearPicture;
 use crate::mesh::Surface;
 use crate::project::{Camera, Stats};
 
 /// What is measured, and how.
 #[derive(Debug, Clone, Copy)]
-pub struct Plan {
+pub struct MethodsPlan {
     /// Halvings of the picture: so many distances, and the first.
     pub halvings: u32,
     /// How often each method draws.
@@ -26,7 +26,7 @@ pub struct Plan {
     /// How a film's camera moves.
     pub motion: Motion,
     /// How samples become colours.
-    pub look: Look,
+    pub style: PixelStyle,
 }
 
 /// What is known of a method beside its pictures.
@@ -42,7 +42,7 @@ pub struct Facts {
 
 /// A method at a distance.
 #[derive(Debug, Clone, Serialize)]
-pub struct Row {
+pub struct MethodAtDistance {
     /// What it is called.
     pub method: String,
     /// Its family.
@@ -82,7 +82,7 @@ pub struct Distance {
     /// What a second reference of another seed is from the first.
     pub noise_floor: PictureError,
     /// The methods.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MethodAtDistance>,
     /// The reference.
     #[serde(skip)]
     pub reference: Reference,
@@ -114,7 +114,7 @@ pub fn measure(
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
     facts: Vec<Facts>,
-    plan: &Plan,
+    plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<MeshMethods, BenchError> {
     let mut distances = Vec::new();
@@ -134,7 +134,7 @@ fn at(
     mesh: &dyn Surface,
     camera: &Camera,
     methods: &mut [Box<dyn Method + '_>],
-    plan: &Plan,
+    plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<Distance, BenchError> {
     let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
@@ -145,11 +145,11 @@ fn at(
     progress.begin("drawing references", cameras.len() as u64);
     let mut films = Vec::new();
     for camera in &cameras {
-        films.push(of_triangles(mesh, camera, plan.look, 1, &Silent)?);
+        films.push(of_triangles(mesh, camera, plan.style, 1, &Silent)?);
         progress.advance(1);
     }
     progress.end();
-    let second = of_triangles(mesh, camera, plan.look, 2, &Silent)?;
+    let second = of_triangles(mesh, camera, plan.style, 2, &Silent)?;
     let judge = Judge::new(&films[0]);
     let noise_floor = judge.judge(&second.rgba, &second.shares);
     let noise_floor = noise_floor.map_err(|e| failed(&e))?;
@@ -184,7 +184,7 @@ fn at(
         if outcome.is_err() {
             pictures.push(Vec::new());
         }
-        rows.push(Row {
+        rows.push(MethodAtDistance {
             method: method.name(),
             family: method.family(),
             outcome,
@@ -220,7 +220,7 @@ fn seen(
     let picture = picture.map_err(Refused::because)?;
     let film = match cameras.len() {
         0 | 1 => None,
-        _ => Some(restless(method, cameras, truth)?),
+        _ => Some(film_flicker(method, cameras, truth)?),
     };
     Ok(Seen {
         shown,

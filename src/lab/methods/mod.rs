@@ -17,7 +17,7 @@ mod triangles;
 
 pub use distance::at_distance;
 pub use far::{FarMethod, FarSettings, opacity_in_words};
-pub use measure::{Distance, Facts, MeshMethods, Plan, Row, measure};
+pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
 #[cfg(feature = "cli")]
 pub use plots::panels;
 pub use tables::{rows, table};

@@ -1,6 +1,6 @@
 //! What came of all methods, as tables.
 
-use super::measure::{Distance, Facts, MeshMethods, Row};
+use super::measure::{Distance, Facts, MeshMethods, MethodAtDistance};
 use crate::report::{Cell, Table};
 
 /// Columns of every table.
@@ -57,7 +57,7 @@ pub fn table(mesh: &MeshMethods, distance: &Distance) -> Table {
 }
 
 fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {
-    let cells = |(row, facts): (&Row, &Facts)| {
+    let cells = |(row, facts): (&MethodAtDistance, &Facts)| {
         let mut cells = vec![
             Cell::Text(mesh.mesh.clone()),
             Cell::Count(u64::from(distance.size.1)),

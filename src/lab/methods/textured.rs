@@ -2,20 +2,20 @@
 
 use super::triangles::{options, shown};
 use crate::drawing::mesh_view::{picture_of_triangles, view_of};
-use crate::lab::error::{Look, Method, Refused, Shown};
-use crate::mesh::raster::{Pattern, RasterPicture, Samples, View};
+use crate::lab::error::{Method, PixelStyle, Refused, Shown};
+use crate::mesh::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use crate::picture::Picture;
 use crate::project::Camera;
 use crate::textured::TexturedFile;
-use crate::textured::view::{Counts, Detail, ViewOptions, choose, draw};
+use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose, draw};
 
 /// A `.tvx` file, drawn at a level of detail.
 pub struct TexturedMethod<'f> {
     file: &'f TexturedFile,
     detail: Detail,
     samples: Samples,
-    look: Look,
-    ready: Option<View>,
+    style: PixelStyle,
+    ready: Option<RasterCamera>,
 }
 
 impl<'f> TexturedMethod<'f> {
@@ -27,23 +27,23 @@ impl<'f> TexturedMethod<'f> {
         file: &'f TexturedFile,
         detail: Detail,
         per_pixel: u32,
-        look: Look,
+        style: PixelStyle,
     ) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
             file,
             detail,
             samples,
-            look,
+            style,
             ready: None,
         })
     }
 
-    fn drawn(&self, detail: Detail) -> Result<(RasterPicture, Counts), Refused> {
+    fn drawn(&self, detail: Detail) -> Result<(RasterPicture, TexturedCounts), Refused> {
         let Some(view) = &self.ready else {
             return Err(Refused::because("no camera yet"));
         };
-        let raster = options(view, self.samples, self.look);
+        let raster = options(view, self.samples, self.style);
         let options = ViewOptions {
             detail,
             samples: raster.samples,
@@ -57,7 +57,7 @@ impl<'f> TexturedMethod<'f> {
         match self.detail {
             Detail::Auto { .. } => "auto".to_owned(),
             Detail::Level { grid, level } => {
-                let cells = self.file.grid(grid).lattice().cells();
+                let cells = self.file.grid(grid).cell_grid().cells();
                 format!("{cells} eroded {level}")
             }
         }
@@ -101,7 +101,7 @@ impl Method for TexturedMethod<'_> {
 
     fn show(&mut self) -> Result<Shown, Refused> {
         let (drawn, counts) = self.drawn(self.detail)?;
-        let cells = self.file.grid(counts.choice.grid).lattice().cells();
+        let cells = self.file.grid(counts.choice.grid).cell_grid().cells();
         let counters = vec![
             ("triangles", counts.primitives + 2 * counts.surfels),
             ("primitives", counts.primitives),

@@ -2,9 +2,9 @@
 
 use crate::drawing::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::graph::Silent;
-use crate::lab::error::{Look, Method, Refused, Shown};
+use crate::lab::error::{Method, PixelStyle, Refused, Shown};
 use crate::mesh::Surface;
-use crate::mesh::raster::{self, Pattern, RasterOptions, RasterPicture, Samples, View};
+use crate::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use crate::picture::Picture;
 use crate::project::{Camera, Stats};
 
@@ -12,8 +12,8 @@ use crate::project::{Camera, Stats};
 pub struct TrianglesMethod<'m> {
     surface: &'m dyn Surface,
     samples: Samples,
-    look: Look,
-    view: Option<View>,
+    style: PixelStyle,
+    view: Option<RasterCamera>,
 }
 
 impl<'m> TrianglesMethod<'m> {
@@ -21,19 +21,23 @@ impl<'m> TrianglesMethod<'m> {
     ///
     /// # Errors
     /// With another number.
-    pub fn new(surface: &'m dyn Surface, per_pixel: u32, look: Look) -> Result<Self, Refused> {
+    pub fn new(
+        surface: &'m dyn Surface,
+        per_pixel: u32,
+        style: PixelStyle,
+    ) -> Result<Self, Refused> {
         let samples = Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?;
         Ok(Self {
             surface,
             samples,
-            look,
+            style,
             view: None,
         })
     }
 
     fn drawn(&self) -> Result<RasterPicture, Refused> {
         let view = self.view.ok_or(Refused::because("no camera yet"))?;
-        let options = options(&view, self.samples, self.look);
+        let options = options(&view, self.samples, self.style);
         raster::draw(self.surface, &view, &options, &Silent).map_err(Refused::because)
     }
 }
@@ -90,11 +94,11 @@ impl Method for TrianglesMethod<'_> {
 }
 
 /// What the rasteriser is to draw with.
-pub(super) fn options(view: &View, samples: Samples, look: Look) -> RasterOptions {
+pub(super) fn options(view: &RasterCamera, samples: Samples, style: PixelStyle) -> RasterOptions {
     RasterOptions {
         samples,
-        light: light_of(view, look.shading),
-        background: Some(look.background),
+        light: light_of(view, style.shading),
+        background: Some(style.background),
     }
 }
 

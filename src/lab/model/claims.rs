@@ -9,10 +9,10 @@ use crate::lab::bench::PowerLaw;
 use crate::machine::Simulated;
 use crate::project::{Coverage, FrameSetup};
 
-/// A claim and what the counts say.
+/// A claim and the counts that support or refute it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Claim {
-    /// What the image-order paper says.
+    /// The image-order paper's statement.
     pub claim: &'static str,
     /// Whether it holds for what was measured; `None`: figures alone, for the reader to judge.
     pub holds: Option<bool>,
@@ -33,7 +33,7 @@ const LIGHT: [OpClass; 8] = [
     OpClass::DivideStep,
 ];
 
-/// The claims that one frame can tell of.
+/// The claims that one frame can support or refute.
 #[must_use]
 pub fn of_frame(counted: &Counted) -> Vec<Claim> {
     let by_class = counted.counter.sum_by(|cell| cell.class);

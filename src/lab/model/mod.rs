@@ -1,11 +1,11 @@
 //! The hardware model's report: what a frame costs on the light hardware, and
 //! what a ray caster with multipliers would cost instead.
 //!
-//! [`frame`] draws a frame and has everything counted; [`rival`] does the same
+//! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
 //! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
 //! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, and over pictures and objects; [`claims`] holds the image-order paper's words against the counts.
-//! The other files say it: as tables, as statistics, as a page.
+//! formats, and over pictures and objects; [`claims`] compares the image-order
+//! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
 pub mod claims;
 pub mod cost;
@@ -14,8 +14,8 @@ pub mod growth;
 pub mod heat;
 #[cfg(feature = "cli")]
 pub mod plots;
+pub mod ray_caster;
 pub mod record;
-pub mod rival;
 pub mod rules;
 pub mod safe;
 pub mod statistics;

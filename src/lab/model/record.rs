@@ -1,5 +1,5 @@
 //! How many bits a record has on the machine's stack, field by field: what an
-//! architect needs to know of the stack's width.
+//! architect needs for the stack's width.
 //!
 //! Numbers have as many bits as their greatest value needs, coordinates those
 //! of the frame's format. Poses share their bits: a record has one at a time,
@@ -15,12 +15,12 @@ pub struct RecordField {
     /// Its bits, all parts of it together.
     pub bits: u32,
     /// The poses in which a record has it.
-    pub held: Held,
+    pub held: FieldPresence,
 }
 
 /// When a record has a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Held {
+pub enum FieldPresence {
     /// Always.
     Always,
     /// In clip space.
@@ -54,12 +54,12 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
         field(
             "octree node",
             bits_to(nodes.saturating_sub(1) as u64),
-            Held::Always,
+            FieldPresence::Always,
         ),
         field(
             "octree level",
             bits_to(u64::from(setup.level_bound())),
-            Held::Always,
+            FieldPresence::Always,
         ),
         // A part of a solid is below its voxel's level; under the exact rule
         // solids have no parts.
@@ -70,34 +70,42 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
             } else {
                 bits_to(u64::from(setup.depth))
             },
-            Held::Always,
+            FieldPresence::Always,
         ),
         match exact {
-            true => field("solid, inside", 2, Held::Always),
-            false => field("solid, inside, pose", 3, Held::Always),
+            true => field("solid, inside", 2, FieldPresence::Always),
+            false => field("solid, inside, pose", 3, FieldPresence::Always),
         },
-        field("lowest vertex", 3 * position, Held::Always),
+        field("lowest vertex", 3 * position, FieldPresence::Always),
         // It can be had from the lowest vertex and the level; the image-order paper keeps it.
-        field("highest vertex", 3 * position, Held::Always),
+        field("highest vertex", 3 * position, FieldPresence::Always),
         field(
             "quadtree level",
             bits_to(u64::from(setup.levels)),
-            Held::Always,
+            FieldPresence::Always,
         ),
-        field("quadtree place", 2 * setup.levels, Held::Always),
-        field("clip X, Y, W", 3 * vertices * word, Held::InClipSpace),
-        field("least W", word, Held::InClipSpace),
+        field("quadtree place", 2 * setup.levels, FieldPresence::Always),
+        field(
+            "clip X, Y, W",
+            3 * vertices * word,
+            FieldPresence::InClipSpace,
+        ),
+        field("least W", word, FieldPresence::InClipSpace),
     ];
     if exact {
         let planes = PLANE_WORDS * wide;
-        fields.push(field("silhouette planes", planes, Held::InClipSpace));
+        fields.push(field(
+            "silhouette planes",
+            planes,
+            FieldPresence::InClipSpace,
+        ));
     } else {
         fields.push(field(
             "screen x, y",
             2 * vertices * word,
-            Held::InScreenSpace,
+            FieldPresence::InScreenSpace,
         ));
-        fields.push(field("box", 4 * word, Held::InScreenSpace));
+        fields.push(field("box", 4 * word, FieldPresence::InScreenSpace));
     }
     fields
 }
@@ -105,11 +113,12 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
 /// Bits of a record: what it always has, and the larger of its poses.
 #[must_use]
 pub fn record_bits(fields: &[RecordField]) -> u32 {
-    let sum = |held: Held| -> u32 {
+    let sum = |held: FieldPresence| -> u32 {
         let of = fields.iter().filter(|field| field.held == held);
         of.map(|field| field.bits).sum()
     };
-    sum(Held::Always) + sum(Held::InClipSpace).max(sum(Held::InScreenSpace))
+    sum(FieldPresence::Always)
+        + sum(FieldPresence::InClipSpace).max(sum(FieldPresence::InScreenSpace))
 }
 
 #[cfg(test)]

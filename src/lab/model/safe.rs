@@ -5,13 +5,19 @@
 
 use serde::Serialize;
 
-use super::sweep::rounding_px;
 use crate::graph::{Graph, MAX_DEPTH, Placement};
 use crate::project::camera::MAX_SIDE;
 use crate::project::{Camera, FrameSetup, SetupOptions};
 
 /// Most rounding that is safe, pixels.
 const MOST_ROUNDING_PX: f64 = 0.25;
+
+/// How far, in pixels, rounding may turn or stretch a view: the edges of a
+/// voxel are rounded to units of `2^-clip_frac`.
+pub(super) fn rounding_px(setup: &FrameSetup) -> f64 {
+    let root_px = setup.levels - setup.options.aa_log2;
+    libm::ldexp(1.0, root_px as i32 - 2 - setup.clip_frac as i32)
+}
 
 /// What a format is safe for; each alone, with all else as in the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -6,9 +6,9 @@ use hwmodel::{Memory, OpClass};
 
 use super::cost::FrameCost;
 use super::frame::Counted;
+use super::ray_caster::RayCasterReport;
 use super::record::record_bits;
-use super::rival::Rival;
-use crate::lab::float_rays::Step;
+use crate::lab::float_rays::FloatStep;
 use crate::machine::Simulated;
 
 /// A name as one word of a dotted name.
@@ -25,7 +25,7 @@ pub fn of(
     simulated: &Simulated,
     cost: &FrameCost,
     area_nand2: f64,
-    rival: Option<&Rival>,
+    ray_caster: Option<&RayCasterReport>,
 ) -> Statistics {
     let mut list = Statistics::new();
     let counter = &counted.counter;
@@ -145,26 +145,31 @@ pub fn of(
         "NAND2",
         "area of the units that the frame uses",
     );
-    if let Some(rival) = rival {
-        for step in Step::ALL {
+    if let Some(ray_caster) = ray_caster {
+        for step in FloatStep::ALL {
             let name = format!("ray_caster.{}", word(step.name()));
             list.add(
                 &name,
-                rival.counts.of(step),
+                ray_caster.counts.of(step),
                 "Count",
                 "steps of the ray caster",
             );
         }
-        list.add("ray_caster.rays", rival.counts.rays, "Count", "rays cast");
+        list.add(
+            "ray_caster.rays",
+            ray_caster.counts.rays,
+            "Count",
+            "rays cast",
+        );
         list.add(
             "ray_caster.cells",
-            rival.counts.cells,
+            ray_caster.counts.cells,
             "Count",
             "cells that rays looked at",
         );
         list.add(
             "ray_caster.energy.total",
-            rival.cost.total().0,
+            ray_caster.cost.total().0,
             "pJ",
             "energy of its frame",
         );

@@ -9,7 +9,7 @@ use super::ModelError;
 use super::cost::Prices;
 use super::frame;
 use super::rules::{self, Outcome};
-use super::safe::{self, Safe};
+use super::safe::{self, Safe, rounding_px};
 use crate::graph::{Graph, Progress};
 use crate::project::{Camera, FrameSetup, SetupOptions};
 
@@ -33,13 +33,6 @@ pub struct FormatRow {
     /// What became of the frame.
     #[serde(flatten)]
     pub outcome: Outcome,
-}
-
-/// How far, in pixels, rounding may turn or stretch a view: the edges of a
-/// voxel are rounded to units of `2^-clip_frac`.
-pub(super) fn rounding_px(setup: &FrameSetup) -> f64 {
-    let root_px = setup.levels - setup.options.aa_log2;
-    libm::ldexp(1.0, root_px as i32 - 2 - setup.clip_frac as i32)
 }
 
 /// The frame in words of so many bits each. Units are as wide as the words.

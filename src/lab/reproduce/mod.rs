@@ -3,7 +3,7 @@
 //!
 //! What does not depend on the machine (hashes of pictures, records,
 //! operations) is one list, [`Evidence`]; a rerun compares it. Times are
-//! another. What the image-order paper says and what was found: `spec/lab.md`.
+//! another. The image-order paper's results and ours: `spec/lab.md`.
 
 pub mod figures;
 #[cfg(feature = "cli")]
@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use crate::frame::Frame;
 use crate::graph::Progress;
 use crate::lab::bench::{
-    BenchError, Candidate, Family, Harness, Plan, Schedule, Subject, Timing, ablation, measure,
+    BenchError, BenchPlan, Candidate, Family, Harness, Schedule, Subject, Timing, ablation, measure,
 };
 use crate::lab::model::frame::count_operations;
 use crate::picture::{self, Background, Picture, Shading, resolve};
@@ -184,7 +184,7 @@ pub enum ReproduceError {
     Engine {
         /// The scene.
         scene: String,
-        /// What the machine said.
+        /// The machine's error.
         source: crate::project::EngineError,
     },
 }
@@ -334,7 +334,7 @@ pub fn times(
             "paper" => vec![*engines.machine],
             _ => vec![*engines.machine, *engines.fast],
         };
-        let plan = Plan {
+        let plan = BenchPlan {
             sizes: &sizes,
             threads: &[1],
             options,
@@ -361,7 +361,7 @@ pub fn order(
     side: u32,
     engines: &Engines<'_>,
     harness: &mut Harness<'_>,
-) -> Result<Vec<(&'static str, ablation::Row)>, ReproduceError> {
+) -> Result<Vec<(&'static str, ablation::AblationRow)>, ReproduceError> {
     let mut rows = Vec::new();
     for subject in subjects {
         for (name, options) in settings() {

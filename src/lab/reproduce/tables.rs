@@ -24,14 +24,14 @@ pub fn paper_law() -> Option<PowerLaw> {
 }
 
 /// Who drew: engine and settings.
-fn who(timed: &Timed) -> String {
+fn engine_label(timed: &Timed) -> String {
     format!("{}, {} settings", timed.timing.engine, timed.settings)
 }
 
 fn names(times: &[Timed]) -> Vec<String> {
     let mut names = Vec::new();
     for timed in times {
-        let name = who(timed);
+        let name = engine_label(timed);
         if !names.contains(&name) {
             names.push(name);
         }
@@ -67,7 +67,7 @@ pub fn table_one(times: &[Timed], evidence: &[Evidence]) -> Table {
     );
     for name in names(times) {
         let mut before: Option<(f64, f64)> = None;
-        for timed in times.iter().filter(|t| who(t) == name) {
+        for timed in times.iter().filter(|t| engine_label(t) == name) {
             let timing = &timed.timing;
             let ms = timing.best_median_ms();
             let paper = paper_ms(timing.width, timing.height);
@@ -113,7 +113,7 @@ pub fn laws(times: &[Timed]) -> Table {
     };
     push("the paper's Table I, from 128 on".to_owned(), paper_law());
     for name in names(times) {
-        let of_name = || times.iter().filter(|t| who(t) == name);
+        let of_name = || times.iter().filter(|t| engine_label(t) == name);
         let law = |y: &dyn Fn(&Timed) -> f64| {
             let points: Vec<(f64, f64)> = of_name()
                 .map(|t| (t.timing.pixels() as f64, y(t)))
@@ -144,7 +144,7 @@ pub fn objects(times: &[Timed], evidence: &[Evidence]) -> Table {
     ];
     let mut table = Table::new("Objects at one size", &columns);
     for name in names(times) {
-        for timed in times.iter().filter(|t| who(t) == name) {
+        for timed in times.iter().filter(|t| engine_label(t) == name) {
             let timing = &timed.timing;
             let ms = timing.best_median_ms();
             let covered = evidence_of(evidence, timed).map(|e| e.covered);
@@ -178,7 +178,7 @@ pub fn independence(times: &[Timed], growing: &[String]) -> Table {
     ];
     let mut table = Table::new("Does time depend on the object?", &columns);
     for name in names(times) {
-        let of_name = || times.iter().filter(|t| who(t) == name);
+        let of_name = || times.iter().filter(|t| engine_label(t) == name);
         let spread = |y: &dyn Fn(&Timed) -> f64| {
             let values: Vec<f64> = of_name().map(y).collect();
             let most = values.iter().copied().fold(0.0, f64::max);
@@ -204,7 +204,7 @@ pub fn independence(times: &[Timed], growing: &[String]) -> Table {
 
 /// Techniques that rest on occlusion order.
 #[must_use]
-pub fn order(rows: &[(&'static str, ablation::Row)]) -> Table {
+pub fn order(rows: &[(&'static str, ablation::AblationRow)]) -> Table {
     let columns = [
         "scene",
         "settings",
@@ -274,7 +274,7 @@ pub fn figure_five(times: &[Timed]) -> Panel {
             .filter_map(|&(side, ms)| Some((f64::from(side * side), ms.parse().ok()?))),
     )];
     for name in names(times) {
-        let of_name = times.iter().filter(|t| who(t) == name);
+        let of_name = times.iter().filter(|t| engine_label(t) == name);
         let points = of_name.map(|t| (t.timing.pixels() as f64, t.timing.best_median_ms()));
         series.push(Series::curve(name.clone(), points));
     }
@@ -292,7 +292,7 @@ pub fn object_chart(times: &[Timed]) -> Panel {
     let series = names(times)
         .into_iter()
         .map(|name| {
-            let of_name = times.iter().filter(|t| who(t) == name);
+            let of_name = times.iter().filter(|t| engine_label(t) == name);
             let mut points: Vec<(f64, f64)> = of_name
                 .map(|t| (t.timing.voxels as f64, t.timing.best_median_ms()))
                 .collect();
@@ -310,7 +310,7 @@ pub fn object_chart(times: &[Timed]) -> Panel {
 
 /// How much longer a frame takes, on the whole's time.
 #[must_use]
-pub fn order_bars(rows: &[(&'static str, ablation::Row)]) -> Panel {
+pub fn order_bars(rows: &[(&'static str, ablation::AblationRow)]) -> Panel {
     Panel::Bars {
         title: "Time without the technique, over time with it".to_owned(),
         bars: rows

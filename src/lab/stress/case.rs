@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use glam::DVec3;
 
-use super::scene::Scene;
+use super::scene::StressScene;
 use crate::graph::{Graph, Placement};
 use crate::project::{CageKind, Camera, Coverage, FrameSetup, SetupError, SetupOptions};
 
@@ -13,7 +13,7 @@ use crate::project::{CageKind, Camera, Coverage, FrameSetup, SetupError, SetupOp
 #[derive(Debug, Clone, PartialEq)]
 pub struct Case {
     /// The scene.
-    pub scene: Scene,
+    pub scene: StressScene,
     /// The camera, in finest voxels from the object's lowest corner.
     pub camera: Camera,
     /// How far object and camera are from the world's origin, voxels along each axis.
@@ -213,7 +213,7 @@ impl Case {
     /// The command that draws the picture to look at, where `render` can.
     #[must_use]
     pub fn render_line(&self, graph: &Graph) -> Option<String> {
-        let Scene::Generated(spec) = &self.scene else {
+        let StressScene::Generated(spec) = &self.scene else {
             return None;
         };
         if self.shift != 0 {

@@ -19,7 +19,7 @@ use crate::rays::Rays;
 pub enum Check {
     /// A frame ends within a bound on records.
     Ends,
-    /// A frame whose set-up says that it cannot overflow does not.
+    /// A frame whose set-up guarantees that it cannot overflow does not.
     Headroom,
     /// Under `exact` the picture is the oracle's, at every level of detail.
     Exact,
@@ -33,7 +33,7 @@ pub enum Check {
     /// What is seen is before the eye and at its sample.
     Place,
     /// Vertices are the specification's, bit for bit.
-    Book,
+    Specification,
     /// Vertices are within the bounds on their error.
     Bound,
     /// The fast engine draws the same bits.
@@ -50,7 +50,7 @@ impl Check {
         Self::Holes,
         Self::Order,
         Self::Place,
-        Self::Book,
+        Self::Specification,
         Self::Bound,
         Self::Engines,
     ];
@@ -66,13 +66,13 @@ impl Check {
             Self::Holes => "holes",
             Self::Order => "order",
             Self::Place => "place",
-            Self::Book => "book",
+            Self::Specification => "specification",
             Self::Bound => "bound",
             Self::Engines => "engines",
         }
     }
 
-    /// What it says.
+    /// The details.
     #[must_use]
     pub fn about(self) -> &'static str {
         match self {
@@ -89,7 +89,7 @@ impl Check {
             Self::Place => {
                 "what is seen is before the eye and no more than the rule allows from its sample"
             }
-            Self::Book => "vertices are the specification's, bit for bit",
+            Self::Specification => "vertices are the specification's, bit for bit",
             Self::Bound => "vertices are within the bounds on their error",
             Self::Engines => "the fast engine draws the machine's bits",
         }
@@ -269,7 +269,7 @@ pub(crate) fn check(
     outcome.records = stat("records");
     let right = oracle.picture(graph, &setup);
     outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
-    let seen = Seen {
+    let seen = CheckedFrame {
         setup: &setup,
         frame: &frame,
         right: &right,
@@ -290,7 +290,7 @@ pub(crate) fn check(
 }
 
 /// A frame beside the right one.
-struct Seen<'s> {
+struct CheckedFrame<'s> {
     setup: &'s FrameSetup,
     frame: &'s Frame,
     right: &'s Frame,
@@ -300,7 +300,7 @@ struct Seen<'s> {
 
 type Voxel = [i32; 4];
 
-impl Seen<'_> {
+impl CheckedFrame<'_> {
     fn is_exact(&self) -> bool {
         self.setup.options.coverage == Coverage::Exact
     }
@@ -543,7 +543,7 @@ fn check_vertices(
     subject: &dyn Subject,
     case: &Case,
     graph: &Graph,
-    seen: &Seen<'_>,
+    seen: &CheckedFrame<'_>,
     outcome: &mut Outcome,
 ) {
     let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
@@ -555,18 +555,18 @@ fn check_vertices(
     let mut found = Vertices::default();
     for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
         let way = path(seen.setup, voxel, salt);
-        vertex::look(subject, seen.setup, &bounds, &way, &mut found);
+        vertex::check_path(subject, seen.setup, &bounds, &way, &mut found);
     }
     outcome.worst = found.worst;
-    if let Some(detail) = found.not_by_the_book {
-        outcome.fail(Check::Book, detail);
+    if let Some(detail) = found.differs {
+        outcome.fail(Check::Specification, detail);
     }
     if let Some(detail) = found.beyond {
         outcome.fail(Check::Bound, detail);
     }
 }
 
-fn check_engines(graph: &Graph, seen: &Seen<'_>, outcome: &mut Outcome) {
+fn check_engines(graph: &Graph, seen: &CheckedFrame<'_>, outcome: &mut Outcome) {
     // What the fast engine does not draw it hands to the machine.
     if !seen.is_exact() || !seen.setup.has_headroom {
         return;

@@ -1,16 +1,16 @@
 //! Numerical stability: word formats x cameras x scenes x rules, each frame
 //! held against the oracle, the specification and the bounds on its error.
 //!
-//! `sweep` runs a [`Plan`]; what fails is shrunk to a small [`Case`], a line
+//! `sweep` runs a [`SweepPlan`]; what fails is shrunk to a small [`Case`], a line
 //! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
 
-mod book;
 pub mod case;
 mod check;
 #[cfg(test)]
 mod mutants;
 pub mod scene;
 mod shrink;
+mod specified;
 pub(crate) mod subject;
 pub(crate) mod sweep;
 #[cfg(feature = "cli")]
@@ -20,8 +20,8 @@ pub mod viewpoint;
 
 pub use case::Case;
 pub use check::{Check, End, Failure, Outcome, PATIENCE, STRICT_TOLERANCE};
-pub use scene::Scene;
-pub use sweep::{COVERAGES, Failed, Findings, Key, Plan, TOLERANCES, Tally, run_case, sweep};
+pub use scene::StressScene;
+pub use sweep::{COVERAGES, Failed, Findings, Key, SweepPlan, TOLERANCES, Tally, run_case, sweep};
 #[cfg(feature = "cli")]
 pub use tables::{panels, rows, summary, tables};
 pub use vertex::{Hold, Worst};

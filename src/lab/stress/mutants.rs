@@ -4,11 +4,11 @@ use hwmodel::Trap;
 
 use super::subject::{Product, Subject};
 use super::sweep::sweep_of;
-use super::{Check, Findings, Plan, Scene};
+use super::{Check, Findings, StressScene, SweepPlan};
 use crate::frame::Frame;
 use crate::graph::{GraphView, Silent};
 use crate::machine::Cage;
-use crate::machine::mutants::{Injury, Mutant};
+use crate::machine::mutants::{Mutant, Mutation};
 use crate::project::{EngineError, FrameSetup, Stats};
 
 impl Subject for Mutant {
@@ -31,10 +31,10 @@ const SCENES: [&str; 3] = ["gen:shell,depth=3", "gen:random,depth=3", "plane:4,3
 
 /// Small scenes, seen from all standard viewpoints.
 fn sweep(subject: &dyn Subject, scenes: &[&str], bits: &[u32]) -> Findings {
-    let plan = Plan {
+    let plan = SweepPlan {
         scenes: scenes
             .iter()
-            .map(|text| text.parse::<Scene>().unwrap())
+            .map(|text| text.parse::<StressScene>().unwrap())
             .collect(),
         bits: bits.to_vec(),
         pixels: vec![24],
@@ -54,35 +54,35 @@ fn the_machine_itself_keeps_all() {
     assert!(found.total().drawn > 500);
 }
 
-/// Every injury is found by the check that is meant for it, and what
+/// Every mutation is found by the check that is meant for it, and what
 /// fails is shrunk to a case that fails still.
 #[test]
-fn every_injury_is_found_by_name() {
-    for (injury, expected) in [
-        (Injury::UlpInFrames, Check::Book),
-        (Injury::UlpInCorners, Check::Book),
-        (Injury::HalvesDown, Check::Book),
-        (Injury::MidpointsUp, Check::Book),
-        (Injury::QuotientsUp, Check::Book),
-        (Injury::OrderSwapped, Check::Order),
-        (Injury::OrderReversed, Check::Order),
-        (Injury::NearSkipped, Check::Book),
+fn every_mutation_is_found_by_name() {
+    for (mutation, expected) in [
+        (Mutation::UlpInFrames, Check::Specification),
+        (Mutation::UlpInCorners, Check::Specification),
+        (Mutation::HalvesDown, Check::Specification),
+        (Mutation::MidpointsUp, Check::Specification),
+        (Mutation::QuotientsUp, Check::Specification),
+        (Mutation::OrderSwapped, Check::Order),
+        (Mutation::OrderReversed, Check::Order),
+        (Mutation::NearSkipped, Check::Specification),
     ] {
         // Few records change where they may not: more cases for that.
-        let is_rare = injury == Injury::NearSkipped;
+        let is_rare = mutation == Mutation::NearSkipped;
         let found = if is_rare {
-            sweep(&Mutant(injury), &SCENES, &[24, 64])
+            sweep(&Mutant(mutation), &SCENES, &[24, 64])
         } else {
-            sweep(&Mutant(injury), &SCENES[..1], &[24])
+            sweep(&Mutant(mutation), &SCENES[..1], &[24])
         };
-        println!("{injury:?}: {:?}", found.failures);
+        println!("{mutation:?}: {:?}", found.failures);
         assert!(
             found.failures.contains_key(&expected),
-            "{injury:?}: {:?}",
+            "{mutation:?}: {:?}",
             found.failures
         );
         let first = found.failed.iter().find(|f| f.check == expected).unwrap();
         println!("  {:?}", first.minimal);
-        assert!(first.minimal_detail.is_some(), "{injury:?}: {first:?}");
+        assert!(first.minimal_detail.is_some(), "{mutation:?}: {first:?}");
     }
 }

@@ -7,10 +7,11 @@ use crate::graph::{
     BuildOptions, Builder, Graph, LinkedGraph, MAX_DEPTH, Normals, PackedNormal, Silent, Voxel,
 };
 use crate::scene::generate::Spec;
+use crate::split_mix::SplitMix;
 
 /// A scene by its text.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Scene {
+pub enum StressScene {
     /// What a generator makes: `gen:shell,depth=5`.
     Generated(Spec),
     /// A dense plane through the cube's middle, which no line passes through,
@@ -47,7 +48,7 @@ const MOST_LISTED_DEPTH: u32 = 20;
 /// Most levels of a plane.
 const MOST_PLANE_DEPTH: u32 = 10;
 
-impl fmt::Display for Scene {
+impl fmt::Display for StressScene {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Generated(spec) => spec.fmt(f),
@@ -66,7 +67,7 @@ impl fmt::Display for Scene {
     }
 }
 
-impl FromStr for Scene {
+impl FromStr for StressScene {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -132,38 +133,7 @@ impl FromStr for Scene {
     }
 }
 
-/// Random numbers that are the same in every run and on every machine (splitmix64).
-#[derive(Debug, Clone)]
-pub struct Numbers(u64);
-
-impl Numbers {
-    /// Those of a seed.
-    #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// 64 random bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-
-    /// A number from 0 to below `count`, which is 1 or more.
-    pub fn below(&mut self, count: u64) -> u64 {
-        self.bits() % count.max(1)
-    }
-
-    /// A number from 0 to below 1.
-    pub fn real(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
-impl Scene {
+impl StressScene {
     /// Whether its surface is closed: no line of sight passes between its
     /// voxels where the oracle's rays next to it do not.
     #[must_use]
@@ -244,10 +214,10 @@ impl Scene {
 }
 
 /// Takes voxels' indices.
-type Taker<'t> = dyn FnMut([i32; 3]) + 't;
+type VoxelSink<'t> = dyn FnMut([i32; 3]) + 't;
 
 /// A graph of the voxels that `give` hands on.
-fn built(give: &mut dyn FnMut(&mut Taker<'_>)) -> Result<Graph, String> {
+fn built(give: &mut dyn FnMut(&mut VoxelSink<'_>)) -> Result<Graph, String> {
     let mut builder = Builder::new(BuildOptions {
         normals: Normals::None,
     });
@@ -314,7 +284,7 @@ fn plane(depth: u32, normal: [i64; 3], sink: &mut dyn FnMut([i32; 3])) {
 
 /// Up to eight nodes, a third of whose children exist, any nodes each.
 fn cyclic(depth: u32, seed: u64) -> Result<Graph, String> {
-    let mut numbers = Numbers::new(seed);
+    let mut numbers = SplitMix::new(seed);
     let nodes = 1 + numbers.below(8);
     let mut graph = LinkedGraph::new(depth);
     for node in 0..nodes {
@@ -341,7 +311,7 @@ mod tests {
             "cyclic:6,3",
             "voxels:2,0.0.0+3.1.2",
         ] {
-            let scene: Scene = text.parse().unwrap();
+            let scene: StressScene = text.parse().unwrap();
             assert_eq!(scene.to_string(), text);
             assert_eq!(scene.graph().unwrap().depth, scene.depth(), "{text}");
         }
@@ -353,15 +323,15 @@ mod tests {
             "cube",
             "gen:x",
         ] {
-            assert!(bad.parse::<Scene>().is_err(), "{bad}");
+            assert!(bad.parse::<StressScene>().is_err(), "{bad}");
         }
     }
 
     #[test]
     fn a_list_of_voxels_is_the_same_scene() {
-        let scene: Scene = "gen:shell,depth=3".parse().unwrap();
+        let scene: StressScene = "gen:shell,depth=3".parse().unwrap();
         let listed = scene.as_voxels(1000).unwrap();
-        let voxels = |scene: &Scene| {
+        let voxels = |scene: &StressScene| {
             let graph = scene.graph().unwrap();
             let mut at: Vec<_> = graph.voxels().map(|cell| cell.corner).collect();
             at.sort_unstable();

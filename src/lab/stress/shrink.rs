@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::case::Case;
 use super::check::{Check, Oracle, check};
-use super::scene::Scene;
+use super::scene::StressScene;
 use super::subject::Subject;
 use crate::project::CageKind;
 use crate::scene::generate::Spec;
@@ -73,7 +73,7 @@ impl<'s> Shrinker<'s> {
         if self.check == Check::Holes {
             return;
         }
-        if !matches!(best.scene, Scene::Voxels { .. }) {
+        if !matches!(best.scene, StressScene::Voxels { .. }) {
             let Some(listed) = best.scene.as_voxels(MOST_VOXELS) else {
                 return;
             };
@@ -86,7 +86,7 @@ impl<'s> Shrinker<'s> {
             }
             *best = listed;
         }
-        let Scene::Voxels { depth, at } = best.scene.clone() else {
+        let StressScene::Voxels { depth, at } = best.scene.clone() else {
             return;
         };
         let mut kept = at;
@@ -97,7 +97,7 @@ impl<'s> Shrinker<'s> {
                 let mut fewer = kept.clone();
                 fewer.drain(from..(from + chunk).min(kept.len()));
                 let case = Case {
-                    scene: Scene::Voxels {
+                    scene: StressScene::Voxels {
                         depth,
                         at: fewer.clone(),
                     },
@@ -156,25 +156,25 @@ fn plainer(case: &Case) -> Vec<Case> {
 }
 
 /// A scene of one level less, and what that makes of lengths.
-fn coarser(scene: &Scene) -> Option<(Scene, f64)> {
+fn coarser(scene: &StressScene) -> Option<(StressScene, f64)> {
     let scene = match scene {
-        Scene::Generated(spec) => {
+        StressScene::Generated(spec) => {
             let depth = spec.settings().depth.checked_sub(1)?;
             let text = format!("gen:{},depth={depth}", spec.generator().name);
-            Scene::Generated(Spec::parse(&text).ok()?)
+            StressScene::Generated(Spec::parse(&text).ok()?)
         }
-        Scene::Plane { depth, normal } => Scene::Plane {
+        StressScene::Plane { depth, normal } => StressScene::Plane {
             depth: depth.checked_sub(1)?,
             normal: *normal,
         },
-        Scene::Solid { depth } => Scene::Solid {
+        StressScene::Solid { depth } => StressScene::Solid {
             depth: depth.checked_sub(1)?,
         },
-        Scene::Cyclic { depth, seed } => Scene::Cyclic {
+        StressScene::Cyclic { depth, seed } => StressScene::Cyclic {
             depth: depth.checked_sub(1)?,
             seed: *seed,
         },
-        Scene::Voxels { .. } => return None,
+        StressScene::Voxels { .. } => return None,
     };
     Some((scene, 0.5))
 }

@@ -7,19 +7,20 @@ use serde::Serialize;
 
 use super::case::Case;
 use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
-use super::scene::{Numbers, Scene};
+use super::scene::StressScene;
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
 use super::vertex::Worst;
 use super::viewpoint::{Viewpoint, viewpoints};
 use crate::graph::{Graph, Progress};
 use crate::project::{CageKind, Coverage, SetupOptions};
+use crate::split_mix::SplitMix;
 
 /// What is swept.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct SweepPlan {
     /// Scenes.
-    pub scenes: Vec<Scene>,
+    pub scenes: Vec<StressScene>,
     /// Word widths, bits.
     pub bits: Vec<u32>,
     /// Pictures' sides, pixels.
@@ -75,7 +76,7 @@ const MORE_SCENES: [&str; 9] = [
     "cyclic:30,9",
 ];
 
-impl Plan {
+impl SweepPlan {
     /// The standard sweep, about two minutes of two processors, or hours.
     #[must_use]
     pub fn new(seed: u64, thorough: bool) -> Self {
@@ -160,7 +161,7 @@ pub struct Tally {
     pub cases: u64,
     /// Those with a picture.
     pub drawn: u64,
-    /// Those that an overflow ended, at a place that is told.
+    /// Those that an overflow ended, with its place.
     pub trapped: u64,
     /// Those that the set-up refused.
     pub refused: u64,
@@ -232,7 +233,7 @@ pub struct Failed {
     pub case: String,
     /// A smaller one that fails too, where it was looked for.
     pub minimal: Option<String>,
-    /// What the smaller one says.
+    /// The smaller one's details.
     pub minimal_detail: Option<String>,
     /// A command that draws its picture, where `render` can.
     pub render: Option<String>,
@@ -257,7 +258,7 @@ pub struct Findings {
     pub failed: Vec<Failed>,
 }
 
-/// Failures that are told in full, of each check in each job.
+/// Failures that are reported in full, of each check in each job.
 const TOLD: usize = 3;
 
 impl Findings {
@@ -344,14 +345,14 @@ struct Job<'p> {
 ///
 /// # Errors
 /// In words, where a scene of the plan cannot be made.
-pub fn sweep(plan: &Plan, progress: &dyn Progress) -> Result<Findings, String> {
+pub fn sweep(plan: &SweepPlan, progress: &dyn Progress) -> Result<Findings, String> {
     sweep_of(&Product, plan, progress)
 }
 
 /// Runs a plan on any subject.
 pub(crate) fn sweep_of(
     subject: &dyn Subject,
-    plan: &Plan,
+    plan: &SweepPlan,
     progress: &dyn Progress,
 ) -> Result<Findings, String> {
     let graphs: Vec<Graph> = plan
@@ -362,7 +363,7 @@ pub(crate) fn sweep_of(
     let mut jobs = Vec::new();
     for (scene, graph) in graphs.iter().enumerate() {
         for &pixels in &plan.pixels {
-            let mut numbers = Numbers::new(plan.seed ^ (scene as u64) << 32);
+            let mut numbers = SplitMix::new(plan.seed ^ (scene as u64) << 32);
             let views = viewpoints(graph.depth, pixels, plan.random_viewpoints, &mut numbers);
             for viewpoint in views {
                 jobs.push(Job {
@@ -392,15 +393,15 @@ pub(crate) fn sweep_of(
     Ok(findings)
 }
 
-fn run_job(subject: &dyn Subject, plan: &Plan, job: &Job<'_>) -> Findings {
+fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
     let mut findings = Findings::default();
-    let mut numbers = Numbers::new(job.salt);
+    let mut numbers = SplitMix::new(job.salt);
     let all = rules();
     let strict = STRICT_RULES;
     let mut oracle = Oracle::default();
     oracle.forget();
     for &bits in &plan.bits {
-        for frac in Plan::fractions(bits) {
+        for frac in SweepPlan::fractions(bits) {
             let mut chosen: Vec<usize> = if plan.rules >= all.len() {
                 (0..all.len()).collect()
             } else {
@@ -443,7 +444,7 @@ fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
 /// Shrinks the first failure of each check.
 fn shrink_failures(
     subject: &dyn Subject,
-    plan: &Plan,
+    plan: &SweepPlan,
     findings: &mut Findings,
     progress: &dyn Progress,
 ) {
@@ -493,9 +494,9 @@ mod tests {
 
     #[test]
     fn all_standard_scenes_can_be_read_and_made() {
-        let plan = Plan::new(1, true);
+        let plan = SweepPlan::new(1, true);
         assert_eq!(plan.scenes.len(), SCENES.len() + MORE_SCENES.len());
-        for scene in &Plan::new(1, false).scenes {
+        for scene in &SweepPlan::new(1, false).scenes {
             assert!(!scene.graph().unwrap().is_empty(), "{scene}");
         }
     }

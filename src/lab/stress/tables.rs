@@ -2,9 +2,9 @@
 
 use super::case::coverage_name;
 use super::check::{Check, STRICT_TOLERANCE};
-use super::sweep::{COVERAGES, Findings, Key, Plan, TOLERANCES, Tally};
+use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
 use super::vertex::{Hold, Worst};
-use crate::report::plot::{HeatMap, Panel, Tile};
+use crate::report::plot::{HeatCell, HeatMap, Panel};
 use crate::report::{Cell, Table};
 
 /// A tolerance in short.
@@ -27,7 +27,7 @@ fn added<'f>(findings: &'f Findings, wanted: impl Fn(&Key) -> bool + 'f) -> Tall
 
 /// A row for each scene, width and rule.
 #[must_use]
-pub fn rows(plan: &Plan, findings: &Findings) -> Table {
+pub fn rows(plan: &SweepPlan, findings: &Findings) -> Table {
     let columns = [
         "scene",
         "bits",
@@ -100,7 +100,7 @@ pub fn summary(findings: &Findings) -> Vec<(String, String)> {
 
 /// The tables for people.
 #[must_use]
-pub fn tables(plan: &Plan, findings: &Findings) -> Vec<Table> {
+pub fn tables(plan: &SweepPlan, findings: &Findings) -> Vec<Table> {
     let mut tables = vec![
         by_scene(plan, findings),
         by_rule(findings),
@@ -124,7 +124,7 @@ pub fn tables(plan: &Plan, findings: &Findings) -> Vec<Table> {
     tables
 }
 
-fn by_scene(plan: &Plan, findings: &Findings) -> Table {
+fn by_scene(plan: &SweepPlan, findings: &Findings) -> Table {
     let columns = [
         "scene",
         "frames",
@@ -272,18 +272,18 @@ fn checks(findings: &Findings) -> Table {
 
 /// The heat maps.
 #[must_use]
-pub fn panels(plan: &Plan, findings: &Findings) -> Vec<Panel> {
+pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
     let columns: Vec<String> = plan.bits.iter().map(|bits| format!("{bits}")).collect();
     let scenes = plan.scenes.iter().enumerate();
     let outcome = |tally: &Tally| {
         if tally.cases == 0 {
-            return Tile::Empty;
+            return HeatCell::Empty;
         }
         if tally.failed > 0 {
-            return Tile::Bad(format!("{} failed", tally.failed));
+            return HeatCell::Bad(format!("{} failed", tally.failed));
         }
         let share = tally.drawn as f64 / tally.cases as f64;
-        Tile::Shade(share, format!("{:.0} %", share * 100.0))
+        HeatCell::Shade(share, format!("{:.0} %", share * 100.0))
     };
     let by_format = HeatMap {
         title: "Frames drawn, by bits of a word and scene".to_owned(),
@@ -306,7 +306,7 @@ pub fn panels(plan: &Plan, findings: &Findings) -> Vec<Panel> {
         .filter(|(_, s)| s.is_closed());
     let holes = |tally: &Tally| {
         if tally.inside == 0 {
-            return Tile::Empty;
+            return HeatCell::Empty;
         }
         let text = format!("{}", tally.holes);
         // One in ten million is white, one in a hundred dark.
@@ -316,7 +316,7 @@ pub fn panels(plan: &Plan, findings: &Findings) -> Vec<Panel> {
         } else {
             ((libm::log10(rate) + 7.0) / 5.0).clamp(0.1, 1.0)
         };
-        Tile::Shade(shade, text)
+        HeatCell::Shade(shade, text)
     };
     let by_tolerance = HeatMap {
         title: "Holes in closed surfaces under center, by tolerance (pixels)".to_owned(),
@@ -343,11 +343,13 @@ pub fn panels(plan: &Plan, findings: &Findings) -> Vec<Panel> {
             .enumerate()
             .map(|(place, hold)| {
                 let tile = |&bits: &u32| match findings.worst.get(&(place, bits)) {
-                    None => Tile::Empty,
+                    None => HeatCell::Empty,
                     Some(worst) if worst.tightest > 1.0 => {
-                        Tile::Bad(format!("{:.2}", worst.tightest))
+                        HeatCell::Bad(format!("{:.2}", worst.tightest))
                     }
-                    Some(worst) => Tile::Shade(worst.tightest, format!("{:.2}", worst.tightest)),
+                    Some(worst) => {
+                        HeatCell::Shade(worst.tightest, format!("{:.2}", worst.tightest))
+                    }
                 };
                 (hold.name().to_owned(), plan.bits.iter().map(tile).collect())
             })

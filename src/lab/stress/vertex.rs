@@ -1,9 +1,9 @@
-//! A frame's vertices under test: what the machine holds against the book,
-//! bit for bit, and against the true projection, within the bounds.
+//! A frame's vertices under test: the machine's cages against the
+//! specification, bit for bit, and against the true projection, within the bounds.
 
 use glam::DVec3;
 
-use super::book::Book;
+use super::specified::SpecifiedVertices;
 use super::subject::Subject;
 use crate::lab::bounds::{Bounds, Cube, Space, Widths};
 use crate::machine::Cage;
@@ -70,13 +70,13 @@ impl Worst {
     }
 }
 
-/// What is known of a frame's vertices.
+/// What was found of a frame's vertices.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Vertices {
     /// By [`Hold`].
     pub(super) worst: [Worst; 3],
-    /// A voxel that is not held by the book.
-    pub(super) not_by_the_book: Option<String>,
+    /// A voxel whose cage is not the specification's.
+    pub(super) differs: Option<String>,
     /// A vertex beyond its bound.
     pub(super) beyond: Option<String>,
 }
@@ -84,8 +84,8 @@ pub(super) struct Vertices {
 /// Error of the check's own arithmetic, samples a sample of the root's side.
 const CHECK_ERROR: f64 = 1e-14;
 
-/// Looks at the voxels on the way down `path`.
-pub(super) fn look(
+/// Checks the voxels on the way down `path`.
+pub(super) fn check_path(
     subject: &dyn Subject,
     setup: &FrameSetup,
     bounds: &Bounds,
@@ -97,32 +97,32 @@ pub(super) fn look(
     let Ok(way) = subject.cages_along(setup, path) else {
         return;
     };
-    let book = Book::new(setup);
+    let specified = SpecifiedVertices::new(setup);
     let mut changed: Option<usize> = None;
     for (level, held) in way.iter().enumerate() {
         if changed.is_none() && !matches!(held, Cage::Clip(_)) {
             changed = Some(level);
-            let (is, least) = book.change_depths(&path[..level]);
-            if is < least && found.not_by_the_book.is_none() {
-                found.not_by_the_book = Some(format!(
+            let (is, least) = specified.change_depths(&path[..level]);
+            if is < least && found.differs.is_none() {
+                found.differs = Some(format!(
                     "the voxel at path {:?} changed to screen space at depth {is}, nearer than {least}",
                     &path[..level]
                 ));
             }
         }
         let here = &path[..level];
-        let by_the_book = book.held(here, changed);
-        if by_the_book.as_ref() != Some(held) && found.not_by_the_book.is_none() {
-            found.not_by_the_book = Some(format!(
-                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the book {by_the_book:?}"
+        let specified_cage = specified.held(here, changed);
+        if specified_cage.as_ref() != Some(held) && found.differs.is_none() {
+            found.differs = Some(format!(
+                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the specification {specified_cage:?}"
             ));
         }
-        measure(setup, bounds, &book, here, changed, held, found);
+        measure(setup, bounds, &specified, here, changed, held, found);
     }
 }
 
-fn cube(book: &Book<'_>, setup: &FrameSetup, path: &[u8]) -> Cube {
-    let (corner, side) = book.cube(path);
+fn cube(specified: &SpecifiedVertices<'_>, setup: &FrameSetup, path: &[u8]) -> Cube {
+    let (corner, side) = specified.cube(path);
     let unit = libm::ldexp(1.0, -(setup.sub_levels as i32));
     Cube {
         corner: DVec3::from_array(corner.map(|c| c as f64 * unit)),
@@ -133,15 +133,15 @@ fn cube(book: &Book<'_>, setup: &FrameSetup, path: &[u8]) -> Cube {
 fn measure(
     setup: &FrameSetup,
     bounds: &Bounds,
-    book: &Book<'_>,
+    specified: &SpecifiedVertices<'_>,
     path: &[u8],
     changed: Option<usize>,
     held: &Cage,
     found: &mut Vertices,
 ) {
-    let voxel = cube(book, setup, path);
+    let voxel = cube(specified, setup, path);
     let levels = (path.len() - changed.unwrap_or(path.len())) as u32;
-    let top = cube(book, setup, &path[..changed.unwrap_or(path.len())]);
+    let top = cube(specified, setup, &path[..changed.unwrap_or(path.len())]);
     let root = libm::ldexp(1.0, setup.levels as i32);
     let (hold, space) = match (held, setup.options.cage) {
         (Cage::Clip(_), _) => (Hold::Clip, Space::Clip),

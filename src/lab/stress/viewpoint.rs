@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::scene::Numbers;
 use crate::project::Camera;
+use crate::split_mix::SplitMix;
 
 /// A camera by name.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Viewpoint {
 /// The standard viewpoints of a cube of `2^depth` voxels, in pictures of
 /// `pixels` a side, and `random` more that follow from `numbers`.
 #[must_use]
-pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut Numbers) -> Vec<Viewpoint> {
+pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut SplitMix) -> Vec<Viewpoint> {
     let side = (1u64 << depth) as f64;
     let middle = DVec3::splat(side / 2.0);
     let view = |name, eye: DVec3, target: DVec3, fov_degrees, shift| {
@@ -98,7 +98,7 @@ pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut Numbers) -
     ];
     for _ in 0..random {
         let mut point = |low: f64, high: f64| {
-            DVec3::from_array([0; 3].map(|_| low + (high - low) * numbers.real()))
+            DVec3::from_array([0; 3].map(|_| low + (high - low) * numbers.unit()))
         };
         let eye = point(-1.2, 2.2) * side;
         let target = point(0.0, 1.0) * side;
@@ -106,7 +106,7 @@ pub fn viewpoints(depth: u32, pixels: u32, random: u32, numbers: &mut Numbers) -
             "random",
             eye,
             target,
-            20.0 + 100.0 * numbers.real(),
+            20.0 + 100.0 * numbers.unit(),
             0,
         ));
     }

@@ -3,9 +3,9 @@
 
 use hwmodel::{Datapath, NoProbe, Overflow, Trap, Word};
 
+use crate::machine::cage::CageCoordinate;
 use crate::machine::constants::Constants;
-use crate::machine::lattice::Lattice;
-use crate::machine::record::{Clip, Place, Screen};
+use crate::machine::record::{Clip, ImagePlace, Screen};
 use crate::machine::to_screen;
 use crate::project::FrameSetup;
 
@@ -19,9 +19,9 @@ pub(crate) enum Cage {
     Screen([[i64; 8]; 2]),
 }
 
-/// A cage in lattices.
+/// A cage as words.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Held<L> {
+pub(super) enum CageWords<L> {
     /// X, Y, W.
     Clip([L; 3]),
     /// x and y.
@@ -36,42 +36,46 @@ pub(super) struct Descent {
 
 impl Descent {
     /// A descent, and the root's cage, which has not arrived yet.
-    pub(super) fn new<L: Lattice>(setup: &FrameSetup) -> (Self, Held<L>) {
+    pub(super) fn new<L: CageCoordinate>(setup: &FrameSetup) -> (Self, CageWords<L>) {
         let mut dp = Datapath::new(setup.format, Overflow::Trap, NoProbe);
         let constants = Constants::load(&mut dp, setup);
         let root =
             [0, 1, 2].map(|c| L::from_frame(&mut dp, constants.origin[c], constants.edges[c]));
-        (Self { dp, constants }, Held::Clip(root))
+        (Self { dp, constants }, CageWords::Clip(root))
     }
 
     /// The cage of a voxel of level `level`, changed to screen space where the
     /// machine lets a record change.
-    pub(super) fn arrive<L: Lattice>(&mut self, level: u32, held: Held<L>) -> Held<L> {
-        let Held::Clip([x, y, w]) = held else {
+    pub(super) fn arrive<L: CageCoordinate>(
+        &mut self,
+        level: u32,
+        held: CageWords<L>,
+    ) -> CageWords<L> {
+        let CageWords::Clip([x, y, w]) = held else {
             return held;
         };
         let (dp, constants) = (&mut self.dp, &self.constants);
         let (w_min, _) = w.span(dp);
         let clip = Clip { x, y, w, w_min };
-        if to_screen::may_change(dp, constants, level, Place::ROOT, &clip) {
-            let Screen { x, y, .. } = to_screen::change(dp, constants, Place::ROOT, &clip);
-            Held::Screen([x, y])
+        if to_screen::may_change(dp, constants, level, ImagePlace::ROOT, &clip) {
+            let Screen { x, y, .. } = to_screen::change(dp, constants, ImagePlace::ROOT, &clip);
+            CageWords::Screen([x, y])
         } else {
             held
         }
     }
 
     /// The cages of the eight children, in Morton order.
-    pub(super) fn children<L: Lattice>(&mut self, held: Held<L>) -> [Held<L>; 8] {
+    pub(super) fn children<L: CageCoordinate>(&mut self, held: CageWords<L>) -> [CageWords<L>; 8] {
         let dp = &mut self.dp;
         match held {
-            Held::Clip(lattices) => {
-                let children = lattices.map(|lattice| lattice.children(dp));
-                std::array::from_fn(|i| Held::Clip(children.map(|of| of[i])))
+            CageWords::Clip(coordinates) => {
+                let children = coordinates.map(|coordinate| coordinate.children(dp));
+                std::array::from_fn(|i| CageWords::Clip(children.map(|of| of[i])))
             }
-            Held::Screen(lattices) => {
-                let children = lattices.map(|lattice| lattice.children(dp));
-                std::array::from_fn(|i| Held::Screen(children.map(|of| of[i])))
+            CageWords::Screen(coordinates) => {
+                let children = coordinates.map(|coordinate| coordinate.children(dp));
+                std::array::from_fn(|i| CageWords::Screen(children.map(|of| of[i])))
             }
         }
     }
@@ -80,12 +84,12 @@ impl Descent {
     ///
     /// # Errors
     /// If a word has overflowed on the way.
-    pub(super) fn vertices<L: Lattice>(&mut self, held: Held<L>) -> Result<Cage, Trap> {
+    pub(super) fn vertices<L: CageCoordinate>(&mut self, held: CageWords<L>) -> Result<Cage, Trap> {
         let dp = &mut self.dp;
-        let mut vertices = |lattice: L| lattice.vertices(dp).map(Word::to_host);
+        let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);
         let cage = match held {
-            Held::Clip(lattices) => Cage::Clip(lattices.map(&mut vertices)),
-            Held::Screen(lattices) => Cage::Screen(lattices.map(&mut vertices)),
+            CageWords::Clip(coordinates) => Cage::Clip(coordinates.map(&mut vertices)),
+            CageWords::Screen(coordinates) => Cage::Screen(coordinates.map(&mut vertices)),
         };
         match self.dp.trap() {
             Some(trap) => Err(trap),

@@ -1,5 +1,5 @@
 //! Machines with one error each, for tests of the checks that must find it.
-//! The record loop is generic over its lattice, so the product has no code for
+//! The record loop is generic over its cage, so the product has no code for
 //! this.
 
 use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
@@ -7,14 +7,14 @@ use hwmodel::{Datapath, NoProbe, Probe, Signal, Trap, Wires, Word};
 use super::vertices::{Cage, cages_as};
 use crate::frame::Frame;
 use crate::graph::GraphView;
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::machine::engine::Machine;
-use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
 use crate::machine::options::MachineOptions;
 use crate::project::{CageKind, EngineError, FrameSetup, Stats};
 
 /// An error built into the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Injury {
+pub(crate) enum Mutation {
     /// One unit of the last place too much in one child, cages of a corner and
     /// edges only.
     UlpInFrames,
@@ -39,17 +39,17 @@ const HALVES_DOWN: u8 = 1;
 const MIDPOINTS_UP: u8 = 2;
 const QUOTIENTS_UP: u8 = 3;
 
-/// A lattice with an injury.
+/// A cage coordinate with a mutation.
 #[derive(Debug, Clone, Copy)]
-struct Hurt<L, const INJURY: u8>(L);
+struct Mutated<L, const MUTATION: u8>(L);
 
-impl<L: Wires, const INJURY: u8> Wires for Hurt<L, INJURY> {
+impl<L: Wires, const MUTATION: u8> Wires for Mutated<L, MUTATION> {
     fn show(&self, to: &mut Vec<Signal>) {
         self.0.show(to);
     }
 }
 
-impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
+impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATION> {
     type Pool = [L; 8];
 
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
@@ -59,7 +59,7 @@ impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
         let one = Word::from_host(1);
         let mut children = self.0.children(dp);
-        match INJURY {
+        match MUTATION {
             ULP => children[5] = children[5].moved(dp, one),
             HALVES_DOWN => {
                 let corner = self.0.vertices(dp)[0];
@@ -120,7 +120,7 @@ impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
         let one = Word::from_host(1);
         Self(L::project(dp, &x.0, &w.0, |dp, x, w| {
             let quotient = divide(dp, x, w);
-            if INJURY == QUOTIENTS_UP {
+            if MUTATION == QUOTIENTS_UP {
                 dp.add(quotient, one)
             } else {
                 quotient
@@ -129,37 +129,37 @@ impl<L: Lattice, const INJURY: u8> Lattice for Hurt<L, INJURY> {
     }
 }
 
-/// Evaluates an expression with the lattice that an injured machine has for a
-/// set-up's cage.
-macro_rules! with_lattice {
-    ($injury:expr, $setup:expr, $lattice:ident => $body:expr) => {{
+/// Evaluates an expression with the cage coordinate that a mutant has for a
+/// set-up's kind of cage.
+macro_rules! with_cage {
+    ($mutation:expr, $setup:expr, $coordinate:ident => $body:expr) => {{
         macro_rules! with {
             ($of:ty) => {{
-                type $lattice = $of;
+                type $coordinate = $of;
                 $body
             }};
         }
-        match ($injury, $setup.options.cage) {
-            (Injury::UlpInFrames, CageKind::Frame) => with!(Hurt<CornerAndEdges, ULP>),
-            (Injury::UlpInCorners, CageKind::Corners) => with!(Hurt<Corners, ULP>),
-            (Injury::HalvesDown, CageKind::Frame) => with!(Hurt<CornerAndEdges, HALVES_DOWN>),
-            (Injury::MidpointsUp, CageKind::Corners) => with!(Hurt<Corners, MIDPOINTS_UP>),
-            (Injury::QuotientsUp, CageKind::Frame) => with!(Hurt<CornerAndEdges, QUOTIENTS_UP>),
+        match ($mutation, $setup.options.cage) {
+            (Mutation::UlpInFrames, CageKind::Frame) => with!(Mutated<CornerAndEdges, ULP>),
+            (Mutation::UlpInCorners, CageKind::Corners) => with!(Mutated<Corners, ULP>),
+            (Mutation::HalvesDown, CageKind::Frame) => with!(Mutated<CornerAndEdges, HALVES_DOWN>),
+            (Mutation::MidpointsUp, CageKind::Corners) => with!(Mutated<Corners, MIDPOINTS_UP>),
+            (Mutation::QuotientsUp, CageKind::Frame) => with!(Mutated<CornerAndEdges, QUOTIENTS_UP>),
             (_, CageKind::Corners) => with!(Corners),
             (_, CageKind::Frame) => with!(CornerAndEdges),
         }
     }};
 }
 
-/// A machine with an injury.
+/// A machine with a mutation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Mutant(pub(crate) Injury);
+pub(crate) struct Mutant(pub(crate) Mutation);
 
 impl Mutant {
-    /// The frame as the injured machine takes it.
+    /// The frame as the mutant takes it.
     fn setup(&self, setup: &FrameSetup) -> FrameSetup {
         let mut setup = setup.clone();
-        if self.0 == Injury::NearSkipped {
+        if self.0 == Mutation::NearSkipped {
             // Nothing of the object lies so far behind the eye.
             let reach = setup.position_reach().unwrap_or(i128::MAX);
             let behind_all = i64::try_from(-reach).unwrap_or(i64::MIN);
@@ -184,13 +184,13 @@ impl Mutant {
     ) -> Result<Option<Stats>, EngineError> {
         let mut options = MachineOptions::default();
         match self.0 {
-            Injury::OrderSwapped => options.order.swap(1, 7),
-            Injury::OrderReversed => options.order.reverse(),
+            Mutation::OrderSwapped => options.order.swap(1, 7),
+            Mutation::OrderReversed => options.order.reverse(),
             _ => {}
         }
         let mut machine = Machine::new(options);
         let setup = &self.setup(setup);
-        let drawn = with_lattice!(self.0, setup, L => {
+        let drawn = with_cage!(self.0, setup, L => {
             machine.run_as::<_, L>(graph, setup, frame, NoProbe, most_records)?
         });
         Ok(drawn.map(|(stats, _)| stats))
@@ -199,6 +199,6 @@ impl Mutant {
     /// As [`cages_along`](super::cages_along).
     pub(crate) fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
         let setup = &self.setup(setup);
-        with_lattice!(self.0, setup, L => cages_as::<L>(setup, path))
+        with_cage!(self.0, setup, L => cages_as::<L>(setup, path))
     }
 }

@@ -1,8 +1,8 @@
 //! Where the machine holds the vertices of many voxels, in real numbers: for
 //! measurements of error.
 
-use super::descent::{Cage, Descent, Held};
-use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use super::descent::{Cage, CageWords, Descent};
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::project::{CageKind, FrameSetup};
 
 /// How a record holds its vertices.
@@ -36,18 +36,21 @@ pub fn visit_positions(
     voxels: &[[i32; 4]],
     visit: &mut dyn FnMut(&Positions),
 ) -> bool {
-    let mut ways: Vec<Way> = voxels.iter().map(|voxel| Way::to(setup, voxel)).collect();
-    ways.sort_unstable();
-    ways.dedup();
+    let mut paths: Vec<PathToVoxel> = voxels
+        .iter()
+        .map(|voxel| PathToVoxel::to(setup, voxel))
+        .collect();
+    paths.sort_unstable();
+    paths.dedup();
     match setup.options.cage {
-        CageKind::Corners => visit_as::<Corners>(setup, &ways, visit),
-        CageKind::Frame => visit_as::<CornerAndEdges>(setup, &ways, visit),
+        CageKind::Corners => visit_as::<Corners>(setup, &paths, visit),
+        CageKind::Frame => visit_as::<CornerAndEdges>(setup, &paths, visit),
     }
 }
 
-fn visit_as<L: Lattice>(
+fn visit_as<L: CageCoordinate>(
     setup: &FrameSetup,
-    ways: &[Way],
+    paths: &[PathToVoxel],
     visit: &mut dyn FnMut(&Positions),
 ) -> bool {
     let (descent, root) = Descent::new::<L>(setup);
@@ -56,12 +59,12 @@ fn visit_as<L: Lattice>(
         setup,
         visit,
     };
-    visitor.node(0, [0; 3], root, ways).is_some()
+    visitor.node(0, [0; 3], root, paths).is_some()
 }
 
 /// The way from the root to a voxel: octants, three bits each from bit 92 downwards.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Way {
+struct PathToVoxel {
     octants: u128,
     level: u32,
 }
@@ -69,7 +72,7 @@ struct Way {
 /// Place of the first octant's lowest bit.
 const FIRST_OCTANT: u32 = 90;
 
-impl Way {
+impl PathToVoxel {
     fn to(setup: &FrameSetup, voxel: &[i32; 4]) -> Self {
         let level = voxel[3].max(0) as u32;
         let octants = (0..level.min(setup.depth)).fold(0u128, |octants, step| {
@@ -96,14 +99,14 @@ struct Visitor<'v> {
 impl Visitor<'_> {
     /// Visits a voxel and those below it on the ways. `None` if a word
     /// overflowed.
-    fn node<L: Lattice>(
+    fn node<L: CageCoordinate>(
         &mut self,
         level: u32,
         corner: [i64; 3],
-        held: Held<L>,
-        ways: &[Way],
+        held: CageWords<L>,
+        paths: &[PathToVoxel],
     ) -> Option<()> {
-        if ways.is_empty() {
+        if paths.is_empty() {
             return Some(());
         }
         let held = self.descent.arrive(level, held);
@@ -118,16 +121,16 @@ impl Visitor<'_> {
             },
             samples,
         });
-        let deeper = |way: &Way| way.level > level;
-        if level >= self.setup.depth || !ways.iter().any(deeper) {
+        let deeper = |path: &PathToVoxel| path.level > level;
+        if level >= self.setup.depth || !paths.iter().any(deeper) {
             return Some(());
         }
         let side = 1i64 << (self.setup.depth - level - 1);
         for (octant, child) in self.descent.children(held).into_iter().enumerate() {
-            let below: Vec<Way> = ways
+            let below: Vec<PathToVoxel> = paths
                 .iter()
                 .copied()
-                .filter(|way| deeper(way) && way.octant(level) == octant)
+                .filter(|path| deeper(path) && path.octant(level) == octant)
                 .collect();
             let axis = |k: usize| corner[k] + side * (octant as i64 >> (2 - k) & 1);
             self.node(level + 1, [axis(0), axis(1), axis(2)], child, &below)?;

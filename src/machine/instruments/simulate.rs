@@ -7,15 +7,15 @@
 
 use hwmodel::Trap;
 use hwmodel::cycles::{
-    self, Child, CycleReport, Hardware, HardwareError, Observer, Region, TurnLog,
+    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, TurnLog,
 };
 use serde::Serialize;
 
 use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::machine::engine::Machine;
 use crate::machine::heat::Heat;
-use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
 use crate::machine::record::Record;
 use crate::machine::state::State;
 use crate::machine::watch::Watch;
@@ -108,7 +108,7 @@ impl Machine {
         }
     }
 
-    fn simulate_as<L: Lattice, O: Observer>(
+    fn simulate_as<L: CageCoordinate, O: Observer>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
@@ -164,7 +164,7 @@ struct Steps<'a, L> {
     free: Vec<u32>,
 }
 
-impl<L: Lattice> Steps<'_, L> {
+impl<L: CageCoordinate> Steps<'_, L> {
     /// Hands the records on the stack to the scheduler, nearest first: the last
     /// that was pushed.
     fn hand_over(&mut self, children: &mut Vec<Child>) {
@@ -173,7 +173,7 @@ impl<L: Lattice> Steps<'_, L> {
                 unreachable!("every record on the stack was pushed as a child");
             };
             let quad = record.place.quad;
-            let region = Region {
+            let image_node = ImageNode {
                 level: quad.level,
                 x: quad.x,
                 y: quad.y,
@@ -188,7 +188,7 @@ impl<L: Lattice> Steps<'_, L> {
             children.push(Child {
                 item,
                 place,
-                region,
+                image_node,
             });
         }
     }
@@ -198,7 +198,7 @@ impl<L: Lattice> Steps<'_, L> {
     }
 }
 
-impl<L: Lattice> cycles::Workload for Steps<'_, L> {
+impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
     type Error = Trap;
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {

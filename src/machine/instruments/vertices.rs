@@ -4,7 +4,7 @@ use hwmodel::Trap;
 
 pub(crate) use super::descent::Cage;
 use super::descent::Descent;
-use crate::machine::lattice::{CornerAndEdges, Corners, Lattice};
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::project::{CageKind, FrameSetup};
 
 /// The cages of the voxels on the way that `path` leads from the root, octant
@@ -21,11 +21,14 @@ pub(crate) fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, 
     }
 }
 
-/// As [`cages_along`], in any lattice.
+/// As [`cages_along`], in any cage.
 ///
 /// # Errors
 /// If a word overflows.
-pub(super) fn cages_as<L: Lattice>(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+pub(super) fn cages_as<L: CageCoordinate>(
+    setup: &FrameSetup,
+    path: &[u8],
+) -> Result<Vec<Cage>, Trap> {
     let (mut descent, root) = Descent::new::<L>(setup);
     let mut held = descent.arrive(0, root);
     let mut cages = vec![descent.vertices(held)?];

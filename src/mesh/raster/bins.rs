@@ -1,28 +1,28 @@
-//! Which triangles may show in which tile.
+//! Bins: squares of 32 x 32 pixels, and which triangles may show in each.
 
 use rayon::prelude::*;
 
-use super::View;
+use super::RasterCamera;
 use super::clip::Outline;
 use crate::mesh::Surface;
 
-/// Pixels along a tile's side.
-pub(super) const TILE: u32 = 32;
+/// Pixels along a bin's side.
+pub(super) const BIN: u32 = 32;
 /// Triangles that are sorted at a time.
 const CHUNK: usize = 1 << 16;
 
-/// The triangles of each tile, in their order.
+/// The triangles of each bin, in their order.
 pub(super) struct Bins {
     columns: u32,
     rows: u32,
-    /// One after the other; each a list for each tile.
+    /// One after the other; each a list for each bin.
     chunks: Vec<Vec<Vec<u32>>>,
 }
 
 impl Bins {
-    pub(super) fn fill<S: Surface + ?Sized>(surface: &S, view: &View) -> Self {
-        let columns = view.width.div_ceil(TILE);
-        let rows = view.height.div_ceil(TILE);
+    pub(super) fn fill<S: Surface + ?Sized>(surface: &S, view: &RasterCamera) -> Self {
+        let columns = view.width.div_ceil(BIN);
+        let rows = view.height.div_ceil(BIN);
         let count = surface.len();
         let chunks = (0..count.div_ceil(CHUNK))
             .into_par_iter()
@@ -33,10 +33,9 @@ impl Bins {
                     let Some(outline) = Outline::of(view, &surface.corners(number)) else {
                         continue;
                     };
-                    let tiles = outline
+                    let [low, high] = outline
                         .pixels()
-                        .map(|p| p.map(|c| c.div_euclid(i64::from(TILE))));
-                    let [low, high] = tiles;
+                        .map(|p| p.map(|c| c.div_euclid(i64::from(BIN))));
                     let clamp = |c: i64, most: u32| c.clamp(0, i64::from(most) - 1) as u32;
                     let misses = high[0] < 0
                         || high[1] < 0
@@ -61,21 +60,21 @@ impl Bins {
         }
     }
 
-    /// Number of tiles.
-    pub(super) fn tiles(&self) -> usize {
+    /// Number of bins.
+    pub(super) fn len(&self) -> usize {
         (self.columns * self.rows) as usize
     }
 
-    /// The first pixel of a tile.
-    pub(super) fn corner(&self, tile: usize) -> [u32; 2] {
-        let tile = tile as u32;
-        [tile % self.columns * TILE, tile / self.columns * TILE]
+    /// The first pixel of a bin.
+    pub(super) fn corner(&self, bin: usize) -> [u32; 2] {
+        let bin = bin as u32;
+        [bin % self.columns * BIN, bin / self.columns * BIN]
     }
 
-    /// The triangles of a tile, in their order.
-    pub(super) fn triangles(&self, tile: usize) -> impl Iterator<Item = u32> + '_ {
+    /// The triangles of a bin, in their order.
+    pub(super) fn triangles(&self, bin: usize) -> impl Iterator<Item = u32> + '_ {
         self.chunks
             .iter()
-            .flat_map(move |lists| lists[tile].iter().copied())
+            .flat_map(move |lists| lists[bin].iter().copied())
     }
 }

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::View;
+use super::RasterCamera;
 use super::samples::SUBPIXELS;
 
 /// Pixels from the middle of the picture that coordinates may reach.
@@ -25,7 +25,7 @@ pub(super) struct Outline {
 impl Outline {
     /// The part of a triangle that lies before the eye, on the picture's plane.
     /// `None` where there is none.
-    pub(super) fn of(view: &View, corners: &[DVec3; 3]) -> Option<Self> {
+    pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Option<Self> {
         let seen = corners.map(|corner| in_view(view, corner));
         let mut points = [DVec3::ZERO; MOST];
         points[..3].copy_from_slice(&seen);
@@ -81,7 +81,7 @@ impl Outline {
 }
 
 /// Right, up and depth of a point.
-pub(super) fn in_view(view: &View, point: DVec3) -> DVec3 {
+pub(super) fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
     let offset = point - view.eye;
     DVec3::new(
         offset.dot(view.right),

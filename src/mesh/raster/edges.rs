@@ -60,7 +60,7 @@ impl Edges {
         }))
     }
 
-    /// How much of the pixel at step (0, 0) is covered, as far as its corners tell.
+    /// How much of the pixel at step (0, 0) is covered, as far as its corners decide it.
     #[inline]
     pub(super) fn cover(&self) -> Cover {
         let mut all = true;

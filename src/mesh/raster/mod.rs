@@ -4,16 +4,16 @@
 //! what a triangle covers is decided exactly, in integers, with the top-left
 //! rule: two triangles that share an edge leave no sample between them and
 //! share none. Depth is the plane's at the sample, not interpolated between
-//! rounded corners. The picture is cut into tiles that threads draw on their
+//! rounded corners. The picture is cut into bins that threads draw on their
 //! own, each with its triangles in order, so that any number of threads gives
 //! the same picture. Rules: `spec/mesh.md`.
 
+mod bin;
 mod bins;
 mod clip;
 mod edges;
 mod samples;
 mod shade;
-mod tile;
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -24,17 +24,17 @@ pub use shade::Light;
 
 use super::Surface;
 use crate::graph::Progress;
+use bin::Bin;
 use bins::Bins;
-use tile::Tile;
 
 /// `triangle` where nothing is seen.
 pub const NO_TRIANGLE: u32 = u32::MAX;
 /// Most pixels a side: what the bits of an edge function have room for.
 pub const MAX_SIDE: u32 = 1 << 15;
 
-/// A camera, as the rasteriser wants it.
+/// A pinhole camera: what the rasteriser, far voxels and textured voxels draw from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub struct RasterCamera {
     /// Position of the eye, world units.
     pub eye: DVec3,
     /// Unit vector towards growing pixel x.
@@ -103,7 +103,7 @@ pub struct RasterPicture {
 /// See [`RasterError`].
 pub fn draw<S: Surface + ?Sized>(
     surface: &S,
-    view: &View,
+    view: &RasterCamera,
     options: &RasterOptions,
     progress: &dyn Progress,
 ) -> Result<RasterPicture, RasterError> {
@@ -120,13 +120,13 @@ pub fn draw<S: Surface + ?Sized>(
         return Err(RasterError::TooMany(surface.len()));
     }
     let bins = Bins::fill(surface, view);
-    progress.begin("draw triangles", bins.tiles() as u64);
-    let tiles: Vec<Tile> = (0..bins.tiles())
+    progress.begin("draw triangles", bins.len() as u64);
+    let bins: Vec<Bin> = (0..bins.len())
         .into_par_iter()
         .map(|number| {
-            let tile = Tile::draw(surface, view, options, &bins, number);
+            let bin = Bin::draw(surface, view, options, &bins, number);
             progress.advance(1);
-            tile
+            bin
         })
         .collect();
     progress.end();
@@ -139,8 +139,8 @@ pub fn draw<S: Surface + ?Sized>(
         depth: vec![f32::INFINITY; pixels],
         triangle: vec![NO_TRIANGLE; pixels],
     };
-    for tile in &tiles {
-        tile.store(&mut picture);
+    for bin in &bins {
+        bin.store(&mut picture);
     }
     Ok(picture)
 }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::split_mix::mix;
+
 /// Steps of the sub-pixel lattice in a pixel, as a power of two.
 pub(super) const SUBPIXEL_BITS: u32 = 12;
 /// Steps of the sub-pixel lattice in a pixel.
@@ -77,7 +79,7 @@ impl Samples {
             Pattern::Regular => [square / 2; 2],
             Pattern::Stratified { seed } => {
                 let place = u64::from(pixel[0]) << 40 | u64::from(pixel[1]) << 16;
-                let random = scrambled(seed ^ scrambled(place | u64::from(number)));
+                let random = mix(seed ^ mix(place | u64::from(number)));
                 let low = square as u64 - 1;
                 [(random & low) as i64, (random >> 32 & low) as i64]
             }
@@ -121,14 +123,6 @@ impl Places {
         };
         &self.table[at..at + self.per_pixel]
     }
-}
-
-/// A step of SplitMix64.
-fn scrambled(value: u64) -> u64 {
-    let mut z = value.wrapping_add(0x9e37_79b9_7f4a_7c15);
-    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-    z ^ z >> 31
 }
 
 #[cfg(test)]

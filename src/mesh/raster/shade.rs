@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::View;
+use super::RasterCamera;
 use super::clip::in_view;
 use super::samples::SUBPIXELS;
 use crate::mesh::Triangle;
@@ -40,7 +40,7 @@ pub(super) struct Nearness {
 }
 
 impl Nearness {
-    pub(super) fn of(view: &View, corners: &[DVec3; 3]) -> Self {
+    pub(super) fn of(view: &RasterCamera, corners: &[DVec3; 3]) -> Self {
         let [a, b, c] = corners.map(|corner| in_view(view, corner));
         let depths = [a.z, b.z, c.z];
         // What lies nearer was cut off.
@@ -79,7 +79,7 @@ impl Nearness {
 
 /// The point that a place of the picture, in 1/4096 pixel from its corner, sees at a depth.
 #[inline]
-pub(super) fn point_seen(view: &View, x: f64, y: f64, depth: f64) -> DVec3 {
+pub(super) fn point_seen(view: &RasterCamera, x: f64, y: f64, depth: f64) -> DVec3 {
     let scale = depth / view.focal_px;
     let across = x / SUBPIXELS as f64 - f64::from(view.width) / 2.0;
     let upwards = f64::from(view.height) / 2.0 - y / SUBPIXELS as f64;
@@ -88,7 +88,7 @@ pub(super) fn point_seen(view: &View, x: f64, y: f64, depth: f64) -> DVec3 {
 
 /// Linear light of a point with a colour and a normal, turned to the eye.
 pub(super) fn light_of(
-    view: &View,
+    view: &RasterCamera,
     light: Option<&Light>,
     point: DVec3,
     (color, normal): (DVec3, DVec3),
@@ -98,7 +98,7 @@ pub(super) fn light_of(
     color * light.on(if is_front { normal } else { -normal })
 }
 
-/// A triangle's colours as light, ready to be asked for.
+/// A triangle's colours as light, ready for any point of it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
     triangle: Triangle,
@@ -108,7 +108,7 @@ pub(super) struct Paint {
 }
 
 impl Paint {
-    pub(super) fn of(view: &View, triangle: Triangle, light: Option<&Light>) -> Self {
+    pub(super) fn of(view: &RasterCamera, triangle: Triangle, light: Option<&Light>) -> Self {
         let plane = plane_normal(triangle.corners);
         let is_front = (view.eye - triangle.corners[0]).dot(plane) >= 0.0;
         let face = if is_front { plane } else { -plane };
@@ -127,7 +127,7 @@ impl Paint {
     /// Linear light at a place of the picture, where the depth is known.
     pub(super) fn light(
         &self,
-        view: &View,
+        view: &RasterCamera,
         light: Option<&Light>,
         x: f64,
         y: f64,

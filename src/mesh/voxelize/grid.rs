@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::mesh::Surface;
 
-/// Levels where nothing is said: at most 512 voxels a side.
+/// Levels by default: at most 512 voxels a side.
 pub const DEFAULT_DEPTH: u32 = 9;
 /// Most levels.
 pub const MAX_DEPTH: u32 = 20;
@@ -97,7 +97,7 @@ impl Grid {
         self.voxel_size
     }
 
-    /// What [`Builder::finish`](crate::graph::Builder::finish) wants to know.
+    /// The world position and voxel size for [`Builder::finish`](crate::graph::Builder::finish).
     #[must_use]
     pub fn placement(&self) -> ([f64; 3], f64) {
         (self.origin.to_array(), self.voxel_size)

@@ -79,7 +79,7 @@ impl Mix {
 
     /// The voxel's colour (sRGB) and normal.
     ///
-    /// The normal is the average where that says something; where normals
+    /// The normal is the average unless normals cancel; where normals
     /// cancel, as in a thin wall with both its sides, it is that of one side,
     /// the first triangle's.
     pub(super) fn finish(&self) -> ([u8; 3], Option<PackedNormal>) {

@@ -2,7 +2,7 @@
 //!
 //! Corners are rounded to a lattice of 2^30 points a side, the same for all
 //! triangles, so that neighbours stay joined. On the lattice a triangle and a
-//! cube are told apart exactly, in integers: there is no tolerance, a thin
+//! cube are distinguished exactly, in integers: there is no tolerance, a thin
 //! triangle loses no voxel and a closed mesh has no hole. The cubes of the
 //! octree are descended with the triangles that touch them. Work is cut into
 //! subtrees of 32 voxels a side, some at a time; memory grows with the

@@ -6,7 +6,7 @@ use super::{Area, PlotError, TITLE_HEIGHT, WIDTH, words};
 
 /// One tile.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Tile {
+pub enum HeatCell {
     /// From 0 (white) to 1 (dark), and what stands in it.
     Shade(f64, String),
     /// Bad: red, and what stands in it.
@@ -23,7 +23,7 @@ pub struct HeatMap {
     /// What stands above the columns.
     pub columns: Vec<String>,
     /// The rows: what stands before them, and their tiles.
-    pub rows: Vec<(String, Vec<Tile>)>,
+    pub rows: Vec<(String, Vec<HeatCell>)>,
     /// What stands below it: what shade and numbers mean.
     pub legend: String,
 }
@@ -56,9 +56,9 @@ pub(super) fn draw(area: &Area<'_>, map: &HeatMap) -> Result<(), PlotError> {
         words(area, name, (14, top + 4), 13)?;
         for (column, tile) in tiles.iter().enumerate() {
             let (color, text, dark) = match tile {
-                Tile::Shade(value, text) => (shade(*value), text.as_str(), *value > 0.55),
-                Tile::Bad(text) => (RGBColor(200, 60, 40), text.as_str(), true),
-                Tile::Empty => (RGBColor(236, 236, 236), "", false),
+                HeatCell::Shade(value, text) => (shade(*value), text.as_str(), *value > 0.55),
+                HeatCell::Bad(text) => (RGBColor(200, 60, 40), text.as_str(), true),
+                HeatCell::Empty => (RGBColor(236, 236, 236), "", false),
             };
             let left = left_of(column);
             let corners = [

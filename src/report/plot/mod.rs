@@ -9,7 +9,7 @@ use plotters::prelude::*;
 
 pub use bars::{Bar, Stack};
 pub use chart::{Axis, Chart, Point, Scale, Series};
-pub use heat::{HeatMap, Tile};
+pub use heat::{HeatCell, HeatMap};
 
 /// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 const WIDTH: u32 = 900;
 /// Height of a panel's title.
 const TITLE_HEIGHT: u32 = 44;
-/// Colours that are told apart also by the colour-blind (Okabe and Ito), and two more.
+/// Colours that are distinguishable also to the colour-blind (Okabe and Ito), and two more.
 const COLORS: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -122,7 +122,7 @@ fn in_short(number: f64) -> String {
         return "0".to_owned();
     }
     if (0.001..10_000.0).contains(&number.abs()) {
-        // Enough digits for thousandths, none that say nothing.
+        // Enough digits for thousandths, none without information.
         let text = format!("{number:.3}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     } else {
@@ -170,8 +170,8 @@ mod tests {
                 rows: vec![(
                     "scene".to_owned(),
                     vec![
-                        Tile::Shade(0.5, "7".to_owned()),
-                        Tile::Bad("trap".to_owned()),
+                        HeatCell::Shade(0.5, "7".to_owned()),
+                        HeatCell::Bad("trap".to_owned()),
                     ],
                 )],
                 legend: "of nine".to_owned(),

@@ -1,7 +1,7 @@
 //! A three-dimensional checkerboard.
 
 use super::color::palette;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// Every voxel whose coordinates have an even sum, in two colours by blocks

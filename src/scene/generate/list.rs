@@ -1,49 +1,15 @@
 //! The generators that there are, and the keys that each takes.
 
-use std::fmt;
-
-use super::spec::Settings;
+use super::settings::{Key, Settings};
 use super::{checker, maze, menger, random, shell, sierpinski, sphere, terrain, truss, wires};
 use crate::graph::{Graph, Progress, Voxel};
-
-/// A number that a spec can set.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Key {
-    /// Levels of the scene: it fits a cube of `2^depth` voxels a side. For `menger`, its iterations.
-    Depth,
-    /// Which of the random scenes.
-    Seed,
-    /// Share of the voxels that are filled, percent.
-    Density,
-}
-
-impl Key {
-    /// All keys, in the order in which a spec is written.
-    pub const ALL: [Self; 3] = [Self::Depth, Self::Density, Self::Seed];
-
-    /// The key as it is written in a spec.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Seed => "seed",
-            Self::Density => "density",
-        }
-    }
-}
-
-impl fmt::Display for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
 
 /// What a generator takes for a key.
 #[derive(Debug, Clone, Copy)]
 pub struct KeyRange {
     /// The key.
     pub key: Key,
-    /// Its value where a spec does not say.
+    /// Its default value.
     pub default: u32,
     /// Least value.
     pub least: u32,

@@ -2,7 +2,7 @@
 
 use super::color::{gradient, palette};
 use super::hash::hash;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// A floor with walls of `max(2, side / 16)` voxels on it. The plan is a grid

@@ -1,6 +1,6 @@
 //! Menger's sponge, the benchmark's small scene.
 
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// The sponge of `3^depth` voxels a side. At each scale a cell is taken out

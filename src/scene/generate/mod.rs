@@ -8,6 +8,7 @@ mod list;
 mod maze;
 mod menger;
 mod random;
+mod settings;
 mod shell;
 mod sierpinski;
 mod spec;
@@ -16,5 +17,6 @@ mod terrain;
 mod truss;
 mod wires;
 
-pub use list::{GENERATORS, Generator, Key, KeyRange};
-pub use spec::{PREFIX, Settings, Spec, SpecError};
+pub use list::{GENERATORS, Generator, KeyRange};
+pub use settings::{Key, Settings};
+pub use spec::{PREFIX, Spec, SpecError};

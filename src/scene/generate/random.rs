@@ -2,7 +2,7 @@
 
 use super::color::palette;
 use super::hash::hash;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// Each voxel of the cube by itself with a chance of `density` percent.

@@ -1,7 +1,7 @@
 //! A hollow ball.
 
 use super::color::gradient;
-use super::spec::Settings;
+use super::settings::Settings;
 use super::sphere::half_chord;
 use crate::graph::{Progress, Voxel};
 

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::list::{GENERATORS, Generator, Key, Shape};
+use super::list::{GENERATORS, Generator, Shape};
+use super::settings::{Key, Settings};
 use crate::graph::{Graph, GraphView, Progress, Voxel};
 
 /// What every spec begins with.
@@ -13,17 +14,6 @@ pub const PREFIX: &str = "gen:";
 pub struct Spec {
     generator: &'static Generator,
     settings: Settings,
-}
-
-/// The numbers of a spec; a key that the generator does not take is 0.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-pub struct Settings {
-    /// Levels of the scene (iterations for `menger`).
-    pub depth: u32,
-    /// Which of the random scenes.
-    pub seed: u32,
-    /// Filled voxels, percent.
-    pub density: u32,
 }
 
 /// Why a line is no spec.
@@ -88,29 +78,11 @@ fn keys(generator: &str) -> String {
     list.join(", ")
 }
 
-impl Settings {
-    fn of(&self, key: Key) -> u32 {
-        match key {
-            Key::Depth => self.depth,
-            Key::Seed => self.seed,
-            Key::Density => self.density,
-        }
-    }
-
-    fn set(&mut self, key: Key, value: u32) {
-        match key {
-            Key::Depth => self.depth = value,
-            Key::Seed => self.seed = value,
-            Key::Density => self.density = value,
-        }
-    }
-}
-
 impl Spec {
     /// Reads a spec; keys left out have the generator's defaults.
     ///
     /// # Errors
-    /// When the text is no spec; the message says what there is instead.
+    /// When the text is no spec; the message lists what there is.
     pub fn parse(text: &str) -> Result<Self, SpecError> {
         let body = text
             .strip_prefix(PREFIX)
@@ -176,7 +148,7 @@ impl Spec {
         self.settings
     }
 
-    /// Voxels that the scene has at the least: 0 where that takes work to know.
+    /// A lower bound of the scene's voxels: 0 where a better one takes work.
     #[must_use]
     pub fn least_voxels(&self) -> u64 {
         let power = |base: u64| base.saturating_pow(self.settings.depth);
@@ -202,7 +174,7 @@ impl Spec {
     /// Gives every voxel of the scene once, always in the same order.
     ///
     /// File indices are 0 or more. A cyclic scene is walked through: at depth
-    /// 30 that takes years, so ask [`Self::linked`] first.
+    /// 30 that takes years, so try [`Self::linked`] first.
     pub fn voxels(&self, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
         match self.generator.shape {
             Shape::Voxels(make) => make(&self.settings, sink, progress),

@@ -1,7 +1,7 @@
 //! A solid ball.
 
 use super::color::gradient;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// Half the number of voxels, along x, of the column `(y, z)` of the ball

@@ -7,7 +7,7 @@
 //! and colours are the benchmark's.
 
 use super::hash::{hash, variation};
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 const OCTAVES: u32 = 7;

@@ -1,7 +1,7 @@
 //! A lattice of thin bars.
 
 use super::color::palette;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// Cells of the lattice along a side.

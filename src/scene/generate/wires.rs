@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::color::palette;
-use super::spec::Settings;
+use super::settings::Settings;
 use crate::graph::{Progress, Voxel};
 
 /// Wires along each side of the far face, less one.

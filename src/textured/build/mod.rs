@@ -10,10 +10,10 @@ use std::collections::HashMap;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::lattice::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
+use super::cell_grid::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
-use super::{Element, GridData, Lattice, TexturedData};
+use super::{CellGrid, Element, GridData, TexturedData};
 use crate::graph::Progress;
 use crate::mesh::Surface;
 use project::{Column, Projected, project};
@@ -88,7 +88,7 @@ pub fn build<S: Surface + ?Sized>(
         return Err(BuildError::Grids);
     }
     let texels = options.texels;
-    if let Some(&cells) = grids.iter().find(|&&c| !Lattice::is_possible(c, texels)) {
+    if let Some(&cells) = grids.iter().find(|&&c| !CellGrid::is_possible(c, texels)) {
         return Err(BuildError::Grid { cells, texels });
     }
     if surface.is_empty() {
@@ -107,7 +107,7 @@ pub fn build<S: Surface + ?Sized>(
         return Err(BuildError::Range);
     }
     let grids = grids.into_iter().map(|cells| {
-        let lattice = Lattice::around(low, high, cells, texels);
+        let lattice = CellGrid::around(low, high, cells, texels);
         build_grid(surface, &primitives, &lattice, options.element, progress)
     });
     let grids = grids.collect::<Result<Vec<GridData>, BuildError>>()?;
@@ -131,7 +131,7 @@ pub(super) fn bounds(primitives: &[Primitive]) -> (DVec3, DVec3) {
 fn build_grid<S: Surface + ?Sized>(
     surface: &S,
     primitives: &[Primitive],
-    lattice: &Lattice,
+    lattice: &CellGrid,
     element: Element,
     progress: &dyn Progress,
 ) -> Result<GridData, BuildError> {
@@ -182,7 +182,7 @@ fn build_grid<S: Surface + ?Sized>(
     Ok(grid)
 }
 
-/// The erosion depths of voxels, whatever they say themselves.
+/// The erosion depths of voxels, computed anew whatever is stored in them.
 pub(super) fn depths_of(voxels: &[VoxelRecord], cells: u32, element: Element) -> Vec<u16> {
     let number = |voxel: &VoxelRecord| {
         let [x, y, z] = voxel.cell.map(u32::from);

@@ -11,8 +11,8 @@ use glam::DVec3;
 use crate::graph::PackedNormal;
 use crate::mesh::raster::Edges;
 use crate::mesh::{Surface, Triangle, barycentric, linear_to_srgb};
-use crate::textured::Lattice;
-use crate::textured::lattice::{ACROSS, is_positive_half};
+use crate::textured::CellGrid;
+use crate::textured::cell_grid::{ACROSS, is_positive_half};
 use crate::textured::record::{Texel, plane_normal};
 
 /// A column of cells along an axis.
@@ -50,7 +50,7 @@ pub(super) fn project<S: Surface + ?Sized>(
     column: &Column,
     surface: &S,
     corners: &[[[i64; 3]; 3]],
-    lattice: &Lattice,
+    lattice: &CellGrid,
 ) -> Projected {
     let texels = lattice.texels() as usize;
     let cells = lattice.cells();
@@ -155,7 +155,7 @@ impl Shadow {
 
     /// Calls for each texel of the column whose middle the triangle covers:
     /// its number, and how far along the axis the triangle is there, rounded down.
-    fn each_texel(&self, column: &Column, lattice: &Lattice, mut call: impl FnMut(usize, i64)) {
+    fn each_texel(&self, column: &Column, lattice: &CellGrid, mut call: impl FnMut(usize, i64)) {
         let step = lattice.texel_steps();
         let texels = i64::from(lattice.texels());
         let first = column.at.map(|c| i64::from(c) * texels);
@@ -185,7 +185,7 @@ impl Shadow {
 /// What texels look like.
 struct Painter<'p, S: ?Sized> {
     surface: &'p S,
-    lattice: &'p Lattice,
+    lattice: &'p CellGrid,
     column: &'p Column,
     /// Neighbouring texels mostly see the same triangle.
     last: Option<(u32, Triangle)>,

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use crate::mesh::voxelize::{Prepared, child};
-use crate::textured::{Element, Lattice};
+use crate::textured::{CellGrid, Element};
 
 /// Cells that are not empty, with the primitives that touch them.
 #[derive(Debug, Default)]
@@ -33,7 +33,7 @@ pub(super) fn cell_of(number: u32, cells: u32) -> [u32; 3] {
 }
 
 /// Finds the cells that triangles touch: closed cells, decided exactly on the lattice.
-pub(super) fn fill(corners: &[[[i64; 3]; 3]], lattice: &Lattice) -> Filled {
+pub(super) fn fill(corners: &[[[i64; 3]; 3]], lattice: &CellGrid) -> Filled {
     let mut pairs: Vec<u64> = corners
         .par_iter()
         .enumerate()

@@ -1,7 +1,7 @@
 //! Whether a grid makes sense: every field of every voxel, every entry of every list.
 
 use super::format::GridEntry;
-use crate::textured::Lattice;
+use crate::textured::CellGrid;
 use crate::textured::levels::surfels;
 use crate::textured::record::{CLEAR, NEVER, Primitive, VoxelRecord};
 
@@ -20,10 +20,10 @@ pub(super) enum Part {
     Lists,
 }
 
-/// Checks what the file says of a grid, before any of it is read.
+/// Checks a grid's entry, before any of the grid is read.
 pub(super) fn check_entry(entry: &GridEntry) -> Result<(), &'static str> {
     let ensure = |holds: bool, expected| if holds { Ok(()) } else { Err(expected) };
-    let is_possible = Lattice::is_possible(entry.cells, entry.texels);
+    let is_possible = CellGrid::is_possible(entry.cells, entry.texels);
     ensure(
         is_possible,
         "an even number of cells up to 128, and texels up to 64",

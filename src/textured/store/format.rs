@@ -31,7 +31,7 @@ pub(super) mod at {
     pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
 }
 
-/// What the file says of a grid.
+/// A grid's entry in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub(super) struct GridEntry {

@@ -2,7 +2,7 @@
 //!
 //! Opening a file checks everything but the texels, which are most of it: a
 //! grid's are checked against their checksum when it is first drawn.
-//! [`TexturedFile::verify`] asks for all, and computes erosion depths again.
+//! [`TexturedFile::verify`] reads all, and computes erosion depths again.
 
 mod check;
 mod format;

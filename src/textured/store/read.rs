@@ -13,7 +13,7 @@ use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
-use crate::textured::{Element, Lattice};
+use crate::textured::{CellGrid, Element};
 
 /// An open `.tvx` file.
 #[derive(Debug)]
@@ -228,9 +228,9 @@ pub struct Grid<'f> {
 impl<'f> Grid<'f> {
     /// Where its cells and texels lie.
     #[must_use]
-    pub fn lattice(&self) -> Lattice {
+    pub fn cell_grid(&self) -> CellGrid {
         let entry = &self.file.entries[self.number];
-        Lattice::around(self.file.low, self.file.high, entry.cells, entry.texels)
+        CellGrid::around(self.file.low, self.file.high, entry.cells, entry.texels)
     }
 
     /// What an erosion takes away.

@@ -13,7 +13,7 @@ use crate::textured::{Element, GridData, TexturedData};
 /// ([`crate::picture::store::write_with`]).
 ///
 /// # Errors
-/// What the writer says; a machine that stores the highest byte first.
+/// The writer's byte order; a machine that stores the highest byte first.
 pub fn write_to(data: &TexturedData, out: &mut dyn Write) -> io::Result<()> {
     let entries: Vec<GridEntry> = data.grids.iter().map(entry).collect();
     let layout = Layout::of(data.primitives.len() as u64, &entries);

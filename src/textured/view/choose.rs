@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::mesh::raster::View;
+use crate::mesh::raster::RasterCamera;
 use crate::textured::store::{Grid, TexturedFile};
 
 /// A grid and a level, and how large its texels are on the picture.
@@ -19,7 +19,7 @@ pub struct Choice {
 
 impl Choice {
     /// A given one. Levels above the last are the last.
-    pub(super) fn of(file: &TexturedFile, view: &View, grid: usize, level: u32) -> Self {
+    pub(super) fn of(file: &TexturedFile, view: &RasterCamera, grid: usize, level: u32) -> Self {
         let levels = file.grid(grid).levels();
         let level = level.min(levels.last());
         Self {
@@ -33,7 +33,7 @@ impl Choice {
 /// The level of fewest faces, a surfel counting as two, of all grids, whose
 /// texels are at most so many pixels. Primitives alone always are.
 #[must_use]
-pub fn choose(file: &TexturedFile, view: &View, most_px: f64) -> Choice {
+pub fn choose(file: &TexturedFile, view: &RasterCamera, most_px: f64) -> Choice {
     let mut best: Option<(u64, Choice)> = None;
     for grid in 0..file.grids() {
         for row in file.grid(grid).levels().rows() {
@@ -52,18 +52,18 @@ pub fn choose(file: &TexturedFile, view: &View, most_px: f64) -> Choice {
 /// The grid for a level that is given: the coarsest whose texels are at most a
 /// pixel, or else the finest.
 #[must_use]
-pub fn choose_grid(file: &TexturedFile, view: &View, level: u32) -> usize {
+pub fn choose_grid(file: &TexturedFile, view: &RasterCamera, level: u32) -> usize {
     let is_fine = |&grid: &usize| texel_px(&file.grid(grid), level, view) <= 1.0;
     let last = file.grids() - 1;
     (0..file.grids()).find(is_fine).unwrap_or(last)
 }
 
 /// Size of the largest texel of a level.
-fn texel_px(grid: &Grid<'_>, level: u32, view: &View) -> f64 {
+fn texel_px(grid: &Grid<'_>, level: u32, view: &RasterCamera) -> f64 {
     let Some(cells) = grid.levels().box_of(level) else {
         return 0.0;
     };
-    let lattice = grid.lattice();
+    let lattice = grid.cell_grid();
     let [low, high] = cells.map(|cell| lattice.corner(cell));
     let away = (low - view.eye).max(view.eye - high).max(DVec3::ZERO);
     // Division by zero: infinite.

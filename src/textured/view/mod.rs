@@ -8,7 +8,9 @@ mod choose;
 mod scene;
 
 use crate::graph::Silent;
-use crate::mesh::raster::{self, Light, RasterError, RasterOptions, RasterPicture, Samples, View};
+use crate::mesh::raster::{
+    self, Light, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
+};
 
 pub use choose::{Choice, choose, choose_grid};
 
@@ -64,7 +66,7 @@ pub enum ViewError {
 
 /// What a frame took.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Counts {
+pub struct TexturedCounts {
     /// The grid and level that are drawn, and the size of its texels.
     pub choice: Choice,
     /// Primitives given to the rasteriser.
@@ -81,9 +83,9 @@ pub struct Counts {
 /// See [`ViewError`].
 pub fn draw(
     file: &TexturedFile,
-    view: &View,
+    view: &RasterCamera,
     options: &ViewOptions,
-) -> Result<(RasterPicture, Counts), ViewError> {
+) -> Result<(RasterPicture, TexturedCounts), ViewError> {
     let choice = match options.detail {
         Detail::Auto { texel_px } if texel_px > 0.0 => choose(file, view, texel_px),
         Detail::Auto { texel_px } => return Err(ViewError::TexelSize(texel_px)),
@@ -102,7 +104,7 @@ pub fn draw(
         background: options.background,
     };
     let picture = raster::draw(&shown, view, &raster_options, &Silent)?;
-    let counts = Counts {
+    let counts = TexturedCounts {
         choice,
         primitives: shown.primitives() as u64,
         surfels: shown.surfels() as u64,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::graph::PackedNormal;
 use crate::mesh::{Surface, Triangle, srgb_to_linear};
-use crate::textured::lattice::ACROSS;
+use crate::textured::cell_grid::ACROSS;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
 use crate::textured::store::{Grid, TexturedFile};
@@ -33,7 +33,7 @@ pub(super) struct Shown<'f> {
 
 impl<'f> Shown<'f> {
     pub(super) fn new(file: &'f TexturedFile, grid: Grid<'f>, level: u32) -> Self {
-        let lattice = grid.lattice();
+        let lattice = grid.cell_grid();
         let size = lattice.cell_size();
         let voxels = grid.voxels();
         let face = |surfel: &Surfel| {

@@ -10,6 +10,7 @@ use shiftvox::graph::{BuildOptions, Builder, Graph, Normals, Silent};
 use shiftvox::project::Camera;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{ReadOptions, read_voxels};
+use shiftvox::split_mix::SplitMix;
 
 /// The test data that are kept beside the repository, if they are there.
 pub fn shared_data() -> Option<PathBuf> {
@@ -82,32 +83,24 @@ pub fn cube(graph: &Graph) -> (DVec3, f64) {
     )
 }
 
-/// Numbers from a seed (SplitMix64): the same on every machine.
+/// Numbers from a seed: the same on every machine.
 #[derive(Debug, Clone)]
-pub struct Dice(u64);
+pub struct Dice(SplitMix);
 
 impl Dice {
     /// The numbers that follow from a seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(SplitMix::new(seed))
     }
 
     /// A number from `low` up to, not including, `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        low + (high - low) * self.0.unit()
     }
 
     /// A whole number below `end`, which is above 0.
     pub fn below(&mut self, end: u32) -> u32 {
-        (self.next() % u64::from(end)) as u32
+        self.0.below(u64::from(end)) as u32
     }
 
     /// One of some choices.
@@ -157,7 +150,7 @@ pub fn any_voxel(graph: &Graph, dice: &mut Dice) -> DVec3 {
 
 /// Where the eye of a camera is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum CameraPlace {
     /// Outside the object's cube, up to one and a half sides away.
     Outside,
     /// Anywhere in the cube.
@@ -173,39 +166,45 @@ pub enum Place {
 }
 
 /// All places.
-pub const PLACES: [Place; 6] = [
-    Place::Outside,
-    Place::Inside,
-    Place::Solid,
-    Place::VoxelFace,
-    Place::VoxelCorner,
-    Place::CubeFace,
+pub const PLACES: [CameraPlace; 6] = [
+    CameraPlace::Outside,
+    CameraPlace::Inside,
+    CameraPlace::Solid,
+    CameraPlace::VoxelFace,
+    CameraPlace::VoxelCorner,
+    CameraPlace::CubeFace,
 ];
 
 /// A camera with its eye at a place, looking at a voxel or, one time in
 /// four, from beside one along an axis, so that ties abound. `fov_degrees` 5 to 150.
-pub fn camera_at(place: Place, graph: &Graph, size: (u32, u32), dice: &mut Dice) -> Camera {
+pub fn camera_at(place: CameraPlace, graph: &Graph, size: (u32, u32), dice: &mut Dice) -> Camera {
     let (low, side) = cube(graph);
     let voxel = graph.placement.voxel_size;
     loop {
         let axis = dice.below(3) as usize;
         let end = f64::from(dice.below(2));
         let mut eye = match place {
-            Place::Outside | Place::Inside | Place::CubeFace => low + dice.point(0.0, side),
-            Place::Solid | Place::VoxelFace => any_voxel(graph, dice) + dice.point(0.0, voxel),
-            Place::VoxelCorner => any_voxel(graph, dice) + voxel * dice.point(0.0, 2.0).floor(),
+            CameraPlace::Outside | CameraPlace::Inside | CameraPlace::CubeFace => {
+                low + dice.point(0.0, side)
+            }
+            CameraPlace::Solid | CameraPlace::VoxelFace => {
+                any_voxel(graph, dice) + dice.point(0.0, voxel)
+            }
+            CameraPlace::VoxelCorner => {
+                any_voxel(graph, dice) + voxel * dice.point(0.0, 2.0).floor()
+            }
         };
         match place {
-            Place::Outside => {
+            CameraPlace::Outside => {
                 let out = dice.between(0.02, 1.5) * side;
                 eye[axis] = low[axis] + end * side + (2.0 * end - 1.0) * out;
             }
-            Place::VoxelFace => {
+            CameraPlace::VoxelFace => {
                 let from_low = ((eye[axis] - low[axis]) / voxel).floor() + end;
                 eye[axis] = low[axis] + from_low * voxel;
             }
-            Place::CubeFace => eye[axis] = low[axis] + end * side,
-            Place::Inside | Place::Solid | Place::VoxelCorner => {}
+            CameraPlace::CubeFace => eye[axis] = low[axis] + end * side,
+            CameraPlace::Inside | CameraPlace::Solid | CameraPlace::VoxelCorner => {}
         }
         let seen = any_voxel(graph, dice) + dice.point(0.0, voxel);
         let target = if dice.below(4) == 0 {

@@ -4,10 +4,10 @@ use hwmodel::cost::{Breakdown, Fit};
 use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
-use crate::lab::float_rays::Step;
+use crate::lab::float_rays::FloatStep;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
-use crate::lab::model::rival::Rival;
+use crate::lab::model::ray_caster::RayCasterReport;
 use crate::measure::CoverageError;
 use crate::report::{Cell, Table};
 
@@ -63,7 +63,7 @@ pub fn side_by_side(
     counted: &Counted,
     wrong: &CoverageError,
     cost: &FrameCost,
-    rival: &Rival,
+    ray_caster: &RayCasterReport,
 ) -> Table {
     let mut table = Table::new(
         "The light hardware beside a ray caster in 32-bit floating point, same view",
@@ -72,19 +72,19 @@ pub fn side_by_side(
     let counter = &counted.counter;
     let by_class = counter.sum_by(|cell| cell.class);
     let of = |class: OpClass| by_class.get(&class).copied().unwrap_or(0);
-    let counts = &rival.counts;
+    let counts = &ray_caster.counts;
     let mut row = |what: &str, light: Cell, ray: Cell| {
         table.rows.push(vec![Cell::from(what), light, ray]);
     };
     row(
         "multiplies",
         Cell::from(0),
-        Cell::from(counts.of(Step::FloatMultiply)),
+        Cell::from(counts.of(FloatStep::FloatMultiply)),
     );
     row(
         "divides",
         Cell::from(0),
-        Cell::from(counts.of(Step::FloatDivide)),
+        Cell::from(counts.of(FloatStep::FloatDivide)),
     );
     row(
         "divide steps (subtract and select)",
@@ -94,18 +94,22 @@ pub fn side_by_side(
     row(
         "adds and subtracts (integer; float)",
         Cell::from(of(OpClass::Add) + of(OpClass::Sub)),
-        Cell::from(counts.of(Step::FloatAdd)),
+        Cell::from(counts.of(FloatStep::FloatAdd)),
     );
     row(
         "compares, minima, maxima",
         Cell::from(of(OpClass::Compare) + of(OpClass::MinMax)),
-        Cell::from(counts.of(Step::FloatCompare) + counts.of(Step::FloatMinMax)),
+        Cell::from(counts.of(FloatStep::FloatCompare) + counts.of(FloatStep::FloatMinMax)),
     );
     row("selects", Cell::from(of(OpClass::Select)), Cell::None);
     row(
         "logic, integer adds, variable shifts",
         Cell::from(of(OpClass::Logic)),
-        Cell::from(counts.of(Step::Logic) + counts.of(Step::IntegerAdd) + counts.of(Step::Shift)),
+        Cell::from(
+            counts.of(FloatStep::Logic)
+                + counts.of(FloatStep::IntegerAdd)
+                + counts.of(FloatStep::Shift),
+        ),
     );
     row(
         "shifts by constants (wires)",
@@ -120,31 +124,31 @@ pub fn side_by_side(
     row(
         "node reads",
         Cell::from(counter.reads(Memory::Node)),
-        Cell::from(counts.of(Step::NodeRead)),
+        Cell::from(counts.of(FloatStep::NodeRead)),
     );
     row(
         "energy of operations, uJ",
         micro(cost.operations.total),
-        micro(rival.cost.operations.total),
+        micro(ray_caster.cost.operations.total),
     );
     row(
         "energy of memories on the chip, uJ",
         micro(cost.on_chip.total),
-        micro(rival.cost.on_chip.total),
+        micro(ray_caster.cost.on_chip.total),
     );
     row(
         "energy of outer memory, uJ",
         micro(cost.outer.total),
-        micro(rival.cost.outer.total),
+        micro(ray_caster.cost.outer.total),
     );
-    let (light, ray) = (cost.total(), rival.cost.total());
+    let (light, ray) = (cost.total(), ray_caster.cost.total());
     row("energy, uJ", micro(light.0), micro(ray.0));
     row("  low end", micro(light.1), micro(ray.1));
     row("  high end", micro(light.2), micro(ray.2));
     row(
         "wrong pixels (coverage)",
         Cell::from(wrong.extra + wrong.missing),
-        Cell::from(rival.error.extra + rival.error.missing),
+        Cell::from(ray_caster.error.extra + ray_caster.error.missing),
     );
     table
 }

@@ -8,7 +8,7 @@ use hwmodel::{Memory, OpClass, Stage};
 
 use super::{number, percent};
 use crate::lab::model::frame::Counted;
-use crate::lab::model::record::{Held, RecordField};
+use crate::lab::model::record::{FieldPresence, RecordField};
 use crate::report::{Cell, Table};
 
 /// Operations and cycles by stage.
@@ -116,9 +116,9 @@ pub fn record(fields: &[RecordField]) -> Table {
     let mut table = Table::new("A record on the stack", &["field", "bits", "held"]);
     for field in fields.iter().filter(|field| field.bits > 0) {
         let held = match field.held {
-            Held::Always => "always",
-            Held::InClipSpace => "in clip space",
-            Held::InScreenSpace => "in screen space",
+            FieldPresence::Always => "always",
+            FieldPresence::InClipSpace => "in clip space",
+            FieldPresence::InScreenSpace => "in screen space",
         };
         table.rows.push(vec![
             Cell::from(field.name),

@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use tempfile::Builder;
 
 use crate::picture::store::StoreError;
-use crate::whole::Noted;
+use crate::whole::TemporaryGuard;
 
 /// The file by which a folder of vectors is known.
 pub(super) const MANIFEST: &str = "manifest.json";
-/// The file that says how to read the others.
+/// The file that describes the others.
 pub(super) const README: &str = "README.txt";
 /// How the files of rows end.
 pub(super) const ROWS: &str = "hex";
@@ -40,17 +40,17 @@ fn failed(path: &Path, source: io::Error) -> FolderError {
 }
 
 /// What stands where a folder is to be.
-enum Site {
+enum Target {
     Nothing,
     EmptyFolder,
     Vectors,
 }
 
-/// Looks at a place. Without `overwrite` only nothing and empty folders will do;
+/// Finds what stands at a path. Without `overwrite` only nothing and empty folders will do;
 /// with it, a folder of vectors too, but nothing else.
-fn look(path: &Path, overwrite: bool) -> Result<Site, FolderError> {
+fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
     let kind = match fs::symlink_metadata(path) {
-        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Site::Nothing),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => return Ok(Target::Nothing),
         Err(e) => return Err(failed(path, e)),
         Ok(metadata) => metadata.file_type(),
     };
@@ -81,33 +81,33 @@ fn look(path: &Path, overwrite: bool) -> Result<Site, FolderError> {
         }
     }
     match (is_empty, overwrite, others) {
-        (true, ..) => Ok(Site::EmptyFolder),
+        (true, ..) => Ok(Target::EmptyFolder),
         (_, false, _) => Err(exists()),
         (_, true, Some(other)) => Err(foreign(&other)),
-        (_, true, None) if is_known => Ok(Site::Vectors),
+        (_, true, None) if is_known => Ok(Target::Vectors),
         (_, true, None) => Err(foreign("no manifest among them")),
     }
 }
 
-/// Whether vectors may be written to a folder: to ask before long work.
+/// Whether vectors may be written to a folder; called before long work.
 ///
 /// # Errors
 /// [`StoreError::Exists`] where a file or a folder with anything in it is there
 /// and may not be overwritten; [`FolderError::Foreign`] where it may, but holds other things.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), FolderError> {
-    look(path, overwrite).map(|_| ())
+    find_target(path, overwrite).map(|_| ())
 }
 
 /// Fills a folder under a temporary name beside its place, then renames it.
 ///
 /// # Errors
-/// As [`check_free`]; whatever `fill` says; where the system refuses.
+/// As [`check_free`]; the errors of `fill`; where the system refuses.
 pub(super) fn write<T, E: From<FolderError>>(
     path: &Path,
     overwrite: bool,
     fill: impl FnOnce(&Path) -> Result<T, E>,
 ) -> Result<T, E> {
-    look(path, overwrite)?;
+    find_target(path, overwrite)?;
     let parent = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -119,21 +119,21 @@ pub(super) fn write<T, E: From<FolderError>>(
         .suffix(".tmp")
         .tempdir_in(parent)
         .map_err(|e| failed(parent, e))?;
-    let _noted = Noted::new(shelter.path());
+    let _guard = TemporaryGuard::new(shelter.path());
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
     // Someone else may have been there meanwhile.
-    match look(path, overwrite)? {
-        Site::Nothing => {}
-        Site::EmptyFolder => fs::remove_dir(path).map_err(|e| failed(path, e))?,
-        Site::Vectors => {
+    match find_target(path, overwrite)? {
+        Target::Nothing => {}
+        Target::EmptyFolder => fs::remove_dir(path).map_err(|e| failed(path, e))?,
+        Target::Vectors => {
             let before = shelter.path().join("before");
             fs::rename(path, &before).map_err(|e| failed(path, e))?;
             return match fs::rename(&made, path) {
                 Ok(()) => Ok(result),
                 Err(error) => {
-                    // Back to what it was; the first error is the one to tell.
+                    // Back to what it was; the first error is the one to report.
                     let _ = fs::rename(&before, path);
                     Err(failed(path, error).into())
                 }

@@ -3,7 +3,7 @@
 //! For the first records of a frame, all that went into and came out of each
 //! block, as `$readmemh` files: one row a line, a file of inputs and one of
 //! outputs a block, and a manifest that names every bit. The rows are what
-//! the machine itself computed while it drew. `docs/vectors.md` says how to use them.
+//! the machine itself computed while it drew. `docs/vectors.md` describes their use.
 
 mod blocks;
 mod folder;
@@ -70,7 +70,7 @@ pub enum VectorsError {
     /// constant of the frame beyond its word.
     #[error("a value at block {0} does not fit its wires: use wider words")]
     Misfit(&'static str),
-    /// A block that the manifest does not know.
+    /// A block that is missing from the manifest.
     #[error("the machine has no block {0}")]
     Unknown(u32),
     /// The manifest has no text.

@@ -1,13 +1,13 @@
-//! One tile: its samples' depths and triangles, then its pixels.
+//! One bin: its samples' depths and triangles, then its pixels.
 
 use glam::DVec3;
 
-use super::bins::{Bins, TILE};
+use super::bins::{BIN, Bins};
 use super::clip::Outline;
 use super::edges::{Cover, Edges};
 use super::samples::{Places, SUBPIXELS};
 use super::shade::{Nearness, Paint, light_of, point_seen};
-use super::{NO_TRIANGLE, RasterOptions, RasterPicture, View};
+use super::{NO_TRIANGLE, RasterCamera, RasterOptions, RasterPicture};
 use crate::mesh::Surface;
 use crate::mesh::material::{linear_to_srgb, srgb_to_linear};
 
@@ -20,16 +20,16 @@ struct Pixel {
     triangle: u32,
 }
 
-/// A finished tile.
-pub(super) struct Tile {
+/// A finished bin.
+pub(super) struct Bin {
     corner: [u32; 2],
     columns: u32,
     pixels: Vec<Pixel>,
 }
 
-/// The samples of a tile that is being drawn, pixel by pixel.
+/// The samples of a bin that is being drawn, pixel by pixel.
 struct Buffer<'b> {
-    view: &'b View,
+    view: &'b RasterCamera,
     options: &'b RasterOptions,
     corner: [u32; 2],
     columns: u32,
@@ -40,17 +40,17 @@ struct Buffer<'b> {
     triangle: Vec<u32>,
 }
 
-impl Tile {
+impl Bin {
     pub(super) fn draw<S: Surface + ?Sized>(
         surface: &S,
-        view: &View,
+        view: &RasterCamera,
         options: &RasterOptions,
         bins: &Bins,
         number: usize,
     ) -> Self {
         let corner = bins.corner(number);
-        let columns = TILE.min(view.width - corner[0]);
-        let rows = TILE.min(view.height - corner[1]);
+        let columns = BIN.min(view.width - corner[0]);
+        let rows = BIN.min(view.height - corner[1]);
         let samples = (columns * rows) as usize * options.samples.per_pixel();
         let mut buffer = Buffer {
             view,
@@ -72,7 +72,7 @@ impl Tile {
         }
     }
 
-    /// Copies the tile to its place.
+    /// Copies the bin to its place.
     pub(super) fn store(&self, picture: &mut RasterPicture) {
         for (i, pixel) in self.pixels.iter().enumerate() {
             let (column, row) = (i as u32 % self.columns, i as u32 / self.columns);
@@ -126,7 +126,7 @@ impl Buffer<'_> {
                 if cover == Cover::Nothing {
                     continue;
                 }
-                // Within the tile: not negative.
+                // Within the bin: not negative.
                 let pixel = ((y - corner[1]) * size[0] + (x - corner[0])) as usize;
                 let at = pixel * per_pixel;
                 for (sample, place) in self.places.of(pixel).iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The rival: a ray caster in floating point, drawing the same view, counted
+//! For comparison: a ray caster in floating point, drawing the same view, counted
 //! and priced by the same tables.
 
 use hwmodel::Memory;
@@ -12,7 +12,7 @@ use super::cost::{FrameCost, Prices};
 use super::frame;
 use crate::frame::Frame;
 use crate::graph::Graph;
-use crate::lab::float_rays::{self, Counts, Step};
+use crate::lab::float_rays::{self, FloatRayCounts, FloatStep};
 use crate::measure::CoverageError;
 use crate::project::FrameSetup;
 
@@ -23,9 +23,9 @@ const ASIDE_ENTRIES: u64 = 24;
 
 /// What the ray caster took.
 #[derive(Debug, Clone, Serialize)]
-pub struct Rival {
+pub struct RayCasterReport {
     /// Steps by kind.
-    pub counts: Counts,
+    pub counts: FloatRayCounts,
     /// Hits and misses of nodes in a cache like the hardware's.
     pub node_hits: u64,
     /// See `node_hits`.
@@ -37,17 +37,20 @@ pub struct Rival {
 }
 
 /// The operation of the cost tables that a step is, and its width.
-fn operation(step: Step) -> Option<(&'static str, u32)> {
+fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
     match step {
-        Step::FloatAdd => Some(("float_add", 32)),
-        Step::FloatMultiply => Some(("float_multiply", 32)),
-        Step::FloatDivide => Some(("float_divide", 32)),
+        FloatStep::FloatAdd => Some(("float_add", 32)),
+        FloatStep::FloatMultiply => Some(("float_multiply", 32)),
+        FloatStep::FloatDivide => Some(("float_divide", 32)),
         // A minimum is a comparison; its multiplexer is left to the rival for nothing.
-        Step::FloatCompare | Step::FloatMinMax => Some(("float_compare", 32)),
-        Step::IntegerAdd => Some(("add", 32)),
-        Step::Logic => Some(("xor", 32)),
-        Step::Shift => Some(("shift_var", 32)),
-        Step::NodeRead | Step::StackRead | Step::StackWrite | Step::PixelWrite => None,
+        FloatStep::FloatCompare | FloatStep::FloatMinMax => Some(("float_compare", 32)),
+        FloatStep::IntegerAdd => Some(("add", 32)),
+        FloatStep::Logic => Some(("xor", 32)),
+        FloatStep::Shift => Some(("shift_var", 32)),
+        FloatStep::NodeRead
+        | FloatStep::StackRead
+        | FloatStep::StackWrite
+        | FloatStep::PixelWrite => None,
     }
 }
 
@@ -69,7 +72,7 @@ pub fn measure(
     hardware: &Hardware,
     prices: &Prices,
     exact: &Frame,
-) -> Result<Rival, ModelError> {
+) -> Result<RayCasterReport, ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let mut cache = cache_of(hardware).ok();
     let entry = u64::from(hardware.node_cache.entry_bytes);
@@ -79,7 +82,7 @@ pub fn measure(
         }
     });
     let (node_hits, node_misses) = cache.map_or((0, 0), |c| (c.hits(), c.misses()));
-    Ok(Rival {
+    Ok(RayCasterReport {
         counts,
         node_hits,
         node_misses,
@@ -94,13 +97,13 @@ fn cache_of(hardware: &Hardware) -> Result<Cache, CacheError> {
 }
 
 fn cost_of(
-    counts: &Counts,
+    counts: &FloatRayCounts,
     node_misses: u64,
     hardware: &Hardware,
     prices: &Prices,
 ) -> Result<FrameCost, CostError> {
     let table = &prices.table;
-    let operations: Vec<Tally> = Step::ALL
+    let operations: Vec<Tally> = FloatStep::ALL
         .iter()
         .filter_map(|&step| {
             let (name, width) = operation(step)?;
@@ -116,20 +119,26 @@ fn cost_of(
         bytes: ASIDE_ENTRIES * u64::from(ASIDE_BITS) / 8,
     };
     let accesses = [
-        (Memory::Node, "sram_read", cache, node_bits, Step::NodeRead),
+        (
+            Memory::Node,
+            "sram_read",
+            cache,
+            node_bits,
+            FloatStep::NodeRead,
+        ),
         (
             Memory::Stack,
             "sram_read",
             stack,
             ASIDE_BITS,
-            Step::StackRead,
+            FloatStep::StackRead,
         ),
         (
             Memory::Stack,
             "sram_write",
             stack,
             ASIDE_BITS,
-            Step::StackWrite,
+            FloatStep::StackWrite,
         ),
     ];
     for (memory, operation, store, bits, step) in accesses {
@@ -139,7 +148,7 @@ fn cost_of(
         }
     }
     let words_a_line = u64::from(hardware.node_cache.line_bytes) / 8;
-    let pixel_bits = counts.of(Step::PixelWrite) * u64::from(frame::PIXEL_BITS);
+    let pixel_bits = counts.of(FloatStep::PixelWrite) * u64::from(frame::PIXEL_BITS);
     let outer = [
         tally("dram_read", 64, node_misses * words_a_line),
         tally("dram_write", 64, pixel_bits.div_ceil(64)),

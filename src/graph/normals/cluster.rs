@@ -1,18 +1,18 @@
-//! Bricks of 4^3 voxels, and the window of 8^3 voxels around one.
+//! Clusters of 4^3 voxels, and the surroundings of 8^3 voxels around one.
 
-/// The voxels around a brick, `[z][y]`, bit x; its own are 2 to 5 along each axis.
-pub(in crate::graph) type Window = [[u8; 8]; 8];
+/// The voxels around a cluster, `[z][y]`, bit x; its own are 2 to 5 along each axis.
+pub(in crate::graph) type Surroundings = [[u8; 8]; 8];
 
 /// Occupancy of 4^3 voxels, in two orders.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::graph) struct Brick {
+pub(in crate::graph) struct Cluster {
     /// Bits in Morton order.
     pub(in crate::graph) morton: u64,
     /// Bit `z * 16 + y * 4 + x`.
     pub(in crate::graph) by_rows: u64,
 }
 
-impl From<u64> for Brick {
+impl From<u64> for Cluster {
     fn from(morton: u64) -> Self {
         Self {
             morton,
@@ -21,7 +21,7 @@ impl From<u64> for Brick {
     }
 }
 
-/// Place in the brick of each bit of its word.
+/// Place in the cluster of each bit of its word.
 pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     let mut table = [[0; 3]; 64];
     let mut bit = 0;
@@ -36,7 +36,7 @@ pub(super) const MORTON_TO_XYZ: [[usize; 3]; 64] = {
     table
 };
 
-/// The bits of a brick by rows: bit `z * 16 + y * 4 + x`.
+/// The bits of a cluster by rows: bit `z * 16 + y * 4 + x`.
 fn to_rows(word: u64) -> u64 {
     let mut rows = 0u64;
     let mut left = word;
@@ -48,10 +48,10 @@ fn to_rows(word: u64) -> u64 {
     rows
 }
 
-/// Puts one of the 27 bricks around and including a brick, `(x * 3 + y) * 3 + z`, into its window.
+/// Puts one of the 27 clusters around and including a cluster, `(x * 3 + y) * 3 + z`, into its surroundings.
 #[inline]
-pub(in crate::graph) fn put(rows: &mut Window, neighbour: usize, brick_rows: u64) {
-    /// First place in the window, first place in the brick, how many.
+pub(in crate::graph) fn put(rows: &mut Surroundings, neighbour: usize, cluster_rows: u64) {
+    /// First place in the surroundings, first place in the cluster, how many.
     const SPAN: [(usize, usize, usize); 3] = [(0, 2, 2), (2, 0, 4), (6, 0, 2)];
     let (to_x, from_x, count_x) = SPAN[neighbour / 9];
     let (to_y, from_y, count_y) = SPAN[neighbour / 3 % 3];
@@ -59,14 +59,14 @@ pub(in crate::graph) fn put(rows: &mut Window, neighbour: usize, brick_rows: u64
     let keep = (1u8 << count_x) - 1;
     for k in 0..count_z {
         for j in 0..count_y {
-            let row = brick_rows >> ((from_z + k) * 16 + (from_y + j) * 4 + from_x);
+            let row = cluster_rows >> ((from_z + k) * 16 + (from_y + j) * 4 + from_x);
             rows[to_z + k][to_y + j] |= (row as u8 & keep) << to_x;
         }
     }
 }
 
-/// Whether all six faces of a brick's voxel are covered.
-pub(super) fn enclosed(rows: &Window, [x, y, z]: [usize; 3]) -> bool {
+/// Whether all six faces of a cluster's voxel are covered.
+pub(super) fn enclosed(rows: &Surroundings, [x, y, z]: [usize; 3]) -> bool {
     let (y, z) = (y + 2, z + 2);
     let along_x = rows[z][y] >> (x + 1) & 0b101 == 0b101;
     let across = rows[z][y - 1] & rows[z][y + 1] & rows[z - 1][y] & rows[z + 1][y];
@@ -78,15 +78,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_of_a_window_are_where_they_should_be() {
-        // One voxel in each neighbour, seen at its place in the window.
+    fn rows_of_the_surroundings_are_where_they_should_be() {
+        // One voxel in each neighbour, seen at its place in the surroundings.
         for neighbour in 0..27 {
-            for (bit, place_in_brick) in MORTON_TO_XYZ.into_iter().enumerate() {
+            for (bit, place_in_cluster) in MORTON_TO_XYZ.into_iter().enumerate() {
                 let mut rows = [[0u8; 8]; 8];
                 put(&mut rows, neighbour, to_rows(1 << bit));
                 let offset = [neighbour / 9, neighbour / 3 % 3, neighbour % 3];
                 let at = [0, 1, 2].map(|k| {
-                    let place = place_in_brick[k] + 4 * offset[k];
+                    let place = place_in_cluster[k] + 4 * offset[k];
                     place.checked_sub(2).filter(|&p| p < 8)
                 });
                 let mut expected = [[0u8; 8]; 8];

@@ -22,16 +22,16 @@
 
 use super::line::{Cube, Line};
 use super::number::Number;
-use super::view::View;
+use super::ray_frame::RayFrame;
 use crate::graph::GraphView;
 
 /// A node, and its cell as a frame stores it.
 pub(super) type Seen = (u32, [i32; 4]);
 
 /// The search along one ray.
-pub(super) struct Walk<'w, N> {
+pub(super) struct Search<'w, N> {
     graph: &'w GraphView<'w>,
-    view: &'w View,
+    view: &'w RayFrame,
     line: Line<'w, N>,
     /// The octant in which a line with this direction begins.
     start: u8,
@@ -39,8 +39,8 @@ pub(super) struct Walk<'w, N> {
     pub(super) tested: u64,
 }
 
-impl<'w, N: Number> Walk<'w, N> {
-    pub(super) fn new(graph: &'w GraphView<'w>, view: &'w View, i: u32, j: u32) -> Self {
+impl<'w, N: Number> Search<'w, N> {
+    pub(super) fn new(graph: &'w GraphView<'w>, view: &'w RayFrame, i: u32, j: u32) -> Self {
         let line = Line::new(view, i, j);
         let [x, y, z] = line.direction.map(|d| u8::from(d < 0));
         Self {

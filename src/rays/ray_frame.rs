@@ -7,7 +7,7 @@ const I128_BOUND: i128 = 1 << 123;
 
 /// What all samples of a frame have in common.
 #[derive(Debug)]
-pub(super) struct View {
+pub(super) struct RayFrame {
     /// Clip vector of the object's lowest corner.
     origin: [i128; 3],
     /// Clip vectors of a finest voxel's edges.
@@ -31,7 +31,7 @@ pub(super) struct View {
     lod_depth: Vec<Option<i128>>,
 }
 
-impl View {
+impl RayFrame {
     pub(super) fn new(setup: &FrameSetup) -> Self {
         let edge = setup.edge_clip.map(|e| e.map(i128::from));
         Self {
@@ -80,7 +80,7 @@ impl View {
     }
 
     /// The plane through the eye and the voxel edge that leaves object point
-    /// `u` along `axis`: its product with a ray direction tells on which side
+    /// `u` along `axis`: the sign of its product with a ray direction is the side
     /// of the edge the ray passes. Zero where the edge's line goes through the eye.
     pub(super) fn edge_plane(&self, axis: usize, u: [i64; 3]) -> [i128; 3] {
         let mut point = self.origin;

@@ -1,6 +1,5 @@
-//! How a limit of memory is shared out.
+//! The sizes of all buffers, from a limit of memory.
 
-use super::halo::{MAX_BLOCK_SHIFT, block_bytes};
 use super::record::MAX_RUN;
 
 /// What the program itself takes: code, stacks, what the allocator keeps.
@@ -9,12 +8,21 @@ const PROGRAM: u64 = 48 << 20;
 const LEAST_READER: u64 = 64 << 10;
 /// Most runs that are merged at once.
 const MAX_FAN_IN: u64 = 256;
-/// Bytes for each brick that is worked on: 64 voxels with colour and normal,
+/// Bytes for each cluster that is worked on: 64 voxels with colour and normal,
 /// up to nine nodes, and the sum.
-const BRICK_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
+const CLUSTER_BYTES: u64 = 64 * 5 + 9 * 8 + 96;
 /// Streams to temporary files that may be open together: four for each of 21
 /// levels, and a few.
 const SPOOLS: u64 = 96;
+
+/// Largest blocks: 128 clusters, 512 voxels a side.
+const MAX_BLOCK_SHIFT: u32 = 7;
+
+/// Bytes of a block: its grid, and its clusters if all are there.
+fn block_bytes(shift: u32) -> u64 {
+    let side = 1u64 << shift;
+    (side + 2).pow(3) * 8 + side.pow(3) * 16
+}
 
 /// Sizes of the buffers of an external build.
 ///
@@ -22,7 +30,7 @@ const SPOOLS: u64 = 96;
 /// sorted); later the readers of the merge and the halo's buffer; later the
 /// halo's readers, a block and a chunk. Each stage stays within the limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Plan {
+pub(super) struct BufferSizes {
     /// Voxels in a run.
     pub(super) run_records: usize,
     /// Bytes for the readers of a merge, all together.
@@ -31,15 +39,15 @@ pub(super) struct Plan {
     pub(super) fan_in: usize,
     /// Halo records that are sorted at once.
     pub(super) halo_records: usize,
-    /// Blocks are `2^block_shift` bricks a side.
+    /// Blocks are `2^block_shift` clusters a side.
     pub(super) block_shift: u32,
-    /// Bricks that are worked on at once.
-    pub(super) chunk_bricks: usize,
+    /// Clusters that are worked on at once.
+    pub(super) chunk_clusters: usize,
     /// Bytes of a stream's buffer; whole items of 1, 2, 3, 4 and 16 bytes.
     pub(super) spool_bytes: usize,
 }
 
-impl Plan {
+impl BufferSizes {
     /// Shares out `memory` bytes. Below some megabytes the program itself is
     /// larger than the limit; then buffers are as small as they can be.
     pub(super) fn new(memory: u64) -> Self {
@@ -55,7 +63,7 @@ impl Plan {
             fan_in: (2 * eighth / LEAST_READER).clamp(2, MAX_FAN_IN) as usize,
             halo_records: (eighth / 16).clamp(2, 1 << 22) as usize,
             block_shift,
-            chunk_bricks: (eighth / BRICK_BYTES).clamp(1, 1 << 15) as usize,
+            chunk_clusters: (eighth / CLUSTER_BYTES).clamp(1, 1 << 15) as usize,
             spool_bytes: (eighth / SPOOLS / 48 * 48).clamp(48, 48 << 12) as usize,
         }
     }
@@ -75,30 +83,30 @@ mod tests {
             2 << 30,
             64 << 30,
         ] {
-            let plan = Plan::new(memory);
+            let sizes = BufferSizes::new(memory);
             let program = PROGRAM.min(memory / 4);
-            let spools = SPOOLS * plan.spool_bytes as u64;
-            let pushing = 2 * 16 * plan.run_records as u64;
-            let halo = 16 * plan.halo_records as u64;
-            let merging = plan.merge_bytes as u64 + halo + spools;
-            let working = plan.merge_bytes as u64
-                + block_bytes(plan.block_shift)
-                + BRICK_BYTES * plan.chunk_bricks as u64
+            let spools = SPOOLS * sizes.spool_bytes as u64;
+            let pushing = 2 * 16 * sizes.run_records as u64;
+            let halo = 16 * sizes.halo_records as u64;
+            let merging = sizes.merge_bytes as u64 + halo + spools;
+            let working = sizes.merge_bytes as u64
+                + block_bytes(sizes.block_shift)
+                + CLUSTER_BYTES * sizes.chunk_clusters as u64
                 + spools;
             for stage in [pushing, merging, working] {
-                assert!(program + stage <= memory, "{memory}: {plan:?}");
+                assert!(program + stage <= memory, "{memory}: {sizes:?}");
             }
-            assert!(plan.merge_bytes as u64 / plan.fan_in as u64 >= LEAST_READER);
+            assert!(sizes.merge_bytes as u64 / sizes.fan_in as u64 >= LEAST_READER);
         }
     }
 
     #[test]
     fn no_memory_at_all_still_makes_a_plan() {
-        let plan = Plan::new(0);
+        let sizes = BufferSizes::new(0);
         assert_eq!(
-            (plan.run_records, plan.fan_in, plan.chunk_bricks),
+            (sizes.run_records, sizes.fan_in, sizes.chunk_clusters),
             (2, 2, 1)
         );
-        assert_eq!((plan.block_shift, plan.spool_bytes), (0, 48));
+        assert_eq!((sizes.block_shift, sizes.spool_bytes), (0, 48));
     }
 }

@@ -5,14 +5,14 @@ use hwmodel::Format;
 
 use super::camera::{Axes, Camera};
 use super::depths::{self, Edges};
-use super::reach::{Quantised, Reach};
-use super::setup::{
+use super::options::{
     Coverage, MAX_CLIP_FRAC, MAX_SUB_LEVELS, SetupOptions, detail_limit, split_fraction,
 };
+use super::reach::{Quantised, Reach};
 use crate::graph::Placement;
 
 /// The view of the object in real numbers.
-pub(super) struct View {
+pub(super) struct RealView {
     /// Clip vectors of a voxel's edges.
     edge: [[f64; 3]; 3],
     /// The eye in object coordinates, voxels.
@@ -21,7 +21,7 @@ pub(super) struct View {
     root_px_log2: u32,
 }
 
-impl View {
+impl RealView {
     pub(super) fn new(
         camera: &Camera,
         axes: &Axes,
@@ -80,7 +80,7 @@ impl View {
     ) -> (u32, u32) {
         let fits = |frac: u32, shift: u32, plane_too: bool| {
             self.quantise(frac)
-                .and_then(|view| Reach::of(&view, depth))
+                .and_then(|quantised| Reach::of(&quantised, depth))
                 .is_some_and(|reach| {
                     reach.position_fits(format, shift) && (!plane_too || reach.plane_fits(format))
                 })

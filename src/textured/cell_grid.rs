@@ -1,4 +1,4 @@
-//! The cells of a grid, and the integers in which they are told apart.
+//! The cells of a grid, and the lattice of integers on which they are distinguished.
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ const BITS: u32 = 29;
 /// paper, so cells are not cubes; an axis along which the mesh is thinner than
 /// the longest side of a cell gets that much. On the lattice cells are cubes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lattice {
+pub struct CellGrid {
     cells: u32,
     texels: u32,
     origin: DVec3,
@@ -28,10 +28,10 @@ pub struct Lattice {
     texel: i64,
 }
 
-impl Lattice {
+impl CellGrid {
     /// The grid of `cells` (even, 2 to [`MOST_CELLS`]) with `texels` (1 to
     /// [`MOST_TEXELS`]) a face around a box. Other numbers give a grid that
-    /// makes no sense, so callers check them with [`Lattice::is_possible`].
+    /// makes no sense, so callers check them with [`CellGrid::is_possible`].
     #[must_use]
     pub fn around(low: DVec3, high: DVec3, cells: u32, texels: u32) -> Self {
         let extent = high - low;

@@ -7,10 +7,8 @@
 
 use rayon::prelude::*;
 
-use super::{BuildError, PackedNormal, morton};
-
-/// Longest side of the bounding box of a set of voxels.
-pub const MAX_SIDE: u64 = 1 << morton::MAX_BITS;
+use super::build_error::{BuildError, MAX_SIDE};
+use super::{PackedNormal, morton};
 
 /// Sides of the bounding box from its lowest to its highest voxel.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
@@ -34,7 +32,7 @@ const PIECE: usize = 1 << 21;
 
 /// A pushed voxel: 20 bytes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Record {
+pub(super) struct PushedVoxel {
     /// Index modulo 2^21 an axis while pushing, then the Morton key; in two
     /// halves, because eight-byte alignment would cost four bytes.
     key_high: u32,
@@ -45,7 +43,7 @@ pub(super) struct Record {
     pub(super) normal: PackedNormal,
 }
 
-impl Record {
+impl PushedVoxel {
     /// A voxel as it is pushed: the `sequence`-th, at a file index.
     pub(super) fn new(
         index: [i32; 3],
@@ -101,12 +99,12 @@ impl Record {
 
 /// All voxels pushed, 20 bytes each, and at most a piece's room besides.
 #[derive(Debug, Default)]
-pub(super) struct Records {
+pub(super) struct PushedVoxels {
     /// None is empty, but for a last one that was reserved.
-    pieces: Vec<Vec<Record>>,
+    pieces: Vec<Vec<PushedVoxel>>,
 }
 
-impl Records {
+impl PushedVoxels {
     /// Voxels held.
     pub(super) fn len(&self) -> usize {
         self.pieces.iter().map(Vec::len).sum()
@@ -127,7 +125,7 @@ impl Records {
     }
 
     /// Adds a voxel.
-    pub(super) fn push(&mut self, record: Record) {
+    pub(super) fn push(&mut self, record: PushedVoxel) {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
             // The first grows from little: most objects in tests are small.
@@ -142,9 +140,9 @@ impl Records {
 
     /// Sorts by Morton key from the lowest corner, and keeps the last pushed
     /// of those at one index.
-    pub(super) fn sorted(self, min: [i32; 3]) -> Vec<Record> {
+    pub(super) fn sorted(self, min: [i32; 3]) -> Vec<PushedVoxel> {
         let mut sorted = self.in_one(min);
-        sorted.par_sort_unstable_by_key(Record::order);
+        sorted.par_sort_unstable_by_key(PushedVoxel::order);
         sorted.dedup_by_key(|record| record.key());
         sorted
     }
@@ -152,7 +150,7 @@ impl Records {
     /// All voxels in one array, with their Morton keys. A piece's memory goes
     /// back as the array's pages are first written, so both together hold
     /// each voxel once and one piece twice.
-    fn in_one(mut self, min: [i32; 3]) -> Vec<Record> {
+    fn in_one(mut self, min: [i32; 3]) -> Vec<PushedVoxel> {
         if self.pieces.len() == 1
             && let Some(mut only) = self.pieces.pop()
         {
@@ -173,21 +171,21 @@ mod tests {
     use super::*;
 
     /// Voxel `i` of a row that runs through all axes.
-    fn record(i: u32) -> Record {
+    fn record(i: u32) -> PushedVoxel {
         let index = [i % 100, i / 100 % 200, i / 20_000].map(|c| c as i32 - 50);
-        Record::new(index, i, [(i & 255) as u8; 3], PackedNormal::NONE)
+        PushedVoxel::new(index, i, [(i & 255) as u8; 3], PackedNormal::NONE)
     }
 
     #[test]
     fn a_record_is_twenty_bytes() {
-        assert_eq!(size_of::<Record>(), 20);
+        assert_eq!(size_of::<PushedVoxel>(), 20);
     }
 
     #[test]
     fn pieces_hold_little_more_than_their_voxels_and_sort_like_one() {
         let count = 2 * PIECE + 1000;
-        let mut grown = Records::default();
-        let mut reserved = Records::default();
+        let mut grown = PushedVoxels::default();
+        let mut reserved = PushedVoxels::default();
         reserved.push(record(0));
         reserved.reserve(count - 1);
         for i in 0..count as u32 {
@@ -213,8 +211,8 @@ mod tests {
         let grown = grown.sorted([-50; 3]);
         let reserved = reserved.sorted([-50; 3]);
         assert_eq!(grown.len(), count - count / 1000);
-        assert!(grown.is_sorted_by_key(Record::key));
-        let parts = |r: &Record| (r.key(), r.sequence, r.color);
+        assert!(grown.is_sorted_by_key(PushedVoxel::key));
+        let parts = |r: &PushedVoxel| (r.key(), r.sequence, r.color);
         assert!(grown.iter().map(parts).eq(reserved.iter().map(parts)));
         // The last pushed stays.
         assert_eq!(grown[0].sequence, 999);
@@ -222,7 +220,7 @@ mod tests {
 
     #[test]
     fn small_reservations_leave_no_small_pieces() {
-        let mut records = Records::default();
+        let mut records = PushedVoxels::default();
         for i in 0..5000 {
             records.reserve(1);
             records.push(record(i));

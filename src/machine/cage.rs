@@ -2,34 +2,34 @@
 //! held in either of two ways: eight corners (the image-order paper) or one corner and
 //! three edges.
 //!
-//! A lattice gives its children's lattices by adds and shifts, and the least
-//! and the greatest of its vertices. A cage is two lattices in screen space (x,
+//! A cage coordinate gives its children's by adds and shifts, and the least
+//! and the greatest of its vertices. A cage is two coordinates in screen space (x,
 //! y), three in clip space (X, Y, W).
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
 /// One coordinate of eight vertices.
-pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
+pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The vertices of a parallelepiped with this corner and these edges
     /// (along x, y, z).
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self;
 
-    /// All numbers of the children's lattices.
+    /// All numbers of the children's coordinates.
     type Pool: Copy;
 
     /// Computes the children's numbers. The children's vertices lie between
-    /// this lattice's least and greatest.
+    /// this coordinate's least and greatest.
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool;
 
-    /// The lattice of one child, selected from the pool: wires, no operation.
+    /// The coordinate of one child, selected from the pool: wires, no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
-    /// The children's lattices, in Morton order, selected from the pool.
+    /// The children's coordinates, in Morton order, selected from the pool.
     fn all(pool: &Self::Pool) -> [Self; 8] {
         std::array::from_fn(|octant| Self::child(pool, octant))
     }
 
-    /// The eight children's lattices, in Morton order.
+    /// The eight children's coordinates, in Morton order.
     fn children<P: Probe>(&self, dp: &mut Datapath<P>) -> [Self; 8] {
         Self::all(&self.pool(dp))
     }
@@ -46,7 +46,7 @@ pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// The edges from the lowest corner along x, y, z.
     fn edges<P: Probe>(&self, dp: &mut Datapath<P>) -> [Word; 3];
 
-    /// `f`, which must be linear, applied to each number of the lattice.
+    /// `f`, which must be linear, applied to each number of the coordinate.
     fn map(&self, f: impl FnMut(Word) -> Word) -> Self;
 
     /// `f`, which must be linear, applied to each pair of numbers.
@@ -55,7 +55,7 @@ pub(super) trait Lattice: Copy + std::fmt::Debug + Wires {
     /// All vertices moved by `by`.
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
 
-    /// The lattice of the vertices' quotients `x / w`, computed by `divide`.
+    /// The coordinate of the vertices' quotients `x / w`, computed by `divide`.
     fn project<P: Probe>(
         dp: &mut Datapath<P>,
         x: &Self,
@@ -87,7 +87,7 @@ impl Wires for Corners {
     }
 }
 
-impl Lattice for Corners {
+impl CageCoordinate for Corners {
     type Pool = [Word; 27];
 
     fn from_frame<P: Probe>(dp: &mut Datapath<P>, corner: Word, edges: [Word; 3]) -> Self {
@@ -201,7 +201,7 @@ impl Wires for CornerAndEdges {
     }
 }
 
-impl Lattice for CornerAndEdges {
+impl CageCoordinate for CornerAndEdges {
     /// The children's lowest corners, and the edges that they share.
     type Pool = ([Word; 8], [Word; 3]);
 

@@ -1,9 +1,9 @@
-//! From what rays saw of a voxel to its shader.
+//! A voxel's shader and opacity, fitted to what rays saw of it.
 
 use glam::DVec3;
 
 use super::count::Counted;
-use super::sample::{Look, Seen, main_normal};
+use super::sample::{Seen, SurfaceSample, main_normal};
 use crate::far::blend::{Blend, DIRECTIONS, Fit};
 use crate::far::record::{Opacity, OpacityKind, Shader, Voxel};
 
@@ -13,8 +13,8 @@ const NORMAL_WEIGHT: f64 = 0.25;
 const GOOD_ENOUGH: f64 = 5e-4;
 /// A complex shader, three times as large, must be better by this factor.
 const WORTH_IT: f64 = 0.7;
-/// Fewer looks do not determine a complex shader.
-const LEAST_LOOKS: usize = 6;
+/// Fewer samples do not determine a complex shader.
+const LEAST_SAMPLES: usize = 6;
 /// A voxel is stored as opaque if its opacity is this near 1, root of the mean
 /// square over the directions that rays crossed it from.
 const OPAQUE_WITHIN: f64 = 0.1;
@@ -28,7 +28,7 @@ const NOISE: f64 = 5.0;
 /// rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A fitted voxel, and the sum over its looks of the square error.
+/// A fitted voxel, and the sum over its samples of the square error.
 pub(super) struct Fitted {
     pub(super) voxel: Voxel,
     pub(super) square_error: f64,
@@ -36,14 +36,14 @@ pub(super) struct Fitted {
 
 /// Fits a voxel that was seen at least once.
 pub(super) fn fit(seen: &Seen, blend: Blend, use_of_opacity: Opacity) -> Fitted {
-    let looks = &seen.looks;
-    let count = looks.len().max(1) as f64;
-    let flat = flat(looks);
-    let flat_error = error(&flat, looks, blend) / count;
+    let samples = &seen.samples;
+    let count = samples.len().max(1) as f64;
+    let flat = flat(samples);
+    let flat_error = error(&flat, samples, blend) / count;
     let mut chosen = (flat, flat_error);
-    if flat_error > GOOD_ENOUGH && looks.len() >= LEAST_LOOKS {
-        let complex = complex(looks, blend);
-        let complex_error = error(&complex, looks, blend) / count;
+    if flat_error > GOOD_ENOUGH && samples.len() >= LEAST_SAMPLES {
+        let complex = complex(samples, blend);
+        let complex_error = error(&complex, samples, blend) / count;
         if complex_error < WORTH_IT * flat_error {
             chosen = (complex, complex_error);
         }
@@ -65,7 +65,7 @@ pub(super) fn fit(seen: &Seen, blend: Blend, use_of_opacity: Opacity) -> Fitted 
     }
 }
 
-/// The least that says what rays found, within tolerance and noise.
+/// The smallest kind of opacity that agrees with what rays found, within tolerance and noise.
 fn classify(counted: &Counted, most: Opacity) -> (OpacityKind, [f64; DIRECTIONS]) {
     let rays = counted.independent();
     let (six, scalar) = (counted.six(), counted.scalar());
@@ -82,12 +82,12 @@ fn classify(counted: &Counted, most: Opacity) -> (OpacityKind, [f64; DIRECTIONS]
     (OpacityKind::Six, six)
 }
 
-fn flat(looks: &[Look]) -> Shader {
-    let normal = main_normal(looks);
+fn flat(samples: &[SurfaceSample]) -> Shader {
+    let normal = main_normal(samples);
     let mut sums = [(DVec3::ZERO, 0.0); 2];
-    for look in looks {
-        let side = usize::from(look.towards_eye.dot(normal) < 0.0);
-        sums[side].0 += look.color;
+    for sample in samples {
+        let side = usize::from(sample.towards_eye.dot(normal) < 0.0);
+        sums[side].0 += sample.color;
         sums[side].1 += 1.0;
     }
     // A side that nobody saw looks like the other.
@@ -102,15 +102,15 @@ fn flat(looks: &[Look]) -> Shader {
     Shader::Flat { normal, colors }
 }
 
-fn complex(looks: &[Look], blend: Blend) -> Shader {
+fn complex(samples: &[SurfaceSample], blend: Blend) -> Shader {
     let mut fit = Fit::<6>::new();
     let mut mean = [0.0; 6];
-    for look in looks {
-        let (c, n) = (look.color, look.normal);
+    for sample in samples {
+        let (c, n) = (sample.color, sample.normal);
         let value = [c.x, c.y, c.z, n.x, n.y, n.z];
-        fit.add(&blend.shares(look.towards_eye), &value, 1.0);
+        fit.add(&blend.shares(sample.towards_eye), &value, 1.0);
         for (mean, value) in mean.iter_mut().zip(value) {
-            *mean += value / looks.len() as f64;
+            *mean += value / samples.len() as f64;
         }
     }
     let values = fit.solve(&mean, 0.5, (-1.0, 1.0));
@@ -135,15 +135,15 @@ fn main_direction(number: usize) -> DVec3 {
     }
 }
 
-/// Sum of the square errors of what a shader shows of the looks.
-fn error(shader: &Shader, looks: &[Look], blend: Blend) -> f64 {
-    looks
+/// Sum of the square errors of what a shader shows of the samples.
+fn error(shader: &Shader, samples: &[SurfaceSample], blend: Blend) -> f64 {
+    samples
         .iter()
-        .map(|look| {
-            let (normal, color) = shader.seen_from(look.towards_eye, blend);
-            let of_color = (color - look.color).length_squared() / 3.0;
+        .map(|sample| {
+            let (normal, color) = shader.seen_from(sample.towards_eye, blend);
+            let of_color = (color - sample.color).length_squared() / 3.0;
             // Rounding must not make it negative.
-            let of_normal = (1.0 - normal.dot(look.normal)).max(0.0) / 2.0;
+            let of_normal = (1.0 - normal.dot(sample.normal)).max(0.0) / 2.0;
             of_color + NORMAL_WEIGHT * of_normal
         })
         .sum()
@@ -153,7 +153,7 @@ fn error(shader: &Shader, looks: &[Look], blend: Blend) -> f64 {
 mod tests {
     use super::*;
 
-    fn looks(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<Look> {
+    fn samples(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<SurfaceSample> {
         (0..500)
             .map(|i| {
                 let z = 1.0 - (2.0 * f64::from(i) + 1.0) / 500.0;
@@ -161,7 +161,7 @@ mod tests {
                 let ring = libm::sqrt(1.0 - z * z);
                 let towards_eye = DVec3::new(ring * libm::cos(around), ring * libm::sin(around), z);
                 let (normal, color) = of(towards_eye);
-                Look {
+                SurfaceSample {
                     towards_eye,
                     normal,
                     color,
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn a_wall_with_two_colours_is_flat() {
         let up = DVec3::new(0.6, 0.0, 0.8);
-        let wall = looks(|eye| {
+        let wall = samples(|eye| {
             if eye.dot(up) > 0.0 {
                 (up, DVec3::X)
             } else {
@@ -192,7 +192,7 @@ mod tests {
 
     #[test]
     fn a_ball_is_better_complex() {
-        let ball = looks(|eye| (eye, DVec3::splat(0.5) + eye * 0.3));
+        let ball = samples(|eye| (eye, DVec3::splat(0.5) + eye * 0.3));
         let of_flat = error(&flat(&ball), &ball, Blend::Squares);
         for blend in [Blend::Squares, Blend::Cosines] {
             let of_complex = error(&complex(&ball, blend), &ball, blend);
@@ -204,12 +204,12 @@ mod tests {
     fn counted(rays: u32, share: impl Fn(DVec3) -> f64) -> Counted {
         let mut counted = Counted::default();
         let mut chance = crate::far::build::sample::Chance::new(5);
-        let looks = looks(|eye| (eye, eye));
+        let samples = samples(|eye| (eye, eye));
         for ray in 0..rays as usize {
             // The first few are spread, too.
-            let look = &looks[ray * 191 % looks.len()];
-            let is_hit = chance.unit() < share(look.towards_eye);
-            let shares = Blend::Cosines.shares(look.towards_eye);
+            let sample = &samples[ray * 191 % samples.len()];
+            let is_hit = chance.unit() < share(sample.towards_eye);
+            let shares = Blend::Cosines.shares(sample.towards_eye);
             counted.add(&shares, is_hit, 1.0);
         }
         counted

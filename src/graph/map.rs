@@ -1,4 +1,4 @@
-//! Mapping a file into memory: the only unsafe code of the graph.
+//! Mapping a file into memory: the only unsafe code below the engines.
 
 use std::fs::File;
 use std::io;
@@ -12,8 +12,7 @@ pub(crate) fn map(file: &File) -> io::Result<Arc<Mmap>> {
     // to this process and read-only, and files that this program writes are
     // never changed in place: a new file takes the name, and the map keeps the
     // old one alive. That no other program rewrites or truncates the file is
-    // the user's part, as with any program that maps its input: `spec/graph.md`
-    // says so. What is read is plain numbers of any value, and no
+    // the user's part, as with any program that maps its input: see `spec/graph.md`. What is read is plain numbers of any value, and no
     // index among them is followed unchecked, so changed bytes give a wrong
     // picture. A file truncated under the map ends the process (SIGBUS).
     let map = unsafe { Mmap::map(file) }?;
@@ -22,16 +21,16 @@ pub(crate) fn map(file: &File) -> io::Result<Arc<Mmap>> {
 
 /// How a mapped file is going to be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Access {
+pub(in crate::graph) enum Access {
     /// Here and there: a page that is missing is read alone, not with those around it.
     Scattered,
     /// From the beginning to the end.
     Whole,
 }
 
-/// Tells the system how the file is going to be read. It may take no notice,
-/// and where it has no such call nothing is told: reading works all the same.
-pub(super) fn advise(map: &Mmap, access: Access) {
+/// Advises the system how the file is going to be read. Reading works also where
+/// the system has no such call or ignores it.
+pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
     #[cfg(unix)]
     {
         let advice = match access {
@@ -46,7 +45,7 @@ pub(super) fn advise(map: &Mmap, access: Access) {
 }
 
 /// Lets go of the pages of a range of bytes: they are read from the file again
-/// when they are next looked at. False where the system has no such call, or
+/// when they are next read. False where the system has no such call, or
 /// refuses it.
 pub(crate) fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
     #[cfg(unix)]

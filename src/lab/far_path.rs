@@ -9,9 +9,9 @@ use serde::Serialize;
 
 use crate::drawing::mesh_view::{light_of, view_of};
 use crate::far::FarFile;
-use crate::far::view::{Counts, FarViewer, Opacity, ViewError, ViewOptions};
+use crate::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::lab::bench::Clock;
-use crate::lab::error::Look;
+use crate::lab::error::PixelStyle;
 use crate::lab::methods::opacity_in_words;
 use crate::project::Camera;
 #[cfg(feature = "cli")]
@@ -20,7 +20,7 @@ use crate::report::{Cell, Table};
 
 /// What is walked.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Plan {
+pub struct FarPathPlan {
     /// Frames of the walk, 2 or more.
     pub frames: u32,
     /// Pixels across and down.
@@ -37,7 +37,7 @@ pub struct Plan {
 
 /// A walk of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Walk {
+pub struct FarPathTimes {
     /// What opacities are used for.
     pub opacity: &'static str,
     /// Time of each frame, milliseconds, the least of the runs.
@@ -48,7 +48,7 @@ pub struct Walk {
 
 /// Counts of all frames of a walk.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[allow(missing_docs, reason = "named as in `Counts`")]
+#[allow(missing_docs, reason = "named as in `FarCounts`")]
 pub struct Sums {
     pub visited: u64,
     pub queries: u64,
@@ -61,7 +61,7 @@ pub struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, counts: &Counts) {
+    fn add(&mut self, counts: &FarCounts) {
         self.visited += counts.visited;
         self.queries += counts.queries;
         self.hidden += counts.hidden;
@@ -76,7 +76,7 @@ impl Sums {
 /// The camera of a frame: once around, from two and a half sizes away to a
 /// third of one and back, from a little above.
 #[must_use]
-pub fn camera(file: &FarFile, frame: u32, plan: &Plan) -> Camera {
+pub fn camera(file: &FarFile, frame: u32, plan: &FarPathPlan) -> Camera {
     let (low, high) = file.bounds();
     let target = (low + high) / 2.0;
     let size = (high - low).length();
@@ -100,12 +100,12 @@ pub fn camera(file: &FarFile, frame: u32, plan: &Plan) -> Camera {
 ///
 /// # Errors
 /// When the file's data is damaged or the picture too large.
-pub fn walk(file: &FarFile, plan: &Plan) -> Result<Vec<Walk>, ViewError> {
-    let look = Look::default();
-    let mut walks: Vec<Walk> = plan
+pub fn walk(file: &FarFile, plan: &FarPathPlan) -> Result<Vec<FarPathTimes>, ViewError> {
+    let style = PixelStyle::default();
+    let mut walks: Vec<FarPathTimes> = plan
         .opacities
         .iter()
-        .map(|&opacity| Walk {
+        .map(|&opacity| FarPathTimes {
             opacity: opacity_in_words(opacity),
             ms: vec![f64::INFINITY; plan.frames as usize],
             sums: Sums::default(),
@@ -124,8 +124,8 @@ pub fn walk(file: &FarFile, plan: &Plan) -> Result<Vec<Walk>, ViewError> {
                 let options = ViewOptions {
                     voxel_px: plan.voxel_px,
                     opacity,
-                    light: light_of(&view, look.shading),
-                    background: Some(look.background),
+                    light: light_of(&view, style.shading),
+                    background: Some(style.background),
                     culling: plan.culling,
                     ..ViewOptions::default()
                 };
@@ -155,7 +155,7 @@ fn quantile(ms: &[f64], share: f64) -> f64 {
 
 /// A row for each kind; counts are means of a frame.
 #[must_use]
-pub fn table(name: &str, walks: &[Walk]) -> Table {
+pub fn table(name: &str, walks: &[FarPathTimes]) -> Table {
     let columns = [
         "opacity",
         "median_ms",
@@ -196,7 +196,7 @@ pub fn table(name: &str, walks: &[Walk]) -> Table {
 /// Frames per second along the way.
 #[cfg(feature = "cli")]
 #[must_use]
-pub fn panel(name: &str, walks: &[Walk]) -> Panel {
+pub fn panel(name: &str, walks: &[FarPathTimes]) -> Panel {
     let series = walks.iter().map(|walk| {
         let points = walk.ms.iter().enumerate();
         let points = points.map(|(frame, ms)| (frame as f64, 1e3 / ms));

@@ -14,11 +14,11 @@
 use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
 
 use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
+use super::cage::CageCoordinate;
 use super::constants::Constants;
-use super::lattice::Lattice;
 use super::planes;
 use super::quadrants::{self, margins};
-use super::record::{Clip, Place, Planes, Spans};
+use super::record::{Clip, ImagePlace, Planes, Spans};
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 use crate::project::Coverage;
@@ -62,14 +62,14 @@ fn only(quadrants: u8) -> Option<u8> {
 
 /// Fits a clip-space cage, and makes it and its planes relative to the node
 /// found. `None`: rejected.
-pub(super) fn clip<P: Probe, L: Lattice>(
+pub(super) fn clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &Fill<'_>,
-    place: Place,
+    place: ImagePlace,
     clip: &mut Clip<L>,
     planes: &mut Planes,
-) -> Option<Place> {
+) -> Option<ImagePlace> {
     dp.stage(Stage::QuadtreeFit);
     let mut quad = place.quad;
     let inside = place.inside
@@ -102,7 +102,7 @@ pub(super) fn clip<P: Probe, L: Lattice>(
         }
         quad = quad.quadrant(quadrant);
     }
-    Some(Place { quad, inside })
+    Some(ImagePlace { quad, inside })
 }
 
 /// Fits a screen-space box. `None`: rejected.
@@ -111,9 +111,9 @@ pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &Fill<'_>,
-    place: Place,
+    place: ImagePlace,
     spans: &Spans,
-) -> Option<Place> {
+) -> Option<ImagePlace> {
     dp.stage(Stage::QuadtreeFit);
     let mut quad = place.quad;
     let inside = place.inside
@@ -132,11 +132,11 @@ pub(super) fn screen<P: Probe>(
         };
         quad = quad.quadrant(quadrant);
     }
-    Some(Place { quad, inside })
+    Some(ImagePlace { quad, inside })
 }
 
 /// Whether a clip-space box leaves a node by at most the node's width.
-fn near_node<P: Probe, L: Lattice>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
+fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
     let from_left = x.zip(w, |x, w| dp.add(x, w));
     let (low, _) = from_left.span(dp);
     let to_right = x.zip(w, |x, w| {
@@ -158,7 +158,7 @@ enum Border {
 }
 
 /// A clip-space box, widened by [`Constants::grow`], against a node's edges.
-fn border<P: Probe, L: Lattice>(
+fn border<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,

@@ -1,19 +1,19 @@
-//! Vertices by the book: `SPEC.md`, sections 4 and 5, in wide integers
-//! that multiply and divide. It is written from the specification and shares
+//! Vertices as `SPEC.md`, sections 4 and 5, defines them, in wide integers
+//! with products and quotients. It is written from the specification and shares
 //! nothing with the machine but the recorded integers of a frame.
 
 use crate::machine::Cage;
 use crate::project::{CageKind, FrameSetup};
 
-/// What the book says of a voxel on the way down.
+/// The vertices that the specification gives a voxel.
 #[derive(Debug, Clone)]
-pub(super) struct Book<'s> {
+pub(super) struct SpecifiedVertices<'s> {
     setup: &'s FrameSetup,
 }
 
 type Wide = i128;
 
-impl<'s> Book<'s> {
+impl<'s> SpecifiedVertices<'s> {
     pub(super) fn new(setup: &'s FrameSetup) -> Self {
         Self { setup }
     }
@@ -67,8 +67,8 @@ impl<'s> Book<'s> {
         Some([0, 1].map(|c| std::array::from_fn(|v| (clip[c][v] << bits).div_euclid(clip[2][v]))))
     }
 
-    /// What a voxel is held as that changed `changed` levels below the root,
-    /// or not at all. `None` for a change that may not be.
+    /// The cage of a voxel that changed to screen space `changed` levels below the root,
+    /// or not at all. `None` for a change that is not allowed.
     pub(super) fn held(&self, path: &[u8], changed: Option<usize>) -> Option<Cage> {
         let narrow = |values: [Wide; 8]| values.map(|v| i64::try_from(v).unwrap_or(i64::MAX));
         let Some(changed) = changed else {

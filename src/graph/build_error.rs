@@ -1,0 +1,29 @@
+//! Why no graph was built of voxels.
+
+/// Longest side of the bounding box of a set of voxels.
+pub(in crate::graph) const MAX_SIDE: u64 = 1 << super::morton::MAX_BITS;
+
+/// Why no graph was built.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// No voxel was pushed.
+    #[error("there are no voxels, so there is nothing to build")]
+    Empty,
+    /// The bounding box is too long.
+    #[error(
+        "the voxels span {extent} along axis {axis}, more than {MAX_SIDE}; \
+         are there stray voxels far from the object?"
+    )]
+    TooLarge {
+        /// `x`, `y` or `z`.
+        axis: char,
+        /// Length of the bounding box, voxels.
+        extent: u64,
+    },
+    /// More voxels or nodes than 32 bits number.
+    #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
+    TooMany(u64),
+    /// The world placement makes no sense.
+    #[error("the world origin must be finite and the voxel size finite and above 0")]
+    Placement,
+}

@@ -1,0 +1,92 @@
+//! Why a scene of any kind was not opened.
+
+use super::SceneError;
+use super::generate::SpecError;
+use crate::graph::{BuildError, ExternalError, vxg};
+#[cfg(feature = "mesh")]
+use crate::mesh::{MeshError, voxelize::GridError};
+
+/// Why a scene could not be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The specification names no scene.
+    #[error(transparent)]
+    Spec(#[from] SpecError),
+    /// The file could not be read, or holds no voxels that can be.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The file is a damaged graph.
+    #[error(transparent)]
+    Graph(#[from] vxg::VxgError),
+    /// The file is a mesh, and this build reads none.
+    #[cfg(not(feature = "mesh"))]
+    #[error("{0}: this is a mesh; build with the feature `mesh` to open it")]
+    NoMeshes(String),
+    /// The file is a mesh that cannot be read.
+    #[cfg(feature = "mesh")]
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The mesh cannot be voxelised.
+    #[cfg(feature = "mesh")]
+    #[error("{source_name}: {error}")]
+    Grid {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with it, or with the number of levels.
+        error: GridError,
+    },
+    /// The voxels make no graph.
+    #[error("{source_name}: {error}")]
+    Build {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with them.
+        error: BuildError,
+    },
+    /// The voxels make no `.vxg` file.
+    #[error("{source_name}: {error}")]
+    External {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// What is wrong with them, or with the place to write to.
+        error: ExternalError,
+    },
+    /// More voxels than can be built in memory.
+    #[error(
+        "{source_name}: {voxels} voxels or more take at least {needed} bytes of memory while they are built, \
+         and {available} are free"
+    )]
+    TooMany {
+        /// The scene, as the user named it.
+        source_name: String,
+        /// Voxels that there are at the least.
+        voxels: u64,
+        /// Bytes that they take at the least.
+        needed: u64,
+        /// Bytes of memory that were free when reading began.
+        available: u64,
+    },
+}
+
+impl OpenError {
+    /// Whether the input is sound and only too large.
+    #[must_use]
+    pub fn is_limit(&self) -> bool {
+        match self {
+            Self::TooMany { .. } => true,
+            Self::Build { error, .. }
+            | Self::External {
+                error: ExternalError::Build(error),
+                ..
+            } => !matches!(error, BuildError::Empty),
+            Self::Scene(error) => error.is_limit(),
+            #[cfg(not(feature = "mesh"))]
+            Self::NoMeshes(_) => false,
+            #[cfg(feature = "mesh")]
+            Self::Mesh(error) => error.is_limit(),
+            #[cfg(feature = "mesh")]
+            Self::Grid { error, .. } => matches!(error, GridError::TooMany(_)),
+            Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! SplitMix64: random numbers that are the same in every run and on every machine.
+
+/// The numbers that follow from a seed.
+#[derive(Debug, Clone)]
+pub struct SplitMix(u64);
+
+impl SplitMix {
+    /// A generator that begins at a seed.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// 64 random bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    /// A number from 0 to below `count`, which is 1 or more.
+    pub fn below(&mut self, count: u64) -> u64 {
+        self.bits() % count.max(1)
+    }
+
+    /// A number from 0 to below 1.
+    pub fn unit(&mut self) -> f64 {
+        (self.bits() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// 64 bits that look random and follow from `value`: the first ones of that seed.
+#[must_use]
+pub fn mix(value: u64) -> u64 {
+    SplitMix(value).bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first numbers of the authors' program for the seed 1234567.
+    #[test]
+    fn the_numbers_are_those_of_the_reference() {
+        let mut numbers = SplitMix::new(1_234_567);
+        let first = [(); 3].map(|()| numbers.bits());
+        assert_eq!(
+            first,
+            [
+                6_457_827_717_110_365_317,
+                3_203_168_211_198_807_973,
+                9_817_491_932_198_370_423
+            ]
+        );
+        assert_eq!(mix(1_234_567), first[0]);
+    }
+}

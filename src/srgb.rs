@@ -1,0 +1,36 @@
+//! The sRGB transfer function and its inverse (IEC 61966-2-1), for values from 0 to 1.
+
+/// Linear light of an sRGB value.
+pub(crate) fn to_linear(value: f64) -> f64 {
+    if value <= 0.040_45 {
+        value / 12.92
+    } else {
+        libm::pow((value + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// The sRGB value of linear light.
+pub(crate) fn from_linear(light: f64) -> f64 {
+    if light <= 0.003_130_8 {
+        12.92 * light
+    } else {
+        1.055 * libm::pow(light, 1.0 / 2.4) - 0.055
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_undoes_the_other() {
+        for byte in 0..=255 {
+            let value = f64::from(byte) / 255.0;
+            assert!(
+                (from_linear(to_linear(value)) - value).abs() < 1e-7,
+                "{byte}"
+            );
+        }
+        assert_eq!((to_linear(0.0), to_linear(1.0)), (0.0, 1.0));
+    }
+}
