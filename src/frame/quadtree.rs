@@ -144,6 +144,12 @@ impl FillVectors {
         self.vectors[at]
     }
 
+    /// Puts a vector in place of a node's, and returns that.
+    #[must_use]
+    pub fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
+        std::mem::replace(&mut self.vectors[node.address()], vector)
+    }
+
     /// Whether every invariant holds: a bit is set exactly where the quadrant is full.
     #[must_use]
     pub fn is_consistent(&self) -> bool {

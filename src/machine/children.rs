@@ -16,27 +16,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn subdivide(&mut self, record: &Record<L>) {
         self.counts.subdivided += 1;
         let cube = &record.cube;
-        self.dp.stage(Stage::Centre);
-        let centre: [Word; 3] = std::array::from_fn(|k| self.dp.midpoint(cube.min[k], cube.max[k]));
-        self.dp.tap(Block::Centre, &(cube.min, cube.max), &centre);
-
-        self.dp.stage(Stage::Order);
-        let octant = (0..3).fold(0u8, |bits, k| {
-            // The centre is on the positive side where the eye is below it.
-            bits << 1 | u8::from(self.dp.lt(self.constants.eye_floor[k], centre[k]))
-        });
-        let order = self
-            .options
-            .order
-            .map(|nearest| self.dp.xor_bits(3, octant, nearest));
-        self.dp.tap(
-            Block::OctantOrder,
-            &(centre, self.constants.eye_floor),
-            &(
-                Short::unsigned(octant, 3),
-                order.map(|child| Short::unsigned(child, 3)),
-            ),
-        );
+        let (centre, order) = self.centre_and_order(cube);
 
         self.dp.stage(Stage::VertexPool);
         let dp = &mut self.dp;
@@ -60,6 +40,74 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
     }
 
+    /// The centre of a cube that is subdivided, and its octants, nearest first.
+    #[inline(always)]
+    pub(super) fn centre_and_order(&mut self, cube: &Cube) -> ([Word; 3], [u8; 8]) {
+        self.dp.stage(Stage::Centre);
+        let centre: [Word; 3] = std::array::from_fn(|k| self.dp.midpoint(cube.min[k], cube.max[k]));
+        self.dp.tap(Block::Centre, &(cube.min, cube.max), &centre);
+
+        self.dp.stage(Stage::Order);
+        let octant = (0..3).fold(0u8, |bits, k| {
+            // The centre is on the positive side where the eye is below it.
+            bits << 1 | u8::from(self.dp.lt(self.constants.eye_floor[k], centre[k]))
+        });
+        let order = self
+            .options
+            .order
+            .map(|nearest| self.dp.xor_bits(3, octant, nearest));
+        self.dp.tap(
+            Block::OctantOrder,
+            &(centre, self.constants.eye_floor),
+            &(
+                Short::unsigned(octant, 3),
+                order.map(|child| Short::unsigned(child, 3)),
+            ),
+        );
+        (centre, order)
+    }
+
+    /// A cube's child in an octant, if there is one.
+    #[inline(always)]
+    pub(super) fn child_cube(
+        &mut self,
+        parent: &Cube,
+        octant: u8,
+        centre: &[Word; 3],
+    ) -> Option<Cube> {
+        let node = if parent.solid {
+            Some(parent.node)
+        } else {
+            self.graph.child(parent.node, octant)
+        };
+        let Some(node) = node else {
+            self.counts.absent_children += 1;
+            return None;
+        };
+        self.dp.stage(Stage::ChildBox);
+        let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
+        let min = std::array::from_fn(|k| self.dp.select(upper[k], centre[k], parent.min[k]));
+        let max = std::array::from_fn(|k| self.dp.select(upper[k], parent.max[k], centre[k]));
+        self.dp.tap(
+            Block::ChildCorners,
+            &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
+            &(min, max),
+        );
+        let level = parent.level + 1;
+        Some(Cube {
+            min,
+            max,
+            node,
+            level,
+            voxel_level: if parent.solid {
+                parent.voxel_level
+            } else {
+                level
+            },
+            solid: parent.solid,
+        })
+    }
+
     /// Pushes the children that exist, the farthest first. `push`, given the
     /// child's octant and cube, returns whether the child was pushed.
     #[inline(always)]
@@ -71,36 +119,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         mut push: impl FnMut(&mut Self, u8, Cube) -> bool,
     ) {
         for (rank, octant) in (0..8u8).zip(order).rev() {
-            let node = if parent.solid {
-                Some(parent.node)
-            } else {
-                self.graph.child(parent.node, octant)
-            };
-            let Some(node) = node else {
-                self.counts.absent_children += 1;
+            let Some(child) = self.child_cube(parent, octant, centre) else {
                 continue;
-            };
-            self.dp.stage(Stage::ChildBox);
-            let upper: [bool; 3] = std::array::from_fn(|k| octant >> (2 - k) & 1 != 0);
-            let min = std::array::from_fn(|k| self.dp.select(upper[k], centre[k], parent.min[k]));
-            let max = std::array::from_fn(|k| self.dp.select(upper[k], parent.max[k], centre[k]));
-            self.dp.tap(
-                Block::ChildCorners,
-                &(parent.min, parent.max, centre, Short::unsigned(octant, 3)),
-                &(min, max),
-            );
-            let level = parent.level + 1;
-            let child = Cube {
-                min,
-                max,
-                node,
-                level,
-                voxel_level: if parent.solid {
-                    parent.voxel_level
-                } else {
-                    level
-                },
-                solid: parent.solid,
             };
             if push(self, octant, child) {
                 self.watch.pushed(rank);
@@ -110,7 +130,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// Pushes a child in clip space, if it can be seen. The pools and planes are
     /// its parent's.
-    fn push_clip_child(
+    pub(super) fn push_clip_child(
         &mut self,
         octant: u8,
         (x, y, w): (&L::Pool, &L::Pool, &L::Pool),
@@ -135,7 +155,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// Pushes a child in screen space, if it can be seen.
     #[inline(always)]
-    fn push_screen_child(
+    pub(super) fn push_screen_child(
         &mut self,
         octant: u8,
         x: &L::Pool,
@@ -155,7 +175,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
 /// One coordinate of the vertices of a record's children.
 #[inline(always)]
-fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate: &L) -> L::Pool {
+pub(super) fn pool<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, coordinate: &L) -> L::Pool {
     let pool = coordinate.pool(dp);
     if P::TAPS {
         dp.tap(Block::VertexPool, coordinate, &L::all(&pool));

@@ -21,7 +21,7 @@
 //! - steps on words: `shifts`, `planes`, `quadrants`, `smallest_node`,
 //!   `to_screen`, `size`, `alpha`, `canvas`;
 //! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
-//!   `verdict`, `children`, `record_loop`;
+//!   `verdict`, `children`, `record_loop`, and `parents`, the loop with parents on its stack;
 //! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
 //! - `instruments`, which watch the machine or drive it in another way. The
 //!   machine does not depend on them.
@@ -36,6 +36,7 @@ mod engine;
 mod heat;
 mod instruments;
 mod options;
+mod parents;
 mod planes;
 mod push;
 mod quadrants;

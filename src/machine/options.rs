@@ -1,6 +1,7 @@
 //! Settings of the machine that are not part of a frame set-up.
 
 use hwmodel::Overflow;
+use hwmodel::cycles::Organisation;
 
 use crate::project::OCCLUSION_ORDER;
 
@@ -15,6 +16,9 @@ pub struct MachineOptions {
     /// Children by octant, nearest first, for octant 000; only tests use
     /// another array than [`OCCLUSION_ORDER`].
     pub order: [u8; 8],
+    /// What the stack holds, what is read for a leaf, and whether the picture is drawn by tiles. Without the
+    /// organisation of the image-order paper, only a frame's records and accesses change, not its picture.
+    pub organisation: Organisation,
 }
 
 impl Default for MachineOptions {
@@ -23,6 +27,7 @@ impl Default for MachineOptions {
             overflow: Overflow::Trap,
             reject_filled: true,
             order: OCCLUSION_ORDER,
+            organisation: Organisation::default(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Pushing records: those that are before the eye, and whose box has an
 //! unfilled quadtree node (image-order paper, 3.5).
 
+use hwmodel::cycles::StackHolds;
 use hwmodel::{Memory, Probe, Stage, Word};
 
 use super::cage::CageCoordinate;
@@ -101,13 +102,18 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             return false;
         };
         self.dp.stage(Stage::Push);
-        self.dp.write(Memory::Stack, self.stack.len() as u64);
+        // Where parents lie on the stack, what was just made is in registers.
+        if self.options.organisation.stack == StackHolds::Children {
+            self.dp.write(Memory::Stack, self.stack.len() as u64);
+        }
         self.stack.push(Record {
             cube,
             place,
             pose: pose(),
         });
-        self.counts.deepest_stack = self.counts.deepest_stack.max(self.stack.len() as u64);
+        if self.options.organisation.stack == StackHolds::Children {
+            self.counts.deepest_stack = self.counts.deepest_stack.max(self.stack.len() as u64);
+        }
         true
     }
 

@@ -1,5 +1,6 @@
 //! The record loop (image-order paper, 3.1 to 3.6): see the machine's page.
 
+use hwmodel::cycles::Organisation;
 use hwmodel::{Memory, Probe, Short, Stage};
 
 use super::alpha::BlendColor;
@@ -13,11 +14,12 @@ use super::state::State;
 use super::to_screen;
 use super::verdict::Verdict;
 use super::watch::Watch;
+use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 use crate::project::EngineError;
 
 /// What is left to do of a record.
-enum RemainingWork {
+pub(super) enum RemainingWork {
     /// Nothing: it is drawn, hidden or dropped.
     Nothing,
     /// To push its children.
@@ -31,6 +33,9 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// # Errors
     /// When a word overflows under the trap policy.
     pub(super) fn draw_object(&mut self, most_records: u64) -> Result<bool, EngineError> {
+        if self.options.organisation != Organisation::default() {
+            return self.draw_by_tiles(most_records);
+        }
         self.push_object();
         while !self.stack.is_empty() {
             if self.counts.records >= most_records {
@@ -43,7 +48,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    fn check_trap(&self) -> Result<(), EngineError> {
+    pub(super) fn check_trap(&self) -> Result<(), EngineError> {
         match self.dp.trap() {
             Some(trap) => Err(trap.into()),
             None => Ok(()),
@@ -81,26 +86,41 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.dp.stage(Stage::Pop);
         self.dp.read(Memory::Stack, address);
 
-        self.dp.stage(Stage::Filled);
-        if self.options.reject_filled {
-            let address = record.place.quad.address();
-            self.dp.read(Memory::FillVector, address as u64);
-            let vector = self.canvas.fill.vector(record.place.quad);
-            let full = self.dp.and_bits(4, vector, FULL) == FULL;
-            self.dp
-                .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
-            if full {
-                self.counts.already_full += 1;
-                return RemainingWork::Nothing;
-            }
+        if self.is_full(record.place.quad) {
+            self.counts.already_full += 1;
+            return RemainingWork::Nothing;
         }
+        self.decide(record)
+    }
 
+    /// Whether all of a quadtree node is drawn.
+    #[inline(always)]
+    pub(super) fn is_full(&mut self, quad: QuadNode) -> bool {
+        self.dp.stage(Stage::Filled);
+        if !self.options.reject_filled {
+            return false;
+        }
+        self.dp.read(Memory::FillVector, quad.address() as u64);
+        let vector = self.canvas.fill.vector(quad);
+        let full = self.dp.and_bits(4, vector, FULL) == FULL;
+        self.dp
+            .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
+        full
+    }
+
+    /// Draws or drops a record whose quadtree node is not full, unless its children are needed.
+    #[inline(always)]
+    pub(super) fn decide(&mut self, record: &mut Record<L>) -> RemainingWork {
         self.change_to_screen(record);
 
         self.dp.stage(Stage::OnePixel);
         let cube = &mut record.cube;
+        // A record whose parent says what is a leaf reads its node only if it is subdivided.
+        let is_read_late = self.options.organisation.leaf_masks;
         if !cube.solid {
-            self.dp.read(Memory::Node, u64::from(cube.node));
+            if !is_read_late {
+                self.dp.read(Memory::Node, u64::from(cube.node));
+            }
             cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;
         }
         match self.verdict(record) {
@@ -109,7 +129,14 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             Verdict::DrawSolid => self.draw_solid(record),
             Verdict::Drop => {}
             Verdict::Subdivide if self.is_hidden(record) => self.counts.hidden += 1,
-            Verdict::Subdivide => return RemainingWork::Children,
+            Verdict::Subdivide => {
+                // Parts of a solid have no node of their own.
+                if is_read_late && !record.cube.solid {
+                    self.dp.stage(Stage::OnePixel);
+                    self.dp.read(Memory::Node, u64::from(record.cube.node));
+                }
+                return RemainingWork::Children;
+            }
         }
         RemainingWork::Nothing
     }

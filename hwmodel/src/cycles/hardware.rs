@@ -48,6 +48,9 @@ pub struct Hardware {
     /// Units of some stages' blocks where they differ.
     #[serde(default)]
     pub stages: BTreeMap<Stage, BTreeMap<OpClass, Unit>>,
+    /// What the record loop keeps where. Without: as the image-order paper has it.
+    #[serde(default)]
+    pub organisation: Organisation,
     /// The record stack of a lane.
     pub stack: Stack,
     /// Graph nodes, for all lanes.
@@ -59,6 +62,34 @@ pub struct Hardware {
     /// Pixels, for all lanes.
     pub pixels: Pixels,
 }
+
+/// How the record loop's data is organised. The picture under rules of exact coverage is the same whatever this says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Organisation {
+    /// What lies on the stack.
+    pub stack: StackHolds,
+    /// Whether a node says which of its children are leaves, so that leaves need not be read to be drawn.
+    pub leaf_masks: bool,
+    /// Levels of the image quadtree above its tiles, each of which is drawn by a walk of its own; 0: one
+    /// walk for the picture.
+    pub tile_levels: u32,
+}
+
+/// What lies on the stack of a record loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StackHolds {
+    /// Children: a record that is subdivided pushes all that can be seen, each with its vertices.
+    #[default]
+    Children,
+    /// Parents: a record that is subdivided stays, with a mask of the children that are left. Children are
+    /// made one by one when their turn comes, and only what is subdivided is ever stored.
+    Parents,
+}
+
+/// Most levels above the tiles of an image.
+pub const MAX_TILE_LEVELS: u32 = 8;
 
 /// Which children of a record may be worked on at once. What is not
 /// independent waits for the whole subtree of the earlier one.
@@ -271,6 +302,8 @@ impl Hardware {
             return Err(out_of_range("clock_mhz", clock, "0.001 to 1000000"));
         }
         within("lanes", self.lanes, 1, MAX_LANES)?;
+        let tile_levels = self.organisation.tile_levels;
+        within("organisation.tile_levels", tile_levels, 0, MAX_TILE_LEVELS)?;
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {

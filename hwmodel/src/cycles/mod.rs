@@ -99,8 +99,8 @@ mod turn;
 mod wheel;
 
 pub use hardware::{
-    Banks, Cache, Hardware, HardwareError, Independence, MAX_CONTEXTS, MAX_LANES, PRESETS, Pixels,
-    Stack, StackOverflow, Unit,
+    Banks, Cache, Hardware, HardwareError, Independence, MAX_CONTEXTS, MAX_LANES, MAX_TILE_LEVELS,
+    Organisation, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
 pub use report::{

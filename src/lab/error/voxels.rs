@@ -1,6 +1,7 @@
 //! The project's own engines as a method.
 
 use hwmodel::count::Counter;
+use hwmodel::cycles::Organisation;
 use hwmodel::{Memory, Stage};
 
 use super::cut::cut_at;
@@ -111,7 +112,14 @@ impl<'g> VoxelMethod<'g> {
         let (stats, counter) = drawn.map_err(Refused::because)?;
         let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
         let at = |stages: &[Stage]| counter.sum(|cell| stages.contains(&cell.stage));
-        let record = u64::from(record_bits(&record_fields(setup, self.graph.len())).div_ceil(8));
+        let record = u64::from(
+            record_bits(&record_fields(
+                setup,
+                self.graph.len(),
+                Organisation::default(),
+            ))
+            .div_ceil(8),
+        );
         let bytes = [
             (Memory::Stack, record),
             (Memory::Node, NODE_BYTES),

@@ -3,7 +3,7 @@
 use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{Hardware, Observer};
+use hwmodel::cycles::{Hardware, Observer, Organisation};
 use hwmodel::memory::{MemoryProbe, Widths};
 
 use super::ModelError;
@@ -61,7 +61,7 @@ impl Counted {
 #[must_use]
 pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths {
     Widths {
-        stack_bits: record_bits(&record_fields(setup, graph.len())),
+        stack_bits: record_bits(&record_fields(setup, graph.len(), hardware.organisation)),
         node_bits: 8 * hardware.node_cache.entry_bytes,
         attribute_bits: 8 * hardware.attribute_cache.entry_bytes,
         fill_vector_bits: FILL_VECTOR_BITS,
@@ -69,10 +69,11 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
     }
 }
 
-/// A machine with an overflow policy.
-fn machine(overflow: Overflow) -> Machine {
+/// A machine with an overflow policy, organised as a hardware is.
+fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
         overflow,
+        organisation,
         ..MachineOptions::default()
     })
 }
@@ -95,14 +96,18 @@ pub fn count(
         light: &light,
         ..graph.view()
     };
-    let (stats, (counter, memory)) =
-        machine(overflow).render_probed(&view, setup, &mut frame, (Counter::new(), memory))?;
+    let (stats, (counter, memory)) = machine(overflow, hardware.organisation).render_probed(
+        &view,
+        setup,
+        &mut frame,
+        (Counter::new(), memory),
+    )?;
     Ok(Counted {
         frame,
         counter,
         memory,
         stats,
-        fields: record_fields(setup, graph.len()),
+        fields: record_fields(setup, graph.len(), hardware.organisation),
     })
 }
 
@@ -113,11 +118,13 @@ pub fn count(
 pub fn count_operations(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
+    organisation: Organisation,
     overflow: Overflow,
 ) -> Result<(Frame, Counter, Stats), EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let probe = Counter::new();
-    let (stats, counter) = machine(overflow).render_probed(graph, setup, &mut frame, probe)?;
+    let mut machine = machine(overflow, organisation);
+    let (stats, counter) = machine.render_probed(graph, setup, &mut frame, probe)?;
     Ok((frame, counter, stats))
 }
 
@@ -133,7 +140,8 @@ pub fn simulate<O: Observer>(
     observer: &mut O,
 ) -> Result<(Frame, Simulated), ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let simulated = machine(overflow).simulate(graph, setup, &mut frame, hardware, observer)?;
+    let mut machine = machine(overflow, hardware.organisation);
+    let simulated = machine.simulate(graph, setup, &mut frame, hardware, observer)?;
     Ok((frame, simulated))
 }
 

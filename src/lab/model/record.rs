@@ -5,6 +5,8 @@
 //! of the frame's format. Poses share their bits: a record has one at a time,
 //! and under the rules that draw outlines there is one pose alone.
 
+use hwmodel::cycles::{Organisation, StackHolds};
+
 use crate::project::{CageKind, FrameSetup};
 
 /// A field of a record.
@@ -38,9 +40,13 @@ fn bits_to(greatest: u64) -> u32 {
     u64::BITS - greatest.leading_zeros()
 }
 
-/// The fields of a frame's records. `nodes`: of the graph.
+/// The fields of a frame's records, as an organisation stores them. `nodes`: of the graph.
 #[must_use]
-pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
+pub fn record_fields(
+    setup: &FrameSetup,
+    nodes: usize,
+    organisation: Organisation,
+) -> Vec<RecordField> {
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
     let vertices = match setup.options.cage {
@@ -92,6 +98,12 @@ pub fn record_fields(setup: &FrameSetup, nodes: usize) -> Vec<RecordField> {
         ),
         field("least W", word, FieldPresence::InClipSpace),
     ];
+    if organisation.stack == StackHolds::Parents {
+        // Its node need not be read again: the place of its children stands where the node's would.
+        let masks = if organisation.leaf_masks { 16 } else { 8 };
+        fields.push(field("which children it has", masks, FieldPresence::Always));
+        fields.push(field("children left", 8, FieldPresence::Always));
+    }
     if exact {
         let planes = PLANE_WORDS * wide;
         fields.push(field(
@@ -141,7 +153,7 @@ mod tests {
         };
         let setup = FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap();
         assert_eq!(setup.levels, 8);
-        record_bits(&record_fields(&setup, nodes))
+        record_bits(&record_fields(&setup, nodes, Organisation::default()))
     }
 
     #[test]

@@ -104,13 +104,14 @@ pub fn measure(
             return Ok((0, Outcome::Refused { reason }));
         }
     };
-    let bits = record_bits(&record_fields(&setup, graph.len()));
+    let bits = record_bits(&record_fields(&setup, graph.len(), hardware.organisation));
     let (view, overflow) = (graph.view(), Overflow::Trap);
     let trapped = |trap: String| Ok((bits, Outcome::Trapped { trap }));
-    let (frame, counter, stats) = match frame::count_operations(&view, &setup, overflow) {
-        Ok(drawn) => drawn,
-        Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
-    };
+    let (frame, counter, stats) =
+        match frame::count_operations(&view, &setup, hardware.organisation, overflow) {
+            Ok(drawn) => drawn,
+            Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
+        };
     let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
     let simulated = match simulated {
         Ok((_, simulated)) => simulated,

@@ -7,15 +7,18 @@
 
 use hwmodel::Trap;
 use hwmodel::cycles::{
-    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, TurnLog,
+    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, StackHolds, TurnLog,
 };
 use serde::Serialize;
 
+use crate::frame::quadtree::FULL;
 use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::machine::engine::Machine;
 use crate::machine::heat::Heat;
+use crate::machine::options::MachineOptions;
+use crate::machine::parents::{Parent, TileView};
 use crate::machine::record::Record;
 use crate::machine::state::State;
 use crate::machine::watch::Watch;
@@ -73,7 +76,8 @@ impl From<cycles::SimulationError<Trap>> for SimulateError {
 }
 
 impl Machine {
-    /// Draws a frame on a simulated hardware: each record has its turn in the
+    /// Draws a frame on a simulated hardware, in its [`Organisation`](cycles::Organisation), whatever the
+    /// machine's own: each record has its turn in the
     /// cycle in which `hardware` gets to it, and finds the fill vectors as they
     /// are by then.
     ///
@@ -117,7 +121,10 @@ impl Machine {
         observer: &mut O,
     ) -> Result<Simulated, SimulateError> {
         hardware.check()?;
-        let options = self.options;
+        let options = MachineOptions {
+            organisation: hardware.organisation,
+            ..self.options
+        };
         let watch = Ranks {
             heat: frame.records.is_some().then(|| Heat::new(setup.levels)),
             pushed: Vec::new(),
@@ -128,6 +135,9 @@ impl Machine {
             state: State::<_, L, _>::new(options, graph, setup, canvas, log, watch),
             waiting: Vec::new(),
             free: Vec::new(),
+            // The first sees what there is: nothing is above the whole picture.
+            tiles: vec![TileView::new(QuadNode::ROOT)],
+            shown: 0,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
         let (mut counts, _, watch) = steps.state.finish();
@@ -155,41 +165,128 @@ impl Watch for Ranks {
     }
 }
 
-/// The machine, and the records that wait for their turn.
-struct Steps<'a, L> {
-    state: State<'a, TurnLog, L, Ranks>,
-    /// Records by the scheduler's number of them.
-    waiting: Vec<Record<L>>,
-    /// Numbers of records that are not in use.
-    free: Vec<u32>,
+/// What waits for its turn.
+#[derive(Clone, Copy)]
+enum Work<L: CageCoordinate> {
+    /// A node of the image quadtree: its tiles are to be drawn.
+    Tiles(QuadNode),
+    /// A record, where children lie on the stack.
+    Record(Record<L>),
+    /// A parent: in registers if it was not stored, else on the stack.
+    Parent(Parent<L>),
 }
 
+/// The machine, and the work that waits for its turn.
+struct Steps<'a, L: CageCoordinate> {
+    state: State<'a, TurnLog, L, Ranks>,
+    /// Work by the scheduler's number of it, with the tile that it belongs to.
+    waiting: Vec<(Work<L>, usize)>,
+    /// Numbers of work that are not in use.
+    free: Vec<u32>,
+    /// What each tile sees of the fill vectors above it.
+    tiles: Vec<TileView>,
+    /// The tile whose view is in place.
+    shown: usize,
+}
+
+/// Places of a stored parent and of its child in the occlusion order: in no class together.
+const FIRST_PLACE: u8 = 0;
+const LAST_PLACE: u8 = 7;
+
 impl<L: CageCoordinate> Steps<'_, L> {
+    /// Gives work to the scheduler.
+    fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
+        let quad = match &work {
+            Work::Tiles(quad) => *quad,
+            Work::Record(record) => record.place.quad,
+            Work::Parent(parent) => parent.record.place.quad,
+        };
+        let image_node = ImageNode {
+            level: quad.level,
+            x: quad.x,
+            y: quad.y,
+        };
+        let entry = (work, self.shown);
+        let item = if let Some(at) = self.free.pop() {
+            self.waiting[at as usize] = entry;
+            at
+        } else {
+            self.waiting.push(entry);
+            (self.waiting.len() - 1) as u32
+        };
+        children.push(Child {
+            item,
+            place,
+            image_node,
+        });
+    }
+
     /// Hands the records on the stack to the scheduler, nearest first: the last
     /// that was pushed.
-    fn hand_over(&mut self, children: &mut Vec<Child>) {
+    fn hand_over_records(&mut self, children: &mut Vec<Child>) {
         while let Some(record) = self.state.stack.pop() {
             let Some(place) = self.state.watch.pushed.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
             };
-            let quad = record.place.quad;
-            let image_node = ImageNode {
-                level: quad.level,
-                x: quad.x,
-                y: quad.y,
-            };
-            let item = if let Some(at) = self.free.pop() {
-                self.waiting[at as usize] = record;
-                at
-            } else {
-                self.waiting.push(record);
-                (self.waiting.len() - 1) as u32
-            };
-            children.push(Child {
-                item,
-                place,
-                image_node,
-            });
+            self.hand_over(Work::Record(record), place, children);
+        }
+    }
+
+    /// Puts a tile's view of the fill vectors into place.
+    fn show(&mut self, tile: usize) {
+        if tile != self.shown {
+            self.tiles[self.shown].swap(&mut self.state);
+            self.tiles[tile].swap(&mut self.state);
+            self.shown = tile;
+        }
+    }
+
+    /// Begins the tiles of a node of the image quadtree: itself, or its quadrants later.
+    fn begin_tiles(&mut self, quad: QuadNode, children: &mut Vec<Child>) {
+        if self.state.canvas.fill.vector(quad) == FULL && quad.level > 0 {
+            // It lies beside the picture.
+            return;
+        }
+        if quad.level < self.state.tile_levels() {
+            for quadrant in 0..4 {
+                // Neither is before another.
+                self.hand_over(Work::Tiles(quad.quadrant(quadrant)), FIRST_PLACE, children);
+            }
+            return;
+        }
+        self.tiles.push(TileView::new(quad));
+        self.show(self.tiles.len() - 1);
+        match self.state.options.organisation.stack {
+            StackHolds::Children => {
+                self.state.push_object();
+                if !self.state.stack.is_empty() {
+                    // The object has no siblings: any rank will do.
+                    self.state.watch.pushed(FIRST_PLACE);
+                }
+                self.hand_over_records(children);
+            }
+            StackHolds::Parents => {
+                if let Some(object) = self.state.object() {
+                    self.hand_over(Work::Parent(object), FIRST_PLACE, children);
+                }
+            }
+        }
+    }
+
+    /// A parent's turn: its next child that can be seen, and what is left of it.
+    fn parent_turn(&mut self, mut parent: Parent<L>, children: &mut Vec<Child>) {
+        // The scheduler has stacks of its own; addresses tell reads from one another, no more.
+        let address = u64::from(parent.record.cube.level);
+        let Some(child) = self.state.parent_turn(&mut parent, address) else {
+            if !parent.is_done() {
+                self.hand_over(Work::Parent(parent), LAST_PLACE, children);
+            }
+            return;
+        };
+        self.hand_over(Work::Parent(child), FIRST_PLACE, children);
+        if !parent.is_done() {
+            self.state.store(&mut parent, address);
+            self.hand_over(Work::Parent(parent), LAST_PLACE, children);
         }
     }
 
@@ -202,24 +299,24 @@ impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
     type Error = Trap;
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
-        self.state.push_object();
-        self.trap()?;
-        if !self.state.stack.is_empty() {
-            // The object has no siblings: any rank will do.
-            self.state.watch.pushed(0);
-        }
-        self.hand_over(children);
-        Ok(())
+        self.begin_tiles(QuadNode::ROOT, children);
+        self.trap()
     }
 
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
-        let record = self.waiting[item as usize];
+        let (work, tile) = self.waiting[item as usize];
         self.free.push(item);
-        self.state.stack.push(record);
-        self.state.turn();
-        self.trap()?;
-        self.hand_over(children);
-        Ok(())
+        self.show(tile);
+        match work {
+            Work::Tiles(quad) => self.begin_tiles(quad, children),
+            Work::Record(record) => {
+                self.state.stack.push(record);
+                self.state.turn();
+                self.hand_over_records(children);
+            }
+            Work::Parent(parent) => self.parent_turn(parent, children),
+        }
+        self.trap()
     }
 
     fn log(&mut self) -> &mut TurnLog {

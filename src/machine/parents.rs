@@ -1,0 +1,280 @@
+//! The record loop with parents on its stack: another organisation of the same steps.
+//!
+//! ```text
+//! the current record is the object's
+//! loop:
+//!     of the current record's children that are left, nearest first:
+//!         make the child, fit it; if it cannot be seen: the next
+//!         if it is drawn: draw it; the next
+//!         else store the current record, if it has children left, on the stack;
+//!              the child is the current record
+//!     when none is left: take the current record from the stack; end when that is empty
+//! ```
+//!
+//! The image-order paper's loop stores each child that can be seen, with its vertices, and reads it back. Here
+//! only what is subdivided is stored, and that only while it has children left, so the stack is never deeper
+//! than the octree, and a drawn voxel is never on it. A child is fitted when its turn comes, so it finds more of
+//! the picture drawn. The vertices of a parent's children are kept in registers, and made again when the
+//! parent comes back from the stack.
+//!
+//! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile full
+//! from the start. Only the fill vectors above the tiles differ from one tile to the next.
+
+use hwmodel::cycles::StackHolds;
+use hwmodel::{Memory, Probe, Stage, Word};
+
+use super::cage::CageCoordinate;
+use super::children::pool;
+use super::record::{Pose, Record};
+use super::record_loop::RemainingWork;
+use super::state::State;
+use super::watch::Watch;
+use crate::frame::QuadNode;
+use crate::frame::quadtree::FULL;
+use crate::project::EngineError;
+
+/// A record that is subdivided, while it has children left.
+#[derive(Clone, Copy)]
+pub(super) struct Parent<L: CageCoordinate> {
+    pub(super) record: Record<L>,
+    /// Children that are left, a bit for each place in the order, nearest first.
+    left: u8,
+    /// What its children are made from; `None`: it was stored, and that is made again.
+    expanded: Option<Expanded<L>>,
+}
+
+/// What the children of a record are made from: in registers.
+#[derive(Clone, Copy)]
+struct Expanded<L: CageCoordinate> {
+    centre: [Word; 3],
+    order: [u8; 8],
+    /// X, Y, W in clip space; x and y in screen space.
+    pools: [L::Pool; 3],
+}
+
+impl<L: CageCoordinate> Parent<L> {
+    fn new(record: Record<L>) -> Self {
+        Self {
+            record,
+            left: u8::MAX,
+            expanded: None,
+        }
+    }
+
+    /// Whether all its children had their turn.
+    pub(super) fn is_done(&self) -> bool {
+        self.left == 0
+    }
+
+    /// Whether it is new, and so was never on the stack.
+    fn is_new(&self) -> bool {
+        self.left == u8::MAX
+    }
+}
+
+impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
+    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough.
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
+        let tile_levels = self.tile_levels();
+        let side = 1u32 << tile_levels;
+        for tile in 0..side * side {
+            let tile = QuadNode {
+                level: tile_levels,
+                x: tile % side,
+                y: tile / side,
+            };
+            if self.canvas.fill.vector(tile) == FULL {
+                // It lies beside the picture.
+                continue;
+            }
+            let mut view = TileView::new(tile);
+            view.swap(self);
+            let is_done = self.draw_tile(most_records)?;
+            view.swap(self);
+            if !is_done {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Levels of the image quadtree above the tiles; a tile is at least a sample.
+    pub(super) fn tile_levels(&self) -> u32 {
+        let wanted = self.options.organisation.tile_levels;
+        wanted.min(self.constants.levels)
+    }
+
+    /// Draws what is not full of the picture.
+    fn draw_tile(&mut self, most_records: u64) -> Result<bool, EngineError> {
+        if self.options.organisation.stack == StackHolds::Children {
+            self.push_object();
+            while !self.stack.is_empty() {
+                if self.counts.records >= most_records {
+                    return Ok(false);
+                }
+                self.turn();
+                self.check_trap()?;
+            }
+            self.check_trap()?;
+            return Ok(true);
+        }
+        let mut stack = Vec::new();
+        let mut current = self.object();
+        self.check_trap()?;
+        while let Some(mut parent) = current.take().or_else(|| stack.pop()) {
+            if self.counts.records >= most_records {
+                return Ok(false);
+            }
+            let child = self.parent_turn(&mut parent, stack.len() as u64);
+            self.check_trap()?;
+            current = match child {
+                Some(child) => {
+                    if !parent.is_done() {
+                        self.store(&mut parent, stack.len() as u64);
+                        stack.push(parent);
+                    }
+                    Some(child)
+                }
+                None => (!parent.is_done()).then_some(parent),
+            };
+        }
+        Ok(true)
+    }
+
+    /// The whole object, if it is to be subdivided; it is drawn or dropped if not.
+    pub(super) fn object(&mut self) -> Option<Parent<L>> {
+        self.push_object();
+        self.work_on_new()
+    }
+
+    /// A parent goes to the stack. `address`: its place there.
+    pub(super) fn store(&mut self, parent: &mut Parent<L>, address: u64) {
+        self.dp.stage(Stage::Push);
+        self.dp.write(Memory::Stack, address);
+        self.counts.deepest_stack = self.counts.deepest_stack.max(address + 1);
+        parent.expanded = None;
+    }
+
+    /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if it must be
+    /// subdivided. `address`: the parent's on the stack, if it was there.
+    pub(super) fn parent_turn(
+        &mut self,
+        parent: &mut Parent<L>,
+        address: u64,
+    ) -> Option<Parent<L>> {
+        let expanded = match parent.expanded {
+            Some(expanded) => expanded,
+            None => {
+                if !parent.is_new() {
+                    self.dp.stage(Stage::Pop);
+                    self.dp.read(Memory::Stack, address);
+                    if self.is_full(parent.record.place.quad) {
+                        self.counts.already_full += 1;
+                        parent.left = 0;
+                        return None;
+                    }
+                }
+                self.counts.subdivided += u64::from(parent.is_new());
+                *parent.expanded.insert(self.expand(&parent.record))
+            }
+        };
+        let cube = &parent.record.cube;
+        while parent.left != 0 {
+            let place = parent.left.trailing_zeros() as usize & 7;
+            parent.left &= parent.left - 1;
+            let octant = expanded.order[place];
+            let Some(child) = self.child_cube(cube, octant, &expanded.centre) else {
+                continue;
+            };
+            let [x, y, w] = &expanded.pools;
+            let from = parent.record.place;
+            let is_seen = match &parent.record.pose {
+                Pose::Clip(_, planes) => {
+                    self.push_clip_child(octant, (x, y, w), planes, child, from)
+                }
+                Pose::Screen(_) => self.push_screen_child(octant, x, y, child, from),
+            };
+            if is_seen {
+                return self.work_on_new();
+            }
+        }
+        None
+    }
+
+    /// Draws or drops the record that was just made, unless it must be subdivided.
+    fn work_on_new(&mut self) -> Option<Parent<L>> {
+        let mut record = self.stack.pop()?;
+        self.dp.begin_record(self.counts.records, record.cube.level);
+        self.counts.records += 1;
+        self.watch.turn(record.place.quad);
+        match self.decide(&mut record) {
+            RemainingWork::Nothing => None,
+            RemainingWork::Children => Some(Parent::new(record)),
+        }
+    }
+
+    /// Makes what the children of a record are made from.
+    fn expand(&mut self, record: &Record<L>) -> Expanded<L> {
+        let (centre, order) = self.centre_and_order(&record.cube);
+        self.dp.stage(Stage::VertexPool);
+        let dp = &mut self.dp;
+        let pools = match &record.pose {
+            Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| pool(dp, cage)),
+            Pose::Screen(screen) => {
+                let [x, y] = [&screen.x, &screen.y].map(|cage| pool(dp, cage));
+                [x, y, y]
+            }
+        };
+        Expanded {
+            centre,
+            order,
+            pools,
+        }
+    }
+}
+
+/// A tile's own view of the fill vectors above it: all but the way to the tile is full.
+#[derive(Debug, Clone)]
+pub(super) struct TileView {
+    tile: QuadNode,
+    /// Vectors of the nodes above the tile, from the root on, while they are not in use; then those of the others.
+    above: Vec<u8>,
+}
+
+impl TileView {
+    /// The view of a tile that is not begun.
+    pub(super) fn new(tile: QuadNode) -> Self {
+        let way = |level: u32| {
+            let below = tile.level - level - 1;
+            let child = QuadNode {
+                level: level + 1,
+                x: tile.x >> below,
+                y: tile.y >> below,
+            };
+            FULL & !(1 << child.in_parent())
+        };
+        Self {
+            tile,
+            above: (0..tile.level).map(way).collect(),
+        }
+    }
+
+    /// Puts the view's vectors into their places, and keeps those that were there.
+    pub(super) fn swap<P: Probe, L: CageCoordinate, W: Watch>(
+        &mut self,
+        state: &mut State<'_, P, L, W>,
+    ) {
+        for (level, own) in (0..self.tile.level).zip(&mut self.above) {
+            let below = self.tile.level - level;
+            let node = QuadNode {
+                level,
+                x: self.tile.x >> below,
+                y: self.tile.y >> below,
+            };
+            *own = state.canvas.fill.replace(node, *own);
+        }
+    }
+}
