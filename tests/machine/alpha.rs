@@ -135,7 +135,7 @@ proptest! {
         opacities in any_opacities(),
         camera in any_camera(8.0, 5..25),
     ) {
-        // Leaves of the finest level alone, and outside: rays in f64 know no more.
+        // Leaves of the finest level alone, and outside: the reference in f64 handles no more.
         prop_assume!(camera.eye.to_array().iter().any(|&c| !(-0.5..=8.5).contains(&c)));
         // Where it is not on a lattice point the rounded eye is on its side.
         prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
@@ -302,7 +302,7 @@ fn what_blending_costs() {
     }
 }
 
-/// Other rules know nothing of it.
+/// Other rules do not blend.
 #[test]
 fn other_rules_blend_nothing() {
     let graph = opacities_of(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);

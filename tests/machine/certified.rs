@@ -16,7 +16,7 @@ use crate::common::{octree, solid, up_of};
 use crate::scene_table::SCENES;
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
-/// Samples that are compared unless the environment says otherwise.
+/// Samples that are compared unless the environment sets another number.
 const SAMPLES: u64 = 20_000_000;
 
 /// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or

@@ -17,7 +17,7 @@ use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
 };
 
-/// A machine that notes whether it was asked.
+/// A machine that records whether it was called.
 struct Noted(Machine, Arc<AtomicBool>);
 
 impl Engine for Noted {

@@ -266,7 +266,7 @@ pub fn draw_with(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
     if options == MachineOptions::default() {
-        // Whatever a test says of the machine, it says of the default engine.
+        // What a test shows for the machine holds for the default engine too.
         let mut fast = Frame::new(setup.width, setup.height, false);
         Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
             .render(&graph.view(), setup, &mut fast)
