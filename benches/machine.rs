@@ -5,7 +5,7 @@
 //! cargo bench --bench machine
 //! ```
 //!
-//! Times are the drawing thread's time on a processor where Linux tells it
+//! Times are the drawing thread's time on a processor where the system reports it
 //! (the machine draws on one thread), so that other work on the machine shows
 //! less; elsewhere they are wall times.
 
@@ -14,7 +14,7 @@ mod scenes;
 
 use std::hint::black_box;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use criterion::{
     BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
@@ -24,6 +24,7 @@ use hwmodel::count::Counter;
 use hwmodel::{NoProbe, Probe};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
+use shiftvox::lab::bench::Clock;
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
 
@@ -93,23 +94,14 @@ fn paper() -> SetupOptions {
     }
 }
 
-/// Time that this thread has had on a processor, where the system tells it.
-fn processor_time() -> Option<Duration> {
-    let statistics = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds = statistics.split_whitespace().next()?.parse().ok()?;
-    Some(Duration::from_nanos(nanoseconds))
-}
-
 /// How long `frames` frames take.
 fn time(frames: u64, mut draw: impl FnMut()) -> Duration {
-    let (wall, processor) = (Instant::now(), processor_time());
+    let clock = Clock::start();
     for _ in 0..frames {
         draw();
     }
-    match (processor, processor_time()) {
-        (Some(before), Some(after)) if after > before => after - before,
-        _ => wall.elapsed(),
-    }
+    let elapsed = clock.elapsed();
+    Duration::from_secs_f64(elapsed.thread_ms.unwrap_or(elapsed.wall_ms) / 1e3)
 }
 
 /// One frame: clear and traverse.

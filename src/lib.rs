@@ -29,7 +29,7 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`Scene`] | opens voxel files and meshes, makes generated scenes, builds voxels of your own |
+//! | [`Scene`] | opens voxel files and meshes, makes generated scenes, builds voxels of your own; [`SceneOptions`] |
 //! | [`Camera`] | fitted to a scene, or placed |
 //! | [`Renderer`] | engine ([`EngineKind`]), drawing rule ([`Coverage`]), level of detail, samples a pixel, machine words |
 //! | [`Picture`] | colours, depths, normals, voxels, counters; PNG and NumPy files; a hash |
@@ -58,7 +58,7 @@
 
 mod api;
 
-pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};
+pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, SceneOptions, Up};
 
 pub use fast::{Declined, Fast, FastOptions, Instructions, Switches};
 pub use frame::Frame;

@@ -1,4 +1,4 @@
-//! Every program in `examples/` runs, in a folder of its own, and leaves what it says.
+//! Every program in `examples/` runs, in a folder of its own, and leaves the files that it announces.
 
 use std::path::PathBuf;
 use std::process::Command;

@@ -1,8 +1,8 @@
 //! A probe that counts: operations by class, width, stage and octree level,
 //! accesses by memory, stage and level, records by level.
 //!
-//! An operation is counted by one addition to a place in memory that is all but
-//! known when the program is compiled, so that the compiler adds up what stands
+//! An operation is counted by one addition to a place in memory that is nearly
+//! constant when the program is compiled, so that the compiler adds up what stands
 //! in a row. What is not known is the level: there are a few sets of places,
 //! each good for one level at a time, and neighbouring levels, between which a
 //! walk goes to and fro, have sets of their own. Only where a set passes to
@@ -158,7 +158,7 @@ impl Counter {
 
     #[inline(always)]
     fn count_fresh(&mut self, row: usize, column: usize) {
-        // The remainder changes nothing; it tells the compiler how far the
+        // The remainder changes nothing; it gives the compiler the bound of the
         // place can be, so that no counting can touch anything else.
         self.fresh[self.set % SETS][row][column] += 1;
     }

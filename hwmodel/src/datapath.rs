@@ -288,7 +288,7 @@ impl<P: Probe> Datapath<P> {
         let raw = a.raw();
         let shifted = if places < 64 { raw << places } else { 0 };
         if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {
-            // What is left has lost bits; `carried` says whether its sign is still the word's.
+            // What is left has lost bits; `carried`: whether its sign is still the word's.
             let spare = self.spare[usize::from(T::WIDE)];
             let carried = (shifted < 0) != (raw < 0);
             let wrapped = (shifted << spare) >> spare;

@@ -42,9 +42,9 @@ pub enum FormatError {
     /// The fraction leaves no integer bit beside the sign.
     #[error("a word of {bits} bits holds at most {max} fraction bits, not {frac}", max = bits - 2)]
     Frac {
-        /// Width asked for, in bits.
+        /// Width requested, in bits.
         bits: u32,
-        /// Fraction bits asked for.
+        /// Fraction bits requested.
         frac: u32,
     },
 }

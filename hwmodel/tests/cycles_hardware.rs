@@ -176,7 +176,7 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
         assert!(text.contains(expected), "{to}: {text}");
         assert!(text.starts_with("hardware description: "), "{text}");
     }
-    // What was changed after reading is looked at before anything runs.
+    // What was changed after reading is examined before anything runs.
     let mut hardware = Hardware::preset("tiny").unwrap();
     hardware.contexts = 0;
     assert!(hardware.check().is_err());

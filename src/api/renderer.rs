@@ -95,8 +95,8 @@ impl Renderer {
         self
     }
 
-    /// Which samples a voxel covers. [`Coverage::Alpha`] is for voxels with opacities: those of a `.vxg` file that
-    /// was converted from a mesh with `--opacities`.
+    /// Which samples a voxel covers. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
+    /// opened with [`SceneOptions::opacities`](crate::SceneOptions), and of `.vxg` files made of such meshes.
     #[must_use]
     pub fn coverage(mut self, coverage: Coverage) -> Self {
         self.coverage = coverage;

@@ -20,7 +20,8 @@ pub struct Scene {
 
 impl Scene {
     /// Opens a voxel file (`.vox`, `.ply`, `.npy`, `.vxg`), whose format is told by content, or a mesh (`.obj`,
-    /// `.ply`, `.stl`, `.gltf`, `.glb`), which is voxelised at 2^9 voxels along its longest side.
+    /// `.ply`, `.stl`, `.gltf`, `.glb`), which is voxelised at 2^9 voxels along its longest side. Other settings:
+    /// [`SceneOptions`](super::SceneOptions).
     ///
     /// # Errors
     /// [`Error::Open`] where the file cannot be read, is of no known format, is damaged, or holds more

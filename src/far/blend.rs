@@ -1,4 +1,4 @@
-//! The six main directions, and how what is known of them is blended.
+//! The six main directions, and how values for them are blended.
 //!
 //! A direction always points from the surface to the eye: `+x` is what an eye
 //! far out on the x axis sees. Main directions are numbered `+x -x +y -y +z -z`.
@@ -43,7 +43,7 @@ impl Blend {
 /// Least squares for one to several values of the main directions.
 ///
 /// Observations `v` of direction `d` are fitted by the blend of six unknowns;
-/// directions that nobody looked from take the value that they are drawn to.
+/// directions without rays take the value that they are drawn to.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit<const N: usize> {
     matrix: [[f32; DIRECTIONS]; DIRECTIONS],

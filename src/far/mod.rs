@@ -1,5 +1,5 @@
 //! Far voxels with anti-aliased voxels: a mesh as a hierarchy whose inner nodes
-//! are grids of voxels that look like what is in them from afar, and whose
+//! are grids of voxels that look from afar like the geometry in them, and whose
 //! leaves are triangles.
 //!
 //! [`build()`] makes one of triangles by shooting rays at every node; [`store`]

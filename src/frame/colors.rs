@@ -19,7 +19,7 @@ pub struct Colors {
     pub height: u32,
     /// [`color_word`] of what each sample shows, row by row; 0 where nothing is seen.
     pub words: Vec<u32>,
-    /// For engines that draw nodes first. Made when it is wanted.
+    /// For engines that draw nodes first. Made on demand.
     nodes: Option<Frame>,
 }
 

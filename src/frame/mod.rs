@@ -27,7 +27,7 @@ pub struct Frame {
     /// voxels, and its octree level (0 = root); or [`NO_VOXEL`]. Empty where
     /// voxels are not stored ([`Frame::nodes_only`]).
     pub voxel: Vec<[i32; 4]>,
-    /// Share of the records worked on for this sample, if it was asked for:
+    /// Share of the records worked on for this sample, if requested:
     /// a record counts 1, spread evenly over its quadtree node's samples.
     pub records: Option<Vec<f32>>,
     /// What the samples took of the voxels before them, where those were

@@ -55,7 +55,7 @@ impl Iterator for Voxels<'_> {
 
 impl Graph {
     /// Finest voxels and solid leaves in Morton order. In a cyclic graph
-    /// they may be more than anyone can wait for: see [`Graph::voxels`](field@Graph::voxels).
+    /// they may be too many to list: see [`Graph::voxels`](field@Graph::voxels).
     #[must_use]
     pub fn voxels(&self) -> Voxels<'_> {
         let root = Cell {
@@ -71,7 +71,7 @@ impl Graph {
     }
 
     /// Where the one voxel of a node is: lowest corner in finest voxels, and
-    /// level. Looked for upwards, by its number: nodes are stored level by
+    /// level. Found upwards, by its number: nodes are stored level by
     /// level and parent by parent, so of the nodes above, the last whose children do
     /// not begin after it is its parent. Takes a search a level.
     ///

@@ -2,7 +2,7 @@
 //!
 //! Two nodes are equal if their children are, octant by octant, and their
 //! colours, normals and opacities. In a graph stored level by level, levels are merged
-//! from the finest up, so each node is looked at once; two equal nodes of different levels stay
+//! from the finest up, so each node is examined once; two equal nodes of different levels stay
 //! apart. In any other graph, cyclic ones included, nodes start out equal and
 //! are distinguished by their children's differences until no more are found.
 //!

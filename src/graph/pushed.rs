@@ -88,7 +88,7 @@ impl PushedVoxel {
     /// With the Morton key from the lowest corner in place of the index.
     fn placed(&self, min: [i32; 3]) -> Self {
         let packed = self.key();
-        // The extent is at most 2^21, so the low bits tell the distance.
+        // The extent is at most 2^21, so the low bits give the distance.
         let at = [0, 1, 2].map(|axis| {
             let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
             low_bits.wrapping_sub(min[axis] as u32) & (MAX_SIDE as u32 - 1)

@@ -12,7 +12,7 @@ pub struct LinearPicture {
 }
 
 impl LinearPicture {
-    /// The light of a picture of sRGB bytes, as it looks on black.
+    /// The light of a picture of sRGB bytes, as it appears on black.
     #[must_use]
     pub fn of((width, height, rgba): Colors<'_>) -> Self {
         let linear = Linear::tables();

@@ -74,7 +74,7 @@ pub struct Flip {
 }
 
 impl Flip {
-    /// Makes a picture ready. Transparent pixels count as they look on black.
+    /// Makes a picture ready. Transparent pixels count as they appear on black.
     #[must_use]
     pub fn new(picture: Colors<'_>) -> Self {
         Self::at(picture, PIXELS_PER_DEGREE)

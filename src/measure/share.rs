@@ -12,7 +12,7 @@ pub type Shares<'s> = (u32, u32, &'s [f32]);
 /// How far the shares of two pictures are apart, over some pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ShareError {
-    /// Pixels looked at.
+    /// Pixels examined.
     pub pixels: u64,
     /// Sum of the reference's shares, pixels: the area that is seen.
     pub area: f64,

@@ -15,7 +15,7 @@ pub enum ColorSpace {
     Linear,
 }
 
-/// What a triangle looks like.
+/// The surface of a triangle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// Its name in the file.

@@ -9,7 +9,7 @@ use crate::graph::Graph;
 pub const DEFAULT_FOV: f64 = 40.0;
 /// Share of the picture that a fitted object fills at most.
 const FILL: f64 = 0.94;
-/// Nodes looked at to find an object's bounds; beyond it they are only enclosed.
+/// Nodes examined to find an object's bounds; beyond it they are only enclosed.
 const MAX_VISITS: u32 = 4_000_000;
 
 /// Which world axis is up.

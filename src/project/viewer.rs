@@ -59,7 +59,7 @@ pub struct Viewer<'g, E> {
     /// The set-up of what `frame` shows; none before the first drawing, while
     /// an engine draws, and after one that failed.
     shown: Option<FrameSetup>,
-    /// The engine's counters of what `frame` shows, if they were asked for.
+    /// The engine's counters of what `frame` shows, if they were requested.
     stats: Option<Stats>,
 }
 

@@ -15,7 +15,7 @@
 //! ```
 //!
 //! so the largest and the smallest of the four are at the corners that the
-//! signs of `g` name, and only these two are looked at.
+//! signs of `g` name, and only these two are examined.
 //!
 //! # Ties
 //!
@@ -142,7 +142,7 @@ impl<'v, N: Number> Line<'v, N> {
     }
 }
 
-/// Sign of `plane . q` with ties resolved as above; `plane` is asked for only in a tie.
+/// Sign of `plane . q` with ties resolved as above; `plane` is evaluated only in a tie.
 #[inline]
 fn sign<N: Number>(value: N, plane: impl FnOnce() -> [i128; 3]) -> i32 {
     match value.sign() {

@@ -100,7 +100,7 @@ fn render_rows<N: Number>(graph: &GraphView<'_>, view: &RayFrame, frame: &mut Fr
         Some(records) => records.chunks_mut(width).map(Some).collect(),
         None => (0..frame.height).map(|_| None).collect(),
     };
-    // Where voxels are not wanted, they go nowhere.
+    // Without a buffer of voxels, they are not stored.
     let mut unwanted = Vec::new();
     let voxels = if frame.voxel.is_empty() {
         unwanted.resize(frame.node.len(), NO_VOXEL);

@@ -218,7 +218,7 @@ mod tests {
         SceneFile::in_memory(bytes, name).unwrap().kind()
     }
 
-    /// A PLY header longer than what is looked at of other formats.
+    /// A PLY header longer than what is examined of other formats.
     fn ply(elements: &str) -> Vec<u8> {
         let comments = "comment nothing\n".repeat(1000);
         format!("ply\nformat ascii 1.0\n{comments}{elements}end_header\n").into_bytes()

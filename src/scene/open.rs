@@ -39,7 +39,7 @@ pub struct Opened {
 /// Opens a file, or makes the scene of a `gen:` specification.
 ///
 /// Voxels are gathered and built in memory; more than fit the memory that is
-/// free at the beginning are an error, in advance where their number is known.
+/// free at the beginning are an error, in advance where their number is given.
 /// [`build_file`](super::build_file()) makes a `.vxg` file of those.
 ///
 /// # Errors

@@ -4,7 +4,7 @@ use super::FileKind;
 
 /// What to do with `.vox` voxels whose coordinates lie outside their model's `SIZE`.
 ///
-/// VoxelShop writes such files when told to fit the model to its bounding box:
+/// VoxelShop writes such files when asked to fit the model to its bounding box:
 /// coordinates left of the box, or far right of it, end up in one byte modulo 256.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]

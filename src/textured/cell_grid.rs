@@ -127,7 +127,7 @@ impl CellGrid {
 /// The axes of a face: along its columns and along its rows, for the axis it stands on.
 pub const ACROSS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// Whether a cell is in the half from which an axis is looked at from its positive end.
+/// Whether a cell is in the half from which an axis is seen from its positive end.
 #[must_use]
 pub fn is_positive_half(slice: u32, cells: u32) -> bool {
     slice >= cells / 2

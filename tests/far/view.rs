@@ -86,7 +86,7 @@ fn hidden_branches_cost_no_work() {
     assert!(picture == first && picture == second);
     assert!(culled.hidden > 0);
     let drawn = |counts: &FarCounts| counts.voxel_nodes + counts.leaves;
-    // A branch is asked for once, and nothing below it is looked at.
+    // A branch is tested once, and nothing below it is visited.
     assert!(
         culled.hidden + drawn(&culled) < drawn(&all),
         "{culled:?} {all:?}"
@@ -96,7 +96,7 @@ fn hidden_branches_cost_no_work() {
         culled.triangles * 4 < all.triangles * 3,
         "{culled:?} {all:?}"
     );
-    // Of a hidden node not even the data is read: nobody minds its damage.
+    // Of a hidden node not even the data is read: its damage does not matter.
     let seen: std::collections::HashSet<i32> = picture.node.iter().copied().collect();
     let unseen = (0..data.nodes.len()).rev().find(|&n| {
         let node = &data.nodes[n];
@@ -142,7 +142,7 @@ fn a_budget_below_the_files_size_changes_nothing_but_time() {
         assert!(resident.most_bytes <= budget, "{resident:?} {budget}");
         if let Some(mapped) = mapped_bytes(&path) {
             // Two maps of the file, of which this is the emptier. The system maps up to 64 KiB about a page
-            // that is touched, beyond either end of what was asked for.
+            // that is touched, beyond either end of what was requested.
             let most = resident.most_bytes + 2 * (64 << 10);
             assert!(mapped[1] <= most, "{mapped:?} {resident:?}");
         }
@@ -154,7 +154,7 @@ fn a_budget_below_the_files_size_changes_nothing_but_time() {
     assert_eq!(whole.resident(), None);
 }
 
-/// Bytes of the maps of a file that are in memory, the fullest first; Linux tells.
+/// Bytes of the maps of a file that are in memory, the fullest first; Linux reports it.
 fn mapped_bytes(path: &std::path::Path) -> Option<Vec<u64>> {
     let maps = std::fs::read_to_string("/proc/self/smaps").ok()?;
     let name = path.canonicalize().ok()?.display().to_string();

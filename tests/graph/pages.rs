@@ -129,7 +129,7 @@ fn touched(path: &Path, pixels: u32) -> Touched {
     touched
 }
 
-/// What the system says against what the machine fetches.
+/// The system's figures against what the machine fetches.
 #[test]
 fn a_frame_has_the_pages_of_its_nodes_in_memory() {
     let folder = tempfile::tempdir().unwrap();

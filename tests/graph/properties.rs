@@ -97,7 +97,7 @@ proptest! {
     #[test]
     fn cells_come_in_morton_order(voxels in voxels()) {
         let graph = build(&voxels);
-        // Octants from the root down, as the order says.
+        // Octants from the root down, as the order defines.
         let path = |corner: [i32; 3]| -> Vec<i32> {
             (0..graph.depth).rev()
                 .map(|b| (corner[0] >> b & 1) << 2 | (corner[1] >> b & 1) << 1 | (corner[2] >> b & 1))

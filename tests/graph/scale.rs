@@ -25,7 +25,7 @@ fn build(spec: &str) -> Graph {
     pushed(spec).finish(([0.0; 3], 1.0), &Silent).unwrap()
 }
 
-/// A memory figure of this process in bytes, where the system tells.
+/// A memory figure of this process in bytes, where the system reports it.
 fn memory_of_process(field: &str) -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|line| line.starts_with(field))?;

@@ -322,7 +322,7 @@ fn messages_say_where_what_and_what_to_do() {
 }
 
 /// The version of the layout says whether there are opacities, so that a
-/// program that knows none does not draw the voxels opaque.
+/// program without opacities does not draw the voxels opaque.
 #[test]
 fn opacities_make_another_version_and_others_stay_as_they_were() {
     let graphs = small_graphs();

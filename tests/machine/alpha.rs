@@ -17,13 +17,6 @@ fn alpha(lod_px: f64) -> SetupOptions {
     }
 }
 
-/// A colour for each node.
-fn lights(graph: &Graph) -> Vec<[u16; 3]> {
-    (0..graph.len() as u16)
-        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
-        .collect()
-}
-
 fn draw_lit(graph: &Graph, light: &[[u16; 3]], setup: &FrameSetup) -> Frame {
     let view = GraphView {
         light,
@@ -125,7 +118,8 @@ fn any_opacities() -> impl Strategy<Value = Vec<[u8; 3]>> {
     proptest::collection::vec(proptest::array::uniform3(byte), 700)
 }
 
-fn with_opacities(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
+/// A graph with these opacities, in turn.
+fn opacities_of(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
     let nodes = 0..graph.len();
     let opacity = nodes.map(|i| Opacity(opacities[i % opacities.len()]));
     graph.opacity = opacity.collect::<Vec<_>>().into();
@@ -141,11 +135,11 @@ proptest! {
         opacities in any_opacities(),
         camera in any_camera(8.0, 5..25),
     ) {
-        // Leaves of the finest level alone, and outside: rays in f64 know no more.
+        // Leaves of the finest level alone, and outside: the reference in f64 handles no more.
         prop_assume!(camera.eye.to_array().iter().any(|&c| !(-0.5..=8.5).contains(&c)));
         // Where it is not on a lattice point the rounded eye is on its side.
         prop_assume!(camera.eye.to_array().iter().all(|c| (c - c.round()).abs() > 1e-3));
-        let graph = with_opacities(graph, &opacities);
+        let graph = opacities_of(graph, &opacities);
         let light = lights(&graph);
         let setup = setup(&graph, &camera, &alpha(0.0));
         let frame = draw_lit(&graph, &light, &setup);
@@ -174,7 +168,7 @@ proptest! {
         let options = alpha(lod_px);
         let exact = SetupOptions { coverage: Coverage::Exact, ..options };
         let right = draw(&graph, &setup(&graph, &camera, &exact));
-        let graph = if stored { with_opacities(graph, &[[255; 3]]) } else { graph };
+        let graph = if stored { opacities_of(graph, &[[255; 3]]) } else { graph };
         let light = lights(&graph);
         let frame = draw_lit(&graph, &light, &setup(&graph, &camera, &options));
         prop_assert_eq!(&right.node, &frame.node);
@@ -205,7 +199,7 @@ proptest! {
         let high: Vec<[u8; 3]> = low.iter().zip(&more).map(higher).collect();
         let setup = setup(&graph, &camera, &alpha(1.0));
         let left = |opacities: &[[u8; 3]]| -> Vec<u16> {
-            let graph = with_opacities(graph.clone(), opacities);
+            let graph = opacities_of(graph.clone(), opacities);
             let frame = draw_lit(&graph, &[], &setup);
             frame.blend.expect("blended").iter().map(|b| b.left).collect()
         };
@@ -222,7 +216,7 @@ fn two_voxels_by_hand() {
     // The eye is above both; the upper one's number is higher.
     let camera = camera([0.5, 0.5, 20.0], [0.5, 0.5, 0.0], 9);
     let blended = |upper: u8, lower: u8| {
-        let mut graph = with_opacities(graph.clone(), &[[0; 3]]);
+        let mut graph = opacities_of(graph.clone(), &[[0; 3]]);
         let mut opacity = graph.opacity.to_vec();
         let top = cells(&graph)
             .iter()
@@ -264,7 +258,7 @@ fn two_voxels_by_hand() {
 #[test]
 fn what_blending_costs() {
     for size in [1, 7, 41] {
-        let graph = with_opacities(octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
+        let graph = opacities_of(octree(2, &|at| at == [1, 2, 3]), &[[0x33; 3]]);
         let camera = camera([40.0, 30.0, 20.0], [1.5, 2.5, 3.5], size);
         let setup = setup(&graph, &camera, &alpha(0.0));
         let mut frame = Frame::new(setup.width, setup.height, false);
@@ -308,10 +302,10 @@ fn what_blending_costs() {
     }
 }
 
-/// Other rules know nothing of it.
+/// Other rules do not blend.
 #[test]
 fn other_rules_blend_nothing() {
-    let graph = with_opacities(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);
+    let graph = opacities_of(octree(2, &|at| at[0] < 2), &[[0x33; 3]]);
     let camera = camera([9.0, 7.0, 6.0], [2.0; 3], 16);
     for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
         let setup = setup(&graph, &camera, &SetupOptions::of(coverage));

@@ -12,37 +12,12 @@ use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
 use shiftvox::rays::Rays;
 
-use crate::common::{octree, sierpinski, solid, up_of};
+use crate::common::{octree, solid, up_of};
+use crate::scene_table::SCENES;
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
-/// Samples that are compared unless the environment says otherwise.
+/// Samples that are compared unless the environment sets another number.
 const SAMPLES: u64 = 20_000_000;
-
-/// Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic,
-/// 30 levels deep, and a million voxels from the origin.
-fn graphs() -> Vec<Graph> {
-    let mut graphs: Vec<Graph> = [
-        "gen:terrain,depth=8",
-        "gen:menger,depth=4",
-        "gen:sphere,depth=6",
-        "gen:shell,depth=6",
-        "gen:checker,depth=4",
-        "gen:random,depth=5",
-        "gen:wires,depth=7",
-        "gen:truss,depth=7",
-        "gen:maze,depth=5",
-        "gen:sierpinski,depth=12",
-    ]
-    .map(graph_of_spec)
-    .into();
-    graphs.push(sierpinski(30));
-    graphs.push(solid(3));
-    graphs.push(octree(4, &|[x, y, z]| (x + 2 * y + 3 * z) % 5 == 0));
-    let mut far = graph_of_spec("gen:terrain,depth=6");
-    far.placement.origin_index = [1 << 20, -(1 << 20), 1 << 20];
-    graphs.push(far);
-    graphs
-}
 
 /// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or
 /// in its middle, looking along an axis or at a corner.
@@ -89,11 +64,10 @@ fn camera(graph: &Graph, dice: &mut Dice) -> Option<Camera> {
 fn fast_equals_the_oracle_at_every_sample() {
     let wanted =
         std::env::var("SHIFTVOX_SAMPLES").map_or(SAMPLES, |n| n.parse().expect("a number"));
-    let graphs = graphs();
     let mut dice = Dice::new(16);
     let (mut compared, mut drawn, mut exact, mut left_over) = (0u64, 0u64, 0u64, 0u64);
     while compared < wanted {
-        let graph = &graphs[dice.below(graphs.len() as u32) as usize];
+        let graph = SCENES[dice.below(SCENES.len() as u32) as usize].graph();
         let Some(camera) = camera(graph, &mut dice) else {
             continue;
         };

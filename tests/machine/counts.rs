@@ -154,7 +154,7 @@ impl Turn {
         self.of(Stage::Centre).next().is_some()
     }
 
-    /// Children that exist: all of a solid's, else what the node's mask says.
+    /// Children that exist: all of a solid's, else those of the node's mask.
     fn children(&self, graph: &Graph) -> u64 {
         let node = self.of(Stage::OnePixel).find_map(|event| match event {
             Event::Read(Memory::Node, node) => u32::try_from(node).ok(),
@@ -685,7 +685,7 @@ fn traffic_agrees_with_the_counts() {
     }
 }
 
-/// Counter, this test's probe, and the frame's own statistics tell the same.
+/// Counter, this test's probe, and the frame's own statistics agree.
 #[test]
 fn counts_agree_and_change_nothing() {
     for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {

@@ -6,17 +6,18 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::common::*;
+use crate::scene_table::SCENES;
 use crate::scenes;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions, Instructions, Switches};
 use shiftvox::frame::{Colors, Frame, color_word};
-use shiftvox::graph::{Graph, GraphView, Opacity};
+use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::Machine;
 use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
 };
 
-/// A machine that notes whether it was asked.
+/// A machine that records whether it was called.
 struct Noted(Machine, Arc<AtomicBool>);
 
 impl Engine for Noted {
@@ -83,18 +84,6 @@ fn draw_machine(graph: &Graph, setup: &FrameSetup) -> Result<Frame, EngineError>
         .map(|_| frame)
 }
 
-/// Small ones of every kind: thin, solid, cyclic, with surfaces.
-const SPECS: [&str; 8] = [
-    "gen:terrain,depth=7,seed=3",
-    "gen:menger,depth=3",
-    "gen:sierpinski,depth=9",
-    "gen:sphere,depth=5",
-    "gen:shell,depth=6",
-    "gen:truss,depth=6",
-    "gen:wires,depth=6",
-    "gen:maze,depth=5",
-];
-
 const SETS: [Instructions; 2] = [Instructions::Scalar, Instructions::Avx2];
 
 fn any_options() -> impl Strategy<Value = FastOptions> {
@@ -141,31 +130,6 @@ pub(super) fn any_settings() -> impl Strategy<Value = SetupOptions> {
             aa_log2,
         },
     )
-}
-
-/// Opacities by node: some nothing, some all, some unlike from their sides.
-fn with_opacities(graph: &Graph) -> Graph {
-    let opacity = (0..graph.len() as u32).map(|node| {
-        let [kind, x, y, z] = (node + 7).wrapping_mul(0x9e37_79b1).to_be_bytes();
-        Opacity(match kind & 7 {
-            0 => [0; 3],
-            1 => [255; 3],
-            2 => [0x0f, 0, 0],
-            3 => [0x11; 3],
-            _ => [x, y, z],
-        })
-    });
-    Graph {
-        opacity: opacity.collect::<Vec<_>>().into(),
-        ..graph.clone()
-    }
-}
-
-/// Light by node.
-fn lights(graph: &Graph) -> Vec<[u16; 3]> {
-    (0..graph.len() as u16)
-        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
-        .collect()
 }
 
 /// Compares the two engines on one frame.
@@ -260,20 +224,20 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
-    fn equal_on_generated_scenes(
-        which in 0..SPECS.len(),
+    fn equal_on_the_scenes_of_the_table(
+        which in 0..SCENES.len(),
         camera in any_camera(1.0, 60..300),
         settings in any_settings(),
         options in any_options(),
     ) {
         prop_assume!(settings.coverage.draws_outlines());
-        let graph = scenes::graph_of_spec(SPECS[which]);
-        let side = f64::from(1u32 << graph.depth);
+        let graph = SCENES[which].graph();
+        let (low, side) = scenes::cube(graph);
         let camera = Camera {
-            eye: camera.eye * side,
-            target: camera.target * side,
+            eye: low + camera.eye * side,
+            target: low + camera.target * side,
             ..camera
         };
-        agree(&graph, &camera, &settings, options)?;
+        agree(graph, &camera, &settings, options)?;
     }
 }

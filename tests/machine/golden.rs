@@ -14,7 +14,6 @@ use std::path::{Path, PathBuf};
 
 use crate::scenes::*;
 use glam::DVec3;
-use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
@@ -304,21 +303,6 @@ fn pictures_are_the_golden_ones() {
 }
 
 #[test]
-fn threads_do_not_show() {
-    let in_pool = |threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a pool")
-            .install(|| draw_all(some_cases()))
-    };
-    let alone = in_pool(1);
-    for threads in [2, 5] {
-        assert_eq!(alone, in_pool(threads), "{threads} threads");
-    }
-}
-
-#[test]
 fn a_machine_draws_alike_whatever_it_drew_before() {
     let mut machine = Machine::default();
     for case in some_cases().iter().filter(|case| !case.oracle) {
@@ -334,35 +318,6 @@ fn a_machine_draws_alike_whatever_it_drew_before() {
             assert!(frame == fresh, "{}", case.name);
         }
     }
-}
-
-/// Where a picture is defined sample by sample, every engine draws it.
-#[test]
-fn exact_pictures_are_alike_from_all_engines() {
-    let mut compared = 0;
-    for case in some_cases() {
-        if !case.options.coverage.draws_outlines() {
-            continue;
-        }
-        let graph = graph_of(case.scene);
-        let setup = set_up(&case, &graph);
-        let machine: Box<dyn Engine + Send> = Box::new(Machine::default());
-        let mut engines: [Box<dyn Engine>; 3] = [
-            Box::new(Machine::default()),
-            Box::new(Rays),
-            Box::new(Fast::new(FastOptions::default(), machine)),
-        ];
-        let [machine, rays, fast] = engines.each_mut().map(|engine| {
-            let mut frame = Frame::new(setup.width, setup.height, false);
-            engine
-                .draw(&graph.view(), &setup, &mut frame)
-                .expect(case.name);
-            frame
-        });
-        assert!(machine == rays && machine == fast, "{}", case.name);
-        compared += 1;
-    }
-    assert!(compared >= 3);
 }
 
 /// Frames that [`RECORDED_SAMPLES`] is of.

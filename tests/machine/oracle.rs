@@ -470,25 +470,6 @@ fn a_picture_by_hand() {
     assert_exact(&graph, &setup);
 }
 
-#[test]
-fn threads_change_nothing() {
-    let mut dice = Dice(4);
-    let graph = random_graph(&mut dice, 6);
-    let setup = set_up(
-        &camera([90.0, -40.0, 70.0], [32.0; 3], [0.0, 0.0, 1.0], 50.0, 64),
-        6,
-    );
-    let pictures = [1, 2, 7].map(|threads| {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build()
-            .expect("a thread pool")
-            .install(|| draw(&graph, &setup))
-    });
-    assert_eq!(pictures[0], pictures[1]);
-    assert_eq!(pictures[0], pictures[2]);
-}
-
 /// Clip vectors times a power of two are the same view; large ones leave 128 bits.
 #[test]
 fn views_beyond_128_bits_give_the_same_picture() {

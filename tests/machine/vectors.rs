@@ -1,6 +1,6 @@
 //! Test vectors, replayed: every row of every block computed again from the
-//! files alone, in plain integers, by what `SPEC.md` and the manifest say.
-//! Nothing here knows the machine.
+//! files alone, in plain integers, by `SPEC.md` and the manifest.
+//! Nothing here uses the machine.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -435,7 +435,7 @@ fn plane_cover(row: &Row) -> i128 {
         if side == 0 {
             all = false;
         } else if side != row.get("wanted") {
-            // Where an axis is not settled, the front has not been looked at yet;
+            // Where an axis is not settled, the front has not been examined yet;
             // its side is then the last one, for which the record was still alive.
             return 0;
         }
@@ -443,7 +443,7 @@ fn plane_cover(row: &Row) -> i128 {
     if all { 2 } else { 1 }
 }
 
-/// A file's rows, as the manifest says that they are packed.
+/// A file's rows, packed as the manifest defines.
 fn read(folder: &Path, ports: &Value) -> Vec<Row> {
     let fields = ports["fields"].as_array().unwrap();
     let names: BTreeMap<String, usize> = fields
@@ -489,7 +489,7 @@ fn read(folder: &Path, ports: &Value) -> Vec<Row> {
     lines.map(row).collect()
 }
 
-/// Rows that are not what their block gives, the first told; and rows by block.
+/// Rows that are not what their block gives, and the first of them; and rows by block.
 fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
     let manifest: Value = serde_json::from_str(&text).unwrap();

@@ -1,4 +1,4 @@
-//! The error of screen-space midpoints is what it was said to be.
+//! The error of screen-space midpoints is what the documents state.
 
 use shiftvox::lab::vertex_error::standard_table;
 

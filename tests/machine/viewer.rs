@@ -15,7 +15,7 @@ use shiftvox::project::{
 };
 use shiftvox::rays::Rays;
 
-/// An engine that counts its frames, and fails where it is told to.
+/// An engine that counts its frames, and fails on request.
 struct Watched<E> {
     engine: E,
     frames: Rc<Cell<u32>>,
@@ -179,7 +179,7 @@ proptest! {
                     let drawn = viewer.render(&setup);
                     fails.set(false);
                     if last.as_ref() == Some(&setup) {
-                        // It is not asked.
+                        // The engine is not called.
                         prop_assert!(drawn.is_ok());
                     } else {
                         prop_assert!(drawn.is_err());

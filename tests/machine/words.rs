@@ -3,7 +3,7 @@
 //! A `Word` has no operators and no way to a number but `to_host()` and, for
 //! the eyes of a probe, `Wires::show()`, so an operation that no probe sees has
 //! to call one of these first, or work on something that never was a word. All
-//! are looked for in the machine's sources: every line with `to_host()`, every
+//! are searched for in the machine's sources: every line with `to_host()`, every
 //! line that names what `show()` fills, and every line that multiplies or
 //! divides or names the host's arithmetic has to be on a list here that says
 //! why it may. `Datapath::tap` takes words and gives nothing back.

@@ -41,7 +41,7 @@ fn covered(graph: &Graph) -> Vec<[f64; 3]> {
 #[test]
 fn a_thin_bar_keeps_its_width_at_every_level() {
     // A hundred long, a third wide. At 1024 voxels it is three wide; at 32, a tenth of one, one
-    // and a half of the sixteenths that opacities tell apart. Coarser, it is one or none.
+    // and a half of the sixteenths that opacities distinguish. Coarser, it is one or none.
     let bar = cuboid([0.0, 0.1, 0.2], [100.0, 0.4, 0.5]);
     let (graph, _) = graph_of(&bar, 10);
     for (level, [_, y, z]) in covered(&graph).into_iter().enumerate().skip(5) {

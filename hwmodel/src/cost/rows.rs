@@ -120,7 +120,7 @@ pub enum CostError {
         quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
     )]
     Missing {
-        /// What was asked for.
+        /// What was requested.
         quantity: Quantity,
         /// Of which operation.
         operation: String,
@@ -135,7 +135,7 @@ pub enum CostError {
         quantity.name(), in_brackets(*goal), quantity.key(), quantity.file()
     )]
     TooWide {
-        /// What was asked for.
+        /// What was requested.
         quantity: Quantity,
         /// Of which operation.
         operation: String,
@@ -150,7 +150,7 @@ pub enum CostError {
         /// Under which goal, if that matters.
         goal: Option<Goal>,
     },
-    /// Operations cannot be costed the way that was asked for.
+    /// Operations cannot be costed in the requested way.
     #[error(
         "{times} min/max operations of {width} bits in stage {stage} are not spans of eight values (7 min and 7 max each): pairs are for the corner cage"
     )]

@@ -73,7 +73,7 @@ impl Counter {
         self.sum(|_| true)
     }
 
-    /// Operations of the cells that are wanted.
+    /// Operations of the cells that a filter selects.
     #[must_use]
     pub fn sum(&self, wanted: impl Fn(&OpCount) -> bool) -> u64 {
         let cells = self.cells().filter(wanted);

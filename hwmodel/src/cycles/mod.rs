@@ -52,7 +52,7 @@
 //! 9. **Children** are on the stack of the lane, nearest on top, in the cycle in which the turn ends.
 //!    A child is *ready* when all its earlier siblings that it is not
 //!    independent of ([`Independence::allows`]) are finished with all their
-//!    descendants. Siblings are all that needs to be looked at: descendants stay in
+//!    descendants. Siblings are all that needs to be examined: descendants stay in
 //!    their ancestor's image node and in its place in the order.
 //! 10. **Next record.** A record that becomes ready goes on top of its lane's list, below the
 //!     earlier siblings of its own that are on top. A context whose turn has ended takes, in the

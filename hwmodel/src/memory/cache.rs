@@ -14,11 +14,11 @@ pub enum CacheError {
         "a cache of {size_bytes} bytes is not made of whole sets of {ways} lines of {line_bytes} bytes"
     )]
     Sets {
-        /// Size asked for, in bytes.
+        /// Size requested, in bytes.
         size_bytes: u64,
-        /// Ways asked for.
+        /// Ways requested.
         ways: u32,
-        /// Line asked for, in bytes.
+        /// Line requested, in bytes.
         line_bytes: u32,
     },
     /// The cache is too large to be simulated.

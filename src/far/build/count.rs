@@ -62,7 +62,7 @@ impl Counted {
     }
 
     /// Opacity seen from each main direction: what makes the blend fit hits and
-    /// passes best. A direction that nobody looked from is opaque.
+    /// passes best. A direction without rays is opaque.
     pub(super) fn six(&self) -> [f64; DIRECTIONS] {
         let pull = 0.05 * self.weight / self.independent().max(1.0);
         if self.weight <= 0.0 {

@@ -241,7 +241,7 @@ fn a_thin_floor_has_no_holes() {
         let [x, _, z] = seen.place;
         if (1..7).contains(&x) && (1..7).contains(&z) {
             let opacity = seen.counted.six();
-            // A corner of the floor in a voxel is told from a thin thing.
+            // A corner of the floor in a voxel is distinguished from a thin thing.
             assert!(
                 opacity[2] > 0.9 && opacity[3] > 0.9,
                 "{:?} {opacity:?}",

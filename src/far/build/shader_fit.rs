@@ -90,7 +90,7 @@ fn flat(samples: &[SurfaceSample]) -> Shader {
         sums[side].0 += sample.color;
         sums[side].1 += 1.0;
     }
-    // A side that nobody saw looks like the other.
+    // A side without samples gets the colours of the other.
     let colors = [0, 1].map(|side| {
         let (sum, count) = if sums[side].1 > 0.0 {
             sums[side]
@@ -232,7 +232,7 @@ mod tests {
         for rays in [100, 1000, 100_000] {
             assert_eq!(kind(rays, sheet), OpacityKind::Six, "{rays}");
         }
-        // What is asked for is the most that is stored.
+        // The requested kind is the most that is stored.
         let sheet = counted(1000, sheet);
         assert_eq!(classify(&sheet, Opacity::Scalar).0, OpacityKind::Scalar);
         assert_eq!(classify(&sheet, Opacity::None).0, OpacityKind::Opaque);

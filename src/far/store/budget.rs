@@ -52,7 +52,7 @@ impl Budget {
         }
     }
 
-    /// Notes that a node's data is about to be looked at, and lets go of others
+    /// Notes that a node's data is about to be examined, and lets go of others
     /// until it fits; a node larger than the budget is alone in memory.
     pub(super) fn touch(
         &self,

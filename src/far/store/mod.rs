@@ -2,7 +2,7 @@
 //!
 //! Opening a file reads header and hierarchy and checks every field of both.
 //! Voxels and triangles of a node are checked, against their checksum and the
-//! node's box, when they are first asked for, so that only what is drawn is
+//! node's box, when they are first needed, so that only what is drawn is
 //! read. [`FarFile::verify`] reads all. [`FarFile::open_within`] keeps what is
 //! in memory of them to a budget.
 

@@ -305,7 +305,7 @@ impl FarFile {
         range([begin / BROUGHT_IN * BROUGHT_IN, end.min(self.len())])
     }
 
-    /// Counts a node's data into the budget, and checks it when it is first asked for.
+    /// Counts a node's data into the budget, and checks it when it is first needed.
     fn ensure(&self, number: usize) -> Result<(), FarError> {
         if let (Some(budget), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
             let release_range = |range: &Range<usize>| {

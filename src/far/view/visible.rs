@@ -69,7 +69,7 @@ impl VisibilityHistory {
 pub(super) struct VisibleNodes {
     /// Nodes that were drawn.
     pub(super) drawn: Vec<Chosen>,
-    /// Branches whose children were looked at, parents before children.
+    /// Branches whose children were examined, parents before children.
     pub(super) branches: Vec<usize>,
 }
 

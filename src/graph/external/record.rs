@@ -31,7 +31,7 @@ pub(super) fn pushed(voxel: &Voxel, number: usize) -> u128 {
 /// With the Morton key from a corner in place of the index.
 pub(super) fn placed(record: u128, corner: [i32; 3]) -> u128 {
     let packed = key(record);
-    // The extent is at most 2^21, so the low bits tell the distance.
+    // The extent is at most 2^21, so the low bits give the distance.
     let at = [0, 1, 2].map(|axis| {
         let low_bits = (packed >> (axis as u32 * morton::MAX_BITS)) as u32;
         low_bits.wrapping_sub(corner[axis] as u32) & (MAX_SIDE as u32 - 1)

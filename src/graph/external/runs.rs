@@ -242,7 +242,7 @@ impl Sorter {
 mod tests {
     use super::*;
 
-    /// A record of a key that says in which run it came.
+    /// A record of a key, marked with its run.
     fn record(key: u64, run: u64) -> u128 {
         u128::from(key) << 64 | u128::from(run)
     }

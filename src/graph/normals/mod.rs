@@ -7,7 +7,7 @@
 //! thick, that direction is noise, and the normal is the direction in which
 //! the heap is thinnest (the least axis of its covariance), turned away from
 //! the middle of the object. A wall that thin has two sides, and which one is
-//! *out* cannot be known from it: a viewer may turn such a normal towards the eye.
+//! *out* does not follow from it: a viewer may turn such a normal towards the eye.
 //!
 //! A voxel alone in its neighbourhood has none; nor has one whose six faces
 //! are all covered: it cannot be seen, and has no part in the normals of

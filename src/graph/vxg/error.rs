@@ -18,7 +18,7 @@ pub enum VxgError {
         /// What the system says.
         source: io::Error,
     },
-    /// The file exists, and overwriting was not asked for.
+    /// The file exists, and overwriting was not requested.
     #[error("{}: the file exists; use another name, or allow overwriting (--force)", .0.display())]
     Exists(PathBuf),
     /// The file is not as it should be.

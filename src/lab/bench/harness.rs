@@ -101,7 +101,7 @@ pub enum BenchError {
     /// The system gave no threads.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
-        /// How many were asked for.
+        /// How many were requested.
         threads: usize,
         /// The system's reason.
         reason: String,

@@ -11,7 +11,7 @@ use crate::project::FrameSetup;
 /// (`FrameSetup::lod_depth`). It depends on camera, level and place of the
 /// node alone, not on the drawing rule. (In screen space `any` and `center`
 /// decide by a record's box; these decisions lie around this one.) Nodes
-/// wholly behind the eye are solids too: nobody sees them. Shared and
+/// wholly behind the eye are solids too: they are never visible. Shared and
 /// cyclic nodes are written out, once for each place.
 #[must_use]
 pub fn cut_at(graph: &Graph, setup: &FrameSetup) -> Graph {

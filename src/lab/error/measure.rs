@@ -265,7 +265,7 @@ impl Exact {
 ///
 /// # Errors
 /// When the camera cannot see, or there is no thread. A method without a
-/// picture is no error but a row that says why.
+/// picture is no error but a row with the reason.
 pub fn measure(
     subject: &Subject,
     methods: &mut [Box<dyn Method + '_>],

@@ -35,7 +35,7 @@ pub trait Method: Send {
     /// When the frame cannot be finished.
     fn draw(&mut self) -> Result<(), Refused>;
 
-    /// Draws the frame once more, and everything that can be said of it.
+    /// Draws the frame once more, and measures it.
     ///
     /// # Errors
     /// When the frame cannot be finished.
@@ -71,7 +71,7 @@ impl Refused {
     }
 }
 
-/// A drawn frame and what is known of it.
+/// A drawn frame and its figures.
 #[derive(Debug, Clone)]
 pub struct Shown {
     /// The picture, before a background: opaque.
@@ -86,7 +86,7 @@ pub struct Shown {
     /// methods of a family; the first is its work: what the machine-independent
     /// plots have across.
     pub counters: Stats,
-    /// Anything a reader should know, such as which engine drew in its place.
+    /// Remarks, such as which engine drew in its place.
     pub remark: Option<String>,
 }
 
@@ -104,7 +104,7 @@ pub struct Samples {
 pub struct VertexLevel {
     /// Octree level, 0 = root.
     pub level: u32,
-    /// Records whose vertices were looked at.
+    /// Records whose vertices were examined.
     pub records: u64,
     /// Those of them that are held in screen space.
     pub on_screen: u64,

@@ -36,7 +36,7 @@ pub struct Reference {
     pub shares: Vec<f32>,
 }
 
-/// Most levels by which places in a stratum are told apart.
+/// Most levels by which places in a stratum are distinguished.
 const MOST_JITTER_LEVELS: u32 = 4;
 
 /// What a reference takes of its picture's levels: a picture whose image root

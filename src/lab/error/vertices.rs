@@ -10,13 +10,13 @@ use crate::measure::Spread;
 use crate::project::camera::Axes;
 use crate::project::{Camera, FrameSetup};
 
-/// Voxels whose vertices are looked at, most; their ancestors come on top.
+/// Voxels whose vertices are examined, most; their ancestors come on top.
 const MOST_VOXELS: usize = 20_000;
 
 /// Errors by octree level of the vertices of the voxels that a frame shows
 /// and of all their ancestors. `voxels`: what its samples see.
 ///
-/// Looked at are vertices whose exact projection lies in the picture. The
+/// Examined are vertices whose exact projection lies in the picture. The
 /// projection is that of the camera in real numbers, so the rounding of the view by
 /// a narrow format counts. Of more than 20,000 voxels every n-th is taken.
 #[must_use]

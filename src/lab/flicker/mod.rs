@@ -61,7 +61,7 @@ pub struct FilmFlicker {
 }
 
 impl FilmFlicker {
-    /// Steps in which another cut makes another picture. A film without any says nothing of
+    /// Steps in which another cut makes another picture. A film without any does not show
     /// how much a change of level shows.
     #[must_use]
     pub fn popped(&self) -> u64 {
@@ -94,7 +94,7 @@ pub struct Films {
 /// Films a scene from its camera on, moving.
 ///
 /// # Errors
-/// When a camera cannot see. A method without a picture is no error but a film that says why.
+/// When a camera cannot see. A method without a picture is no error but a film with the reason.
 pub fn film(
     subject: &Subject,
     motion: Motion,

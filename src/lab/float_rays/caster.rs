@@ -62,7 +62,7 @@ impl Caster<'_> {
         }
 
         let mut stack = [StackEntry::default(); MANTISSA_BITS as usize + 1];
-        // Of the cell looked at: lowest corner in mirrored space, octant in its parent
+        // Of the cell examined: lowest corner in mirrored space, octant in its parent
         // (mirrored), side, and the bit of the mantissa that the side is.
         let mut low = [1f32; 3];
         let mut octant = 0u8;

@@ -19,7 +19,7 @@ pub struct FloatRayCounts {
     steps: [u64; FloatStep::ALL.len()],
     /// Rays cast: one a sample.
     pub rays: u64,
-    /// Cells that rays looked at.
+    /// Cells that rays examined.
     pub cells: u64,
 }
 

@@ -26,7 +26,7 @@ use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
 /// Bits of an `f32`'s mantissa, hence levels that positions can resolve.
 const MANTISSA_BITS: u32 = 23;
-/// Deepest level that is looked at; nodes there are drawn as one voxel.
+/// Deepest level that is examined; nodes there are drawn as one voxel.
 pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
 /// Least magnitude of a direction's component, so that its inverse is finite
 /// and products with it stay far from overflow.
@@ -34,12 +34,12 @@ const LEAST_SLOPE: f32 = 1.0 / (1 << MANTISSA_BITS) as f32;
 
 /// The ray caster in floating point. Drawing rule, cage, tolerance and level
 /// of detail of the set-up are ignored: a sample shows what its centre sees,
-/// as far as `f32` can tell.
+/// within the precision of `f32`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FloatRays;
 
 impl Engine for FloatRays {
-    /// Never fails. `steps` counts the cells that rays looked at. Does not
+    /// Never fails. `steps` counts the cells that rays examined. Does not
     /// fill `frame.records`. Nodes at [`MAX_LEVEL`] are drawn as one voxel.
     fn render(
         &mut self,

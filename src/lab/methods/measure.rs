@@ -21,7 +21,7 @@ pub struct MethodsPlan {
     pub halvings: u32,
     /// How often each method draws.
     pub schedule: Schedule,
-    /// Frames of the film in which flicker is looked for; below 2: none.
+    /// Frames of the film in which flicker is searched for; below 2: none.
     pub frames: u32,
     /// How a film's camera moves.
     pub motion: Motion,
@@ -29,7 +29,7 @@ pub struct MethodsPlan {
     pub style: PixelStyle,
 }
 
-/// What is known of a method beside its pictures.
+/// Facts about a method beside its pictures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Facts {
     /// What tables call it.
@@ -108,7 +108,7 @@ pub struct MeshMethods {
 ///
 /// # Errors
 /// When the camera cannot see, or there is no thread. A method without a
-/// picture is no error but a row that says why.
+/// picture is no error but a row with the reason.
 pub fn measure(
     (name, mesh): (&str, &dyn Surface),
     camera: &Camera,

@@ -27,7 +27,7 @@ pub struct Safe {
     /// Largest picture, pixels a side.
     pub picture: Option<u32>,
     /// Least distance at which `any` and `center` draw, in finest voxels: the
-    /// near plane is a sixteenth of a voxel, where the format can say that.
+    /// near plane is a sixteenth of a voxel, where the format can express that.
     pub near_voxels: Option<f64>,
 }
 

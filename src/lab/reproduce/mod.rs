@@ -357,7 +357,7 @@ pub fn times(
 /// that the order allows, on some subjects, under both settings.
 ///
 /// Without rejection the image-order paper's loop takes a solid apart along every bisector
-/// down to the level bound, exponentially in its levels: nobody can wait for
+/// down to the level bound, exponentially in its levels: it is impractical to wait for
 /// that, so under the image-order paper's settings there is no such row.
 ///
 /// # Errors

@@ -173,7 +173,7 @@ impl Outcome {
 pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
 /// From so many records on no frame is merely long: any rule is then expected to have ended.
 pub const PATIENCE: u64 = 200_000_000;
-/// Voxels whose vertices are looked at in a frame.
+/// Voxels whose vertices are examined in a frame.
 const VOXELS_LOOKED_AT: usize = 6;
 /// Levels below finest voxels to which vertices are followed.
 const LEVELS_BELOW: u32 = 3;

@@ -69,7 +69,7 @@ impl<'s> Shrinker<'s> {
 
     /// Leaves voxels out, first halves of the scene, at last one by one.
     fn fewer_voxels(&mut self, best: &mut Case) {
-        // Holes are holes of a closed surface: a list of voxels is none.
+        // Holes are holes of a closed surface: a list of voxels need not be one.
         if self.check == Check::Holes {
             return;
         }

@@ -231,7 +231,7 @@ pub struct Failed {
     pub detail: String,
     /// The case, for `--case`.
     pub case: String,
-    /// A smaller one that fails too, where it was looked for.
+    /// A smaller one that fails too, where it was searched for.
     pub minimal: Option<String>,
     /// The smaller one's details.
     pub minimal_detail: Option<String>,

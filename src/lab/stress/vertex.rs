@@ -39,7 +39,7 @@ impl Hold {
 /// The worst vertices that were seen of one kind.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize)]
 pub struct Worst {
-    /// Vertices looked at.
+    /// Vertices examined.
     pub vertices: u64,
     /// Largest error, samples, of those within the picture.
     pub error_px: f64,

@@ -68,7 +68,7 @@ impl Grid {
         }
         let distance = low.abs().max(high.abs()).max_element();
         let voxel_size = extent / ((1u64 << depth) - 1) as f64;
-        // The origin must be told from a neighbouring voxel's.
+        // The origin must be distinct from a neighbouring voxel's.
         if !(extent.is_finite() && voxel_size.is_normal() && voxel_size > distance * 1e-12) {
             return Err(GridError::Coordinates { extent, distance });
         }

@@ -19,7 +19,7 @@ const CANCELLED: f64 = 0.25;
 /// A triangle cut by six planes has at most nine corners.
 const MOST_CORNERS: usize = 9;
 
-/// A triangle on the lattice with what it looks like.
+/// A triangle on the lattice with its colour and normal.
 #[derive(Debug)]
 pub(super) struct Painted {
     pub(super) prepared: Prepared,

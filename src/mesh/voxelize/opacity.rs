@@ -1,6 +1,6 @@
 //! How opaque the voxels of a mesh are, from six sides (`spec/mesh.md`, "Opacities").
 //!
-//! A voxel's face is looked at through 64 points; a point is covered where a
+//! A voxel's face is sampled at 64 points; a point is covered where a
 //! triangle within the voxel meets the line through it. What is covered is
 //! kept, not only counted, so that what lies before and behind is put together
 //! as it lies: two halves of a slanted wall, one in the front voxel and one in
@@ -168,7 +168,7 @@ impl<S: Surface + ?Sized> Walk<'_, S> {
     }
 }
 
-/// A number that looks like chance and follows from what a node covers.
+/// A pseudo-random number that follows from what a node covers.
 fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)

@@ -6,7 +6,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
-use shiftvox::graph::{Graph, PackedNormal, Placement};
+use shiftvox::graph::{Graph, Opacity, PackedNormal, Placement};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 
@@ -227,6 +227,31 @@ pub fn tolerance_of(coverage: Coverage, tolerance_px: f64) -> f64 {
     }
 }
 
+/// Opacities by node: some nothing, some all, some unlike from their sides.
+pub fn with_opacities(graph: &Graph) -> Graph {
+    let opacity = (0..graph.len() as u32).map(|node| {
+        let [kind, x, y, z] = (node + 7).wrapping_mul(0x9e37_79b1).to_be_bytes();
+        Opacity(match kind & 7 {
+            0 => [0; 3],
+            1 => [255; 3],
+            2 => [0x0f, 0, 0],
+            3 => [0x11; 3],
+            _ => [x, y, z],
+        })
+    });
+    Graph {
+        opacity: opacity.collect::<Vec<_>>().into(),
+        ..graph.clone()
+    }
+}
+
+/// Light by node.
+pub fn lights(graph: &Graph) -> Vec<[u16; 3]> {
+    (0..graph.len() as u16)
+        .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c)))
+        .collect()
+}
+
 /// Sets a frame up.
 pub fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> FrameSetup {
     FrameSetup::new(camera, &graph.placement, graph.depth, options).expect("a frame")
@@ -241,7 +266,7 @@ pub fn draw_with(
     let mut frame = Frame::new(setup.width, setup.height, false);
     let stats = Machine::new(options).render(&graph.view(), setup, &mut frame)?;
     if options == MachineOptions::default() {
-        // Whatever a test says of the machine, it says of the default engine.
+        // What a test shows for the machine holds for the default engine too.
         let mut fast = Frame::new(setup.width, setup.height, false);
         Fast::new(FastOptions::default(), Box::new(Machine::new(options)))
             .render(&graph.view(), setup, &mut fast)

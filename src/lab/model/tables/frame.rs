@@ -35,7 +35,7 @@ pub fn stages(counted: &Counted, cycles: &CycleReport) -> Table {
         ],
     );
     let counts = counted.counter.sum_by(|cell| (cell.stage, cell.class));
-    // A stage of another drawing rule has nothing to say.
+    // A stage of another drawing rule has no figures.
     for stage in cycles.stages.iter().filter(|stage| stage.visits > 0) {
         let mut row = vec![Cell::from(stage.stage.name()), Cell::from(stage.visits)];
         row.extend(

@@ -9,7 +9,7 @@ use crate::lab::model::rules::{Costs, Outcome, RuleRow};
 use crate::lab::model::sweep::FormatRow;
 use crate::report::{Cell, Table};
 
-/// What became of a frame, as cells: the figures that are asked for, in their
+/// What became of a frame, as cells: the figures that are requested, in their
 /// order, and a note where there are none.
 fn outcome(outcome: &Outcome, figures: &[fn(&Costs) -> Cell]) -> (Vec<Cell>, Cell) {
     let none = || vec![Cell::None; figures.len()];

@@ -9,7 +9,7 @@ use tempfile::Builder;
 use crate::picture::store::StoreError;
 use crate::whole::TemporaryGuard;
 
-/// The file by which a folder of vectors is known.
+/// The file that identifies a folder of vectors.
 pub(super) const MANIFEST: &str = "manifest.json";
 /// The file that describes the others.
 pub(super) const README: &str = "README.txt";
