@@ -13,6 +13,7 @@ mod fast;
 mod golden;
 mod oracle;
 mod order;
+mod organisations;
 mod rules;
 mod scene_table;
 mod scenes;

@@ -1,0 +1,187 @@
+//! However the record loop's data is organised (children or parents on the stack, leaves told by their parents, the
+//! picture by tiles), every frame is the same to the bit, drawn serially or on simulated hardware.
+
+use hwmodel::Memory;
+use hwmodel::count::Counter;
+use hwmodel::cycles::{Hardware, Independence, NoObserver, Organisation, StackHolds};
+use rayon::prelude::*;
+use shiftvox::frame::Frame;
+use shiftvox::graph::GraphView;
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{CageKind, Coverage, FrameSetup, SetupOptions};
+
+use crate::common::{lights, with_opacities};
+use crate::scene_table::SCENES;
+use crate::scenes::*;
+
+/// Cameras of a scene.
+const CAMERAS: usize = 20;
+
+/// Most records of a frame under the rules that subdivide solids.
+const MOST_RECORDS: u64 = 200_000;
+
+fn machine(organisation: Organisation) -> Machine {
+    Machine::new(MachineOptions {
+        organisation,
+        ..MachineOptions::default()
+    })
+}
+
+/// All organisations, that of the image-order paper first.
+fn organisations() -> Vec<Organisation> {
+    let mut all = Vec::new();
+    for stack in [StackHolds::Children, StackHolds::Parents] {
+        for leaf_masks in [false, true] {
+            for tile_levels in [0, 2, 30] {
+                all.push(Organisation {
+                    stack,
+                    leaf_masks,
+                    tile_levels,
+                });
+            }
+        }
+    }
+    all
+}
+
+fn rules() -> [SetupOptions; 5] {
+    let exact = SetupOptions::default();
+    [
+        exact,
+        SetupOptions {
+            cage: CageKind::Corners,
+            lod_px: 0.0,
+            ..exact
+        },
+        SetupOptions::of(Coverage::Alpha),
+        SetupOptions::of(Coverage::Center),
+        SetupOptions {
+            cage: CageKind::Corners,
+            tolerance_px: f64::INFINITY,
+            ..SetupOptions::of(Coverage::Any)
+        },
+    ]
+}
+
+/// Hardware with an organisation, whose records meet in many ways.
+fn hardware(organisation: Organisation, contexts: u32, independence: Independence) -> Hardware {
+    let mut hardware = Hardware::preset("paper").unwrap();
+    hardware.organisation = organisation;
+    hardware.contexts = contexts;
+    hardware.lanes = 1 + contexts % 3;
+    hardware.independence = independence;
+    hardware
+}
+
+#[test]
+fn every_organisation_draws_every_scene_alike() {
+    let frames: usize = SCENES
+        .par_iter()
+        .map(|scene| {
+            let graph = scene.graph();
+            let airy = with_opacities(graph);
+            let light = lights(graph);
+            let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(scene.name.as_bytes()));
+            let mut frames = 0;
+            for number in 0..CAMERAS {
+                let place = PLACES[number % PLACES.len()];
+                let camera = camera_at(place, graph, (33, 41), &mut dice);
+                let options = rules()[number % 5];
+                let graph = match options.coverage {
+                    Coverage::Alpha => &airy,
+                    _ => graph,
+                };
+                let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)
+                else {
+                    continue;
+                };
+                let view = GraphView {
+                    light: &light,
+                    ..graph.view()
+                };
+                let draw = |organisation: Organisation| {
+                    let mut frame = Frame::new(setup.width, setup.height, false);
+                    let stats = machine(organisation)
+                        .render_within(&view, &setup, &mut frame, MOST_RECORDS)
+                        .unwrap();
+                    stats.map(|_| frame)
+                };
+                let Some(right) = draw(Organisation::default()) else {
+                    continue;
+                };
+                for organisation in organisations() {
+                    // One walk a sample is slow, and says no more than one for a few.
+                    if organisation.tile_levels == 30 && number % 4 != 0 {
+                        continue;
+                    }
+                    let what =
+                        || format!("{}, {organisation:?}, {options:?}, {camera:?}", scene.name);
+                    if let Some(frame) = draw(organisation) {
+                        assert!(frame == right, "{}", what());
+                        frames += 1;
+                    }
+                    let serial = [Independence::None, Independence::Image];
+                    // Children of one class may claim the same sample under other rules.
+                    let independent = match options.coverage {
+                        Coverage::Exact => Independence::Both,
+                        _ => serial[number % 2],
+                    };
+                    for (contexts, independence) in [(1, serial[number % 2]), (8, independent)] {
+                        let hardware = hardware(organisation, contexts, independence);
+                        let mut frame = Frame::new(setup.width, setup.height, false);
+                        machine(Organisation::default())
+                            .simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver)
+                            .unwrap();
+                        assert!(frame == right, "{independence:?}, {contexts}: {}", what());
+                        frames += 1;
+                    }
+                }
+            }
+            frames
+        })
+        .sum();
+    eprintln!("{frames} frames compared");
+    assert!(frames > 5_000, "{frames}");
+}
+
+/// What the organisation is for: fewer reads and writes of the same picture.
+#[test]
+fn parents_are_stored_less_often_and_leaves_are_not_read() {
+    let graph = graph_of_spec("gen:terrain,depth=7");
+    let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
+    let options = SetupOptions::default();
+    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+    let count = |stack, leaf_masks| {
+        let organisation = Organisation {
+            stack,
+            leaf_masks,
+            tile_levels: 0,
+        };
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let drawn =
+            machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
+        let (stats, counter) = drawn.unwrap();
+        let of = |memory| {
+            let all = counter.accesses_by(|cell| cell.memory);
+            all.get(&memory).map_or((0, 0), |a| (a.reads, a.writes))
+        };
+        let stat = |wanted: &str| stats.iter().find(|(name, _)| *name == wanted).unwrap().1;
+        let (stored, loaded) = of(Memory::Stack);
+        assert_eq!(stored, loaded, "what is stored is loaded");
+        (
+            stored,
+            of(Memory::Node).0,
+            stat("subdivided"),
+            stat("records"),
+            stat("deepest_stack"),
+        )
+    };
+    let (stored, read, subdivided, records, _) = count(StackHolds::Children, false);
+    assert_eq!(stored, records);
+    assert!(read <= records && read > subdivided);
+    let (stored, read, subdivided, records, deepest) = count(StackHolds::Parents, true);
+    assert_eq!(read, subdivided, "only what is subdivided is read");
+    assert!(stored < subdivided, "a last child's parent is not stored");
+    assert!(2 * subdivided < records, "{subdivided} of {records}");
+    assert!(deepest <= u64::from(graph.depth), "{deepest}");
+}
