@@ -6,7 +6,7 @@
 mod sealed;
 
 use libfuzzer_sys::fuzz_target;
-use shiftvox::mesh::raster::{Pattern, Samples, View};
+use shiftvox::mesh::raster::{Pattern, RasterCamera, Samples};
 use shiftvox::textured::TexturedFile;
 use shiftvox::textured::view::{Detail, ViewOptions, draw};
 
@@ -38,7 +38,7 @@ fuzz_target!(|bytes: &[u8]| {
     let (low, high) = file.bounds();
     let size = (high - low).length();
     let forward = glam::DVec3::Z;
-    let view = View {
+    let view = RasterCamera {
         eye: (low + high) / 2.0 - forward * 2.0 * size,
         right: glam::DVec3::X,
         up: glam::DVec3::Y,

@@ -44,7 +44,7 @@ pub enum SimulationError<E> {
 
 /// A lane's block of one stage.
 #[derive(Debug, Clone, Copy)]
-struct StageUnit {
+struct StageBlock {
     free_at: u64,
     /// Contexts that wait, in order; the first has its event set.
     first: u32,
@@ -103,7 +103,7 @@ struct Simulation<'a, W, O> {
     wheel: Wheel,
     contexts: Vec<Context>,
     lanes: Vec<Lane>,
-    units: Vec<[StageUnit; STAGES]>,
+    blocks: Vec<[StageBlock; STAGES]>,
     memories: Memories,
     tasks: Tasks,
     stages: Vec<StageReport>,
@@ -134,7 +134,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             idle: u64::MAX >> (64 - hardware.contexts),
             ..Lane::default()
         };
-        let unit = StageUnit {
+        let block = StageBlock {
             free_at: 0,
             first: NONE,
             last: NONE,
@@ -155,7 +155,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             idle: contexts.len() as u64,
             contexts,
             lanes: (0..hardware.lanes).map(|_| lane()).collect(),
-            units: vec![[unit; STAGES]; hardware.lanes as usize],
+            blocks: vec![[block; STAGES]; hardware.lanes as usize],
             memories: Memories::new(hardware),
             tasks: Tasks::new(hardware.independence),
             stages: Stage::ALL.map(stage).into(),
@@ -246,25 +246,25 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     fn arrive(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         let stage = of.plan.visits[of.visit].stage as usize;
-        let unit = &mut self.units[of.lane as usize][stage];
+        let block = &mut self.blocks[of.lane as usize][stage];
         if of.granted {
             of.granted = false;
             let next = of.behind;
             of.behind = NONE;
-            unit.first = next;
+            block.first = next;
             self.begin(now, context);
             if next != NONE {
                 self.grant(next);
             }
-        } else if unit.first == NONE && unit.free_at <= now {
+        } else if block.first == NONE && block.free_at <= now {
             self.begin(now, context);
-        } else if unit.first == NONE {
-            unit.first = context;
-            unit.last = context;
+        } else if block.first == NONE {
+            block.first = context;
+            block.last = context;
             self.grant(context);
         } else {
-            let last = unit.last;
-            unit.last = context;
+            let last = block.last;
+            block.last = context;
             self.contexts[last as usize].behind = context;
         }
     }
@@ -274,7 +274,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[context as usize];
         of.granted = true;
         let stage = of.plan.visits[of.visit].stage as usize;
-        let free_at = self.units[of.lane as usize][stage].free_at;
+        let free_at = self.blocks[of.lane as usize][stage].free_at;
         self.wheel.set(free_at, context);
     }
 
@@ -310,7 +310,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             // What follows goes to the stack of its own lane.
             of.from = of.lane;
         }
-        self.units[of.lane as usize][visit.stage as usize].free_at = frees;
+        self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
         if O::ENABLED {
             self.observer.visit(&VisitSpan {
                 record: of.record,

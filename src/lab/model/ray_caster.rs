@@ -42,7 +42,7 @@ fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
         FloatStep::FloatAdd => Some(("float_add", 32)),
         FloatStep::FloatMultiply => Some(("float_multiply", 32)),
         FloatStep::FloatDivide => Some(("float_divide", 32)),
-        // A minimum is a comparison; its multiplexer is left to the rival for nothing.
+        // A minimum is a comparison; its multiplexer is not charged to the ray caster.
         FloatStep::FloatCompare | FloatStep::FloatMinMax => Some(("float_compare", 32)),
         FloatStep::IntegerAdd => Some(("add", 32)),
         FloatStep::Logic => Some(("xor", 32)),

@@ -8,10 +8,10 @@
 //! subtrees of 32 voxels a side, some at a time; memory grows with the
 //! triangles and not with the voxels. Rules: `spec/mesh.md`.
 
-mod block;
 mod grid;
 mod mix;
 mod opacity;
+mod subtree;
 mod touch;
 
 use rayon::prelude::*;
@@ -21,13 +21,13 @@ pub use opacity::opacities;
 
 use super::Surface;
 use crate::graph::{Progress, Voxel};
-use block::Block;
+use subtree::Subtree;
 pub(crate) use touch::{Prepared, child};
 
 /// Levels of a subtree that one thread does at a time.
-const BLOCK_LEVELS: u32 = 5;
+const SUBTREE_LEVELS: u32 = 5;
 /// Subtrees that are done between two calls of the sink, at the most.
-const BATCH_BLOCKS: usize = 512;
+const BATCH_SUBTREES: usize = 512;
 /// Triangles of those subtrees together, after which no more are added.
 const BATCH_TRIANGLES: usize = 1 << 18;
 /// Level whose nodes the progress counts.
@@ -52,7 +52,7 @@ pub fn voxelize<S: Surface + ?Sized>(
     sink: &mut dyn FnMut(Voxel),
     progress: &dyn Progress,
 ) -> VoxelizeReport {
-    let mut walk = Walk {
+    let mut voxelizer = Voxelizer {
         surface,
         grid,
         sink,
@@ -64,35 +64,35 @@ pub fn voxelize<S: Surface + ?Sized>(
     progress.begin("voxelise", 1 << (3 * PROGRESS_LEVEL));
     // Fewer than 2^32: the grid made sure.
     let all: Vec<u32> = (0..surface.len() as u32).collect();
-    walk.node(all, [0; 3], 0);
-    walk.flush();
+    voxelizer.node(all, [0; 3], 0);
+    voxelizer.flush();
     progress.end();
-    walk.report
+    voxelizer.report
 }
 
-/// The walk from the root down to the subtrees.
-struct Walk<'w, S: ?Sized> {
+/// Finds the subtrees, from the root down, and voxelises them in batches.
+struct Voxelizer<'w, S: ?Sized> {
     surface: &'w S,
     grid: &'w Grid,
     sink: &'w mut dyn FnMut(Voxel),
     progress: &'w dyn Progress,
-    batch: Vec<Block>,
+    batch: Vec<Subtree>,
     batch_triangles: usize,
     report: VoxelizeReport,
 }
 
-impl<S: Surface + ?Sized> Walk<'_, S> {
+impl<S: Surface + ?Sized> Voxelizer<'_, S> {
     /// A node with the triangles that touch it; its corner on the lattice.
     fn node(&mut self, triangles: Vec<u32>, corner: [i64; 3], level: u32) {
-        let is_leaf = self.grid.depth() - level <= BLOCK_LEVELS || triangles.is_empty();
+        let is_leaf = self.grid.depth() - level <= SUBTREE_LEVELS || triangles.is_empty();
         if is_leaf && !triangles.is_empty() {
             self.batch_triangles += triangles.len();
-            self.batch.push(Block {
+            self.batch.push(Subtree {
                 triangles,
                 corner,
                 level,
             });
-            if self.batch.len() >= BATCH_BLOCKS || self.batch_triangles >= BATCH_TRIANGLES {
+            if self.batch.len() >= BATCH_SUBTREES || self.batch_triangles >= BATCH_TRIANGLES {
                 self.flush();
             }
         } else if !is_leaf {
@@ -130,7 +130,7 @@ impl<S: Surface + ?Sized> Walk<'_, S> {
         let done: Vec<(Vec<Voxel>, u64)> = self
             .batch
             .par_iter()
-            .map(|block| block.voxels(surface, grid))
+            .map(|subtree| subtree.voxels(surface, grid))
             .collect();
         self.batch.clear();
         self.batch_triangles = 0;

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use rayon::prelude::*;
 
 use super::touch::{OTHERS, Prepared, child};
-use super::{BLOCK_LEVELS, Grid};
+use super::{Grid, SUBTREE_LEVELS};
 use crate::graph::{Graph, GraphView, Opacity, Progress};
 use crate::mesh::Surface;
 
@@ -40,7 +40,7 @@ pub fn opacities<S: Surface + ?Sized>(
     let side = grid.side(grid.depth());
     let origin = graph.placement.origin_index.map(|index| index * side);
     let found: Vec<AtomicU32> = (0..graph.len()).map(|_| AtomicU32::new(0)).collect();
-    let walk = Walk {
+    let finder = OpacityFinder {
         surface,
         grid,
         graph: graph.view(),
@@ -50,7 +50,7 @@ pub fn opacities<S: Surface + ?Sized>(
     let voxels = graph.len() as u64;
     progress.begin("find opacities", voxels);
     let all: Vec<u32> = (0..surface.len() as u32).collect();
-    walk.node(graph.root, &all, origin, 0);
+    finder.node(graph.root, &all, origin, 0);
     progress.end();
     let opacity = |bits: AtomicU32| {
         let [x, y, z, _] = bits.into_inner().to_le_bytes();
@@ -59,7 +59,7 @@ pub fn opacities<S: Surface + ?Sized>(
     found.into_iter().map(opacity).collect()
 }
 
-struct Walk<'w, S: ?Sized> {
+struct OpacityFinder<'w, S: ?Sized> {
     surface: &'w S,
     grid: &'w Grid,
     graph: GraphView<'w>,
@@ -67,7 +67,7 @@ struct Walk<'w, S: ?Sized> {
     progress: &'w dyn Progress,
 }
 
-impl<S: Surface + ?Sized> Walk<'_, S> {
+impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
     /// Side on the lattice of a node of a level of the graph, which may have
     /// fewer levels than the grid.
     fn side(&self, level: u32) -> i64 {
@@ -77,7 +77,7 @@ impl<S: Surface + ?Sized> Walk<'_, S> {
     /// A node, of which these triangles may be a part. Deep down, threads are
     /// of no use and triangles are few enough to be prepared.
     fn node(&self, node: u32, triangles: &[u32], corner: [i64; 3], level: u32) -> Masks {
-        if self.graph.depth - level <= BLOCK_LEVELS {
+        if self.graph.depth - level <= SUBTREE_LEVELS {
             let prepared: Vec<Prepared> = triangles
                 .iter()
                 .map(|&number| Prepared::new(self.grid.corners(self.surface, number)))

@@ -32,13 +32,13 @@ struct Terrain {
 
 /// The spans of all columns of a row.
 #[derive(Default)]
-struct Row {
+struct RowSpans {
     spans: Vec<Span>,
     /// Where each column's spans begin, and the end; empty for a row outside.
     start: Vec<u32>,
 }
 
-impl Row {
+impl RowSpans {
     /// Spans of a column, growing and apart from each other; none outside.
     fn column(&self, x: i32) -> &[Span] {
         let x = x as usize;
@@ -54,7 +54,7 @@ pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress:
     let terrain = Terrain::new(settings);
     let side = terrain.side;
     progress.begin("generating terrain", side as u64);
-    let mut before = Row::default();
+    let mut before = RowSpans::default();
     let mut here = terrain.row(0);
     let mut inside = Vec::new();
     let mut spare = Vec::new();
@@ -62,7 +62,7 @@ pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress:
         let after = if row + 1 < side {
             terrain.row(row + 1)
         } else {
-            Row::default()
+            RowSpans::default()
         };
         for x in 0..side {
             let column = here.column(x);
@@ -150,7 +150,7 @@ impl Terrain {
         }
     }
 
-    fn row(&self, row: i32) -> Row {
+    fn row(&self, row: i32) -> RowSpans {
         let near: Vec<&Ball> = self
             .balls
             .iter()
@@ -178,7 +178,7 @@ impl Terrain {
             // At most 49 spans in each of 2^16 columns.
             start.push(spans.len() as u32);
         }
-        Row { spans, start }
+        RowSpans { spans, start }
     }
 
     /// Height of the ground: octaves of value noise, from a quarter of the side down to two voxels.

@@ -8,13 +8,13 @@ use crate::mesh::Surface;
 
 /// A node of the octree and the triangles that touch it, in their order.
 #[derive(Debug)]
-pub(super) struct Block {
+pub(super) struct Subtree {
     pub(super) triangles: Vec<u32>,
     pub(super) corner: [i64; 3],
     pub(super) level: u32,
 }
 
-impl Block {
+impl Subtree {
     /// The voxels within, in Morton order, and how often a triangle touches one.
     pub(super) fn voxels<S: Surface + ?Sized>(
         &self,
