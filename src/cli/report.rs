@@ -7,6 +7,7 @@ use hwmodel::{Memory, OpClass, Stage};
 use serde_json::{Value, json};
 
 use super::args::camera_line;
+use super::error::CliError;
 use crate::drawing::{Figures, Shown};
 use crate::project::Camera;
 pub(super) use crate::report::grouped;
@@ -24,6 +25,15 @@ pub(super) fn document(verb: &str, fields: Value) -> Value {
     if let (Value::Object(to), Value::Object(from)) = (&mut document, fields) {
         to.extend(from);
     }
+    document
+}
+
+/// A verb's document with what went wrong, or a document of that alone.
+pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
+    let mut document = document.unwrap_or_else(|| self::document("error", json!({})));
+    document["error"] = json!(error.message);
+    document["advice"] = json!(error.advice);
+    document["exit_code"] = json!(error.kind.code());
     document
 }
 

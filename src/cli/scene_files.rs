@@ -7,11 +7,11 @@ use serde_json::json;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::report;
 use super::scenes::{self, Scene};
+use super::{names, report};
 use crate::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
 use crate::picture::store;
-use crate::scene;
+use crate::scene::{self, OpenOptions, Source};
 
 /// Most voxels that are written to a voxel file.
 const MAX_WRITTEN: u64 = 1 << 28;
@@ -109,8 +109,12 @@ pub(super) fn build_file(
     force: bool,
     progress: &dyn Progress,
 ) -> Result<(Written, Option<ExternalReport>), CliError> {
-    let options = scenes::options(args);
-    let built = scene::build_file(source, &options, external, output, force, progress)?;
+    let found = Source::find(names::path(source))?;
+    let options = OpenOptions {
+        verify_up_to: u64::MAX,
+        ..scenes::options(args)
+    };
+    let built = scene::build_file(found, source, &options, external, output, force, progress)?;
     let written = Written {
         voxels: built.voxels,
         bytes: built.bytes,
@@ -165,7 +169,7 @@ pub(super) fn report_written(
     if console.json {
         let fields = json!({
             "input": input,
-            "output": output,
+            "output": names::of_path(output),
             "voxels": written.voxels,
             "bytes": written.bytes,
             "warnings": written.warnings,

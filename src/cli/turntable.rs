@@ -19,7 +19,7 @@ use crate::picture;
 #[derive(Debug, Args)]
 pub struct TurntableArgs {
     /// Scene: a file (also .far and .tvx), or a generator such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     pub scene_name: Option<String>,
     /// Pictures to write; #### stands for the frame's number, from 0
     #[arg(short, long, value_name = "FILE")]

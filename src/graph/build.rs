@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use super::average::Sum;
 use super::normals::Estimate;
 use super::records::{Record, Records, extent};
-use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
+use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
+use crate::budget::{self, Shortage};
 
 pub use super::records::MAX_SIDE;
 
@@ -51,8 +52,13 @@ pub enum BuildError {
     /// More voxels or nodes than 32 bits number.
     #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
     TooMany(u64),
+    /// The system refuses the memory.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
     /// The world placement makes no sense.
-    #[error("the world origin must be finite and the voxel size finite and above 0")]
+    #[error(
+        "the world origin and the voxel size must be finite, the size above 0, and voxels there far enough apart to be told apart"
+    )]
     Placement,
 }
 
@@ -69,6 +75,8 @@ pub struct Builder {
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
     pushed: u64,
+    /// Why none are kept any more.
+    short: Option<Shortage>,
 }
 
 impl Builder {
@@ -81,6 +89,7 @@ impl Builder {
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
+            short: None,
         }
     }
 
@@ -105,7 +114,7 @@ impl Builder {
     /// Adds a voxel; it replaces an earlier one at the same index.
     pub fn push(&mut self, voxel: Voxel) {
         // NO_NODE is not a node, hence `<`.
-        if self.pushed < u64::from(u32::MAX) {
+        if self.pushed < u64::from(u32::MAX) && self.short.is_none() {
             for axis in 0..3 {
                 let index = voxel.index[axis];
                 self.min[axis] = self.min[axis].min(index);
@@ -113,8 +122,12 @@ impl Builder {
             }
             let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
             let sequence = self.pushed as u32;
-            self.records
-                .push(Record::new(voxel.index, sequence, voxel.color, normal));
+            let record = Record::new(voxel.index, sequence, voxel.color, normal);
+            if let Err(short) = self.records.push(record) {
+                // All is lost; let go of what there is. [`Self::finish`] tells.
+                self.records = Records::default();
+                self.short.get_or_insert(short);
+            }
         }
         self.pushed += 1;
     }
@@ -141,6 +154,9 @@ impl Builder {
         if self.is_empty() {
             return Err(BuildError::Empty);
         }
+        if let Some(short) = self.short {
+            return Err(short.into());
+        }
         if self.pushed > self.records.len() as u64 {
             return Err(BuildError::TooMany(self.pushed));
         }
@@ -149,7 +165,7 @@ impl Builder {
         let depth = longest.next_power_of_two().trailing_zeros();
 
         progress.begin("sort voxels", 0);
-        let records = self.records.sorted(self.min);
+        let records = self.records.sorted(self.min)?;
         progress.end();
 
         let mut tree = Tree::build(records, depth, progress)?;
@@ -188,13 +204,20 @@ impl Builder {
 impl Placement {
     /// Whether the world part makes sense.
     pub(super) fn check_world(&self) -> Result<(), BuildError> {
-        let origin = self.world_origin.iter();
-        let finite = origin.chain([&self.voxel_size]).all(|c| c.is_finite());
-        if finite && self.voxel_size > 0.0 {
-            Ok(())
-        } else {
-            Err(BuildError::Placement)
+        match self.can_be_seen(0) {
+            true => Ok(()),
+            false => Err(BuildError::Placement),
         }
+    }
+
+    /// Whether an object of so many levels can be looked at, and its voxels told apart.
+    pub(super) fn can_be_seen(&self, depth: u32) -> bool {
+        let side = (1u64 << depth.min(morton::MAX_BITS)) as f64;
+        let corner = |inside: f64| {
+            let index = |k: usize| self.origin_index[k] as f64 + inside;
+            [0, 1, 2].map(|k| self.world_origin[k] + index(k) * self.voxel_size)
+        };
+        place::can_be_seen(corner(0.0), corner(side), self.voxel_size)
     }
 }
 
@@ -205,6 +228,9 @@ impl Extend<Voxel> for Builder {
         }
     }
 }
+
+/// What errors call the arrays.
+const THE_GRAPH: &str = "a graph of all voxels";
 
 /// The graph's arrays while they are made.
 struct Tree {
@@ -228,15 +254,16 @@ impl Tree {
         let inner = level_start[depth as usize] as usize;
         let nodes = level_start[depth as usize + 1] as usize;
 
-        let mut color = vec![[0; 3]; nodes];
-        let mut normal = vec![PackedNormal::NONE; nodes];
+        budget::check(THE_GRAPH, 5 * (inner + nodes) as u64)?;
+        let mut color = budget::filled(THE_GRAPH, [0; 3], nodes)?;
+        let mut normal = budget::filled(THE_GRAPH, PackedNormal::NONE, nodes)?;
         for (i, record) in records.iter().enumerate() {
             color[inner + i] = record.color;
             normal[inner + i] = record.normal;
         }
 
-        let mut mask = vec![0u8; inner];
-        let mut first = vec![0u32; inner];
+        let mut mask = budget::filled(THE_GRAPH, 0u8, inner)?;
+        let mut first = budget::filled(THE_GRAPH, 0u32, inner)?;
         // The next node of each level.
         let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
         let mut before = None;

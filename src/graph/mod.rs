@@ -10,6 +10,7 @@ mod morton;
 mod normal;
 mod normals;
 mod opacity;
+pub(crate) mod place;
 mod progress;
 mod records;
 mod store;

@@ -24,7 +24,7 @@ pub struct BuiltFile {
 }
 
 /// Reads a voxel file, or makes the scene of a `gen:` specification, and
-/// builds a `.vxg` file of it within a limit of memory. The file is the one
+/// builds a `.vxg` file of it within a limit of memory; `name` is what errors call it. The file is the one
 /// that [`open`](super::open()) and [`vxg::write`] give.
 ///
 /// A `.vox` file is held whole besides: its own length, within 4 GB. So is a
@@ -33,7 +33,8 @@ pub struct BuiltFile {
 /// # Errors
 /// See [`OpenError`]; a `.vxg` file is refused as input.
 pub fn build_file(
-    source: &str,
+    source: Source,
+    name: &str,
     options: &OpenOptions,
     external: ExternalOptions,
     output: &Path,
@@ -41,14 +42,14 @@ pub fn build_file(
     progress: &dyn Progress,
 ) -> Result<BuiltFile, OpenError> {
     let failed = |error| OpenError::External {
-        source_name: source.to_owned(),
+        source_name: name.to_owned(),
         error,
     };
     let mut builder = ExternalBuilder::new(external.clone());
     let mut info = None;
     let mut mesh = None;
     let mut placement = ([0.0; 3], 1.0);
-    match Source::find(source)? {
+    match source {
         Source::Generated(spec) => {
             let spec = Spec::parse(&spec)?;
             if let Some(graph) = spec.linked() {

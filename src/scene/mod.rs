@@ -33,7 +33,6 @@ pub use detect::{FileKind, detect};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
 pub use file::{SceneFile, Source};
-pub use memory::available as available_memory;
 #[cfg(feature = "mesh")]
 pub use mesh::read_mesh;
 pub use mesh::{MeshOptions, MeshSummary};

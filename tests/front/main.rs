@@ -3,9 +3,12 @@
 
 mod bench;
 mod buffers;
+mod damaged;
+mod limits;
 mod manners;
 mod model;
 mod pictures;
+mod refusals;
 mod resolve;
 mod stress;
 mod vectors;

@@ -327,15 +327,18 @@ fn comparisons_pass_and_fail() {
     render("b.png", &["--zoom", "0.5"]);
     let compare = |line: &[&str]| shiftvox(folder.path()).arg("compare").args(line).assert();
     compare(&["a.png", "a.png", "--threshold", "0"]).success();
-    compare(&["a.png", "b.png"]).success();
+    compare(&["a.png", "a.png"]).success();
+    // As `cmp` and `diff` do.
+    compare(&["a.png", "b.png"]).code(3);
+    compare(&["a.png", "b.png", "--threshold", "ssim=0"]).success();
     compare(&["a.png", "b.png", "--threshold", "0"]).code(3);
     compare(&["a.png", "b.png", "--threshold", "ssim=0.999"]).code(3);
     compare(&["a.png", "b.png", "--threshold", "beauty=1"]).code(2);
     compare(&["a.png", "a.voxel.npy"]).code(4);
     compare(&["a.png", "missing.png"]).code(4);
-    compare(&["a.png", "b.png", "--diff", "d.png"]).success();
+    compare(&["a.png", "b.png", "--diff", "d.png"]).code(3);
     compare(&["a.png", "b.png", "--diff", "d.png"]).code(1);
-    let assert = compare(&["b.voxel.npy", "a.voxel.npy", "--json"]).success();
+    let assert = compare(&["b.voxel.npy", "a.voxel.npy", "--json"]).code(3);
     let json: serde_json::Value = serde_json::from_str(&stdout_of(&assert)).unwrap();
     assert!(json["missing"].as_u64() > Some(0), "{json}");
     compare(&["a.depth.npy", "a.depth.npy", "--threshold", "0"]).success();

@@ -6,4 +6,5 @@ mod input_support;
 mod npy;
 mod ply;
 mod vox_files;
+mod vox_shared;
 mod vox_written;

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use tobj::LoadError;
 
-use super::{Beside, LoadOptions, mtl};
+use super::{Beside, LoadOptions, mtl, text};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::{Material, MeshBuilder};
 
@@ -21,8 +21,7 @@ pub(super) fn read(
     options: &LoadOptions,
     builder: &mut MeshBuilder,
 ) -> Result<(), MeshError> {
-    // Old files have names in other encodings; names decide nothing but materials.
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decoded(bytes);
     refuse_cut_face(&text)?;
     refuse_far_back(&text)?;
     let line = Cell::new(0);

@@ -4,10 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::Builder;
-
 use crate::picture::store::StoreError;
-use crate::whole::Noted;
+use crate::whole;
 
 /// The file by which a folder of vectors is known.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -108,18 +106,10 @@ pub(super) fn write<T, E: From<FolderError>>(
     fill: impl FnOnce(&Path) -> Result<T, E>,
 ) -> Result<T, E> {
     look(path, overwrite)?;
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    fs::create_dir_all(parent).map_err(|e| failed(parent, e))?;
+    let parent = whole::folder_of(path);
+    whole::make_folder(parent).map_err(FolderError::from)?;
     // Removed with all that is left in it, however this ends.
-    let shelter = Builder::new()
-        .prefix(".shiftvox-")
-        .suffix(".tmp")
-        .tempdir_in(parent)
-        .map_err(|e| failed(parent, e))?;
-    let _noted = Noted::new(shelter.path());
+    let (shelter, _in_use) = whole::temporary_folder(parent).map_err(FolderError::from)?;
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;
