@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::error::{CliError, Kind};
-use super::{names, report};
+use super::{document, names};
 use crate::graph::{Progress, Silent};
 
 /// The two streams, and how much is said on them.
@@ -66,7 +66,7 @@ impl Console {
         let printed = match (&result, held) {
             (Err(error), _) if error.kind == Kind::Pipe => Ok(()),
             (Err(error), held) if self.json || held.is_some() => {
-                print(&as_json(&report::failed(held, error)))
+                print(&as_json(&document::failed(held, error)))
             }
             (_, Some(held)) => print(&as_json(&held)),
             (_, None) => Ok(()),

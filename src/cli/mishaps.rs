@@ -23,7 +23,7 @@ mod handlers {
     use libc::{SIGABRT, SIGBUS, c_int};
 
     use crate::cli::error::{CliError, Kind};
-    use crate::cli::{console, report};
+    use crate::cli::{console, document};
     use crate::whole::remove_unfinished;
 
     /// The end of the pipe that handlers write to.
@@ -88,7 +88,7 @@ mod handlers {
         console::tell_error(&error);
         remove_unfinished(|| {
             if json {
-                let document = console::as_json(&report::failed(None, &error));
+                let document = console::as_json(&document::failed(None, &error));
                 let _ = writeln!(io::stdout(), "{document}");
             }
             std::process::exit(i32::from(error.kind.code()));

@@ -11,6 +11,7 @@ mod config;
 mod console;
 pub mod convert;
 mod demo;
+mod document;
 mod engines;
 pub mod error;
 mod experiment;

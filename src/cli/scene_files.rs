@@ -114,7 +114,7 @@ pub(super) fn build_file(
         verify_up_to: u64::MAX,
         ..scenes::options(args)
     };
-    let built = scene::build_file(found, source, &options, external, output, force, progress)?;
+    let built = scene::build_file_of(found, source, &options, external, output, force, progress)?;
     let written = Written {
         voxels: built.voxels,
         bytes: built.bytes,

@@ -24,7 +24,7 @@ pub struct BuiltFile {
 }
 
 /// Reads a voxel file, or makes the scene of a `gen:` specification, and
-/// builds a `.vxg` file of it within a limit of memory; `name` is what errors call it. The file is the one
+/// builds a `.vxg` file of it within a limit of memory. The file is the one
 /// that [`open`](super::open()) and [`vxg::write`] give.
 ///
 /// A `.vox` file is held whole besides: its own length, within 4 GB. So is a
@@ -33,6 +33,24 @@ pub struct BuiltFile {
 /// # Errors
 /// See [`OpenError`]; a `.vxg` file is refused as input.
 pub fn build_file(
+    source: &str,
+    options: &OpenOptions,
+    external: ExternalOptions,
+    output: &Path,
+    overwrite: bool,
+    progress: &dyn Progress,
+) -> Result<BuiltFile, OpenError> {
+    let found = Source::find(source)?;
+    build_file_of(
+        found, source, options, external, output, overwrite, progress,
+    )
+}
+
+/// [`build_file`], of what was found already; `name` is what errors call it.
+///
+/// # Errors
+/// As [`build_file`].
+pub fn build_file_of(
     source: Source,
     name: &str,
     options: &OpenOptions,
@@ -72,6 +90,11 @@ pub fn build_file(
             let beside = SameFolder::of(file.path());
             let ready = Ready::read(file, &beside, &options.mesh, progress)?;
             // The mesh's share; nothing was pushed yet.
+            if let Some(voxels) = ready.expected_voxels(progress)
+                && voxels >= u64::from(u32::MAX)
+            {
+                return Err(failed(BuildError::TooMany(voxels).into()));
+            }
             let mut external = external;
             external.memory = external.memory.saturating_sub(ready.bytes());
             builder = ExternalBuilder::new(external);

@@ -28,7 +28,7 @@ mod ply;
 mod ply_write;
 mod vox;
 
-pub use build_file::{BuiltFile, build_file};
+pub use build_file::{BuiltFile, build_file, build_file_of};
 pub use detect::{FileKind, detect};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};

@@ -243,6 +243,9 @@ fn open_mesh(
 ) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
     let placement = ready.placement();
+    if let Some(voxels) = ready.expected_voxels(progress) {
+        gathered.expect(voxels, source)?;
+    }
     let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
     let mut graph = gathered.finish(source, placement, progress)?;
     if opacities {

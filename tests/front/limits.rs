@@ -223,3 +223,60 @@ fn a_mapped_file_that_is_cut_short_is_told() {
     assert_eq!(document["exit_code"], 4);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
+
+#[test]
+fn meshes_of_endless_work_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let sheet = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    fs::write(at("sheet.obj"), format!("{sheet}f 1 2 3\n")).unwrap();
+    let output = patient(folder.path(), &["info", "sheet.obj", "--depth", "20"]);
+    assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+    assert!(
+        told(&output).contains("voxels or more take"),
+        "{}",
+        told(&output)
+    );
+    let outside = [
+        "convert",
+        "sheet.obj",
+        "a.vxg",
+        "--depth",
+        "20",
+        "--memory",
+        "64M",
+    ];
+    let output = patient(folder.path(), &outside);
+    assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+    // A face that is a fan without end, in both formats that have faces of any length.
+    let corners = 1_000_000;
+    let indices = |from: usize| {
+        (0..corners)
+            .map(|i| (i % 3 + from).to_string() + " ")
+            .collect::<String>()
+    };
+    fs::write(at("fan.obj"), format!("{sheet}f {}\n", indices(1))).unwrap();
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n{corners} {}\n",
+        indices(0)
+    );
+    fs::write(at("fan.ply"), ply).unwrap();
+    for name in ["fan.obj", "fan.ply"] {
+        let output = patient(folder.path(), &["info", name]);
+        assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+        let told = told(&output);
+        assert!(
+            told.contains("1000000") && told.contains("corners"),
+            "{told}"
+        );
+    }
+    // Triangles that repeat are looked at once.
+    fs::write(
+        at("same.obj"),
+        sheet.to_owned() + &"f 1 2 3\n".repeat(100_000),
+    )
+    .unwrap();
+    let output = patient(folder.path(), &["info", "same.obj", "--depth", "6"]);
+    assert!(output.status.success(), "{}", told(&output));
+}

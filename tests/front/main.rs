@@ -4,10 +4,12 @@
 mod bench;
 mod buffers;
 mod damaged;
+mod knot;
 mod limits;
 mod manners;
 mod model;
 mod pictures;
+mod printed;
 mod refusals;
 mod resolve;
 mod stress;

@@ -11,6 +11,7 @@ use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
+use super::error::{MeshFault, Place};
 use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
 use crate::bounded;
 use crate::graph::Progress;
@@ -115,6 +116,23 @@ impl Beside for Nothing {
             "there are no other files",
         ))
     }
+}
+
+/// Most corners of a face. It is cut into a fan of triangles, and of a long fan each crosses the whole face.
+const MOST_CORNERS: usize = 1 << 16;
+
+/// Refuses a face of more corners than may be.
+fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
+    if corners <= MOST_CORNERS {
+        return Ok(());
+    }
+    Err(MeshError::Limit(MeshFault::new(
+        "face",
+        place,
+        format!("at most {MOST_CORNERS} corners"),
+        corners.to_string(),
+        "cut the face into triangles where the mesh is made: a fan of so many would be slivers",
+    )))
 }
 
 /// Reads a mesh that is in memory; `name` is what errors call it.
