@@ -12,5 +12,6 @@ mod pictures;
 mod printed;
 mod refusals;
 mod resolve;
+mod robust;
 mod stress;
 mod vectors;
