@@ -118,7 +118,14 @@ pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     {
         return Err(failed(path, io::Error::other("it is not a regular file")));
     }
-    let folder = folder_of(path);
+    check_folder(folder_of(path))
+}
+
+/// Whether a folder is there, or can be made in the one above it.
+///
+/// # Errors
+/// As [`check_free`].
+pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
     if folder.is_dir() {
         return Ok(());
     }

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::args::{Memory, SceneArgs};
 use super::console::Console;
-use super::error::CliError;
+use super::error::{CliError, Kind};
 use super::scene_files::Conversion;
 use super::{far, names, report, scene_files, scenes, textured};
 use crate::far::view::Opacity;
@@ -141,6 +141,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         return Err(CliError::usage(
             "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
         ));
+    }
+    scene_files::check_ending(&args.output)?;
+    if let Some(temporary) = args.temp.as_deref().filter(|folder| !folder.is_dir()) {
+        let message = format!("{}: there is no such folder", temporary.display());
+        return Err(
+            CliError::new(Kind::Run, message).advise("make it first, or name another with --temp")
+        );
     }
     if let Some(memory) = args.memory {
         if args.scene.opacities {

@@ -40,6 +40,18 @@ pub(super) struct Written {
     pub(super) warnings: Vec<String>,
 }
 
+/// Refuses, before any work, a name whose ending is that of no format that scenes are written in.
+pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
+    match output.extension().and_then(|e| e.to_str()) {
+        Some("vxg" | "vox" | "ply") => Ok(()),
+        _ => Err(CliError::usage(format!(
+            "{}: cannot tell the format to write from the ending",
+            output.display()
+        ))
+        .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx")),
+    }
+}
+
 /// Writes a scene in the format that the output's ending names.
 ///
 /// # Errors
@@ -80,13 +92,7 @@ pub(super) fn write(
                 scene::write_ply(file, all, true).map(|_| ())
             })?;
         }
-        _ => {
-            return Err(CliError::usage(format!(
-                "{}: cannot tell the format to write from the ending",
-                output.display()
-            ))
-            .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx"));
-        }
+        _ => check_ending(output)?,
     }
     progress.end();
     let bytes = std::fs::metadata(output).map_or(0, |m| m.len());

@@ -217,6 +217,38 @@ fn json_parses_and_stands_alone_on_stdout() {
 }
 
 #[test]
+fn a_frame_that_the_fast_engine_hands_on_says_why() {
+    let folder = folder();
+    let cases: [(&[&str], Option<&str>); 3] = [
+        (&[], None),
+        (&["--paper"], Some("handed_for_rule")),
+        (
+            &["--aov", "records", "-o", "a.png"],
+            Some("handed_for_records"),
+        ),
+    ];
+    for (flags, why) in cases {
+        let line = ["render", SCENE, "--size", "16", "--hash"];
+        let run = |more: &[&str]| {
+            let mut command = shiftvox(folder.path());
+            command.args(line).args(flags).args(["--force"]).args(more);
+            command.assert().success()
+        };
+        let document: serde_json::Value =
+            serde_json::from_str(&stdout_of(&run(&["--json"]))).unwrap();
+        let counters = document["scenes"][0]["counters"].as_object().unwrap();
+        let told: Vec<&str> = counters.keys().map(String::as_str).collect();
+        let told: Vec<&str> = told
+            .into_iter()
+            .filter(|name| name.starts_with("handed"))
+            .collect();
+        assert_eq!(told, why.into_iter().collect::<Vec<_>>(), "{flags:?}");
+        let said = stderr_of(&run(&["-v"]));
+        assert_eq!(said.contains("handed_for"), why.is_some(), "{said}");
+    }
+}
+
+#[test]
 fn the_printed_camera_draws_the_same_picture() {
     let folder = folder();
     let common = ["render", SCENE, "--size", "32"];

@@ -47,8 +47,14 @@ fn what_stands_in_the_way_is_told_before_the_work() {
     run(folder.path(), &deep).code(1);
     let assert = run(folder.path(), &["convert", big, "no/such/a.vxg"]).code(1);
     assert!(stderr_of(&assert).contains("no such folder"));
+    let model = ["model", "gen:menger,depth=5", "--vectors", "no/such/rows"];
+    run(folder.path(), &model).code(1);
+    run(folder.path(), &["convert", big, "a.xyz"]).code(2);
+    run(folder.path(), &["generate", big, "-o", "a.xyz"]).code(2);
+    let outside = ["convert", big, "a.vxg", "--memory", "64M", "--temp", "no"];
+    run(folder.path(), &outside).code(1);
     assert!(
-        started.elapsed() < Duration::from_secs(2),
+        started.elapsed() < Duration::from_secs(4),
         "{:?}",
         started.elapsed()
     );

@@ -93,7 +93,8 @@ fn look(path: &Path, overwrite: bool) -> Result<Site, FolderError> {
 /// [`StoreError::Exists`] where a file or a folder with anything in it is there
 /// and may not be overwritten; [`FolderError::Foreign`] where it may, but holds other things.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), FolderError> {
-    look(path, overwrite).map(|_| ())
+    look(path, overwrite)?;
+    Ok(whole::check_folder(whole::folder_of(path))?)
 }
 
 /// Fills a folder under a temporary name beside its place, then renames it.
