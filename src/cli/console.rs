@@ -220,7 +220,7 @@ mod tests {
         let text = as_json(&document);
         assert!(
             text.bytes()
-                .all(|byte| byte >= b' ' && byte < 127 || byte == b'\n'),
+                .all(|byte| (b' '..127).contains(&byte) || byte == b'\n'),
             "{text}"
         );
         let read: Value = serde_json::from_str(&text).unwrap();

@@ -1,6 +1,6 @@
 //! Flags of `model`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
@@ -154,7 +154,7 @@ fn bits_scan(text: &str) -> Result<Scan, String> {
 }
 
 /// Reads a file that the user names.
-fn read(path: &PathBuf) -> Result<String, CliError> {
+fn read(path: &Path) -> Result<String, CliError> {
     bounded::read_settings(path)
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
 }
