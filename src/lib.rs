@@ -77,6 +77,10 @@ pub use hwmodel::Overflow;
 // Internal modules, public for this project's own tests and tools. They may change in any version and are no part of
 // the API.
 #[doc(hidden)]
+pub mod bounded;
+#[doc(hidden)]
+pub mod budget;
+#[doc(hidden)]
 pub mod fast;
 #[doc(hidden)]
 pub mod frame;

@@ -1,7 +1,10 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed.
-//! A signal handler that ends the program calls [`remove_unfinished`] first. What a killed or crashed process left
+//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. Files that
+//! belong together are renamed when the last of them is written. A file that is replaced keeps its permissions, and a
+//! link to a file stays a link.
+//!
+//! Who ends the program on a signal calls [`remove_unfinished`] first. What a killed or crashed process left
 //! behind is removed by the next one that writes to the folder: such a file is known by its name and by
 //! its lock, which ends with the process that held it.
 
@@ -10,7 +13,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::{Builder, NamedTempFile, TempPath};
+use tempfile::{Builder, NamedTempFile, TempDir};
 
 /// How temporary names begin and end.
 const PREFIX: &str = ".shiftvox-";
@@ -24,6 +27,9 @@ pub enum WholeError {
     /// Something is there already.
     #[error("{0} exists already")]
     Exists(PathBuf),
+    /// The folder is not there, nor the one that it would be in.
+    #[error("{0}: there is no such folder")]
+    NoFolder(PathBuf),
     /// The operating system refused.
     #[error("{path}: {source}")]
     Io {
@@ -62,8 +68,8 @@ fn in_progress() -> MutexGuard<'static, InProgress> {
 /// Removes all that this process has begun to write, then calls `end`, during which no file gets its name:
 /// for signal handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
-    let mut in_progress = in_progress();
-    for path in in_progress.unfinished.drain(..) {
+    let mut list = in_progress();
+    for path in list.unfinished.drain(..) {
         // Gone already, or not ours to remove: nothing can be done about it.
         let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
     }
@@ -89,21 +95,170 @@ impl Drop for TemporaryGuard {
     }
 }
 
-/// Whether a file may be written; called before long work.
+impl InProgress {
+    /// Takes a file off the list, whose lock is held.
+    fn forget(&mut self, guard: TemporaryGuard) {
+        self.unfinished.retain(|path| *path != guard.0);
+        std::mem::forget(guard);
+    }
+}
+
+/// Whether a file may be written: to ask before long work.
 ///
 /// # Errors
-/// [`WholeError::Exists`] where something is there already and may not be overwritten.
+/// [`WholeError::Exists`] where something is there already and may not be overwritten, [`WholeError::NoFolder`]
+/// where there is no place for it, [`WholeError::Io`] where a folder or a device is in its place.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     if !overwrite && fs::symlink_metadata(path).is_ok() {
         return Err(WholeError::Exists(path.to_owned()));
+    }
+    let path = &target(path);
+    if let Ok(there) = fs::metadata(path)
+        && !there.is_file()
+    {
+        return Err(failed(path, io::Error::other("it is not a regular file")));
+    }
+    check_folder(folder_of(path))
+}
+
+/// Whether a folder is there, or can be made in the one above it.
+///
+/// # Errors
+/// As [`check_free`].
+pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
+    if folder.is_dir() {
+        return Ok(());
+    }
+    if fs::symlink_metadata(folder).is_ok() {
+        return Err(failed(
+            folder,
+            io::Error::from(io::ErrorKind::NotADirectory),
+        ));
+    }
+    // One that is made for its files; more than one is a slip of the pen.
+    match folder_of(folder).is_dir() {
+        true => Ok(()),
+        false => Err(WholeError::NoFolder(folder_of(folder).to_owned())),
+    }
+}
+
+/// The folder that a path is in.
+#[must_use]
+pub fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// The file that a path leads to, also where it is not there yet.
+fn target(path: &Path) -> PathBuf {
+    if let Ok(found) = fs::canonicalize(path)
+        && fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
+    {
+        return found;
+    }
+    match fs::read_link(path) {
+        Ok(link) => folder_of(path).join(link),
+        Err(_) => path.to_owned(),
+    }
+}
+
+/// Makes a folder in one that exists.
+///
+/// # Errors
+/// [`WholeError::NoFolder`] where that does not exist; what the system says.
+pub fn make_folder(folder: &Path) -> Result<(), WholeError> {
+    match fs::create_dir(folder) {
+        Ok(()) => Ok(()),
+        Err(_) if folder.is_dir() => Ok(()),
+        Err(e) if e.kind() == io::ErrorKind::NotFound => {
+            Err(WholeError::NoFolder(folder_of(folder).to_owned()))
+        }
+        Err(e) => Err(failed(folder, e)),
+    }
+}
+
+/// A file that is written, but has not got its name yet; gone where it never gets it.
+#[derive(Debug)]
+pub struct Prepared {
+    file: NamedTempFile,
+    path: PathBuf,
+    overwrite: bool,
+    guard: TemporaryGuard,
+}
+
+/// Writes a file under a temporary name beside its place.
+///
+/// Its folder is made if it does not exist and the folder above does.
+///
+/// # Errors
+/// See [`WholeError`].
+pub fn prepare(
+    path: &Path,
+    overwrite: bool,
+    fill: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<Prepared, WholeError> {
+    check_free(path, overwrite)?;
+    let path = target(path);
+    let folder = folder_of(&path);
+    make_folder(folder)?;
+    tidy(folder);
+    let (mut file, guard) = temporary(folder, &path).map_err(|e| failed(folder, e))?;
+    fill(file.as_file_mut()).map_err(|e| failed(&path, e))?;
+    if let Ok(old) = fs::metadata(&path) {
+        // Of another owner's file they cannot always be had; it is replaced all the same.
+        let _ = file.as_file().set_permissions(old.permissions());
+    }
+    Ok(Prepared {
+        file,
+        path,
+        overwrite,
+        guard,
+    })
+}
+
+/// Gives files their names: all of them, or none where one of them cannot have its name and nothing stood there before.
+///
+/// # Errors
+/// See [`WholeError`].
+pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
+    // Not while the program is being ended.
+    let mut list = in_progress();
+    let mut kept: Vec<PathBuf> = Vec::new();
+    for Prepared {
+        file,
+        path,
+        overwrite,
+        guard,
+    } in files
+    {
+        let (_open, temporary) = file.into_parts();
+        let is_new = fs::symlink_metadata(&path).is_err();
+        let result = match overwrite {
+            true => temporary.persist(&path),
+            false => temporary.persist_noclobber(&path),
+        };
+        list.forget(guard);
+        if let Err(e) = result {
+            for path in kept {
+                let _ = fs::remove_file(path);
+            }
+            return Err(match e.error.kind() {
+                io::ErrorKind::AlreadyExists => WholeError::Exists(path),
+                _ => failed(&path, e.error),
+            });
+        }
+        if is_new {
+            kept.push(path);
+        }
     }
     Ok(())
 }
 
 /// Writes a file under a temporary name beside its place and renames it.
 ///
-/// Its folder is made if it does not exist. With `overwrite` an older file is
-/// replaced in one step; without, an existing file is an error, also when it
+/// With `overwrite` an older file is replaced in one step; without, an existing file is an error, also when it
 /// appears while this one is written.
 ///
 /// # Errors
@@ -113,43 +268,39 @@ pub fn write_with(
     overwrite: bool,
     fill: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), WholeError> {
-    check_free(path, overwrite)?;
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    fs::create_dir_all(folder).map_err(|e| failed(folder, e))?;
-    tidy(folder);
-    let (mut file, guard) = temporary(folder, path).map_err(|e| failed(folder, e))?;
-    fill(file.as_file_mut()).map_err(|e| failed(path, e))?;
-    let (_open, temporary) = file.into_parts();
-    keep(temporary, path, overwrite, guard)
+    keep(vec![prepare(path, overwrite, fill)?])
 }
 
-/// Gives a temporary file its name.
-fn keep(
-    temporary: TempPath,
-    path: &Path,
-    overwrite: bool,
-    guard: TemporaryGuard,
-) -> Result<(), WholeError> {
-    let kept = {
-        // Not while the program is being ended.
-        let _in_progress = in_progress();
-        if overwrite {
-            temporary.persist(path)
-        } else {
-            temporary.persist_noclobber(path)
+/// A temporary folder in another, for what gets its name as a whole; removed with all in it when it is dropped, or
+/// else by the next process that writes there.
+///
+/// # Errors
+/// What the system says.
+pub fn temporary_folder(parent: &Path) -> Result<(TempDir, Shelter), WholeError> {
+    tidy(parent);
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    loop {
+        let folder = builder.tempdir_in(parent).map_err(|e| failed(parent, e))?;
+        let guard = TemporaryGuard::new(folder.path());
+        let open = File::open(folder.path()).ok();
+        let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
+        if !is_locked || folder.path().exists() {
+            let shelter = Shelter {
+                _guard: guard,
+                _lock: open,
+            };
+            return Ok((folder, shelter));
         }
-    };
-    drop(guard);
-    match kept {
-        Ok(()) => Ok(()),
-        Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => {
-            Err(WholeError::Exists(path.to_owned()))
-        }
-        Err(e) => Err(failed(path, e.error)),
+        // Another process was quicker and took it for one that was left.
     }
+}
+
+/// Says that a temporary folder is in use.
+#[derive(Debug)]
+pub struct Shelter {
+    _guard: TemporaryGuard,
+    _lock: Option<File>,
 }
 
 /// A temporary file for a place, locked for as long as it is open.
@@ -182,11 +333,11 @@ fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Temporary
 /// Removes what ended processes left in a folder, the first time that this one writes to it.
 fn tidy(folder: &Path) {
     {
-        let mut in_progress = in_progress();
-        if in_progress.tidied.iter().any(|known| known == folder) {
+        let mut list = in_progress();
+        if list.tidied.iter().any(|known| known == folder) {
             return;
         }
-        in_progress.tidied.push(folder.to_owned());
+        list.tidied.push(folder.to_owned());
     }
     // Whatever cannot be read or removed stays: it does not stand in the way.
     let Ok(entries) = fs::read_dir(folder) else {
@@ -195,19 +346,22 @@ fn tidy(folder: &Path) {
     for entry in entries.flatten() {
         let name = entry.file_name();
         let name = name.to_string_lossy();
-        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        if is_file && name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
-            remove_if_left(&entry.path());
+        let Ok(kind) = entry.file_type() else {
+            continue;
+        };
+        if (kind.is_file() || kind.is_dir()) && name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
+            remove_if_left(&entry.path(), kind.is_dir());
         }
     }
 }
 
-fn remove_if_left(path: &Path) {
-    let Ok(file) = File::options().write(true).open(path) else {
+fn remove_if_left(path: &Path, is_folder: bool) {
+    let Ok(file) = File::options().read(true).write(!is_folder).open(path) else {
         return;
     };
     match file.try_lock() {
         // Removed while it is locked: see `temporary`.
+        Ok(()) if is_folder => drop(fs::remove_dir_all(path)),
         Ok(()) => drop(fs::remove_file(path)),
         Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
     }
@@ -259,6 +413,90 @@ pub(crate) mod tests {
         assert!(matches!(raced, Err(WholeError::Exists(_))));
         assert_eq!(fs::read(&late).unwrap(), b"other");
         assert_eq!(names(folder.path()), ["late", "new"]);
+    }
+
+    #[test]
+    fn files_that_belong_together_appear_together() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let fill = |file: &mut File| file.write_all(b"x");
+        let first = prepare(&at("a"), false, fill).unwrap();
+        assert!(!at("a").exists());
+        drop(first);
+        assert!(names(folder.path()).is_empty());
+        let both = ["a", "b"].map(|name| prepare(&at(name), false, fill).unwrap());
+        fs::write(at("b"), b"other").unwrap();
+        assert!(matches!(keep(both.into()), Err(WholeError::Exists(_))));
+        assert_eq!(names(folder.path()), ["b"]);
+        assert_eq!(fs::read(at("b")).unwrap(), b"other");
+    }
+
+    #[test]
+    fn only_the_last_folder_is_made() {
+        let folder = tempfile::tempdir().unwrap();
+        let deep = folder.path().join("no/such/a");
+        assert!(matches!(
+            check_free(&deep, false),
+            Err(WholeError::NoFolder(_))
+        ));
+        assert!(matches!(
+            put(&deep, b"x", true),
+            Err(WholeError::NoFolder(_))
+        ));
+        assert!(names(folder.path()).is_empty());
+        put(&folder.path().join("file"), b"x", false).unwrap();
+        let below = folder.path().join("file/a");
+        assert!(matches!(
+            check_free(&below, false),
+            Err(WholeError::Io { .. })
+        ));
+        assert!(matches!(
+            check_free(folder.path(), true),
+            Err(WholeError::Io { .. })
+        ));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn links_and_permissions_stay() {
+        use std::os::unix::fs::{PermissionsExt, symlink};
+
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
+        fs::create_dir(at("deep")).unwrap();
+        put(&at("deep/real"), b"one", false).unwrap();
+        fs::set_permissions(at("deep/real"), fs::Permissions::from_mode(0o600)).unwrap();
+        symlink("deep/real", at("link")).unwrap();
+        assert!(matches!(
+            put(&at("link"), b"two", false),
+            Err(WholeError::Exists(_))
+        ));
+        put(&at("link"), b"two", true).unwrap();
+        assert!(fs::symlink_metadata(at("link")).unwrap().is_symlink());
+        assert_eq!(fs::read(at("deep/real")).unwrap(), b"two");
+        assert_eq!(mode("deep/real"), 0o600);
+        // A link to what is not there yet.
+        symlink("deep/new", at("early")).unwrap();
+        put(&at("early"), b"three", true).unwrap();
+        assert_eq!(fs::read(at("deep/new")).unwrap(), b"three");
+        assert_eq!(names(&at("deep")), ["new", "real"]);
+        // What is no file is not replaced.
+        let device = check_free(Path::new("/dev/null"), true);
+        assert!(matches!(device, Err(WholeError::Io { .. })));
+    }
+
+    #[test]
+    fn folders_that_were_left_are_removed_and_those_in_use_are_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (used, _shelter) = temporary_folder(folder.path()).unwrap();
+        let left = folder.path().join(".shiftvox-left.tmp");
+        fs::create_dir(&left).unwrap();
+        fs::write(left.join("rows.hex"), b"0").unwrap();
+        // As another process would: this one has looked here already.
+        in_progress().tidied.retain(|known| known != folder.path());
+        put(&folder.path().join("a"), b"x", false).unwrap();
+        assert!(used.path().exists() && !left.exists());
     }
 
     #[test]

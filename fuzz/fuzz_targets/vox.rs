@@ -5,6 +5,9 @@ use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OutOfBounds, ReadOptions, read_voxels_from};
 
+/// Most voxels that are wanted.
+const MOST: u64 = 1 << 20;
+
 fuzz_target!(|data: (u8, &[u8])| {
     let (choice, rest) = data;
     let oob = [
@@ -18,6 +21,7 @@ fuzz_target!(|data: (u8, &[u8])| {
         hidden: choice & 4 != 0,
         frame: u32::from(choice >> 4),
         model: (choice & 8 != 0).then_some(1),
+        most_voxels: MOST,
         ..ReadOptions::default()
     };
     // The magic and the main chunk are given, so that no run is lost on guessing them.
@@ -26,6 +30,7 @@ fuzz_target!(|data: (u8, &[u8])| {
     bytes.extend(rest);
     let mut count = 0u64;
     let result = read_voxels_from(&bytes, "fuzz", &options, &mut |_| count += 1, &Silent);
+    assert!(count <= MOST);
     if let Ok(info) = result {
         assert_eq!(info.voxels, count);
     }

@@ -1,6 +1,5 @@
 //! `compare`: how far two pictures or two buffers are apart.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -9,7 +8,8 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::report;
+use super::{names, report};
+use crate::bounded;
 use crate::measure::{ColorError, CoverageError, count_differing, difference};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::png::{self, Image};
@@ -24,7 +24,7 @@ pub struct CompareArgs {
     /// Reference: of the same kind and size
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// Fail with exit code 3 beyond this: the number of differing pixels, or NAME=VALUE with a
+    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the number of differing pixels, or NAME=VALUE with a
     /// name of the report (psnr_* and ssim: at least; all others: at most); repeatable
     #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
     threshold: Vec<Threshold>,
@@ -91,12 +91,18 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
         store::write(path, &bytes, args.force)?;
     }
     tell(args, &comparison, console)?;
+    if args.threshold.is_empty() {
+        return judge(
+            &["0".parse().map_err(CliError::usage)?],
+            &comparison.numbers,
+        );
+    }
     judge(&args.threshold, &comparison.numbers)
 }
 
 fn read(path: &Path) -> Result<Content, CliError> {
     let place = path.display();
-    let bytes = fs::read(path).map_err(|e| CliError::input(e).at(place))?;
+    let bytes = bounded::read_whole(path).map_err(|e| CliError::input(e).at(place))?;
     if npy::is_npy(&bytes) {
         let array = npy::decode(&bytes).map_err(|e| CliError::input(e).at(path.display()))?;
         return Ok(Content::Buffer(array));
@@ -208,7 +214,7 @@ fn spread<T: PartialEq>(
 
 fn tell(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {
     if console.json {
-        let mut fields = json!({ "a": args.a, "b": args.b, "kind": comparison.kind });
+        let mut fields = json!({ "a": names::of_path(&args.a), "b": names::of_path(&args.b), "kind": comparison.kind });
         for (name, value) in &comparison.numbers {
             // JSON has no infinity.
             fields[name] = if value.is_finite() {

@@ -4,11 +4,13 @@
 //! there already. A camera given one way on the command line displaces one
 //! given the other way in the file. `scene` stands for the positional scenes.
 
-use std::ffi::OsString;
-use std::fs;
+use std::ffi::{OsStr, OsString};
 use std::path::Path;
 
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
 use super::error::CliError;
+use crate::bounded;
 
 /// Flags that place the camera by coordinates.
 const BY_POINTS: [&str; 3] = ["eye", "target", "up"];
@@ -17,25 +19,91 @@ const BY_ANGLES: [&str; 4] = ["view", "azimuth", "elevation", "zoom"];
 /// Flags for which `paper` stands.
 const PAPER: [&str; 3] = ["cage", "tolerance", "coverage"];
 
-/// The command line with the entries of its configuration file, and the scenes that the file names.
+/// A command line with the entries of its configuration file.
+pub(super) struct Expanded {
+    pub(super) line: Vec<OsString>,
+    /// The scenes that the file names.
+    pub(super) scenes: Vec<String>,
+    file: Option<Settings>,
+}
+
+/// A configuration file that was read.
+struct Settings {
+    place: String,
+    text: String,
+    /// Keys that became flags.
+    keys: Vec<String>,
+}
+
+/// Puts the entries of the configuration file on the command line.
 ///
 /// # Errors
 /// A usage error or a bad input that names the file and the entry.
-pub(super) fn expand(mut line: Vec<OsString>) -> Result<(Vec<OsString>, Vec<String>), CliError> {
+pub(super) fn expand(mut line: Vec<OsString>) -> Result<Expanded, CliError> {
     let Some(path) = find_value(&line, "config") else {
-        return Ok((line, Vec::new()));
+        return Ok(Expanded {
+            line,
+            scenes: Vec::new(),
+            file: None,
+        });
     };
-    let place = Path::new(&path).display().to_string();
-    let text = fs::read_to_string(&path)
+    let path = Path::new(&path);
+    let place = path.display().to_string();
+    let text = bounded::read_settings(path)
         .map_err(|e| CliError::input(format!("cannot read the file: {e}")).at(&place))?;
     let table: toml::Table = text
         .parse()
         .map_err(|e| CliError::input(format!("not a TOML table: {e}")).at(&place))?;
     let (flags, scenes) = flags_of(&line, table).map_err(|e| e.at(&place))?;
+    let keys = flags.iter().filter_map(|flag| key_of(flag.to_str()?));
+    let keys = keys.map(str::to_owned).collect();
     // Flags after `--` would be scenes.
     let end = line.iter().position(|a| a == "--").unwrap_or(line.len());
     line.splice(end..end, flags);
-    Ok((line, scenes))
+    Ok(Expanded {
+        line,
+        scenes,
+        file: Some(Settings { place, text, keys }),
+    })
+}
+
+/// The long name of a flag.
+fn key_of(flag: &str) -> Option<&str> {
+    flag.strip_prefix("--")?.split(['=', ' ']).next()
+}
+
+impl Expanded {
+    /// What is wrong with the file, where a flag that came from it is at fault.
+    pub(super) fn blame(&self, error: &clap::Error) -> Option<CliError> {
+        let file = self.file.as_ref()?;
+        let of = |kind| match error.get(kind) {
+            Some(ContextValue::String(flag)) => key_of(flag),
+            _ => None,
+        };
+        let key = of(ContextKind::InvalidArg)?;
+        if !file.keys.iter().any(|known| known == key) {
+            return None;
+        }
+        let is_entry = |line: &str| {
+            let name = line.split('=').next().unwrap_or_default();
+            name.trim().trim_matches(['"', '\'']) == key
+        };
+        let line = file.text.lines().position(is_entry).map_or(0, |at| at + 1);
+        let place = format!("{}, line {line}", file.place);
+        if error.kind() == ErrorKind::UnknownArgument {
+            let told = CliError::input(format!("there is no setting `{key}` here")).at(place);
+            return Some(match of(ContextKind::SuggestedArg) {
+                Some(near) => told.advise(format!("is `{near}` meant?")),
+                None => told.advise(
+                    "`--help` of the command lists its flags: a setting is a flag's long name",
+                ),
+            });
+        }
+        let told = error.render().to_string();
+        let first = told.lines().next().unwrap_or_default();
+        let told = first.strip_prefix("error: ").unwrap_or(first);
+        Some(CliError::input(format!("`{key}`: {told}")).at(place))
+    }
 }
 
 fn flags_of(
@@ -90,27 +158,24 @@ fn texts(key: &str, value: toml::Value) -> Result<Vec<String>, CliError> {
 }
 
 /// The arguments that may be flags.
-fn flags_part(line: &[OsString]) -> impl Iterator<Item = &str> {
-    let words = line.iter().map(|word| word.to_str().unwrap_or(""));
+fn flags_part(line: &[OsString]) -> impl Iterator<Item = &OsStr> {
+    let words = line.iter().map(OsString::as_os_str);
     words.take_while(|word| *word != "--")
 }
 
 fn has_flag(line: &[OsString], name: &str) -> bool {
-    flags_part(line).any(|word| {
-        word.strip_prefix("--")
-            .is_some_and(|flag| flag.split('=').next() == Some(name))
-    })
+    flags_part(line).any(|word| word.to_str().and_then(key_of) == Some(name))
 }
 
-fn find_value(line: &[OsString], name: &str) -> Option<String> {
+fn find_value(line: &[OsString], name: &str) -> Option<OsString> {
     let mut words = flags_part(line);
     while let Some(word) = words.next() {
-        let Some(flag) = word.strip_prefix("--") else {
+        let Some(flag) = word.to_str().and_then(|word| word.strip_prefix("--")) else {
             continue;
         };
         match flag.split_once('=') {
-            Some((found, value)) if found == name => return Some(value.to_owned()),
-            None if flag == name => return words.next().map(str::to_owned),
+            Some((found, value)) if found == name => return Some(value.into()),
+            None if flag == name => return words.next().map(OsStr::to_owned),
             _ => {}
         }
     }

@@ -1,11 +1,18 @@
 //! What is said, and where: data on stdout, notes and progress on stderr.
+//!
+//! A JSON document is held back until it is known how the run ends: where it fails, the document says so. Names of
+//! files may hold anything; what could move a terminal's cursor or change its colours is shown escaped.
 
+use std::borrow::Cow;
+use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
 use std::sync::Mutex;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
 
-use super::error::CliError;
+use super::error::{CliError, Kind};
+use super::{document, names};
 use crate::graph::{Progress, Silent};
 
 /// The two streams, and how much is said on them.
@@ -15,11 +22,13 @@ pub(super) struct Console {
     /// Whether results are printed as JSON.
     pub(super) json: bool,
     progress: Box<dyn Progress>,
+    /// The document that waits for the end of the run.
+    held: RefCell<Option<Value>>,
 }
 
 impl Console {
     pub(super) fn new(quiet: bool, verbose: u8, json: bool) -> Self {
-        let progress: Box<dyn Progress> = if !quiet && io::stderr().is_terminal() {
+        let progress: Box<dyn Progress> = if !quiet && is_drawn_on() {
             Box::new(Bars::default())
         } else {
             Box::new(Silent)
@@ -29,6 +38,7 @@ impl Console {
             verbose,
             json,
             progress,
+            held: RefCell::default(),
         }
     }
 
@@ -39,16 +49,29 @@ impl Console {
 
     /// Prints data, with a line's end.
     pub(super) fn data(&self, text: impl AsRef<str>) -> Result<(), CliError> {
-        let mut out = io::stdout().lock();
-        out.write_all(text.as_ref().as_bytes())?;
-        out.write_all(b"\n")?;
-        out.flush()?;
-        Ok(())
+        print(&harmless(text.as_ref()))
     }
 
-    /// Prints a JSON document.
-    pub(super) fn document(&self, value: &serde_json::Value) -> Result<(), CliError> {
-        self.data(format!("{value:#}"))
+    /// Prints a JSON document: at the next one, or at the end of the run.
+    pub(super) fn document(&self, value: &Value) -> Result<(), CliError> {
+        match self.held.replace(Some(value.clone())) {
+            Some(before) => print(&as_json(&before)),
+            None => Ok(()),
+        }
+    }
+
+    /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always is one.
+    pub(super) fn end(&self, result: Result<(), CliError>) -> Result<(), CliError> {
+        let held = self.held.take();
+        let printed = match (&result, held) {
+            (Err(error), _) if error.kind == Kind::Pipe => Ok(()),
+            (Err(error), held) if self.json || held.is_some() => {
+                print(&as_json(&document::failed(held, error)))
+            }
+            (_, Some(held)) => print(&as_json(&held)),
+            (_, None) => Ok(()),
+        };
+        result.and(printed)
     }
 
     /// Prints a note, except with `--quiet`.
@@ -67,13 +90,68 @@ impl Console {
 
     /// Reports an error after which the work goes on.
     pub(super) fn error(&self, error: &CliError) {
-        say(&format!("shiftvox: {error}"));
+        tell_error(error);
     }
+}
+
+/// Tells an error on stderr.
+pub(super) fn tell_error(error: &CliError) {
+    say(&format!("shiftvox: {error}"));
+}
+
+fn print(text: &str) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.write_all(b"\n")?;
+    out.flush()?;
+    Ok(())
 }
 
 /// A closed stderr does not stop the work.
 fn say(text: &str) {
-    let _ = writeln!(io::stderr().lock(), "{text}");
+    let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+}
+
+/// A text with what could do harm to a terminal escaped: control characters but lines' ends and tabs, and bytes of names
+/// that are not UTF-8.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let is_plain = |letter| letter == '\n' || letter == '\t';
+    escaped(text, |letter| match names::byte_of(letter) {
+        Some(byte) => Some(format!("\\x{byte:02x}")),
+        None if letter.is_control() && !is_plain(letter) => {
+            Some(letter.escape_default().to_string())
+        }
+        None => None,
+    })
+}
+
+/// A document, with the same escaped as JSON has it.
+pub(super) fn as_json(document: &Value) -> String {
+    let text = format!("{document:#}");
+    // Those below 32 are escaped already, or lines' ends between values.
+    let shown = escaped(&text, |letter| match names::byte_of(letter) {
+        Some(byte) => Some(format!("\\\\x{byte:02x}")),
+        None if letter.is_control() && letter != '\n' => {
+            Some(format!("\\u{:04x}", u32::from(letter)))
+        }
+        None => None,
+    });
+    shown.into_owned()
+}
+
+/// A text with some letters written in another way.
+fn escaped(text: &str, other_way: impl Fn(char) -> Option<String>) -> Cow<'_, str> {
+    if !text.contains(|letter| other_way(letter).is_some()) {
+        return text.into();
+    }
+    let shown = |letter: char| other_way(letter).unwrap_or_else(|| letter.to_string());
+    text.chars().map(shown).collect()
+}
+
+/// Whether stderr is a terminal that bars can be drawn on: one that has a name, and can go back in its line.
+fn is_drawn_on() -> bool {
+    let has_name = |name: std::ffi::OsString| !name.is_empty() && name != "dumb";
+    io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)
 }
 
 /// One bar at a time, without colours, gone when the work is done.
@@ -104,7 +182,7 @@ impl Progress for Bars {
         {
             bar.set_style(style.progress_chars("=> "));
         }
-        bar.set_message(what.to_owned());
+        bar.set_message(harmless(what).into_owned());
         self.with(|slot| {
             if let Some(old) = slot.replace(bar) {
                 old.finish_and_clear();
@@ -126,5 +204,26 @@ impl Progress for Bars {
                 bar.finish_and_clear();
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_do_not_move_the_cursor() {
+        assert_eq!(harmless("a\tb\n\u{e9}"), "a\tb\n\u{e9}");
+        assert_eq!(harmless("\u{1b}[2Jx\r\u{9b}"), "\\u{1b}[2Jx\\r\\u{9b}");
+        assert_eq!(harmless("\u{10ffff}.vox"), "\\xff.vox");
+        let document = serde_json::json!({ "a": "\u{10ffff}\u{9b}\u{1b}" });
+        let text = as_json(&document);
+        assert!(
+            text.bytes()
+                .all(|byte| (b' '..127).contains(&byte) || byte == b'\n'),
+            "{text}"
+        );
+        let read: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(read["a"], "\\xff\u{9b}\u{1b}");
     }
 }

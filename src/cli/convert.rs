@@ -1,6 +1,7 @@
 //! `convert`: a scene in another format.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Args;
 
@@ -8,17 +9,19 @@ use super::args::{Memory, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::scene_files::Conversion;
-use super::{far, report, scene_files, scenes, textured};
+use super::{far, names, report, scene_files, scenes, textured};
 use crate::far::view::Opacity;
 use crate::graph::{BuildOptions, ExternalOptions};
 use crate::picture::store;
+use crate::scene::Source;
 use crate::textured::Element;
+use crate::whole;
 
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
     /// Scene to read, told by its content
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", value_parser = super::names::parser())]
     input: String,
     /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
     /// .far (far voxels) or .tvx (textured voxels)
@@ -139,6 +142,13 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
             "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
         ));
     }
+    scene_files::check_ending(&args.output)?;
+    if let Some(temporary) = args.temp.as_deref().filter(|folder| !folder.is_dir()) {
+        let message = format!("{}: there is no such folder", temporary.display());
+        return Err(
+            CliError::new(Kind::Run, message).advise("make it first, or name another with --temp")
+        );
+    }
     if let Some(memory) = args.memory {
         if args.scene.opacities {
             return Err(CliError::usage(
@@ -147,7 +157,9 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         }
         return build_outside_memory(args, memory, console);
     }
-    let scene = scenes::open(&args.input, &args.scene, console)?;
+    let source = Source::find(names::path(&args.input))?;
+    let started = Instant::now();
+    let scene = scenes::open_whole(source, &args.input, &args.scene, started, console)?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
     scene_files::report_written("convert", &args.input, &args.output, &written, console)
 }
@@ -164,12 +176,8 @@ fn build_outside_memory(
         ))
         .advise("end the name in .vxg, or leave --memory out"));
     }
-    let beside = match args.output.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    std::fs::create_dir_all(beside)
-        .map_err(|e| CliError::new(Kind::Run, format!("{}: {e}", beside.display())))?;
+    let beside = whole::folder_of(&args.output);
+    whole::make_folder(beside)?;
     let external = ExternalOptions {
         build: BuildOptions::default(),
         memory: memory.bytes,

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
+use crate::budget::Shortage;
 use crate::drawing::DrawError;
 use crate::graph::ExternalError;
 use crate::graph::file::FileError;
@@ -120,6 +121,7 @@ impl From<StoreError> for CliError {
         let failure = Self::new(Kind::Run, &error);
         match error {
             StoreError::Exists(_) => failure.advise("give another name, or --force to replace it"),
+            StoreError::NoFolder(_) => failure.advise("make it first, or give another name"),
             StoreError::Io { .. } => failure,
         }
     }
@@ -271,6 +273,7 @@ impl From<DrawError> for CliError {
         match error {
             DrawError::TooLarge(_) => Self::new(Kind::Limit, message)
                 .advise("ask for a smaller --size, or fewer samples with --aa"),
+            DrawError::Memory(short) => short.into(),
             DrawError::Setup(error) => error.into(),
             DrawError::Engine(error) => error.into(),
             DrawError::Resolve(error) => error.into(),
@@ -283,6 +286,13 @@ impl From<DrawError> for CliError {
             DrawError::Camera(_) | DrawError::Samples(_) => Self::usage(message),
             DrawError::Raster(_) => Self::new(Kind::Run, message),
         }
+    }
+}
+
+impl From<Shortage> for CliError {
+    fn from(short: Shortage) -> Self {
+        Self::new(Kind::Limit, short)
+            .advise("ask for a smaller --size or fewer samples, or a scene of fewer levels")
     }
 }
 

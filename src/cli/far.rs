@@ -1,6 +1,5 @@
 //! `.far` files on the command line: `convert` and `info`.
 
-use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -8,9 +7,11 @@ use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::{CliError, Kind};
+use super::names;
 use super::report::{self, grouped};
 use super::scene_files::Conversion;
 use super::scenes;
+use crate::budget;
 use crate::drawing::milliseconds_since;
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::write_to;
@@ -18,7 +19,6 @@ use crate::far::{BuildError, BuildOptions, FarFile, build};
 use crate::mesh::Instances;
 use crate::picture::store;
 use crate::project::Up;
-use crate::scene::available_memory;
 
 /// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(
@@ -58,7 +58,7 @@ pub(super) fn convert(
     if console.json {
         let mut fields = facts.describe(&file, of.input);
         fields["input"] = json!(of.input);
-        fields["output"] = json!(of.output);
+        fields["output"] = json!(names::of_path(of.output));
         fields["build_ms"] = json!(build_ms);
         console.document(&report::document("convert", fields))?;
     }
@@ -75,7 +75,7 @@ fn check_room(triangles: u64) -> Result<(), CliError> {
     }
     // No overflow: 32 bits by 8.
     let needed = triangles * LEAST_BYTES;
-    match available_memory() {
+    match budget::available() {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
             format!("{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, and {free} are free"),
@@ -117,7 +117,7 @@ fn in_rows((low, high): (DVec3, DVec3), up: Up, count: u32) -> Vec<DAffine3> {
 
 /// Checks all of a file and describes it: prints that, or with `--json` returns it.
 pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliError> {
-    let file = FarFile::open(Path::new(name))?;
+    let file = FarFile::open(&names::path(name))?;
     file.verify()?;
     let facts = Facts::of(&file);
     if console.json {

@@ -26,6 +26,7 @@ pub struct GenerateArgs {
 }
 
 pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
+    scene_files::check_ending(&args.output)?;
     store::check_free(&args.output, args.force)?;
     let spec = if Source::is_generated(&args.spec) {
         args.spec.clone()

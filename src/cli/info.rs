@@ -10,7 +10,8 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::report::{self, grouped};
 use super::scenes::{self, Scene};
-use super::{far, textured};
+use super::{far, names, textured};
+use crate::budget;
 use crate::graph::{Graph, MergeBy, Opacity, Silent, merge, sixteenths};
 use crate::project::Bounds;
 use crate::scene::{FileKind, Source};
@@ -19,7 +20,7 @@ use crate::scene::{FileKind, Source};
 #[derive(Debug, Args)]
 pub struct InfoArgs {
     /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
     /// Of .tvx: the table of faces, voxels and surfels of each level of detail
     #[arg(long)]
@@ -69,12 +70,12 @@ fn of_one(
     console: &Console,
 ) -> Result<Option<Value>, CliError> {
     let started = Instant::now();
-    let source = Source::find(name)?;
+    let source = Source::find(names::path(name))?;
     match source.kind() {
         Some(FileKind::Far) => far::info(name, console),
         Some(FileKind::Tvx) => textured::info(name, args.levels, console),
         _ => {
-            let scene = scenes::open_source(source, name, &args.scene, started, console)?;
+            let scene = scenes::open_whole(source, name, &args.scene, started, console)?;
             if console.json {
                 return Ok(Some(describe(&scene)));
             }
@@ -90,8 +91,9 @@ struct Facts {
     high: [i64; 3],
     levels: Vec<(u64, u128)>,
     bytes: u64,
-    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape.
-    gains: [f64; 2],
+    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape; none where there is too
+    /// little memory to find out.
+    gains: Option<[f64; 2]>,
     colors: usize,
     camera_line: String,
 }
@@ -149,8 +151,8 @@ fn describe(scene: &Scene) -> Value {
         "levels": levels,
         "bytes": facts.bytes,
         "bytes_per_voxel": facts.bytes_per_voxel(graph),
-        "dag_gain": facts.gains[0],
-        "dag_gain_by_shape": facts.gains[1],
+        "dag_gain": facts.gains.map(|gains| gains[0]),
+        "dag_gain_by_shape": facts.gains.map(|gains| gains[1]),
         "palette_entries": scene.palette,
         "colors": facts.colors,
         "camera": facts.camera_line,
@@ -198,10 +200,12 @@ fn tell(scene: &Scene, several: bool) -> String {
         ),
         (
             "DAG gain",
-            format!(
-                "{:.2} when equal subtrees are merged, {:.2} by shape alone",
-                facts.gains[0], facts.gains[1]
-            ),
+            match facts.gains {
+                Some([all, shape]) => {
+                    format!("{all:.2} when equal subtrees are merged, {shape:.2} by shape alone")
+                }
+                None => "not found out: merging takes more memory than is free".to_owned(),
+            },
         ),
         ("palette", palette),
         ("opacities", opacities(graph)),
@@ -303,8 +307,12 @@ fn levels(graph: &Graph) -> Vec<(u64, u128)> {
     levels
 }
 
+/// Bytes a node that merging takes at the least.
+const MERGE_BYTES: u64 = 16;
+
 /// How much smaller the graph gets when equal subtrees are merged: all nodes
 /// over those left, with attributes and by shape alone.
-fn merge_gains(graph: &Graph) -> [f64; 2] {
-    [MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain())
+fn merge_gains(graph: &Graph) -> Option<[f64; 2]> {
+    budget::check("merging", graph.len() as u64 * MERGE_BYTES).ok()?;
+    Some([MergeBy::ShapeAndAttributes, MergeBy::Shape].map(|by| merge(graph, by, &Silent).1.gain()))
 }

@@ -18,8 +18,8 @@ pub(super) struct CompletionsArgs {
 /// Which page.
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// Verb whose page is wanted; none: the program's own
-    verb: Option<String>,
+    /// Verb whose page is wanted, or a verb and an experiment; none: the program's own
+    verb: Vec<String>,
 }
 
 pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> Result<(), CliError> {
@@ -30,7 +30,7 @@ pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> Resul
 
 pub(super) fn man(args: &ManArgs, mut command: Command) -> Result<(), CliError> {
     command.build();
-    if let Some(verb) = &args.verb {
+    for verb in &args.verb {
         command = command
             .find_subcommand(verb)
             .cloned()

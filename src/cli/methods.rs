@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use super::args::{DataBudget, EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
 use super::console::Console;
-use super::engines;
 use super::error::CliError;
 use super::scenes::{self, Scene};
+use super::{engines, names};
 use crate::drawing::{
     self, Drawable, FarDrawing, FarStyle, GraphDrawing, GraphStyle, TexturedDrawing, TexturedStyle,
     milliseconds_since,
@@ -91,7 +91,7 @@ enum Content {
 pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result<Opened, CliError> {
     let started = Instant::now();
     let asked = args.engine.engine;
-    let source = Source::find(name);
+    let source = Source::find(names::path(name));
     let kind = source.as_ref().ok().and_then(Source::kind);
     let named = METHODS.iter().find(|method| Some(method.engine) == asked);
     let its = || METHODS.iter().find(|method| Some(method.file) == kind);
@@ -107,7 +107,7 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         });
     };
     method.check(name, kind, args)?;
-    let content = (method.open)(Path::new(name), args)?;
+    let content = (method.open)(&names::path(name), args)?;
     Ok(Opened {
         engine: method.engine,
         load_ms: milliseconds_since(started),
@@ -138,7 +138,7 @@ impl Method {
         }
         if kind != Some(self.file) {
             // The method's reader says that the file is not there, or what else it is.
-            let refused = (self.open)(Path::new(scene), args).map(|_| ());
+            let refused = (self.open)(&names::path(scene), args).map(|_| ());
             return refused.map_err(|error| {
                 error.advise(format!(
                     "--engine {name} draws {file} files: shiftvox convert MESH OUT{file}"
@@ -165,6 +165,14 @@ impl Method {
 }
 
 impl Opened {
+    /// Whether all of the file was checked; methods of meshes check what they read when they read it.
+    pub(super) fn is_verified(&self) -> bool {
+        match &self.content {
+            Content::Graph(scene) => scene.is_verified,
+            Content::Far(_) | Content::Textured(_) => true,
+        }
+    }
+
     /// The scene as something that can be drawn, with light, samples and rules as the flags say.
     ///
     /// # Errors

@@ -11,6 +11,7 @@ mod config;
 mod console;
 pub mod convert;
 mod demo;
+mod document;
 mod engines;
 pub mod error;
 mod experiment;
@@ -19,7 +20,9 @@ pub mod generate;
 pub mod info;
 mod manual;
 mod methods;
+mod mishaps;
 mod model;
+mod names;
 mod outputs;
 pub mod render;
 mod report;
@@ -33,6 +36,7 @@ pub mod triangles;
 pub mod turntable;
 
 use std::ffi::OsString;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
@@ -146,42 +150,67 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if error.kind != Kind::Pipe {
-                eprintln!("shiftvox: {error}");
+                console::tell_error(&error);
             }
             error.exit_code()
         }
     }
 }
 
+/// Whether a command line asks for JSON: also where it makes no sense otherwise.
+fn wants_json(command_line: &[OsString]) -> bool {
+    let mut flags = command_line.iter().take_while(|word| *word != "--");
+    flags.any(|word| word == "--json")
+}
+
 fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
-    let (command_line, scenes) = config::expand(command_line)?;
-    let cli = match Cli::try_parse_from(command_line) {
+    let early = Console::new(true, 0, wants_json(&command_line));
+    mishaps::tell_when_stopped(early.json);
+    let expanded = match config::expand(command_line) {
+        Ok(expanded) => expanded,
+        Err(error) => return early.end(Err(error)),
+    };
+    let cli = match Cli::try_parse_from(&expanded.line) {
         Ok(cli) => cli,
+        Err(error) if error.exit_code() == 0 => {
+            // Help and version.
+            error.print()?;
+            return Ok(io::stdout().flush()?);
+        }
         Err(error) => {
-            let code = error.exit_code();
-            // Help and version go to stdout, errors to stderr; a closed pipe is nobody's fault.
+            if let Some(blamed) = expanded.blame(&error) {
+                return early.end(Err(blamed));
+            }
+            // To stderr, and with `--json` to stdout too; a closed pipe is nobody's fault.
             let _ = error.print();
-            std::process::exit(code);
+            let told = error.render().to_string();
+            let _ = early.end(Err(CliError::usage(told.trim_end())));
+            std::process::exit(error.exit_code());
         }
     };
     let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
+    let result = run_verb(cli, expanded.scenes, &console);
+    console.end(result)
+}
+
+fn run_verb(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), CliError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads()?)
         .build_global()
-        .map_err(|e| CliError::new(Kind::Run, format!("cannot start the threads: {e}")))?;
+        .map_err(|e| CliError::new(Kind::Limit, format!("cannot start the threads: {e}")))?;
     match cli.verb {
-        None => demo::run(&console),
-        Some(Verb::Render(args)) => render::run(&args, scenes, &console),
-        Some(Verb::Turntable(args)) => turntable::run(&args, scenes, &console),
-        Some(Verb::Triangles(args)) => triangles::run(&args, &console),
-        Some(Verb::Info(args)) => info::run(&args, scenes, &console),
-        Some(Verb::Convert(args)) => convert::run(&args, &console),
-        Some(Verb::Generate(args)) => generate::run(&args, &console),
-        Some(Verb::Compare(args)) => compare::run(&args, &console),
-        Some(Verb::Model(args)) => model::run(&args, scenes, &console),
-        Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), &console),
-        Some(Verb::Stress(args)) => stress::run(&args, scenes, &console),
-        Some(Verb::Reproduce(args)) => reproduce::run(&args, &console),
+        None => demo::run(console),
+        Some(Verb::Render(args)) => render::run(&args, scenes, console),
+        Some(Verb::Turntable(args)) => turntable::run(&args, scenes, console),
+        Some(Verb::Triangles(args)) => triangles::run(&args, console),
+        Some(Verb::Info(args)) => info::run(&args, scenes, console),
+        Some(Verb::Convert(args)) => convert::run(&args, console),
+        Some(Verb::Generate(args)) => generate::run(&args, console),
+        Some(Verb::Compare(args)) => compare::run(&args, console),
+        Some(Verb::Model(args)) => model::run(&args, scenes, console),
+        Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), console),
+        Some(Verb::Stress(args)) => stress::run(&args, scenes, console),
+        Some(Verb::Reproduce(args)) => reproduce::run(&args, console),
         Some(Verb::Completions(args)) => manual::completions(&args, Cli::command()),
         Some(Verb::Man(args)) => manual::man(&args, Cli::command()),
     }

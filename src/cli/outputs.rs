@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::args::Setting;
 use super::error::CliError;
 use crate::drawing::{Buffers, Shown};
+use crate::picture::store::Prepared;
 use crate::picture::{Buffer, Rows, npy, store};
 
 /// The file of a buffer: `{out stem}.{aov}.npy` beside the picture.
@@ -39,38 +40,50 @@ pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
     )
 }
 
-/// Writes a picture's colours, and the buffers that are asked for.
+/// Writes a picture's colours, and the buffers that are asked for: all of them or none.
 pub(super) fn write(
     shown: &Shown<'_>,
     path: &Path,
     buffers: &[Buffer],
     force: bool,
 ) -> Result<(), CliError> {
-    store::write_with(path, force, |file| {
+    Ok(store::keep(prepare(shown, path, buffers, force)?)?)
+}
+
+/// Writes all of them under temporary names, for [`store::keep`].
+pub(super) fn prepare(
+    shown: &Shown<'_>,
+    path: &Path,
+    buffers: &[Buffer],
+    force: bool,
+) -> Result<Vec<Prepared>, CliError> {
+    let picture = store::prepare(path, force, |file| {
         let mut file = BufWriter::new(file);
         shown.pixels.write(&mut file).map_err(io::Error::other)?;
         file.flush()
     })?;
+    let mut files = vec![picture];
     for &buffer in buffers {
-        write_buffer(&shown.buffers, buffer, &buffer_path(path, buffer), force)?;
+        let path = buffer_path(path, buffer);
+        files.push(prepare_buffer(&shown.buffers, buffer, &path, force)?);
     }
-    Ok(())
+    Ok(files)
 }
 
 /// Writes a buffer as it is made.
-fn write_buffer(
+fn prepare_buffer(
     picture: &Buffers<'_>,
     buffer: Buffer,
     path: &Path,
     force: bool,
-) -> Result<(), CliError> {
+) -> Result<Prepared, CliError> {
     let (width, height) = picture.size();
     let mut shape = vec![height as usize, width as usize];
     if buffer.entries() > 1 {
         shape.push(buffer.entries());
     }
     let mut failed = None;
-    let written = store::write_with(path, force, |file| {
+    let written = store::prepare(path, force, |file| {
         file.write_all(&npy::header(&shape, &buffer.none()))?;
         for rows in picture.steps() {
             match picture.rows(buffer, rows) {

@@ -12,7 +12,7 @@ use super::args::{
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
-use super::{outputs, report, scenes};
+use super::{names, outputs, report, scenes};
 use crate::drawing::Shown;
 use crate::picture;
 use crate::project::Camera;
@@ -21,7 +21,7 @@ use crate::project::Camera;
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// Scenes: files, or generators such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     pub scenes: Vec<String>,
     /// Picture to write; {stem} stands for the scene's name
     #[arg(short, long, value_name = "FILE")]
@@ -165,8 +165,8 @@ fn check_distinct(args: &RenderArgs, names: &[String]) -> Result<(), CliError> {
 
 fn output_path(args: &RenderArgs, stem: &str) -> Option<PathBuf> {
     match (&args.output, &args.out.outdir) {
-        (Some(output), _) => Some(output.to_string_lossy().replace("{stem}", stem).into()),
-        (None, Some(outdir)) => Some(outdir.join(format!("{stem}.png"))),
+        (Some(output), _) => Some(names::replace(output, "{stem}", stem)),
+        (None, Some(outdir)) => Some(outdir.join(names::path(&format!("{stem}.png")))),
         (None, None) => None,
     }
 }
@@ -188,11 +188,11 @@ fn render_one(
         memory: args.memory,
         is_hashed,
     };
-    let opened = methods::open(name, &draw_args, console)?;
     let output = output_path(args, &scenes::stem(name));
     if let Some(path) = &output {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
     }
+    let opened = methods::open(name, &draw_args, console)?;
     let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;
     let up = args.scene.up_or(drawable.up());
     let size = args.picture.size();
@@ -228,7 +228,8 @@ fn render_one(
         ));
     }
     let mut result = report::drawn(name, opened.load_ms, &camera, &shown, hash.as_deref());
-    result["output"] = json!(output);
+    result["output"] = json!(output.as_deref().map(names::of_path));
+    result["is_verified"] = json!(opened.is_verified());
     Ok((camera, opened.engine, result))
 }
 
@@ -276,7 +277,7 @@ fn settings(
     let engine = engine.filter(|first| engines.iter().all(|engine| engine == first));
     let mut settings = vec![("scene", names.into())];
     if let Some(output) = &args.output {
-        settings.push(("output", output.to_string_lossy().into_owned().into()));
+        settings.push(("output", names::of_path(output).into()));
     }
     settings.extend(camera.map_or_else(|| args.camera.settings(), camera_settings));
     settings.extend(args.picture.settings());

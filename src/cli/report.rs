@@ -7,25 +7,10 @@ use hwmodel::{Memory, OpClass, Stage};
 use serde_json::{Value, json};
 
 use super::args::camera_line;
+pub(super) use super::document::document;
 use crate::drawing::{Figures, Shown};
 use crate::project::Camera;
 pub(super) use crate::report::grouped;
-
-/// Version of every JSON document: raised when a field changes its meaning or goes.
-pub(super) const SCHEMA_VERSION: u32 = 1;
-
-/// A JSON document of a verb: its schema's name and version first, then its fields.
-pub(super) fn document(verb: &str, fields: Value) -> Value {
-    let mut document = json!({
-        "schema": format!("shiftvox.{verb}"),
-        "schema_version": SCHEMA_VERSION,
-        "program_version": env!("CARGO_PKG_VERSION"),
-    });
-    if let (Value::Object(to), Value::Object(from)) = (&mut document, fields) {
-        to.extend(from);
-    }
-    document
-}
 
 /// A camera in JSON.
 pub(super) fn camera(camera: &Camera) -> Value {

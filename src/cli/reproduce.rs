@@ -1,6 +1,5 @@
 //! `reproduce`: the image-order paper's results in one go, and again.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,6 +12,7 @@ use super::error::{CliError, Kind};
 use super::experiment::context::Context;
 use super::experiment::subjects;
 use super::report;
+use crate::bounded;
 use crate::lab::bench::{Harness, Subject, ablation};
 use crate::lab::reproduce::{
     self, Config, Drawn, Engines, Evidence, ReproduceError, Timed, differences, figures, tables,
@@ -100,7 +100,7 @@ fn again(folder: &Path, console: &Console) -> Result<(), CliError> {
     let read = |name: &str| {
         let path = folder.join(name);
         let place = path.display().to_string();
-        fs::read_to_string(&path)
+        bounded::read_settings(&path)
             .map_err(|e| {
                 CliError::input(format!("cannot read the file: {e}"))
                     .at(&place)

@@ -7,11 +7,11 @@ use serde_json::json;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::report;
 use super::scenes::{self, Scene};
+use super::{names, report};
 use crate::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
 use crate::picture::store;
-use crate::scene;
+use crate::scene::{self, OpenOptions, Source};
 
 /// Most voxels that are written to a voxel file.
 const MAX_WRITTEN: u64 = 1 << 28;
@@ -38,6 +38,18 @@ pub(super) struct Written {
     pub(super) bytes: u64,
     /// What the user should know.
     pub(super) warnings: Vec<String>,
+}
+
+/// Refuses, before any work, a name whose ending is that of no format that scenes are written in.
+pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
+    match output.extension().and_then(|e| e.to_str()) {
+        Some("vxg" | "vox" | "ply") => Ok(()),
+        _ => Err(CliError::usage(format!(
+            "{}: cannot tell the format to write from the ending",
+            output.display()
+        ))
+        .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx")),
+    }
 }
 
 /// Writes a scene in the format that the output's ending names.
@@ -80,13 +92,7 @@ pub(super) fn write(
                 scene::write_ply(file, all, true).map(|_| ())
             })?;
         }
-        _ => {
-            return Err(CliError::usage(format!(
-                "{}: cannot tell the format to write from the ending",
-                output.display()
-            ))
-            .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx"));
-        }
+        _ => check_ending(output)?,
     }
     progress.end();
     let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
@@ -109,8 +115,12 @@ pub(super) fn build_file(
     force: bool,
     progress: &dyn Progress,
 ) -> Result<(Written, Option<ExternalReport>), CliError> {
-    let options = scenes::options(args);
-    let built = scene::build_file(source, &options, external, output, force, progress)?;
+    let found = Source::find(names::path(source))?;
+    let options = OpenOptions {
+        verify_up_to: u64::MAX,
+        ..scenes::options(args)
+    };
+    let built = scene::build_file_of(found, source, &options, external, output, force, progress)?;
     let written = Written {
         voxels: built.voxels,
         bytes: built.bytes,
@@ -165,7 +175,7 @@ pub(super) fn report_written(
     if console.json {
         let fields = json!({
             "input": input,
-            "output": output,
+            "output": names::of_path(output),
             "voxels": written.voxels,
             "bytes": written.bytes,
             "warnings": written.warnings,

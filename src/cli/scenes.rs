@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
+use super::names;
 use crate::drawing::milliseconds_since;
 use crate::graph::{Graph, Progress};
 use crate::mesh::{LoadOptions, Mesh};
@@ -35,6 +36,8 @@ pub(super) struct Scene {
     pub(super) palette: Option<usize>,
     /// What the user should know although the scene could be read.
     pub(super) warnings: Vec<String>,
+    /// Whether all of the file was checked.
+    pub(super) is_verified: bool,
     /// Time to read and build, milliseconds.
     pub(super) load_ms: f64,
 }
@@ -59,7 +62,13 @@ pub(super) fn choose(given: &[String], from_config: Vec<String>) -> Result<Vec<S
 /// A bad input with file, offset, what was expected and what to do.
 pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
     let started = Instant::now();
-    open_source(Source::find(name)?, name, args, started, console)
+    open_source(
+        Source::find(names::path(name))?,
+        name,
+        args,
+        started,
+        console,
+    )
 }
 
 /// [`open`], of what was found already, at `started`.
@@ -73,8 +82,42 @@ pub(super) fn open_source(
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
-    let opened = scene::open_source(source, &options(args), console.progress())?;
+    open_with(source, name, args, &options(args), started, console)
+}
+
+/// [`open_source`], with every byte of a graph file checked: for who reads all of it.
+///
+/// # Errors
+/// As [`open`].
+pub(super) fn open_whole(
+    source: Source,
+    name: &str,
+    args: &SceneArgs,
+    started: Instant,
+    console: &Console,
+) -> Result<Scene, CliError> {
+    let options = OpenOptions {
+        verify_up_to: u64::MAX,
+        ..options(args)
+    };
+    open_with(source, name, args, &options, started, console)
+}
+
+fn open_with(
+    source: Source,
+    name: &str,
+    args: &SceneArgs,
+    options: &OpenOptions,
+    started: Instant,
+    console: &Console,
+) -> Result<Scene, CliError> {
+    let opened = scene::open_source(source, options, console.progress())?;
     let scene = ready(opened, name, args.mesh_up, started);
+    if !scene.is_verified {
+        console.note(format!(
+            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, which read all of it"
+        ));
+    }
     for warning in &scene.warnings {
         console.note(format!("{name}: {warning}"));
     }
@@ -107,7 +150,9 @@ pub(super) fn open_source(
 /// # Errors
 /// Where it is a file that cannot be read.
 pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
-    Ok(Source::find(name)?.kind().is_some_and(FileKind::is_mesh))
+    Ok(Source::find(names::path(name))?
+        .kind()
+        .is_some_and(FileKind::is_mesh))
 }
 
 /// Reads a mesh for its triangles, and says which axis is up.
@@ -119,7 +164,7 @@ pub(super) fn read_mesh(
     args: &SceneArgs,
     progress: &dyn Progress,
 ) -> Result<(Mesh, Up), CliError> {
-    let (mesh, y_up) = scene::read_mesh(Path::new(source), &load_options(args), progress)?;
+    let (mesh, y_up) = scene::read_mesh(&names::path(source), &load_options(args), progress)?;
     let up = if y_up { Up::Y } else { Up::Z };
     Ok((mesh, args.up_or(up)))
 }
@@ -163,6 +208,7 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
             load: load_options(args),
             opacities: args.opacities,
         },
+        ..OpenOptions::default()
     }
 }
 
@@ -185,6 +231,7 @@ fn ready(opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) ->
         palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
         warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),
         graph: opened.graph,
+        is_verified: opened.is_verified,
         load_ms: milliseconds_since(started),
     }
 }

@@ -1,12 +1,12 @@
 //! `.tvx` files on the command line: `convert` and `info`.
 
-use std::path::Path;
 use std::time::Instant;
 
 use serde_json::{Value, json};
 
 use super::console::Console;
 use super::error::CliError;
+use super::names;
 use super::report::{self, grouped};
 use super::scene_files::Conversion;
 use super::scenes;
@@ -45,7 +45,7 @@ pub(super) fn convert(
     if console.json {
         let mut fields = describe(&file, of.input);
         fields["input"] = json!(of.input);
-        fields["output"] = json!(of.output);
+        fields["output"] = json!(names::of_path(of.output));
         fields["build_ms"] = json!(build_ms);
         console.document(&report::document("convert", fields))?;
     }
@@ -58,7 +58,7 @@ pub(super) fn info(
     with_levels: bool,
     console: &Console,
 ) -> Result<Option<Value>, CliError> {
-    let file = TexturedFile::open(Path::new(name))?;
+    let file = TexturedFile::open(&names::path(name))?;
     file.verify()?;
     if console.json {
         return Ok(Some(describe(&file, name)));

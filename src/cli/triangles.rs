@@ -1,5 +1,7 @@
 //! `triangles`: a mesh drawn as triangles, with a depth buffer.
 
+use std::fs::File;
+use std::io::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -10,7 +12,7 @@ use serde_json::json;
 use super::args::{CameraArgs, SceneArgs, Size, camera_line};
 use super::console::Console;
 use super::error::{CliError, Kind};
-use super::{outputs, report, scenes};
+use super::{names, outputs, report, scenes};
 use crate::drawing::{Drawable, TrianglesDrawing, TrianglesStyle, milliseconds_since};
 use crate::mesh::raster::{Pattern, Samples};
 use crate::picture::npy::{self, Array, Values};
@@ -39,7 +41,7 @@ pub enum BufferName {
 #[derive(Debug, Args)]
 pub struct TrianglesArgs {
     /// Mesh: .obj, .ply, .stl, .gltf or .glb, told by its content
-    #[arg(value_name = "MESH")]
+    #[arg(value_name = "MESH", value_parser = crate::cli::names::parser())]
     mesh: String,
     /// Picture to write, .png
     #[arg(short, long, value_name = "FILE")]
@@ -97,15 +99,17 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         true => &[Buffer::Depth],
         false => &[],
     };
-    outputs::write(&shown, &args.output, of_picture, args.force)?;
+    let mut files = outputs::prepare(&shown, &args.output, of_picture, args.force)?;
     if args.aov.contains(&BufferName::Coverage) {
         let array = Array {
             shape: vec![size.1 as usize, size.0 as usize],
             values: Values::F32(drawing.coverage().to_vec()),
         };
         let path = args.output.with_extension("coverage.npy");
-        store::write(&path, &npy::encode(&array), args.force)?;
+        let write = |file: &mut File| file.write_all(&npy::encode(&array));
+        files.push(store::prepare(&path, args.force, write)?);
     }
+    store::keep(files)?;
     console.note(format!(
         "{}: {} triangles, {} samples a pixel, read in {load_ms:.1} ms, drawn in {draw_ms:.1} ms",
         args.output.display(),
@@ -115,7 +119,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     if console.json {
         let fields = json!({
             "mesh": args.mesh,
-            "output": args.output,
+            "output": names::of_path(&args.output),
             "triangles": mesh.triangles().len(),
             "samples": style.samples.per_pixel(),
             "camera": camera_line(&camera),

@@ -11,7 +11,7 @@ use super::args::{
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
-use super::{outputs, report, scenes};
+use super::{names, outputs, report, scenes};
 use crate::drawing::Shown;
 use crate::picture;
 
@@ -19,7 +19,7 @@ use crate::picture;
 #[derive(Debug, Args)]
 pub struct TurntableArgs {
     /// Scene: a file (also .far and .tvx), or a generator such as gen:terrain,depth=10,seed=1
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     pub scene_name: Option<String>,
     /// Pictures to write; #### stands for the frame's number, from 0
     #[arg(short, long, value_name = "FILE")]
@@ -158,7 +158,7 @@ fn draw(
             ))
         })();
         let mut result = result.map_err(|e| e.at(format!("{name}, frame {frame}")))?;
-        result["output"] = json!(path);
+        result["output"] = json!(names::of_path(path));
         turn.results.push(result);
         console.progress().advance(1);
     }
@@ -184,10 +184,10 @@ fn keep(
     Ok(Some(hash))
 }
 
-fn settings(args: &TurntableArgs, names: Vec<String>, engine: EngineName) -> Vec<Setting> {
-    let output = args.output.to_string_lossy().into_owned();
+fn settings(args: &TurntableArgs, scenes: Vec<String>, engine: EngineName) -> Vec<Setting> {
+    let output = names::of_path(&args.output);
     let mut settings: Vec<Setting> = vec![
-        ("scene", names.into()),
+        ("scene", scenes.into()),
         ("output", output.into()),
         ("frames", i64::from(args.frames).into()),
     ];
@@ -200,7 +200,7 @@ fn settings(args: &TurntableArgs, names: Vec<String>, engine: EngineName) -> Vec
 
 /// The pattern with its run of `#` replaced by each frame's number.
 fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
-    let text = pattern.to_string_lossy();
+    let text = names::of_path(pattern);
     let wrong = || {
         CliError::usage(format!("{text}: the frames need different names"))
             .advise("put one run of # into the name, for example -o out/####.png")
@@ -212,7 +212,7 @@ fn frame_paths(pattern: &Path, frames: u32) -> Result<Vec<PathBuf>, CliError> {
         return Err(wrong());
     }
     Ok((0..frames)
-        .map(|frame| format!("{before}{frame:0width$}{after}").into())
+        .map(|frame| names::path(&format!("{before}{frame:0width$}{after}")))
         .collect())
 }
 

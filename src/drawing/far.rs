@@ -3,7 +3,9 @@
 use serde_json::{Value, json};
 
 use super::mesh_view::{light_of, picture_of_far, view_of};
-use super::{DrawError, Drawable, Figures, KeptPicture, Shown, check_samples, timed};
+use super::{
+    DrawError, Drawable, Figures, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed,
+};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 use crate::picture::{Background, Shading};
@@ -57,7 +59,7 @@ impl Drawable for FarDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2)?;
+        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
         let options = ViewOptions {
             voxel_px: self.style.voxel_px,

@@ -12,7 +12,7 @@ use crate::frame::Colors;
 use crate::graph::{Graph, GraphView};
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
-    Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
+    Bounds, Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
 /// What a voxel graph is drawn with.
@@ -91,7 +91,7 @@ impl<'g> GraphDrawing<'g> {
     /// # Errors
     /// When the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
-        check_samples(camera, self.style.options.aa_log2)?;
+        check_samples(camera, self.style.options.aa_log2, self.sample_bytes())?;
         let Graph {
             placement, depth, ..
         } = self.graph;
@@ -101,6 +101,18 @@ impl<'g> GraphDrawing<'g> {
             *depth,
             &self.style.options,
         )?)
+    }
+
+    /// Bytes that a frame has for each sample.
+    fn sample_bytes(&self) -> u64 {
+        let (node, voxel, records, blend) = (4, 16, 4, 16);
+        let voxels = match self.contents {
+            Contents::Nodes => 0,
+            Contents::Voxels => voxel,
+            Contents::Records => voxel + records,
+        };
+        let blends = self.style.options.coverage == Coverage::Alpha;
+        node + voxels + if blends { blend } else { 0 }
     }
 
     /// Times of drawing a frame so often with an engine for that alone, as experiments time a frame:

@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use serde_json::Value;
 
+use crate::budget::{self, Shortage};
 use crate::mesh::raster::{RasterError, SamplesError};
 use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
@@ -98,6 +99,9 @@ pub enum DrawError {
     /// The picture would take too much memory.
     #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
     TooLarge(u64),
+    /// The picture takes more memory than is free.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
     /// The camera has no direction.
     #[error(transparent)]
     Camera(#[from] CameraError),
@@ -135,14 +139,23 @@ pub enum DrawError {
 /// Most samples of a picture: about three gigabytes with all that is made of them.
 const MAX_SAMPLES: u64 = 1 << 27;
 
-/// Refuses a picture that would take too much memory. `aa_log2`: samples per pixel and axis, as a power of two.
-fn check_samples(camera: &Camera, aa_log2: u32) -> Result<(), DrawError> {
+/// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours for each pixel.
+/// `aa_log2`: samples per pixel and axis, as a power of two.
+fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     match pixels << (2 * aa_log2) {
         samples if samples > MAX_SAMPLES => Err(DrawError::TooLarge(samples)),
-        _ => Ok(()),
+        samples => Ok(budget::check(
+            "a picture of this size",
+            samples * sample_bytes + pixels * PIXEL_BYTES,
+        )?),
     }
 }
+
+/// Least bytes of a pixel's colour.
+const PIXEL_BYTES: u64 = 3;
+/// Least bytes of a sample of the methods of meshes: colour, depth, and what is seen.
+const MESH_SAMPLE_BYTES: u64 = 8;
 
 /// Does something `runs` times, once at the least: the last result, and how long each run took, milliseconds.
 fn timed<T>(

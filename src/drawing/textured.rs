@@ -3,7 +3,9 @@
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, Figures, KeptPicture, Shown, check_samples, timed};
+use super::{
+    DrawError, Drawable, Figures, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed,
+};
 use crate::mesh::raster::{Pattern, RasterCamera, Samples};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
@@ -96,7 +98,7 @@ impl Drawable for TexturedDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2)?;
+        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
         // Which grid fits the view is part of the work.
         let ((picture, counts), times_ms) = timed(runs, || {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, KeptPicture, Shown, timed};
+use super::{DrawError, Drawable, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed};
 use crate::graph::Progress;
 use crate::mesh::Mesh;
 use crate::mesh::raster::{self, RasterOptions, Samples};
@@ -64,6 +64,7 @@ impl Drawable for TrianglesDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
+        check_samples(camera, 0, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.mesh.bounds())?;
         let options = RasterOptions {
             samples: self.style.samples,

@@ -11,7 +11,8 @@ use super::average::Sum;
 use super::build_error::BuildError;
 use super::normals::Estimate;
 use super::pushed::{PushedVoxel, PushedVoxels, extent};
-use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton};
+use super::{Graph, PackedNormal, Placement, Progress, Voxel, morton, place};
+use crate::budget::{self, Shortage};
 
 /// Where normals come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -43,6 +44,8 @@ pub struct Builder {
     max: [i32; 3],
     /// Voxels pushed; above `u32::MAX` no more are kept.
     pushed: u64,
+    /// Why none are kept any more.
+    short: Option<Shortage>,
 }
 
 impl Builder {
@@ -55,6 +58,7 @@ impl Builder {
             min: [i32::MAX; 3],
             max: [i32::MIN; 3],
             pushed: 0,
+            short: None,
         }
     }
 
@@ -79,7 +83,7 @@ impl Builder {
     /// Adds a voxel; it replaces an earlier one at the same index.
     pub fn push(&mut self, voxel: Voxel) {
         // NO_NODE is not a node, hence `<`.
-        if self.pushed < u64::from(u32::MAX) {
+        if self.pushed < u64::from(u32::MAX) && self.short.is_none() {
             for axis in 0..3 {
                 let index = voxel.index[axis];
                 self.min[axis] = self.min[axis].min(index);
@@ -87,8 +91,12 @@ impl Builder {
             }
             let normal = voxel.normal.unwrap_or(PackedNormal::NONE);
             let sequence = self.pushed as u32;
-            self.records
-                .push(PushedVoxel::new(voxel.index, sequence, voxel.color, normal));
+            let record = PushedVoxel::new(voxel.index, sequence, voxel.color, normal);
+            if let Err(short) = self.records.push(record) {
+                // All is lost; let go of what there is. [`Self::finish`] tells.
+                self.records = PushedVoxels::default();
+                self.short.get_or_insert(short);
+            }
         }
         self.pushed += 1;
     }
@@ -115,6 +123,9 @@ impl Builder {
         if self.is_empty() {
             return Err(BuildError::Empty);
         }
+        if let Some(short) = self.short {
+            return Err(short.into());
+        }
         if self.pushed > self.records.len() as u64 {
             return Err(BuildError::TooMany(self.pushed));
         }
@@ -123,7 +134,7 @@ impl Builder {
         let depth = longest.next_power_of_two().trailing_zeros();
 
         progress.begin("sort voxels", 0);
-        let records = self.records.sorted(self.min);
+        let records = self.records.sorted(self.min)?;
         progress.end();
 
         let mut tree = Tree::build(records, depth, progress)?;
@@ -162,13 +173,20 @@ impl Builder {
 impl Placement {
     /// Whether the world part makes sense.
     pub(super) fn check_world(&self) -> Result<(), BuildError> {
-        let origin = self.world_origin.iter();
-        let finite = origin.chain([&self.voxel_size]).all(|c| c.is_finite());
-        if finite && self.voxel_size > 0.0 {
-            Ok(())
-        } else {
-            Err(BuildError::Placement)
+        match self.can_be_seen(0) {
+            true => Ok(()),
+            false => Err(BuildError::Placement),
         }
+    }
+
+    /// Whether an object of so many levels can be looked at, and its voxels told apart.
+    pub(super) fn can_be_seen(&self, depth: u32) -> bool {
+        let side = (1u64 << depth.min(morton::MAX_BITS)) as f64;
+        let corner = |inside: f64| {
+            let index = |k: usize| self.origin_index[k] as f64 + inside;
+            [0, 1, 2].map(|k| self.world_origin[k] + index(k) * self.voxel_size)
+        };
+        place::can_be_seen(corner(0.0), corner(side), self.voxel_size)
     }
 }
 
@@ -179,6 +197,9 @@ impl Extend<Voxel> for Builder {
         }
     }
 }
+
+/// What errors call the arrays.
+const THE_GRAPH: &str = "a graph of all voxels";
 
 /// The graph's arrays while they are made.
 struct Tree {
@@ -202,15 +223,16 @@ impl Tree {
         let inner = level_start[depth as usize] as usize;
         let nodes = level_start[depth as usize + 1] as usize;
 
-        let mut color = vec![[0; 3]; nodes];
-        let mut normal = vec![PackedNormal::NONE; nodes];
+        budget::check(THE_GRAPH, 5 * (inner + nodes) as u64)?;
+        let mut color = budget::filled(THE_GRAPH, [0; 3], nodes)?;
+        let mut normal = budget::filled(THE_GRAPH, PackedNormal::NONE, nodes)?;
         for (i, record) in records.iter().enumerate() {
             color[inner + i] = record.color;
             normal[inner + i] = record.normal;
         }
 
-        let mut mask = vec![0u8; inner];
-        let mut first = vec![0u32; inner];
+        let mut mask = budget::filled(THE_GRAPH, 0u8, inner)?;
+        let mut first = budget::filled(THE_GRAPH, 0u32, inner)?;
         // The next node of each level.
         let mut next: Vec<u32> = level_start[..=depth as usize].to_vec();
         let mut before = None;

@@ -1,5 +1,7 @@
 //! Why no graph was built of voxels.
 
+use crate::budget::Shortage;
+
 /// Longest side of the bounding box of a set of voxels.
 pub(in crate::graph) const MAX_SIDE: u64 = 1 << super::morton::MAX_BITS;
 
@@ -23,7 +25,12 @@ pub enum BuildError {
     /// More voxels or nodes than 32 bits number.
     #[error("{0} voxels or nodes are more than 32 bits can number; split the object")]
     TooMany(u64),
+    /// The system refuses the memory.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
     /// The world placement makes no sense.
-    #[error("the world origin must be finite and the voxel size finite and above 0")]
+    #[error(
+        "the world origin and the voxel size must be finite, the size above 0, and voxels there far enough apart to be told apart"
+    )]
     Placement,
 }

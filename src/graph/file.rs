@@ -12,6 +12,7 @@ use memmap2::Mmap;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::map::map;
+use crate::bounded;
 
 /// Sections begin at multiples of this.
 pub(crate) const ALIGNMENT: u64 = 64;
@@ -104,12 +105,8 @@ pub(crate) struct Opened {
 /// length was found right.
 pub(crate) fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
     let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
-    let mut file = File::open(path).map_err(refused("open it"))?;
+    let mut file = bounded::open(path).map_err(refused("open it"))?;
     let metadata = file.metadata().map_err(refused("ask for its length"))?;
-    if !metadata.is_file() {
-        let source = io::Error::other("it is not a regular file");
-        return Err(refused("map it")(source));
-    }
     let mut beginning = Vec::with_capacity(header_bytes);
     (&mut file)
         .take(header_bytes as u64)

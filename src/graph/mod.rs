@@ -13,6 +13,7 @@ mod morton;
 mod normal;
 mod normals;
 mod opacity;
+pub(crate) mod place;
 mod progress;
 mod pushed;
 mod store;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::build_error::{BuildError, MAX_SIDE};
 use super::{PackedNormal, morton};
+use crate::budget::{self, Shortage};
 
 /// Sides of the bounding box from its lowest to its highest voxel.
 pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildError> {
@@ -29,6 +30,9 @@ pub(super) fn extent(min: [i32; 3], max: [i32; 3]) -> Result<[u64; 3], BuildErro
 /// Voxels in a piece, the first included; only one that was reserved has
 /// more. 40 MB: allocators return blocks of that size to the system at once.
 const PIECE: usize = 1 << 21;
+
+/// What errors call the voxels.
+const VOXELS: &str = "voxels that are sorted";
 
 /// A pushed voxel: 20 bytes.
 #[derive(Debug, Clone, Copy)]
@@ -125,44 +129,51 @@ impl PushedVoxels {
     }
 
     /// Adds a voxel.
-    pub(super) fn push(&mut self, record: PushedVoxel) {
+    ///
+    /// # Errors
+    /// Where the system refuses the memory for another piece.
+    pub(super) fn push(&mut self, record: PushedVoxel) -> Result<(), Shortage> {
         match self.pieces.last_mut() {
             Some(last) if last.len() < last.capacity().max(PIECE) => last.push(record),
             // The first grows from little: most objects in tests are small.
             None => self.pieces.push(vec![record]),
             Some(_) => {
-                let mut piece = Vec::with_capacity(PIECE);
+                let mut piece = budget::room(VOXELS, PIECE)?;
                 piece.push(record);
                 self.pieces.push(piece);
             }
         }
+        Ok(())
     }
 
     /// Sorts by Morton key from the lowest corner, and keeps the last pushed
     /// of those at one index.
-    pub(super) fn sorted(self, min: [i32; 3]) -> Vec<PushedVoxel> {
-        let mut sorted = self.in_one(min);
+    ///
+    /// # Errors
+    /// Where the system refuses the memory for one array.
+    pub(super) fn sorted(self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
+        let mut sorted = self.in_one(min)?;
         sorted.par_sort_unstable_by_key(PushedVoxel::order);
         sorted.dedup_by_key(|record| record.key());
-        sorted
+        Ok(sorted)
     }
 
     /// All voxels in one array, with their Morton keys. A piece's memory goes
     /// back as the array's pages are first written, so both together hold
     /// each voxel once and one piece twice.
-    fn in_one(mut self, min: [i32; 3]) -> Vec<PushedVoxel> {
+    fn in_one(mut self, min: [i32; 3]) -> Result<Vec<PushedVoxel>, Shortage> {
         if self.pieces.len() == 1
             && let Some(mut only) = self.pieces.pop()
         {
             only.par_iter_mut()
                 .for_each(|record| *record = record.placed(min));
-            return only;
+            return Ok(only);
         }
-        let mut all = Vec::with_capacity(self.len());
+        let mut all = budget::room(VOXELS, self.len())?;
         for piece in self.pieces {
             all.par_extend(piece.par_iter().map(|record| record.placed(min)));
         }
-        all
+        Ok(all)
     }
 }
 
@@ -186,16 +197,16 @@ mod tests {
         let count = 2 * PIECE + 1000;
         let mut grown = PushedVoxels::default();
         let mut reserved = PushedVoxels::default();
-        reserved.push(record(0));
+        reserved.push(record(0)).unwrap();
         reserved.reserve(count - 1);
         for i in 0..count as u32 {
             // The last of each thousand lies where the first does.
             let index = if i % 1000 == 999 { i - 999 } else { i };
             let mut pushed = record(index);
             pushed.sequence = i;
-            grown.push(pushed);
+            grown.push(pushed).unwrap();
             if i > 0 {
-                reserved.push(pushed);
+                reserved.push(pushed).unwrap();
             }
             let room: usize = grown.pieces.iter().map(Vec::capacity).sum();
             assert!(
@@ -208,8 +219,8 @@ mod tests {
         }
         assert_eq!((grown.len(), grown.pieces.len()), (count, 3));
         assert_eq!((reserved.len(), reserved.pieces.len()), (count, 2));
-        let grown = grown.sorted([-50; 3]);
-        let reserved = reserved.sorted([-50; 3]);
+        let grown = grown.sorted([-50; 3]).unwrap();
+        let reserved = reserved.sorted([-50; 3]).unwrap();
         assert_eq!(grown.len(), count - count / 1000);
         assert!(grown.is_sorted_by_key(PushedVoxel::key));
         let parts = |r: &PushedVoxel| (r.key(), r.sequence, r.color);
@@ -223,12 +234,12 @@ mod tests {
         let mut records = PushedVoxels::default();
         for i in 0..5000 {
             records.reserve(1);
-            records.push(record(i));
+            records.push(record(i)).unwrap();
         }
         assert_eq!((records.len(), records.pieces.len()), (5000, 1));
         records.reserve(PIECE + 1);
         records.reserve(PIECE + 2);
-        records.push(record(5000));
+        records.push(record(5000)).unwrap();
         assert_eq!((records.len(), records.pieces.len()), (5001, 2));
     }
 }

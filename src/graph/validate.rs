@@ -1,6 +1,6 @@
 //! Every invariant of a graph, checked.
 
-use super::{Graph, MAX_DEPTH};
+use super::{Graph, MAX_DEPTH, place};
 
 /// What is wrong with a graph: an array, an entry, and what it should be.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -109,13 +109,19 @@ impl Graph {
         check(place.origin_index.iter().all(near), "placement", 0, || {
             format!("an origin within 2^52, not {:?}", place.origin_index)
         })?;
-        let finite = place.world_origin.iter().all(|c| c.is_finite());
-        check(finite, "placement", 0, || {
-            format!("a finite world origin, not {:?}", place.world_origin)
-        })?;
+        if place.can_be_seen(self.depth) {
+            return Ok(());
+        }
         let size = place.voxel_size;
-        check(size.is_finite() && size > 0.0, "placement", 0, || {
-            format!("a finite voxel size above 0, not {size}")
+        let is_size = place::can_be_seen([0.0; 3], [0.0; 3], size);
+        check(is_size, "voxel_size", 0, || {
+            format!("a voxel size above 0 that can be drawn, not {size}")
+        })?;
+        check(false, "world_origin", 0, || {
+            format!(
+                "a world origin at which voxels of size {size} can be told apart, not {:?}",
+                place.world_origin
+            )
         })
     }
 

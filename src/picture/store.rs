@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-pub use crate::whole::{WholeError as StoreError, check_free, write_with};
+pub use crate::whole::{Prepared, WholeError as StoreError, check_free, keep, prepare, write_with};
 
 /// As [`write_with`], of bytes.
 ///

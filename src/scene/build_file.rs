@@ -41,15 +41,34 @@ pub fn build_file(
     overwrite: bool,
     progress: &dyn Progress,
 ) -> Result<BuiltFile, OpenError> {
+    let found = Source::find(source)?;
+    build_file_of(
+        found, source, options, external, output, overwrite, progress,
+    )
+}
+
+/// [`build_file`], of what was found already; `name` is what errors call it.
+///
+/// # Errors
+/// As [`build_file`].
+pub fn build_file_of(
+    source: Source,
+    name: &str,
+    options: &OpenOptions,
+    external: ExternalOptions,
+    output: &Path,
+    overwrite: bool,
+    progress: &dyn Progress,
+) -> Result<BuiltFile, OpenError> {
     let failed = |error| OpenError::External {
-        source_name: source.to_owned(),
+        source_name: name.to_owned(),
         error,
     };
     let mut builder = ExternalBuilder::new(external.clone());
     let mut info = None;
     let mut mesh = None;
     let mut placement = ([0.0; 3], 1.0);
-    match Source::find(source)? {
+    match source {
         Source::Generated(spec) => {
             let spec = Spec::parse(&spec)?;
             if let Some(graph) = spec.linked() {
@@ -72,6 +91,11 @@ pub fn build_file(
             let beside = SameFolder::of(file.path());
             let ready = Ready::read(file, &beside, &options.mesh, progress)?;
             // The mesh's share; nothing was pushed yet.
+            if let Some(voxels) = ready.expected_voxels(progress)
+                && voxels >= u64::from(u32::MAX)
+            {
+                return Err(failed(BuildError::TooMany(voxels).into()));
+            }
             let mut external = external;
             external.memory = external.memory.saturating_sub(ready.bytes());
             builder = ExternalBuilder::new(external);

@@ -15,16 +15,23 @@ pub(crate) struct Emitter<'a> {
     sink: &'a mut dyn FnMut(Voxel),
     progress: &'a dyn Progress,
     count: u64,
+    /// Most voxels that may be handed on.
+    most: u64,
     low: [i32; 3],
     high: [i32; 3],
 }
 
 impl<'a> Emitter<'a> {
-    pub(crate) fn new(sink: &'a mut dyn FnMut(Voxel), progress: &'a dyn Progress) -> Self {
+    pub(crate) fn new(
+        sink: &'a mut dyn FnMut(Voxel),
+        most: u64,
+        progress: &'a dyn Progress,
+    ) -> Self {
         Self {
             sink,
             progress,
             count: 0,
+            most,
             low: [i32::MAX; 3],
             high: [i32::MIN; 3],
         }
@@ -54,6 +61,9 @@ impl<'a> Emitter<'a> {
             self.low[axis] = low;
             self.high[axis] = high;
         }
+        if self.count >= self.most {
+            return Err(self.too_many(self.count + 1));
+        }
         (self.sink)(Voxel {
             index: narrow,
             color,
@@ -64,6 +74,22 @@ impl<'a> Emitter<'a> {
             self.progress.advance(PROGRESS_STEP);
         }
         Ok(())
+    }
+
+    /// Fails where so many voxels that are to come are more than may be handed on: for who knows their number.
+    pub(crate) fn expect(&self, voxels: u64) -> Result<(), Problem> {
+        match self.count.saturating_add(voxels) {
+            all if all > self.most => Err(self.too_many(all)),
+            _ => Ok(()),
+        }
+    }
+
+    #[cold]
+    fn too_many(&self, voxels: u64) -> Problem {
+        Problem::TooMany {
+            voxels,
+            most: self.most,
+        }
     }
 
     /// Enters what was handed on.

@@ -23,6 +23,16 @@ pub enum SceneError {
     /// The content is sound but larger than this program handles.
     #[error(transparent)]
     Limit(Box<Fault>),
+    /// There are more voxels than the reader has room for.
+    #[error("{file}: {voxels} voxels or more, and there is room for {most}")]
+    TooMany {
+        /// The file, as the user named it.
+        file: String,
+        /// Voxels that there are at the least, those at one place counted each.
+        voxels: u64,
+        /// Most that there may be: [`ReadOptions::most_voxels`](super::ReadOptions::most_voxels).
+        most: u64,
+    },
     /// The file is a mesh.
     #[error(
         "{file}: this is a {kind} mesh, which has triangles and no voxels; open it as a scene to have it voxelised"
@@ -73,7 +83,11 @@ impl SceneError {
     /// Whether the file is sound but exceeds a limit of this program.
     #[must_use]
     pub fn is_limit(&self) -> bool {
-        matches!(self, Self::Limit(_))
+        match self {
+            Self::Limit(_) | Self::TooMany { .. } => true,
+            Self::Io { source, .. } => source.kind() == std::io::ErrorKind::OutOfMemory,
+            _ => false,
+        }
     }
 
     /// The details, where the content is at fault.
@@ -142,6 +156,8 @@ pub(crate) enum Problem {
     Invalid(Box<Fault>),
     /// See [`SceneError::Limit`].
     Limit(Box<Fault>),
+    /// See [`SceneError::TooMany`].
+    TooMany { voxels: u64, most: u64 },
     /// Reading failed.
     Read(std::io::Error),
 }
@@ -164,6 +180,11 @@ impl Problem {
                 file.clone_into(&mut fault.file);
                 SceneError::Limit(fault)
             }
+            Self::TooMany { voxels, most } => SceneError::TooMany {
+                file: file.to_owned(),
+                voxels,
+                most,
+            },
             Self::Read(source) => SceneError::Io {
                 file: file.to_owned(),
                 action: "read the file",

@@ -8,6 +8,7 @@ use super::detect::{DETECT_BYTES, detect_named};
 use super::emit::Emitter;
 use super::error::{Problem, printable};
 use super::{FileKind, ReadOptions, SceneError, SceneInfo, generate, npy, ply, vox};
+use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
 /// What a user calls a scene.
@@ -30,11 +31,12 @@ impl Source {
     ///
     /// # Errors
     /// As [`SceneFile::open`].
-    pub fn find(name: &str) -> Result<Self, SceneError> {
-        if Self::is_generated(name) {
-            return Ok(Self::Generated(name.to_owned()));
+    pub fn find(name: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let name = name.as_ref();
+        match name.to_str() {
+            Some(text) if Self::is_generated(text) => Ok(Self::Generated(text.to_owned())),
+            _ => SceneFile::open(name).map(Self::File),
         }
-        SceneFile::open(Path::new(name)).map(Self::File)
     }
 
     /// The file's format; `None` of a generator and of what is no known format.
@@ -71,7 +73,7 @@ impl SceneFile<File> {
                 source,
             }
         };
-        let file = File::open(path).map_err(refused("open the file"))?;
+        let file = bounded::open(path).map_err(refused("open the file"))?;
         let size = file.metadata().map_err(refused("ask for the file's size"));
         Self::begin(file, size?.len(), path)
     }
@@ -137,6 +139,12 @@ impl<R: Read + Seek> SceneFile<R> {
     /// All of the file.
     pub(super) fn bytes(mut self) -> Result<Vec<u8>, SceneError> {
         let mut bytes = Vec::new();
+        // All but the last of what is read besides; a length is known of files only.
+        let length = usize::try_from(self.length).unwrap_or(usize::MAX);
+        if let Err(refused) = bytes.try_reserve_exact(length) {
+            let source = std::io::Error::new(std::io::ErrorKind::OutOfMemory, refused);
+            return Err(Problem::Read(source).in_file(&self.name()));
+        }
         match self.reader.read_to_end(&mut bytes) {
             Ok(_) => Ok(bytes),
             Err(source) => Err(Problem::Read(source).in_file(&self.name())),
@@ -170,15 +178,18 @@ impl<R: Read + Seek> SceneFile<R> {
         progress: &dyn Progress,
     ) -> Result<SceneInfo, SceneError> {
         let (name, length) = (self.name(), self.length);
+        let most = options.most_voxels;
         match self.kind {
             Some(FileKind::Vox) => {
                 let bytes = self.bytes()?;
-                import(&name, sink, progress, |to| vox::read(&bytes, options, to))
+                import(&name, sink, most, progress, |to| {
+                    vox::read(&bytes, options, to)
+                })
             }
-            Some(FileKind::Npy) => import(&name, sink, progress, |to| {
+            Some(FileKind::Npy) => import(&name, sink, most, progress, |to| {
                 npy::read(&mut self.buffered(), length, options, to)
             }),
-            Some(FileKind::Ply) => import(&name, sink, progress, |to| {
+            Some(FileKind::Ply) => import(&name, sink, most, progress, |to| {
                 ply::read(&mut self.buffered(), options, to)
             }),
             _ => Err(self.refused(|file, kind| match kind {
@@ -197,11 +208,12 @@ impl<R: Read + Seek> SceneFile<R> {
 fn import(
     name: &str,
     sink: &mut dyn FnMut(Voxel),
+    most: u64,
     progress: &dyn Progress,
     read: impl FnOnce(&mut Emitter<'_>) -> Result<SceneInfo, Problem>,
 ) -> Result<SceneInfo, SceneError> {
     progress.begin(&format!("reading {name}"), 0);
-    let mut emitter = Emitter::new(sink, progress);
+    let mut emitter = Emitter::new(sink, most, progress);
     let result = read(&mut emitter).map(|mut info| {
         emitter.finish(&mut info);
         info

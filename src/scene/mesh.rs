@@ -13,6 +13,9 @@ use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
 use crate::mesh::{self, LoadOptions, Mesh, MeshFormat};
 pub(super) use crate::mesh::{Beside, Nothing, SameFolder};
 
+/// Levels at which the voxels of many more levels are estimated.
+const COUNTED_DEPTH: u32 = 8;
+
 /// How a mesh becomes a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MeshOptions {
@@ -140,6 +143,23 @@ impl Ready {
     /// Bytes that the mesh takes while it is voxelised.
     pub(super) fn bytes(&self) -> u64 {
         self.mesh.bytes()
+    }
+
+    /// About how many voxels there are going to be, rather fewer than more; none of so few levels that it is as
+    /// quick to find them. A surface has four times as many at each further level, what is thin fewer at first.
+    pub(super) fn expected_voxels(&self, progress: &dyn Progress) -> Option<u64> {
+        let further = self
+            .grid
+            .depth()
+            .checked_sub(COUNTED_DEPTH)
+            .filter(|&levels| levels > 3)?;
+        let count = |depth| {
+            let grid = Grid::around(&self.mesh, depth).ok()?;
+            Some(voxelize::voxelize(&self.mesh, &grid, &mut |_| (), progress).voxels)
+        };
+        let (coarse, fine) = (count(COUNTED_DEPTH - 1)?, count(COUNTED_DEPTH)?);
+        let growth = (fine as f64 / coarse as f64).min(4.0);
+        Some((fine as f64 * libm::pow(growth, f64::from(further))) as u64)
     }
 
     /// World position and size of voxels, as the builders take them.

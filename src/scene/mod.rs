@@ -29,12 +29,11 @@ mod ply;
 mod ply_write;
 mod vox;
 
-pub use build_file::{BuiltFile, build_file};
+pub use build_file::{BuiltFile, build_file, build_file_of};
 pub use detect::{FileKind, detect};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
 pub use file::{SceneFile, Source};
-pub use memory::available as available_memory;
 #[cfg(feature = "mesh")]
 pub use mesh::read_mesh;
 pub use mesh::{MeshOptions, MeshSummary};

@@ -57,6 +57,10 @@ impl Ready {
         match *self {}
     }
 
+    pub(super) fn expected_voxels(&self, _: &dyn Progress) -> Option<u64> {
+        match *self {}
+    }
+
     pub(super) fn placement(&self) -> ([f64; 3], f64) {
         match *self {}
     }

@@ -7,20 +7,33 @@ use super::generate::Spec;
 use super::memory;
 use super::mesh::{Beside, MeshOptions, MeshSummary, Nothing, Ready, SameFolder};
 use super::open_error::OpenError;
-use super::{FileKind, ReadOptions, SceneFile, SceneInfo, Source};
+use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
+use crate::budget;
 use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 
-/// Graph files up to this size are checked in full when they are opened;
-/// larger ones are mapped, and only the pages that a picture needs are read.
+/// Where nothing else is said; of larger files only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 256 << 20;
 
 /// How a scene is opened.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OpenOptions {
     /// How voxel files are read.
     pub read: ReadOptions,
     /// How meshes are read and voxelised.
     pub mesh: MeshOptions,
+    /// Graph files of so many bytes are checked in full; of larger ones, which are mapped, the header only. Who is
+    /// going to read all of a file has it checked at any size.
+    pub verify_up_to: u64,
+}
+
+impl Default for OpenOptions {
+    fn default() -> Self {
+        Self {
+            read: ReadOptions::default(),
+            mesh: MeshOptions::default(),
+            verify_up_to: VERIFY_BYTES,
+        }
+    }
 }
 
 /// An open scene.
@@ -34,6 +47,8 @@ pub struct Opened {
     pub info: Option<SceneInfo>,
     /// What the mesh was, where it was one.
     pub mesh: Option<MeshSummary>,
+    /// Whether all of it was checked: not the contents of a graph file larger than [`OpenOptions::verify_up_to`].
+    pub is_verified: bool,
 }
 
 /// Opens a file, or makes the scene of a `gen:` specification.
@@ -66,12 +81,15 @@ pub fn open_source(
         Source::File(file) => file,
     };
     if file.kind() == Some(FileKind::Vxg) {
-        let graph = if file.length() <= VERIFY_BYTES {
-            vxg::verify(file.path())?
-        } else {
-            vxg::open(file.path())?
+        let is_verified = file.length() <= options.verify_up_to;
+        let graph = match is_verified {
+            true => vxg::verify(file.path())?,
+            false => vxg::open(file.path())?,
         };
-        return Ok(of_graph(graph));
+        return Ok(Opened {
+            is_verified,
+            ..of_graph(graph)
+        });
     }
     let beside = SameFolder::of(file.path());
     open_file(file, &beside, options, progress)
@@ -84,6 +102,7 @@ fn of_graph(graph: Graph) -> Opened {
         format: FileKind::Vxg.to_string(),
         info: None,
         mesh: None,
+        is_verified: true,
     }
 }
 
@@ -100,12 +119,29 @@ fn open_file<R: Read + Seek>(
         return open_mesh(&ready, options.mesh.opacities, &name, progress);
     }
     let mut gathered = Gathered::default();
-    let info = file.read_voxels(&options.read, &mut |v| gathered.push(v), progress)?;
+    let read = ReadOptions {
+        most_voxels: options.read.most_voxels.min(gathered.most),
+        ..options.read.clone()
+    };
+    let read = file.read_voxels(&read, &mut |v| gathered.push(v), progress);
+    let info = read.map_err(|error| match error {
+        // Fewer than the caller would take: for want of memory.
+        SceneError::TooMany { file, voxels, most } if most < options.read.most_voxels => {
+            OpenError::TooMany {
+                source_name: file,
+                voxels,
+                needed: memory::least_bytes(voxels),
+                available: gathered.available.unwrap_or_default(),
+            }
+        }
+        error => error.into(),
+    })?;
     Ok(Opened {
         graph: gathered.finish(&name, UNIT, progress)?,
         format: info.kind.to_string(),
         info: Some(info),
         mesh: None,
+        is_verified: true,
     })
 }
 
@@ -121,6 +157,9 @@ fn open_mesh(
 ) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
     let placement = ready.placement();
+    if let Some(voxels) = ready.expected_voxels(progress) {
+        gathered.expect(voxels, source)?;
+    }
     let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
     let mut graph = gathered.finish(source, placement, progress)?;
     if opacities {
@@ -131,6 +170,7 @@ fn open_mesh(
         format: format!("{} mesh", info.kind),
         info: Some(info),
         mesh: Some(summary),
+        is_verified: true,
     })
 }
 
@@ -167,6 +207,7 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
         format: "generated".to_owned(),
         info: None,
         mesh: None,
+        is_verified: true,
     })
 }
 
@@ -183,7 +224,7 @@ struct Gathered {
 
 impl Default for Gathered {
     fn default() -> Self {
-        let available = memory::available();
+        let available = budget::available();
         Self {
             builder: Builder::new(BuildOptions::default()),
             available,

@@ -36,6 +36,9 @@ pub struct ReadOptions {
     pub model: Option<u32>,
     /// sRGB colour of voxels in files without colours.
     pub default_color: [u8; 3],
+    /// Most voxels that are handed on, those at one place counted each. More are an error: before the first is
+    /// handed on where the file tells their number, else as soon as there are more.
+    pub most_voxels: u64,
 }
 
 impl Default for ReadOptions {
@@ -46,6 +49,7 @@ impl Default for ReadOptions {
             frame: 0,
             model: None,
             default_color: [200; 3],
+            most_voxels: u64::MAX,
         }
     }
 }
@@ -57,6 +61,7 @@ pub struct SceneInfo {
     pub kind: FileKind,
     /// Voxels that were handed on. Voxels that several models place at the
     /// same index are counted, and handed on, each time: the last one counts.
+    /// A model that is placed where it is already is handed on once.
     pub voxels: u64,
     /// Voxels stored in the file: each model counted once, however often it is placed.
     pub stored_voxels: u64,
@@ -66,7 +71,7 @@ pub struct SceneInfo {
     pub models: u32,
     /// Scene graph nodes in the file.
     pub nodes: u32,
-    /// Placements of models that were read.
+    /// Placements of models that were read, or left out because the model is at that place already.
     pub instances: u32,
     /// Placements of models that were left out because they are hidden.
     pub hidden_instances: u32,

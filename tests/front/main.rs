@@ -3,9 +3,15 @@
 
 mod bench;
 mod buffers;
+mod damaged;
+mod knot;
+mod limits;
 mod manners;
 mod model;
 mod pictures;
+mod printed;
+mod refusals;
 mod resolve;
+mod robust;
 mod stress;
 mod vectors;

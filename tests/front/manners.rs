@@ -217,6 +217,38 @@ fn json_parses_and_stands_alone_on_stdout() {
 }
 
 #[test]
+fn a_frame_that_the_fast_engine_hands_on_says_why() {
+    let folder = folder();
+    let cases: [(&[&str], Option<&str>); 3] = [
+        (&[], None),
+        (&["--paper"], Some("handed_for_rule")),
+        (
+            &["--aov", "records", "-o", "a.png"],
+            Some("handed_for_records"),
+        ),
+    ];
+    for (flags, why) in cases {
+        let line = ["render", SCENE, "--size", "16", "--hash"];
+        let run = |more: &[&str]| {
+            let mut command = shiftvox(folder.path());
+            command.args(line).args(flags).args(["--force"]).args(more);
+            command.assert().success()
+        };
+        let document: serde_json::Value =
+            serde_json::from_str(&stdout_of(&run(&["--json"]))).unwrap();
+        let counters = document["scenes"][0]["counters"].as_object().unwrap();
+        let told: Vec<&str> = counters.keys().map(String::as_str).collect();
+        let told: Vec<&str> = told
+            .into_iter()
+            .filter(|name| name.starts_with("handed"))
+            .collect();
+        assert_eq!(told, why.into_iter().collect::<Vec<_>>(), "{flags:?}");
+        let said = stderr_of(&run(&["-v"]));
+        assert_eq!(said.contains("handed_for"), why.is_some(), "{said}");
+    }
+}
+
+#[test]
 fn the_printed_camera_draws_the_same_picture() {
     let folder = folder();
     let common = ["render", SCENE, "--size", "32"];
@@ -327,15 +359,18 @@ fn comparisons_pass_and_fail() {
     render("b.png", &["--zoom", "0.5"]);
     let compare = |line: &[&str]| shiftvox(folder.path()).arg("compare").args(line).assert();
     compare(&["a.png", "a.png", "--threshold", "0"]).success();
-    compare(&["a.png", "b.png"]).success();
+    compare(&["a.png", "a.png"]).success();
+    // As `cmp` and `diff` do.
+    compare(&["a.png", "b.png"]).code(3);
+    compare(&["a.png", "b.png", "--threshold", "ssim=0"]).success();
     compare(&["a.png", "b.png", "--threshold", "0"]).code(3);
     compare(&["a.png", "b.png", "--threshold", "ssim=0.999"]).code(3);
     compare(&["a.png", "b.png", "--threshold", "beauty=1"]).code(2);
     compare(&["a.png", "a.voxel.npy"]).code(4);
     compare(&["a.png", "missing.png"]).code(4);
-    compare(&["a.png", "b.png", "--diff", "d.png"]).success();
+    compare(&["a.png", "b.png", "--diff", "d.png"]).code(3);
     compare(&["a.png", "b.png", "--diff", "d.png"]).code(1);
-    let assert = compare(&["b.voxel.npy", "a.voxel.npy", "--json"]).success();
+    let assert = compare(&["b.voxel.npy", "a.voxel.npy", "--json"]).code(3);
     let json: serde_json::Value = serde_json::from_str(&stdout_of(&assert)).unwrap();
     assert!(json["missing"].as_u64() > Some(0), "{json}");
     compare(&["a.depth.npy", "a.depth.npy", "--threshold", "0"]).success();

@@ -454,7 +454,7 @@ fn validate_names_what_is_broken() {
         ("normal", |g| g.normal = g.normal[1..].to_vec().into()),
         ("color", |g| g.color = Vec::new().into()),
         ("voxels", |g| g.voxels += 1),
-        ("placement", |g| g.placement.voxel_size = f64::NAN),
+        ("voxel_size", |g| g.placement.voxel_size = f64::NAN),
         ("placement", |g| g.placement.origin_index[1] = i64::MIN),
         ("level_start", |g| g.level_start[1] = 2),
         ("level_start", |g| *g.level_start.last_mut().unwrap() += 1),

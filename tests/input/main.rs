@@ -6,4 +6,6 @@ mod input_support;
 mod npy;
 mod ply;
 mod vox_files;
+mod vox_graphs;
+mod vox_shared;
 mod vox_written;

@@ -3,7 +3,9 @@
 
 use hwmodel::Memory;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{Hardware, Independence, NoObserver, Organisation, StackHolds};
+use hwmodel::cycles::{
+    Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
+};
 use rayon::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
@@ -32,7 +34,7 @@ fn organisations() -> Vec<Organisation> {
     let mut all = Vec::new();
     for stack in [StackHolds::Children, StackHolds::Parents] {
         for leaf_masks in [false, true] {
-            for tile_levels in [0, 2, 30] {
+            for tile_levels in [0, 2, MAX_TILE_LEVELS] {
                 all.push(Organisation {
                     stack,
                     leaf_masks,
@@ -111,7 +113,7 @@ fn every_organisation_draws_every_scene_alike() {
                 };
                 for organisation in organisations() {
                     // One walk a sample is slow, and says no more than one for a few.
-                    if organisation.tile_levels == 30 && number % 4 != 0 {
+                    if organisation.tile_levels == MAX_TILE_LEVELS && number % 4 != 0 {
                         continue;
                     }
                     let what =

@@ -181,3 +181,17 @@ fn files_are_looked_for_in_the_folder_of_the_mesh_only() {
         assert!(beside.read(name).is_err(), "{name}");
     }
 }
+
+#[test]
+fn wavefront_of_other_editors_marks_and_continued_lines() {
+    let obj = "\u{feff}v 0 0 0\nv 1 \\\n0 0\nmtllib a.mtl\n# C:\\models\\\nusemtl red\nv 0 1 0\nf 1 \\\r\n2 \\\r\n3\r\n";
+    let mtl = "\u{feff}newmtl red\nKd 0.5 \\\n0 0\n";
+    let mesh = with(obj.as_bytes(), &[("a.mtl", mtl.as_bytes())]);
+    assert_eq!(soup(&mesh), [[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
+    assert_eq!(mesh.materials()[mesh.material_of()[0] as usize].name, "red");
+    assert_eq!(mesh.warnings(), [""; 0]);
+    // Lines are counted as the file has them.
+    let wrong = b"v 0 0 0\nv 1 \\\n0 0\nv 0 1 x\nf 1 2 3\n";
+    let refused = load(wrong, MeshFormat::Obj).unwrap_err().to_string();
+    assert!(refused.contains("vertex at line 4"), "{refused}");
+}

@@ -3,6 +3,7 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
+use crate::budget;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::cli::engines;
 use crate::cli::error::{CliError, Kind};
@@ -19,7 +20,7 @@ const MAX_PIXELS: u64 = 1 << 26;
 pub(super) struct SceneBenchArgs {
     /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
     /// bundled]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     pub(super) scenes: Vec<String>,
     #[command(flatten)]
     pub(super) measure: MeasureArgs,
@@ -148,6 +149,9 @@ pub(super) fn squares(scan: &Scan) -> Vec<(u32, u32)> {
     sides.map(|side| (side, side)).collect()
 }
 
+/// Bytes of a pixel that a measured picture and its reference take at the least.
+const PIXEL_BYTES: u64 = 40;
+
 /// Refuses pictures that are too large, before any work.
 pub(super) fn check_sizes(sizes: &[(u32, u32)]) -> Result<(), CliError> {
     for &(width, height) in sizes {
@@ -162,6 +166,7 @@ pub(super) fn check_sizes(sizes: &[(u32, u32)]) -> Result<(), CliError> {
                 "the most is {MAX_PIXELS} pixels, {MAX_SIDE} a side"
             )));
         }
+        budget::check("pictures of this size", pixels * PIXEL_BYTES)?;
     }
     Ok(())
 }

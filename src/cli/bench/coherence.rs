@@ -21,7 +21,7 @@ const DEFAULT_SIDE: u32 = 1024;
 pub(super) struct CoherenceArgs {
     /// Scenes: files, generators, or `bundled` [default: gen:terrain,depth=10 gen:menger,depth=5
     /// bundled]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
     /// How far the camera goes around its target between two frames, degrees
     #[arg(long, value_name = "DEG,...", value_delimiter = ',',

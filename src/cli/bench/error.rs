@@ -40,7 +40,7 @@ const MOST_SIDE: u32 = 4096;
 pub(super) struct ErrorArgs {
     /// Scenes: files, generators, or `bundled` [default: bundled gen:terrain,depth=9
     /// gen:menger,depth=5 gen:wires,depth=8 gen:truss,depth=8]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
     #[command(flatten)]
     select: SelectArgs,

@@ -37,7 +37,7 @@ enum MotionName {
 pub(super) struct FlickerArgs {
     /// Scenes: files, generators, or `bundled` [default: bundled gen:terrain,depth=9
     /// gen:menger,depth=5 gen:wires,depth=8 gen:truss,depth=8]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
     /// How the camera moves from frame to frame [default: all]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]

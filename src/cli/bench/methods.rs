@@ -59,7 +59,7 @@ enum Family {
 #[derive(Debug, Args)]
 pub(super) struct MethodsArgs {
     /// Meshes: .obj, .ply, .stl, .gltf or .glb
-    #[arg(value_name = "MESH", required = true)]
+    #[arg(value_name = "MESH", required = true, value_parser = crate::cli::names::parser())]
     meshes: Vec<String>,
     /// Pixels of the nearest picture: 256 for a square, or 640x360 [default: 256]
     #[arg(long, value_name = "N|WxH")]

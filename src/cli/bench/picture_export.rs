@@ -8,6 +8,7 @@ use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::subjects::file_stem;
+use crate::cli::names;
 use crate::measure::difference;
 use crate::picture::{png, store};
 use crate::report::html::Page;
@@ -64,11 +65,11 @@ fn svg_paths(export: &ExportArgs, scenes: &[String]) -> Vec<PathBuf> {
     let Some(path) = export.export_svg.as_ref() else {
         return Vec::new();
     };
-    let text = path.to_string_lossy();
+    let text = names::of_path(path);
     if !text.contains(SCENE_FIELD) {
         return vec![path.clone()];
     }
-    let of = |scene: &String| text.replace(SCENE_FIELD, &file_stem(scene)).into();
+    let of = |scene: &String| names::path(&text.replace(SCENE_FIELD, &file_stem(scene)));
     scenes.iter().map(of).collect()
 }
 

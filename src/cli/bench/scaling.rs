@@ -20,7 +20,7 @@ use crate::lab::bench::{BenchPlan, Harness, Scan, measure};
 pub(super) struct ScalingArgs {
     /// Scenes whose picture grows: files, generators, or `bundled`
     /// [default: gen:terrain,depth=10 gen:menger,depth=5 bundled]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
     /// Most voxels of a scene that grows; a terrain takes about 10 bytes a voxel, and 28 while it is made
     #[arg(long, value_name = "N", default_value = "1e7", value_parser = voxel_count)]

@@ -1,7 +1,5 @@
 //! `bench walk`: far voxels along a path.
 
-use std::path::Path;
-
 use clap::Args;
 use serde_json::json;
 
@@ -10,7 +8,7 @@ use crate::cli::console::Console;
 use crate::cli::error::CliError;
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
-use crate::cli::report;
+use crate::cli::{names, report};
 use crate::drawing::resident;
 use crate::far::FarFile;
 use crate::far::view::Opacity;
@@ -20,7 +18,7 @@ use crate::lab::far_path::{self as experiment, FarPathPlan};
 #[derive(Debug, Args)]
 pub(super) struct WalkArgs {
     /// Far voxels: .far files
-    #[arg(value_name = "FILE.far", required = true)]
+    #[arg(value_name = "FILE.far", required = true, value_parser = crate::cli::names::parser())]
     files: Vec<String>,
     /// Frames of the walk
     #[arg(long, value_name = "N", default_value_t = 140,
@@ -68,8 +66,8 @@ pub(super) fn run(args: &WalkArgs, console: &Console) -> Result<(), CliError> {
     let (mut tables, mut panels, mut documents) = (Vec::new(), Vec::new(), Vec::new());
     for name in &args.files {
         let file = match args.memory {
-            Some(memory) => FarFile::open_within(Path::new(name), memory.bytes)?,
-            None => FarFile::open(Path::new(name))?,
+            Some(memory) => FarFile::open_within(&names::path(name), memory.bytes)?,
+            None => FarFile::open(&names::path(name))?,
         };
         let walks = experiment::walk(&file, &plan)?;
         tables.push(experiment::table(name, &walks));

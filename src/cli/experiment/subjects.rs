@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
+use crate::cli::names;
 use crate::cli::scenes;
 use crate::cli::scenes::Scene;
 use crate::graph::Store;
@@ -102,7 +103,7 @@ pub(in crate::cli) fn open(
     let is_mapped = matches!(scene.graph.color, Store::Mapped(..));
     Ok(Subject {
         name: name.to_owned(),
-        file: is_mapped.then(|| name.into()),
+        file: is_mapped.then(|| names::path(name)),
         graph: scene.graph,
         camera,
     })

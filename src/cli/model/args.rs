@@ -1,11 +1,12 @@
 //! Flags of `model`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
+use crate::bounded;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::export::ExportArgs;
@@ -16,7 +17,7 @@ use crate::lab::model::cost::Prices;
 #[derive(Debug, Args)]
 pub(in crate::cli) struct ModelArgs {
     /// Scene: a file, a generator, or `bundled` [default: bundled]
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     pub(super) scenes: Vec<String>,
     /// Pixels: 512 for a square, or 640x360
     #[arg(long, value_name = "N|WxH", default_value = "512")]
@@ -133,8 +134,8 @@ fn bits_scan(text: &str) -> Result<Scan, String> {
 }
 
 /// Reads a file that the user names.
-fn read(path: &PathBuf) -> Result<String, CliError> {
-    std::fs::read_to_string(path)
+fn read(path: &Path) -> Result<String, CliError> {
+    bounded::read_settings(path)
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
 }
 

@@ -17,6 +17,7 @@ use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::graph::map::release;
+use crate::graph::place::{MOST_PARTS, can_be_seen};
 
 /// Bytes that the system maps at a time, where it has them: Linux's `fault_around_bytes`.
 const BROUGHT_IN: u64 = 64 << 10;
@@ -119,6 +120,21 @@ impl FarFile {
             ));
         }
         let nodes: Vec<Node> = bytemuck::pod_collect_to_vec(node_bytes);
+        if let Some(root) = nodes.first() {
+            let corner =
+                |c: [f32; 3]| (header.centre + DVec3::from_array(c.map(f64::from))).to_array();
+            let extents = [0, 1, 2].map(|k| f64::from(root.high[k]) - f64::from(root.low[k]));
+            let finest = extents.into_iter().fold(0.0, f64::max) / MOST_PARTS;
+            if !can_be_seen(corner(root.low), corner(root.high), finest) {
+                let expected = "a centre from which the boxes of nodes can be told apart";
+                return Err(FarError::damaged(
+                    path,
+                    "header",
+                    at::CENTRE as u64,
+                    expected,
+                ));
+            }
+        }
         check(
             &nodes,
             places.voxels[1] - places.voxels[0],

@@ -323,6 +323,8 @@ impl Header {
             (None, "root") => ("header", at::ROOT as u64),
             (None, "voxels") => ("header", at::VOXELS as u64),
             (None, "level_start") => ("header", (at::LEVEL_START + 4 * invalid.index) as u64),
+            (None, "world_origin") => ("header", at::WORLD_ORIGIN as u64),
+            (None, "voxel_size") => ("header", at::VOXEL_SIZE as u64),
             (None, _) => ("header", at::ORIGIN_INDEX as u64),
         };
         Reporter(path).error(place, invalid.expected, DAMAGED)

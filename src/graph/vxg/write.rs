@@ -34,10 +34,20 @@ pub fn write(graph: &Graph, path: &Path, overwrite: bool) -> Result<(), VxgError
 
 /// Fails where a file stands that may not be replaced.
 pub(in crate::graph) fn check_free(path: &Path, overwrite: bool) -> Result<(), VxgError> {
-    if !overwrite && path.symlink_metadata().is_ok() {
-        return Err(VxgError::Exists(path.to_owned()));
+    whole::check_free(path, overwrite).map_err(refused)
+}
+
+fn refused(error: WholeError) -> VxgError {
+    let io = |file, source| VxgError::Io {
+        file,
+        doing: "write it",
+        source,
+    };
+    match error {
+        WholeError::Exists(path) => VxgError::Exists(path),
+        WholeError::NoFolder(path) => io(path, io::ErrorKind::NotFound.into()),
+        WholeError::Io { path, source } => io(path, source),
     }
-    Ok(())
 }
 
 /// Fills a temporary file beside `path` and gives it that name.
@@ -46,14 +56,7 @@ fn replace(
     overwrite: bool,
     fill: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), VxgError> {
-    whole::write_with(path, overwrite, fill).map_err(|error| match error {
-        WholeError::Exists(path) => VxgError::Exists(path),
-        WholeError::Io { path, source } => VxgError::Io {
-            file: path,
-            doing: "write it",
-            source,
-        },
-    })
+    whole::write_with(path, overwrite, fill).map_err(refused)
 }
 
 /// Writes a file whose arrays are handed over piece by piece, because they are

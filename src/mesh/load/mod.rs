@@ -5,12 +5,15 @@ mod mtl;
 mod obj;
 mod ply;
 mod stl;
+mod text;
 
 use std::fmt;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
+use super::error::{MeshFault, Place};
 use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
+use crate::bounded;
 use crate::graph::Progress;
 
 pub use stl::is_binary as is_binary_stl;
@@ -89,15 +92,16 @@ impl Beside for SameFolder {
         let path = Path::new(&name);
         let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
         if path.components().all(inside) {
-            let found = std::fs::read(self.0.join(path));
-            if found.is_ok() {
+            let found = bounded::read_whole(&self.0.join(path));
+            // What is there and cannot be read is what the mesh means.
+            if !matches!(&found, Err(error) if error.kind() == io::ErrorKind::NotFound) {
                 return found;
             }
         }
         let last = path
             .file_name()
             .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "not a file's name"))?;
-        std::fs::read(self.0.join(last))
+        bounded::read_whole(&self.0.join(last))
     }
 }
 
@@ -112,6 +116,23 @@ impl Beside for Nothing {
             "there are no other files",
         ))
     }
+}
+
+/// Most corners of a face. It is cut into a fan of triangles, and of a long fan each crosses the whole face.
+const MOST_CORNERS: usize = 1 << 16;
+
+/// Refuses a face of more corners than may be.
+fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
+    if corners <= MOST_CORNERS {
+        return Ok(());
+    }
+    Err(MeshError::Limit(MeshFault::new(
+        "face",
+        place,
+        format!("at most {MOST_CORNERS} corners"),
+        corners.to_string(),
+        "cut the face into triangles where the mesh is made: a fan of so many would be slivers",
+    )))
 }
 
 /// Reads a mesh that is in memory; `name` is what errors call it.

@@ -3,7 +3,7 @@
 //! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `d`, `Tr`.
 //! All else, textures among it, is passed over.
 
-use super::LoadOptions;
+use super::{LoadOptions, text};
 use crate::mesh::Material;
 
 /// What a library holds.
@@ -19,7 +19,7 @@ pub(super) struct Library {
 
 /// Reads a library. What cannot be understood is passed over.
 pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decoded(bytes);
     let mut library = Library::default();
     let mut current: Option<Open> = None;
     for (number, line) in text.lines().enumerate() {

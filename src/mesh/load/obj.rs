@@ -10,7 +10,7 @@ use std::path::Path;
 
 use tobj::LoadError;
 
-use super::{Beside, LoadOptions, mtl};
+use super::{Beside, LoadOptions, MOST_CORNERS, check_corners, mtl, text};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::{Material, MeshBuilder};
 
@@ -21,10 +21,10 @@ pub(super) fn read(
     options: &LoadOptions,
     builder: &mut MeshBuilder,
 ) -> Result<(), MeshError> {
-    // Old files have names in other encodings; names decide nothing but materials.
-    let text = String::from_utf8_lossy(bytes);
+    let text = text::decoded(bytes);
     refuse_cut_face(&text)?;
     refuse_far_back(&text)?;
+    refuse_huge_faces(&text)?;
     let line = Cell::new(0);
     let mut reader = Counted {
         rest: text.as_bytes(),
@@ -167,6 +167,20 @@ fn refuse_cut_face(text: &str) -> Result<(), MeshError> {
         "the file is cut short; export the mesh again",
     )
     .into())
+}
+
+/// Refuses faces of so many corners that their fan would be slivers without end.
+fn refuse_huge_faces(text: &str) -> Result<(), MeshError> {
+    for (number, line) in text.lines().enumerate() {
+        // A corner takes two letters.
+        if line.len() / 2 > MOST_CORNERS && line.trim_start().starts_with("f ") {
+            check_corners(
+                line.split_whitespace().count() - 1,
+                Place::Line(number as u64 + 1),
+            )?;
+        }
+    }
+    Ok(())
 }
 
 /// What `tobj` says, with the place and what to do.

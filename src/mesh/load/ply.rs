@@ -10,7 +10,7 @@ use std::io::{Cursor, Read as _};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Property, PropertyAccess, PropertyAccessResult};
 
-use super::LoadOptions;
+use super::{LoadOptions, check_corners};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::{Material, MeshBuilder};
 
@@ -152,8 +152,11 @@ pub(super) fn read(
                         normals.push(element.normal);
                     }
                 }
-                "face" => add_face(&element.corners, &normals, material, builder)
-                    .map_err(|index| bad_corner(number, begin, index, builder.positions()))?,
+                "face" => {
+                    check_corners(element.corners.len(), Place::Byte(begin))?;
+                    add_face(&element.corners, &normals, material, builder)
+                        .map_err(|index| bad_corner(number, begin, index, builder.positions()))?;
+                }
                 _ => {}
             }
         }

@@ -26,6 +26,8 @@ pub(super) struct Painted {
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
+    /// How often it follows itself in the mesh.
+    pub(super) times: u32,
 }
 
 impl Painted {
@@ -35,7 +37,16 @@ impl Painted {
             colors: triangle.colors,
             normals: triangle.normals,
             alpha: triangle.alpha,
+            times: 1,
         }
+    }
+
+    /// Whether it is this triangle, to the bit.
+    pub(super) fn is(&self, corners: [[i64; 3]; 3], triangle: &Triangle) -> bool {
+        self.prepared.corners == corners
+            && self.colors == triangle.colors
+            && self.normals == triangle.normals
+            && self.alpha == triangle.alpha
     }
 }
 
@@ -68,13 +79,16 @@ impl Mix {
         let weight = (area + TOUCH) * painted.alpha;
         let share = barycentric(&points, centre);
         let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
-        self.weight += weight;
-        self.light += blend(&painted.colors) * weight;
+        let light = blend(&painted.colors) * weight;
         let normal = blend(&painted.normals).normalize_or(painted.normals[0]) * weight;
-        let is_turned = self.turned.dot(normal) < 0.0;
-        self.normal += normal;
-        self.turned += if is_turned { -normal } else { normal };
-        self.normal_weight += weight;
+        for _ in 0..painted.times {
+            self.weight += weight;
+            self.light += light;
+            let is_turned = self.turned.dot(normal) < 0.0;
+            self.normal += normal;
+            self.turned += if is_turned { -normal } else { normal };
+            self.normal_weight += weight;
+        }
     }
 
     /// The voxel's colour (sRGB) and normal.

@@ -21,18 +21,25 @@ impl Subtree {
         surface: &S,
         grid: &Grid,
     ) -> (Vec<Voxel>, u64) {
-        let painted = self
-            .triangles
-            .iter()
-            .map(|&number| {
-                let prepared = Prepared::new(grid.corners(surface, number));
-                Painted::new(prepared, &surface.triangle(number as usize))
-            })
-            .collect();
+        let mut painted: Vec<Painted> = Vec::new();
+        for &number in &self.triangles {
+            let (corners, triangle) = (
+                grid.corners(surface, number),
+                surface.triangle(number as usize),
+            );
+            // One that repeats the one before it is looked at once, and counts again.
+            if let Some(last) = painted.last_mut()
+                && last.is(corners, &triangle)
+            {
+                last.times += 1;
+            } else {
+                painted.push(Painted::new(Prepared::new(corners), &triangle));
+            }
+        }
         let mut descent = Descent {
             grid,
+            list: (0..painted.len() as u32).collect(),
             painted,
-            list: (0..self.triangles.len() as u32).collect(),
             voxels: Vec::new(),
             touches: 0,
         };
@@ -78,8 +85,9 @@ impl Descent<'_> {
         let side = self.grid.side(self.grid.depth());
         let mut mix = Mix::default();
         for &triangle in &self.list[begin..] {
-            mix.add(&self.painted[triangle as usize], corner, side);
-            self.touches += 1;
+            let painted = &self.painted[triangle as usize];
+            mix.add(painted, corner, side);
+            self.touches += u64::from(painted.times);
         }
         let (color, normal) = mix.finish();
         self.voxels.push(Voxel {

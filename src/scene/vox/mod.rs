@@ -8,12 +8,14 @@
 //! | `nodes` | the scene graph as the file has it |
 //! | `transform` | rotations in a byte, and where they put a voxel |
 //! | `walk` | from the root to every placement of a model |
+//! | `placements` | the different ones of these |
 //! | `write`, `quantize` | voxels to a file, and their colours to a palette |
 
 mod chunk;
 mod model;
 mod nodes;
 mod palette;
+mod placements;
 mod quantize;
 mod transform;
 mod walk;
@@ -28,6 +30,7 @@ use chunk::Chunk;
 use model::Model;
 use nodes::SceneGraph;
 use palette::Palette;
+use placements::Placement;
 use transform::Transform;
 
 /// What the file's chunks say, before anything is placed.
@@ -46,42 +49,17 @@ pub(super) fn read(
     let mut info = SceneInfo::new(FileKind::Vox);
     let contents = read_contents(bytes, options, &mut info)?;
     survey(&contents, options, &mut info)?;
-    let mut placed = vec![false; contents.models.len()];
     if contents.graph.is_empty() {
         place_bare_models(&contents, options, emitter, &mut info)?;
     } else {
-        walk::walk(&contents.graph, |instance| {
-            let number = instance.model as usize;
-            let Some(model) = contents.models.get(number) else {
-                // The walk fills in which shape node asks for it.
-                return Err(Problem::Invalid(Fault::new(
-                    "",
-                    0,
-                    format!("a model from 0 to {}", contents.models.len() as i64 - 1),
-                    format!("model {number}"),
-                    "the file is cut short or its exporter is at fault; open it in MagicaVoxel and save it again",
-                )));
-            };
-            placed[number] = true;
-            if instance.hidden && !options.hidden {
-                info.hidden_instances += 1;
-                return Ok(());
-            }
-            info.instances += 1;
-            place(
-                model,
-                Some(&instance.transform),
-                &contents.palette,
-                options,
-                emitter,
-            )
-        })?;
-        let missing = placed.iter().filter(|placed| !**placed).count();
-        if missing > 0 {
-            info.warnings.push(format!(
-                "{missing} of {} models are not placed by the scene graph and were left out",
-                placed.len()
-            ));
+        let placements = placements::find(&contents, options, &mut info)?;
+        let voxels = placements
+            .iter()
+            .map(|placed| placed.model.voxels.len() as u64);
+        // Places are fewer than 2^20, and a model has fewer voxels than 2^30.
+        emitter.expect(voxels.sum())?;
+        for Placement { model, transform } in placements {
+            place(model, Some(&transform), &contents.palette, options, emitter)?;
         }
     }
     if info.hidden_instances > 0 {

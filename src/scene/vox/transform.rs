@@ -3,7 +3,7 @@
 use crate::scene::error::Fault;
 
 /// A signed permutation of the axes and a translation, applied in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Transform {
     /// `source[row]`: the axis whose coordinate goes to axis `row`.
     source: [u8; 3],

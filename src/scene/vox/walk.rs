@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::nodes::{NodeKind, SceneGraph};
+use super::nodes::{Node, NodeKind, SceneGraph};
 use super::transform::Transform;
 use crate::scene::error::{Fault, Problem};
 
-/// How many nodes are visited at most. A scene graph is meant to be a tree, but a
+/// How many nodes are visited, and models shown, at most. A scene graph is meant to be a tree, but a
 /// file may name one node as the child of many, and then visits can grow beyond
 /// all bounds that the file's length sets.
 const MAX_VISITS: u64 = 1 << 20;
@@ -47,6 +47,8 @@ pub(super) fn walk(
             NodeKind::Transform { child, .. } => (step.next_child == 0).then_some(*child),
             NodeKind::Group(children) => children.get(step.next_child).copied(),
             NodeKind::Shape(models) => {
+                visits += models.len() as u64;
+                check_visits(visits, node)?;
                 for model in models {
                     visit(Instance {
                         model: *model,
@@ -65,15 +67,7 @@ pub(super) fn walk(
             continue;
         };
         visits += 1;
-        if visits > MAX_VISITS {
-            return Err(Problem::Limit(Fault::new(
-                node.part.clone(),
-                node.offset,
-                format!("a scene of at most {MAX_VISITS} placed nodes"),
-                "more",
-                "the scene graph shares nodes too often; open the file in MagicaVoxel and save it again",
-            )));
-        }
+        check_visits(visits, node)?;
         enter(
             graph,
             child,
@@ -83,6 +77,20 @@ pub(super) fn walk(
         )?;
     }
     Ok(())
+}
+
+/// Refuses more visits than may be, at a node.
+fn check_visits(visits: u64, node: &Node) -> Result<(), Problem> {
+    if visits <= MAX_VISITS {
+        return Ok(());
+    }
+    Err(Problem::Limit(Fault::new(
+        node.part.clone(),
+        node.offset,
+        format!("a scene of at most {MAX_VISITS} placed nodes and models"),
+        "more",
+        "the scene graph shares nodes too often; open the file in MagicaVoxel and save it again",
+    )))
 }
 
 /// Goes down to a node.

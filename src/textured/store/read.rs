@@ -10,6 +10,7 @@ use super::TexturedError;
 use super::check::{Part, check, check_entry, check_primitives};
 use super::format::{ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, at};
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use crate::graph::place::{MOST_PARTS, can_be_seen};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
@@ -354,6 +355,9 @@ impl Header {
         let [low, high] = [at::LOW, at::HIGH].map(|at| DVec3::from_array(header.f64s_at(at)));
         let is_box = low.is_finite() && high.is_finite() && (high - low).max_element() > 0.0;
         header.ensure(is_box, at::LOW, || "a box of finite numbers")?;
+        let finest = (high - low).max_element() / MOST_PARTS;
+        let is_seen = can_be_seen(low.to_array(), high.to_array(), finest);
+        header.ensure(is_seen, at::LOW, || "a box whose parts can be told apart")?;
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
         Ok(Self {
             primitives,

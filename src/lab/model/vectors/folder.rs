@@ -4,10 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::Builder;
-
 use crate::picture::store::StoreError;
-use crate::whole::TemporaryGuard;
+use crate::whole;
 
 /// The file that identifies a folder of vectors.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -95,7 +93,8 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
 /// [`StoreError::Exists`] where a file or a folder with anything in it is there
 /// and may not be overwritten; [`FolderError::Foreign`] where it may, but holds other things.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), FolderError> {
-    find_target(path, overwrite).map(|_| ())
+    find_target(path, overwrite)?;
+    Ok(whole::check_folder(whole::folder_of(path))?)
 }
 
 /// Fills a folder under a temporary name beside its place, then renames it.
@@ -108,18 +107,10 @@ pub(super) fn write<T, E: From<FolderError>>(
     fill: impl FnOnce(&Path) -> Result<T, E>,
 ) -> Result<T, E> {
     find_target(path, overwrite)?;
-    let parent = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
-    fs::create_dir_all(parent).map_err(|e| failed(parent, e))?;
+    let parent = whole::folder_of(path);
+    whole::make_folder(parent).map_err(FolderError::from)?;
     // Removed with all that is left in it, however this ends.
-    let shelter = Builder::new()
-        .prefix(".shiftvox-")
-        .suffix(".tmp")
-        .tempdir_in(parent)
-        .map_err(|e| failed(parent, e))?;
-    let _guard = TemporaryGuard::new(shelter.path());
+    let (shelter, _in_use) = whole::temporary_folder(parent).map_err(FolderError::from)?;
     let made = shelter.path().join("made");
     fs::create_dir(&made).map_err(|e| failed(path, e))?;
     let result = fill(&made)?;

@@ -1,0 +1,95 @@
+//! Files that are read whole: regular ones, no larger than they may be.
+//!
+//! A name can lead to a pipe that nobody writes to, or to a device that never ends. Both are refused before they are
+//! opened, because opening may wait already.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Most bytes of a file of settings: hardware, prices, flags.
+pub const SETTINGS: u64 = 16 << 20;
+
+/// Opens a regular file.
+///
+/// # Errors
+/// What the system says; or that it is something else.
+pub fn open(path: &Path) -> io::Result<File> {
+    let kind = fs::metadata(path)?.file_type();
+    if kind.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory));
+    }
+    if !kind.is_file() {
+        return Err(io::Error::other("it is not a regular file"));
+    }
+    File::open(path)
+}
+
+/// The bytes of a regular file of at most so many.
+///
+/// # Errors
+/// As [`open`]; and where there are more, or more than there is memory for.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let mut file = open(path)?;
+    let bytes = file.metadata()?.len();
+    let too_long = |bytes| {
+        let told = format!("it has {bytes} bytes or more, and at most {most} are read");
+        io::Error::new(io::ErrorKind::FileTooLarge, told)
+    };
+    if bytes > most {
+        return Err(too_long(bytes));
+    }
+    let mut content = crate::budget::room("a file that is read whole", bytes as usize)
+        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
+    // What it has by now; it may have grown.
+    (&mut file)
+        .take(bytes.saturating_add(1))
+        .read_to_end(&mut content)?;
+    match content.len() as u64 {
+        read if read > most => Err(too_long(read)),
+        _ => Ok(content),
+    }
+}
+
+/// The bytes of a regular file that there is memory for.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
+    read(path, crate::budget::available().unwrap_or(u64::MAX))
+}
+
+/// The text of a file of settings.
+///
+/// # Errors
+/// As [`read`]; and where it is not UTF-8.
+pub fn read_settings(path: &Path) -> io::Result<String> {
+    let text = String::from_utf8(read(path, SETTINGS)?);
+    text.map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_regular_files_of_bounded_size_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, b"abc").unwrap();
+        assert_eq!(read(&path, 3).unwrap(), b"abc");
+        let told = read(&path, 2).unwrap_err().to_string();
+        assert!(told.starts_with("it has 3 bytes or more"), "{told}");
+        assert_eq!(read_settings(&path).unwrap(), "abc");
+        assert!(read(folder.path(), 9).is_err());
+        let devices = if cfg!(unix) {
+            &["/dev/zero", "/dev/null"][..]
+        } else {
+            &[]
+        };
+        for device in devices {
+            let told = read(Path::new(device), 9).unwrap_err().to_string();
+            assert_eq!(told, "it is not a regular file");
+        }
+    }
+}

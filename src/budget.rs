@@ -1,0 +1,139 @@
+//! Memory, asked for before it is taken.
+//!
+//! What a file or a flag makes large is [checked](check) against the memory that is free before work begins,
+//! and [allocated](filled) so that a refusal is an error with figures and not the end of the process. Small
+//! things are allocated as ever: a system without memory for those has none for an error message either.
+
+use std::fmt;
+
+/// Too little memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
+pub struct Shortage {
+    /// What would have been made.
+    pub what: &'static str,
+    /// Bytes that it takes, or more.
+    pub needed: u64,
+    /// Bytes that are free, where the system tells.
+    pub free: Option<u64>,
+}
+
+impl fmt::Display for Shortage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, needed, free } = self;
+        write!(f, "{what}: at least {needed} bytes of memory are needed, ")?;
+        match free {
+            Some(free) => write!(f, "and {free} are free"),
+            None => write!(f, "and the system has refused them"),
+        }
+    }
+}
+
+/// Fails where something takes more memory than is free.
+///
+/// # Errors
+/// [`Shortage`]; never where the system does not tell how much is free.
+pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
+    match available() {
+        Some(free) if needed > free => Err(Shortage {
+            what,
+            needed,
+            free: Some(free),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Room for so many items in an empty list.
+///
+/// # Errors
+/// [`Shortage`] where the system refuses it.
+pub fn room<T>(what: &'static str, items: usize) -> Result<Vec<T>, Shortage> {
+    let mut list = Vec::new();
+    list.try_reserve_exact(items).map_err(|_| Shortage {
+        what,
+        needed: (items as u64).saturating_mul(size_of::<T>() as u64),
+        free: available(),
+    })?;
+    Ok(list)
+}
+
+/// A list of so many equal items.
+///
+/// # Errors
+/// [`Shortage`] where the system refuses it.
+pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec<T>, Shortage> {
+    let mut list = room(what, items)?;
+    list.resize(items, item);
+    Ok(list)
+}
+
+/// Memory that this process can still take, bytes; none where the system does not tell.
+///
+/// The least of what the machine has, what the process's container may have (Linux: control groups), and what
+/// is left of its address space where that is limited (`ulimit -v`).
+#[must_use]
+pub fn available() -> Option<u64> {
+    let read = |name: &str| std::fs::read_to_string(name).ok();
+    let free = kibibytes_of(&read("/proc/meminfo")?, "MemAvailable:")?;
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    let granted = number("/sys/fs/cgroup/memory.max").map(|max| {
+        let used = number("/sys/fs/cgroup/memory.current").unwrap_or(0);
+        max.saturating_sub(used)
+    });
+    let addresses = read("/proc/self/limits").as_deref().and_then(address_space);
+    let left = addresses.map(|most| {
+        let status = read("/proc/self/status").unwrap_or_default();
+        most.saturating_sub(kibibytes_of(&status, "VmSize:").unwrap_or(0))
+    });
+    [granted, left].into_iter().flatten().chain([free]).min()
+}
+
+/// The bytes in a line that tells kibibytes.
+fn kibibytes_of(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+    let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    kibibytes.checked_mul(1024)
+}
+
+/// The process's limit of address space; none where there is none.
+fn address_space(limits: &str) -> Option<u64> {
+    let mut lines = limits.lines();
+    let line = lines.find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn available_memory_is_read() {
+        let info = "MemTotal:       24689932 kB\nMemAvailable:   24055212 kB\n";
+        let free = |text| kibibytes_of(text, "MemAvailable:");
+        assert_eq!(free(info), Some(24_055_212 * 1024));
+        for broken in ["", "MemAvailable:", "MemAvailable: x kB"] {
+            assert_eq!(free(broken), None, "{broken}");
+        }
+        let limits =
+            |soft: &str| format!("Limit  Soft\nMax address space         {soft} 9 bytes\n");
+        assert_eq!(address_space(&limits("1024")), Some(1024));
+        assert_eq!(address_space(&limits("unlimited")), None);
+        assert_eq!(address_space(""), None);
+    }
+
+    #[test]
+    fn what_cannot_be_had_is_told_with_figures() {
+        let error = filled("a test", 7u64, usize::MAX / 16).expect_err("too large");
+        assert_eq!(error.needed, usize::MAX as u64 / 16 * 8);
+        let told = error.to_string();
+        assert!(
+            told.starts_with(&format!("a test: at least {} bytes", error.needed)),
+            "{told}"
+        );
+        assert_eq!(filled("a test", 7u8, 3), Ok(vec![7; 3]));
+        if available().is_some() {
+            assert!(check("a test", u64::MAX).is_err());
+        }
+        assert_eq!(check("a test", 1), Ok(()));
+    }
+}

@@ -1,0 +1,30 @@
+//! JSON documents: what they are, and what went wrong.
+
+use serde_json::{Value, json};
+
+use super::error::CliError;
+
+/// Version of every JSON document: raised when a field changes its meaning or goes.
+pub(super) const SCHEMA_VERSION: u32 = 1;
+
+/// A JSON document of a verb: its schema's name and version first, then its fields.
+pub(super) fn document(verb: &str, fields: Value) -> Value {
+    let mut document = json!({
+        "schema": format!("shiftvox.{verb}"),
+        "schema_version": SCHEMA_VERSION,
+        "program_version": env!("CARGO_PKG_VERSION"),
+    });
+    if let (Value::Object(to), Value::Object(from)) = (&mut document, fields) {
+        to.extend(from);
+    }
+    document
+}
+
+/// A verb's document with what went wrong, or a document of that alone.
+pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
+    let mut document = document.unwrap_or_else(|| self::document("error", json!({})));
+    document["error"] = json!(error.message);
+    document["advice"] = json!(error.advice);
+    document["exit_code"] = json!(error.kind.code());
+    document
+}

@@ -1,0 +1,113 @@
+//! Names of scenes: any bytes, as file systems have them, in a `String`.
+//!
+//! A scene's name is a generator's specification or a path. A byte of a path that is no part of UTF-8 becomes one of the
+//! last 256 code points, which are for private use and mean nothing to anyone; what a name has of these already is
+//! written byte by byte in the same way, so that every name comes back as it was. The terminal is shown `\xff`.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+/// Stands for byte 0.
+const FIRST: u32 = 0x10_ff00;
+
+/// The byte that a letter stands for.
+pub(super) fn byte_of(letter: char) -> Option<u8> {
+    u32::from(letter).checked_sub(FIRST)?.try_into().ok()
+}
+
+/// Reads the name of a scene on the command line.
+pub(super) fn parser() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|name| of_bytes(name.as_encoded_bytes()))
+}
+
+/// The name of a path: for documents, and for what is put together of names.
+pub(super) fn of_path(path: &Path) -> String {
+    of_bytes(path.as_os_str().as_encoded_bytes())
+}
+
+/// A name of these bytes.
+fn of_bytes(bytes: &[u8]) -> String {
+    // Below 2^21: a code point.
+    let stand_in = |&byte: &u8| char::from_u32(FIRST + u32::from(byte)).unwrap_or_default();
+    let mut name = String::new();
+    for chunk in bytes.utf8_chunks() {
+        for letter in chunk.valid().chars() {
+            match byte_of(letter) {
+                None => name.push(letter),
+                Some(_) => name.extend(
+                    letter
+                        .encode_utf8(&mut [0; 4])
+                        .as_bytes()
+                        .iter()
+                        .map(stand_in),
+                ),
+            }
+        }
+        name.extend(chunk.invalid().iter().map(stand_in));
+    }
+    name
+}
+
+/// The path that a name means.
+pub(super) fn path(name: &str) -> PathBuf {
+    if !name.contains(|letter| byte_of(letter).is_some()) {
+        return name.into();
+    }
+    let mut bytes = Vec::new();
+    for letter in name.chars() {
+        match byte_of(letter) {
+            Some(byte) => bytes.push(byte),
+            None => bytes.extend(letter.encode_utf8(&mut [0; 4]).as_bytes()),
+        }
+    }
+    of_system(bytes).into()
+}
+
+/// A path with a name in place of a word.
+pub(super) fn replace(path: &Path, word: &str, name: &str) -> PathBuf {
+    self::path(&of_path(path).replace(word, name))
+}
+
+#[cfg(unix)]
+fn of_system(bytes: Vec<u8>) -> OsString {
+    std::os::unix::ffi::OsStringExt::from_vec(bytes)
+}
+
+#[cfg(not(unix))]
+fn of_system(bytes: Vec<u8>) -> OsString {
+    String::from_utf8_lossy(&bytes).into_owned().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_comes_back() {
+        assert_eq!(of_bytes("a/\u{e9}.vox".as_bytes()), "a/\u{e9}.vox");
+        let odd = [
+            &b"t\xff\xc3.vox"[..],
+            "\u{10ffff}\u{10feff}".as_bytes(),
+            b"",
+            b"\xf4\x8f",
+        ];
+        for bytes in odd {
+            let name = of_bytes(bytes);
+            if cfg!(unix) {
+                assert_eq!(
+                    path(&name).as_os_str().as_encoded_bytes(),
+                    bytes,
+                    "{name:?}"
+                );
+            }
+        }
+        assert_eq!(
+            of_bytes(b"\xff").chars().map(byte_of).collect::<Vec<_>>(),
+            [Some(255)]
+        );
+        let put = replace(Path::new("out/{stem}.png"), "{stem}", "a");
+        assert_eq!(put, PathBuf::from("out/a.png"));
+    }
+}

@@ -1,0 +1,282 @@
+//! Too little memory, and files that never end: told with figures and exit codes, never by a killed process.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::cargo_bin;
+
+const BENCH: [&str; 6] = [
+    "bench",
+    "engines",
+    "gen:menger,depth=2",
+    "--runs",
+    "1",
+    "--size",
+];
+
+/// Runs the program with so many MB of address space.
+fn within(megabytes: u32, folder: &Path, line: &[&str]) -> Output {
+    let limit = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
+    Command::new("sh")
+        .args(["-c", &limit])
+        .arg(cargo_bin("shiftvox"))
+        .args(line)
+        .args(["--threads", "2"])
+        .current_dir(folder)
+        .output()
+        .unwrap()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A run that ends by itself within ten seconds.
+fn patient(folder: &Path, line: &[&str]) -> Output {
+    let mut child = Command::new(cargo_bin("shiftvox"))
+        .args(line)
+        .current_dir(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let started = Instant::now();
+    while child.try_wait().unwrap().is_none() {
+        if started.elapsed() > Duration::from_secs(10) {
+            child.kill().unwrap();
+            panic!("{line:?} waits");
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.wait_with_output().unwrap()
+}
+
+fn fifo(path: &Path) {
+    assert!(Command::new("mkfifo").arg(path).status().unwrap().success());
+}
+
+#[test]
+fn what_takes_more_memory_than_there_is_is_refused_with_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    let bench = [&BENCH[..], &["2048"]].concat();
+    let lines: [(u32, &[&str]); 5] = [
+        (
+            400,
+            &[
+                "render",
+                "gen:sphere,depth=3",
+                "--size",
+                "11000",
+                "-o",
+                "a.png",
+            ],
+        ),
+        (
+            600,
+            &[
+                "render",
+                "gen:sphere,depth=3",
+                "--size",
+                "8192",
+                "--hash",
+                "--json",
+            ],
+        ),
+        (400, &["info", "gen:terrain,depth=12"]),
+        (
+            400,
+            &["triangles", "sheet.obj", "--size", "8192", "-o", "a.png"],
+        ),
+        (200, &bench),
+    ];
+    fs::write(
+        folder.path().join("sheet.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    for (megabytes, line) in lines {
+        let output = within(megabytes, folder.path(), line);
+        let told = told(&output);
+        assert_eq!(output.status.code(), Some(5), "{line:?}: {told}");
+        assert!(
+            told.contains(" bytes of memory") && told.contains(" are free"),
+            "{line:?}: {told}"
+        );
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn no_limit_of_memory_kills() {
+    let folder = tempfile::tempdir().unwrap();
+    let bench = [&BENCH[..], &["512", "--json"]].concat();
+    let lines: [&[&str]; 3] = [
+        &[
+            "render",
+            "gen:terrain,depth=8",
+            "--size",
+            "2048",
+            "--hash",
+            "--json",
+        ],
+        &["info", "gen:terrain,depth=9", "--json"],
+        &bench,
+    ];
+    let mut refused = 0;
+    for line in lines {
+        for megabytes in (90..330).step_by(40) {
+            let output = within(megabytes, folder.path(), line);
+            let (code, told) = (output.status.code(), told(&output));
+            assert!(
+                matches!(code, Some(0 | 5)),
+                "{line:?}, {megabytes} MB: {:?} {told}",
+                output.status
+            );
+            let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+            assert_eq!(document["error"].is_string(), code == Some(5), "{document}");
+            refused += u32::from(code == Some(5));
+        }
+    }
+    assert!(refused > 0);
+}
+
+#[test]
+fn pipes_and_devices_are_refused_and_not_waited_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fifo(&at("fifo"));
+    fifo(&at("fifo.far"));
+    fs::write(
+        at("a.obj"),
+        "mtllib fifo\nusemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    let gltf = r#"{"asset":{"version":"2.0"},"buffers":[{"uri":"fifo","byteLength":36}],
+        "bufferViews":[{"buffer":0,"byteLength":36}],
+        "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],
+        "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+        "nodes":[{"mesh":0}],"scenes":[{"nodes":[0]}],"scene":0}"#;
+    fs::write(at("a.gltf"), gltf).unwrap();
+    let lines: [(&[&str], i32); 9] = [
+        (&["render", "a.obj", "--depth", "4", "--hash"], 0),
+        (&["render", "a.gltf", "--depth", "4", "--hash"], 4),
+        (&["render", "fifo", "--hash"], 4),
+        (&["render", "fifo.far", "--engine", "far", "--hash"], 4),
+        (&["render", "--config", "fifo", "--hash"], 4),
+        (&["model", "gen:menger,depth=1", "--hw", "/dev/zero"], 4),
+        (&["model", "gen:menger,depth=1", "--costs", "/dev/zero"], 4),
+        (&["compare", "/dev/zero", "/dev/zero"], 4),
+        (&["info", "/dev/zero"], 4),
+    ];
+    for (line, code) in lines {
+        let output = patient(folder.path(), line);
+        let told = told(&output);
+        assert_eq!(output.status.code(), Some(code), "{line:?}: {told}");
+        assert!(told.contains("not a regular file"), "{line:?}: {told}");
+    }
+}
+
+#[test]
+fn a_mapped_file_that_is_cut_short_is_told() {
+    if !Path::new("/proc/self/maps").exists() {
+        eprintln!("skipped: the system does not tell what is mapped");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.vxg");
+    let made = patient(folder.path(), &["convert", "gen:terrain,depth=7", "a.vxg"]);
+    assert!(made.status.success(), "{}", told(&made));
+    let child = Command::new(cargo_bin("shiftvox"))
+        .args([
+            "render", "a.vxg", "--repeat", "1000000", "--size", "128", "-o", "a.png", "--json",
+        ])
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let started = Instant::now();
+    let maps = format!("/proc/{}/maps", child.id());
+    while !fs::read_to_string(&maps)
+        .unwrap_or_default()
+        .contains("a.vxg")
+    {
+        assert!(started.elapsed() < Duration::from_secs(20), "never mapped");
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    fs::File::options()
+        .write(true)
+        .open(&file)
+        .unwrap()
+        .set_len(512)
+        .unwrap();
+    let output = child.wait_with_output().unwrap();
+    let told = told(&output);
+    assert_eq!(output.status.signal(), None, "{told}");
+    assert_eq!(output.status.code(), Some(4), "{told}");
+    assert!(told.contains("cut short"), "{told}");
+    let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(document["exit_code"], 4);
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn meshes_of_endless_work_are_refused_with_the_reason() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let sheet = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    fs::write(at("sheet.obj"), format!("{sheet}f 1 2 3\n")).unwrap();
+    let output = patient(folder.path(), &["info", "sheet.obj", "--depth", "20"]);
+    assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+    assert!(
+        told(&output).contains("voxels or more take"),
+        "{}",
+        told(&output)
+    );
+    let outside = [
+        "convert",
+        "sheet.obj",
+        "a.vxg",
+        "--depth",
+        "20",
+        "--memory",
+        "64M",
+    ];
+    let output = patient(folder.path(), &outside);
+    assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+    // A face that is a fan without end, in both formats that have faces of any length.
+    let corners = 1_000_000;
+    let indices = |from: usize| {
+        (0..corners)
+            .map(|i| (i % 3 + from).to_string() + " ")
+            .collect::<String>()
+    };
+    fs::write(at("fan.obj"), format!("{sheet}f {}\n", indices(1))).unwrap();
+    let ply = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element face 1\nproperty list int int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n{corners} {}\n",
+        indices(0)
+    );
+    fs::write(at("fan.ply"), ply).unwrap();
+    for name in ["fan.obj", "fan.ply"] {
+        let output = patient(folder.path(), &["info", name]);
+        assert_eq!(output.status.code(), Some(5), "{}", told(&output));
+        let told = told(&output);
+        assert!(
+            told.contains("1000000") && told.contains("corners"),
+            "{told}"
+        );
+    }
+    // Triangles that repeat are looked at once.
+    fs::write(
+        at("same.obj"),
+        sheet.to_owned() + &"f 1 2 3\n".repeat(100_000),
+    )
+    .unwrap();
+    let output = patient(folder.path(), &["info", "same.obj", "--depth", "6"]);
+    assert!(output.status.success(), "{}", told(&output));
+}
