@@ -226,34 +226,41 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
     // Not while the program is being ended.
     let mut list = in_progress();
     let mut kept: Vec<PathBuf> = Vec::new();
+    let mut result = Ok(());
+    let mut files = files.into_iter();
     for Prepared {
         file,
         path,
         overwrite,
         guard,
-    } in files
+    } in files.by_ref()
     {
         let (_open, temporary) = file.into_parts();
         let is_new = fs::symlink_metadata(&path).is_err();
-        let result = match overwrite {
+        let named = match overwrite {
             true => temporary.persist(&path),
             false => temporary.persist_noclobber(&path),
         };
         list.forget(guard);
-        if let Err(e) = result {
-            for path in kept {
-                let _ = fs::remove_file(path);
+        match named {
+            Ok(()) if is_new => kept.push(path),
+            Ok(()) => {}
+            Err(e) => {
+                for path in &kept {
+                    let _ = fs::remove_file(path);
+                }
+                result = Err(match e.error.kind() {
+                    io::ErrorKind::AlreadyExists => WholeError::Exists(path),
+                    _ => failed(&path, e.error),
+                });
+                break;
             }
-            return Err(match e.error.kind() {
-                io::ErrorKind::AlreadyExists => WholeError::Exists(path),
-                _ => failed(&path, e.error),
-            });
-        }
-        if is_new {
-            kept.push(path);
         }
     }
-    Ok(())
+    // What is left takes itself off the list.
+    drop(list);
+    drop(files);
+    result
 }
 
 /// Writes a file under a temporary name beside its place and renames it.
@@ -429,6 +436,11 @@ pub(crate) mod tests {
         assert!(matches!(keep(both.into()), Err(WholeError::Exists(_))));
         assert_eq!(names(folder.path()), ["b"]);
         assert_eq!(fs::read(at("b")).unwrap(), b"other");
+        // The first of several is in the way.
+        let three = ["c", "d", "e"].map(|name| prepare(&at(name), false, fill).unwrap());
+        fs::write(at("c"), b"other").unwrap();
+        assert!(matches!(keep(three.into()), Err(WholeError::Exists(_))));
+        assert_eq!(names(folder.path()), ["b", "c"]);
     }
 
     #[test]
