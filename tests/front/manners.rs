@@ -240,7 +240,7 @@ fn a_frame_that_the_fast_engine_hands_on_says_why() {
         let told: Vec<&str> = counters.keys().map(String::as_str).collect();
         let told: Vec<&str> = told
             .into_iter()
-            .filter(|name| name.starts_with("handed"))
+            .filter(|name| name.starts_with("handed_for"))
             .collect();
         assert_eq!(told, why.into_iter().collect::<Vec<_>>(), "{flags:?}");
         let said = stderr_of(&run(&["-v"]));
