@@ -6,7 +6,7 @@ use super::hardware::Independence;
 use crate::Stage;
 
 /// Version of the report's fields.
-pub const REPORT_VERSION: u32 = 1;
+pub const REPORT_VERSION: u32 = 2;
 
 /// What a record waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
@@ -175,6 +175,8 @@ pub struct StackReport {
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,
+    /// Their bits: written to outer memory once and read from there once.
+    pub spilled_bits: u64,
     /// Records taken from another lane.
     pub stolen: u64,
 }
@@ -250,6 +252,9 @@ pub struct CycleReport {
     pub fill_reads: u64,
     /// Fill vectors written.
     pub fill_writes: u64,
+    /// Cycles for which the port to outer memory was taken: by lines of the
+    /// caches and by spilled records.
+    pub outer_busy: u64,
     /// Stacks.
     pub stack: StackReport,
     /// By resource, tightest first.
@@ -367,5 +372,7 @@ impl CycleReport {
     }
 }
 
+/// Name of the port to outer memory among the bounds.
+pub(super) const OUTER_PORT: &str = "outer memory port";
 /// Name of the span among the bounds.
 pub(super) const SPAN: &str = "longest chain";

@@ -3,11 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, Store, Stores, Tally, Unit, area_of, energy_of,
-    energy_of_tallies, memory_energy_of, operation_of,
+    Breakdown, CostError, CostTable, Costing, Goal, Store, Stores, Unit, area_of, energy_of,
+    memory_energy_of, operation_of,
 };
 use hwmodel::count::{Accesses, Counter};
-use hwmodel::cycles::{CacheReport, CycleReport, Hardware};
+use hwmodel::cycles::{CycleReport, Hardware};
 use hwmodel::memory::{ACCUMULATOR_BITS, Widths};
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
@@ -69,8 +69,53 @@ pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
     u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)
 }
 
+/// Bits that go to outer memory and come from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct OuterTraffic {
+    /// Lines of nodes, read.
+    pub node_bits: u64,
+    /// Lines of attributes, read.
+    pub attribute_bits: u64,
+    /// Records without an entry on the stack: written, and read as many.
+    pub spilled_bits: u64,
+    /// Pixels, written.
+    pub pixel_bits: u64,
+}
+
+impl OuterTraffic {
+    /// All bits that are moved.
+    #[must_use]
+    pub fn bits(&self) -> u64 {
+        self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
+    }
+}
+
+/// Bits of a word of outer memory. Neighbours share words.
+const OUTER_WORD_BITS: u32 = 64;
+
+/// Energy of traffic to outer memory, pJ, by what it is for.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for (name, operation, bits) in [
+        ("lines of nodes", "dram_read", traffic.node_bits),
+        ("lines of attributes", "dram_read", traffic.attribute_bits),
+        ("spilled records", "dram_write", traffic.spilled_bits),
+        ("spilled records", "dram_read", traffic.spilled_bits),
+        ("pixels", "dram_write", traffic.pixel_bits),
+    ] {
+        let each = table.energy(operation, OUTER_WORD_BITS)?;
+        let words = bits.div_ceil(u64::from(OUTER_WORD_BITS));
+        sum.push(name, operation, OUTER_WORD_BITS, words, each);
+    }
+    Ok(sum)
+}
+
 /// Energy of a frame on a hardware. Accesses to nodes and attributes go to
-/// the hardware's caches, their misses to outer memory, line by line; pixels go to outer memory.
+/// the hardware's caches, their misses to outer memory, line by line; spilled records go there
+/// and come back; pixels go there.
 ///
 /// # Errors
 /// When the tables lack a figure.
@@ -99,22 +144,13 @@ pub fn frame_cost(
     let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
     let on_chip = memory_energy_of(&accesses, widths, &stores, table)?;
-    let lines = |cache: &CacheReport| cache.bytes_in / 8;
-    let read = |times: u64| Tally {
-        operation: "dram_read".to_owned(),
-        width: 64,
-        times,
-    };
-    let outer = energy_of_tallies(
-        &[
-            read(lines(&cycles.node_cache) + lines(&cycles.attribute_cache)),
-            Tally {
-                operation: "dram_write".to_owned(),
-                width: 64,
-                // A pixel's bits, in words of 64 as neighbours share them.
-                times: (pixels.writes * u64::from(widths.pixel_bits)).div_ceil(64),
-            },
-        ],
+    let outer = outer_energy(
+        &OuterTraffic {
+            node_bits: 8 * cycles.node_cache.bytes_in,
+            attribute_bits: 8 * cycles.attribute_cache.bytes_in,
+            spilled_bits: cycles.stack.spilled_bits,
+            pixel_bits: pixels.writes * u64::from(widths.pixel_bits),
+        },
         table,
     )?;
     Ok(FrameCost {
@@ -155,4 +191,31 @@ pub fn area(
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
     area_of(&bill(counter, hardware, prices), &prices.table, prices.goal)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.
+    #[test]
+    fn a_spilled_record_is_written_and_read() {
+        let table = CostTable::load_shipped().unwrap();
+        let traffic = OuterTraffic {
+            node_bits: 512,
+            attribute_bits: 0,
+            spilled_bits: 936,
+            pixel_bits: 24,
+        };
+        // 8 words of a line; 15 words out, 15 words back; 1 word of a pixel.
+        let sum = outer_energy(&traffic, &table).unwrap();
+        assert!((sum.total - (8.0 + 15.0 + 15.0 + 1.0) * 1950.0).abs() < 1e-6);
+        assert!((sum.low - 39.0 * 1300.0).abs() < 1e-6);
+        assert_eq!(traffic.bits(), 512 + 2 * 936 + 24);
+        let of = |name: &str| -> u64 {
+            let lines = sum.lines.iter().filter(|line| line.name == name);
+            lines.map(|line| line.times).sum()
+        };
+        assert_eq!(of("spilled records"), 30);
+    }
 }

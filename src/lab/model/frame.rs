@@ -7,7 +7,7 @@ use hwmodel::cycles::{Hardware, Observer};
 use hwmodel::memory::{MemoryProbe, Widths};
 
 use super::ModelError;
-use super::record::{RecordField, record_bits, record_fields};
+use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
 use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
 use crate::machine::{Machine, MachineOptions, Simulated};
@@ -121,7 +121,7 @@ pub fn count_operations(
     Ok((frame, counter, stats))
 }
 
-/// Draws a frame on a hardware, cycle by cycle.
+/// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
 ///
 /// # Errors
 /// When a word overflows under the trap policy, or a stack that does not spill.
@@ -133,7 +133,9 @@ pub fn simulate<O: Observer>(
     observer: &mut O,
 ) -> Result<(Frame, Simulated), ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let simulated = machine(overflow).simulate(graph, setup, &mut frame, hardware, observer)?;
+    let mut hardware = hardware.clone();
+    hardware.stack.record = bits_by_kind(setup, graph.mask.len());
+    let simulated = machine(overflow).simulate(graph, setup, &mut frame, &hardware, observer)?;
     Ok((frame, simulated))
 }
 

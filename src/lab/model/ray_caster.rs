@@ -8,7 +8,7 @@ use hwmodel::memory::{Cache, CacheError};
 use serde::Serialize;
 
 use super::ModelError;
-use super::cost::{FrameCost, Prices};
+use super::cost::{FrameCost, OuterTraffic, Prices, outer_energy};
 use super::frame;
 use crate::frame::Frame;
 use crate::graph::Graph;
@@ -147,15 +147,14 @@ fn cost_of(
             on_chip.push(memory.name(), operation, bits, counts.of(step), each);
         }
     }
-    let words_a_line = u64::from(hardware.node_cache.line_bytes) / 8;
-    let pixel_bits = counts.of(FloatStep::PixelWrite) * u64::from(frame::PIXEL_BITS);
-    let outer = [
-        tally("dram_read", 64, node_misses * words_a_line),
-        tally("dram_write", 64, pixel_bits.div_ceil(64)),
-    ];
+    let traffic = OuterTraffic {
+        node_bits: 8 * node_misses * u64::from(hardware.node_cache.line_bytes),
+        pixel_bits: counts.of(FloatStep::PixelWrite) * u64::from(frame::PIXEL_BITS),
+        ..OuterTraffic::default()
+    };
     Ok(FrameCost {
         operations: energy_of_tallies(&operations, table)?,
         on_chip,
-        outer: energy_of_tallies(&outer, table)?,
+        outer: outer_energy(&traffic, table)?,
     })
 }

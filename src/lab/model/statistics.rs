@@ -292,4 +292,16 @@ fn cycles(list: &mut Statistics, simulated: &Simulated) {
         "Count",
         "records without an entry",
     );
+    list.add(
+        "stack.spilled_bits",
+        report.stack.spilled_bits,
+        "Bit",
+        "their bits, written to outer memory and read back",
+    );
+    list.add(
+        "outer_memory.busy",
+        report.outer_busy,
+        "Cycle",
+        "cycles of its port: lines of caches and spilled records",
+    );
 }

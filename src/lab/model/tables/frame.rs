@@ -119,6 +119,7 @@ pub fn record(fields: &[RecordField]) -> Table {
             FieldPresence::Always => "always",
             FieldPresence::InClipSpace => "in clip space",
             FieldPresence::InScreenSpace => "in screen space",
+            FieldPresence::AsFinestVoxel => "as a finest voxel, instead of what is in clip space",
         };
         table.rows.push(vec![
             Cell::from(field.name),
