@@ -10,6 +10,7 @@ use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::export::ExportArgs;
 use crate::lab::bench::Scan;
+use crate::lab::float_rays::RayOrder;
 use crate::lab::model::cost::Prices;
 
 /// Arguments of `model`.
@@ -59,6 +60,9 @@ pub(super) struct HardwareArgs {
     /// Count shifts by constants as shifters, not as wires
     #[arg(long)]
     shifters: bool,
+    /// Order of the ray caster's rays [default: the one of least energy]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    pub(super) ray_order: Option<RayOrder>,
 }
 
 /// What is told beside the frame itself.

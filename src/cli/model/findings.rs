@@ -93,7 +93,8 @@ pub(super) fn find(
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = rules::true_setup(graph, &camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
-    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, &exact)?;
+    let order = args.hardware.ray_order;
+    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, order, &exact)?;
     let wrong = frame::error(&counted.frame, &exact);
     progress.end();
 
@@ -252,6 +253,7 @@ impl From<ModelError> for CliError {
                 error.into()
             }
             ModelError::Simulate(error) => Self::new(Kind::Limit, error),
+            ModelError::Hardware(error) => Self::new(Kind::Input, error),
             ModelError::Cost(error) => Self::new(Kind::Input, error),
         }
     }

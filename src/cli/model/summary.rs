@@ -146,7 +146,13 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
         tables::stages(&found.counted, cycles),
         tables::memories(&found.counted, &found.widths, cycles),
         tables::bounds(cycles),
-        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.ray_caster),
+        tables::side_by_side(
+            &found.counted,
+            &found.wrong,
+            &found.cost,
+            cycles,
+            &found.ray_caster,
+        ),
         tables::claims(&found.claims),
     ];
     if !found.rules.is_empty() {

@@ -15,6 +15,7 @@ pub mod heat;
 #[cfg(feature = "cli")]
 pub mod plots;
 pub mod ray_caster;
+pub mod ray_cycles;
 pub mod record;
 pub mod rules;
 pub mod safe;
@@ -25,6 +26,7 @@ pub mod tables;
 pub mod vectors;
 
 use hwmodel::cost::CostError;
+use hwmodel::cycles::HardwareError;
 
 use crate::machine::SimulateError;
 use crate::project::{EngineError, SetupError};
@@ -41,6 +43,9 @@ pub enum ModelError {
     /// The hardware could not.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// The hardware's description is not sound.
+    #[error(transparent)]
+    Hardware(#[from] HardwareError),
     /// A figure is missing in the cost tables.
     #[error(transparent)]
     Cost(#[from] CostError),

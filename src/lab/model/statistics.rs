@@ -168,6 +168,12 @@ pub fn of(
             "cells that rays looked at",
         );
         list.add(
+            "ray_caster.cycles",
+            ray_caster.cycles.cycles,
+            "Cycle",
+            "cycles of its frame, no fewer than",
+        );
+        list.add(
             "ray_caster.energy.total",
             ray_caster.cost.total().0,
             "pJ",

@@ -1,6 +1,7 @@
 //! What a frame costs, and what the ray caster does.
 
 use hwmodel::cost::{Breakdown, Fit};
+use hwmodel::cycles::CycleReport;
 use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
@@ -63,6 +64,7 @@ pub fn side_by_side(
     counted: &Counted,
     wrong: &CoverageError,
     cost: &FrameCost,
+    cycles: &CycleReport,
     ray_caster: &RayCasterReport,
 ) -> Table {
     let mut table = Table::new(
@@ -125,6 +127,26 @@ pub fn side_by_side(
         "node reads",
         Cell::from(counter.reads(Memory::Node)),
         Cell::from(counts.of(FloatStep::NodeRead)),
+    );
+    row(
+        "attribute reads",
+        Cell::from(counter.reads(Memory::Attribute)),
+        Cell::from(counts.of(FloatStep::AttributeRead)),
+    );
+    row(
+        "order of rays",
+        Cell::None,
+        Cell::from(ray_caster.order.name()),
+    );
+    row(
+        "cycles (simulated; no fewer than)",
+        Cell::from(cycles.cycles),
+        Cell::from(ray_caster.cycles.cycles),
+    );
+    row(
+        "frames a second (simulated; at most)",
+        number(cycles.frames_per_second, 1),
+        number(ray_caster.cycles.frames_per_second, 1),
     );
     row(
         "energy of operations, uJ",
