@@ -78,6 +78,9 @@ pub(super) struct TableArgs {
     /// The same frame in words of many widths: bits=16..48, or with steps: bits=16..64+4
     #[arg(long, value_name = "bits=A..B", value_parser = bits_scan)]
     pub(super) sweep: Option<Scan>,
+    /// Node caches of 4 KiB to 1 MiB, for this hardware and for the ray caster in every order
+    #[arg(long)]
+    pub(super) caches: bool,
     /// Growing pictures of this object, and growing objects in this picture
     #[arg(long)]
     pub(super) growth: bool,

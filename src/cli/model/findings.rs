@@ -12,7 +12,9 @@ use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::subjects;
 use crate::lab::bench::Subject;
+use crate::lab::float_rays::RayOrder;
 use crate::lab::model::ModelError;
+use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
@@ -43,6 +45,7 @@ pub(super) struct Findings {
     pub(super) rules: Vec<RuleRow>,
     pub(super) formats: Vec<FormatRow>,
     pub(super) lanes: Vec<ScalingRow>,
+    pub(super) caches: Vec<CacheRow>,
     pub(super) pictures: Vec<GrowthRow>,
     pub(super) objects: Vec<GrowthRow>,
 }
@@ -133,6 +136,18 @@ pub(super) fn find(
     } else {
         Vec::new()
     };
+    let caches = if tables.caches || tables.all {
+        let drawn = Drawn {
+            graph,
+            setup: &setup,
+            counted: &counted,
+            exact: &exact,
+        };
+        let orders = order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
+        caches::table(drawn, overflow, &hardware, &orders, prices, progress)?
+    } else {
+        Vec::new()
+    };
     let (pictures, objects) = if tables.growth || tables.all {
         let sides = sides_to(size.0.max(size.1));
         let pictures = growth::pictures(name, graph, &camera, &sides, &options, progress)?;
@@ -159,6 +174,7 @@ pub(super) fn find(
         rules,
         formats,
         lanes,
+        caches,
         pictures,
         objects,
         subject,

@@ -14,7 +14,7 @@ use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
-use crate::lab::model::{cost, heat, plots, record, statistics};
+use crate::lab::model::{caches, cost, heat, plots, record, statistics};
 use crate::picture::{png, store};
 use crate::report::plot::Panel;
 use crate::report::{Cell, Table};
@@ -121,6 +121,9 @@ fn panels(found: &Findings) -> Vec<Panel> {
     if !found.lanes.is_empty() {
         panels.push(plots::lanes(&found.lanes));
     }
+    if !found.caches.is_empty() {
+        panels.push(plots::caches(&found.caches));
+    }
     if !found.formats.is_empty() {
         panels.push(plots::formats(&found.formats));
     }
@@ -177,6 +180,8 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "rules": found.rules,
             "formats": found.formats,
             "lanes": found.lanes,
+            "caches": found.caches,
+            "caches_say": (!found.caches.is_empty()).then(|| caches::sentence(&found.caches)),
             "growing_pictures": found.pictures,
             "growing_objects": found.objects,
             "statistics": list,

@@ -164,6 +164,9 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
     if !found.lanes.is_empty() {
         all.push(tables::lanes(&found.lanes));
     }
+    if !found.caches.is_empty() {
+        all.push(tables::caches(&found.caches));
+    }
     if !found.pictures.is_empty() {
         all.push(tables::growth(
             "Growing pictures of one object",

@@ -3,10 +3,11 @@
 //!
 //! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
 //! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
-//! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, and over pictures and objects; [`claims`] compares the image-order
+//! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
+//! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
+pub mod caches;
 pub mod claims;
 pub mod cost;
 pub mod frame;
@@ -14,6 +15,7 @@ pub mod growth;
 pub mod heat;
 #[cfg(feature = "cli")]
 pub mod plots;
+pub mod range;
 pub mod ray_caster;
 pub mod ray_cycles;
 pub mod record;

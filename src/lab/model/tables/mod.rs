@@ -8,7 +8,7 @@ pub use cost::{breakdown, side_by_side};
 pub use frame::{
     bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
 };
-pub use repeats::{claims, formats, growth, lanes, rules};
+pub use repeats::{caches, claims, formats, growth, lanes, rules};
 
 use crate::report::Cell;
 
