@@ -16,6 +16,7 @@ use crate::lab::float_rays::RayOrder;
 use crate::lab::model::ModelError;
 use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
+use crate::lab::model::clock::{self, ClockCheck};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
@@ -38,6 +39,7 @@ pub(super) struct Findings {
     pub(super) differing: u64,
     pub(super) cost: FrameCost,
     pub(super) area: Breakdown,
+    pub(super) clock: ClockCheck,
     pub(super) ray_caster: RayCasterReport,
     /// Wrong samples of the machine's picture.
     pub(super) wrong: crate::measure::CoverageError,
@@ -112,6 +114,7 @@ pub(super) fn find(
     )
     .map_err(ModelError::from)?;
     let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let clock = clock::check(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
     let tables = &args.tables;
     let rules = if tables.rules || tables.all {
         rules::table(graph, &camera, &options, &hardware, prices, progress)?
@@ -168,6 +171,7 @@ pub(super) fn find(
         differing,
         cost,
         area,
+        clock,
         ray_caster,
         wrong,
         claims,

@@ -175,6 +175,8 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "coverage_error": found.wrong,
             "cost": found.cost,
             "area": found.area,
+            "clock": found.clock,
+            "clock_says": found.clock.sentence(),
             "ray_caster": found.ray_caster,
             "claims": found.claims,
             "rules": found.rules,

@@ -101,6 +101,15 @@ pub(super) fn summary(found: &Findings) -> Table {
         format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
     );
     row(
+        "clock",
+        format!(
+            "{} MHz: {}. As it is, {:.0} MHz at most",
+            cycles.clock_mhz,
+            found.clock.sentence(),
+            found.clock.fastest_mhz
+        ),
+    );
+    row(
         "area of the units",
         format!(
             "{:.0} NAND2 equivalents, of those that this frame uses (memories, pipeline registers and control are not in it)",
@@ -187,6 +196,7 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::levels(&found.counted),
         tables::record(&found.counted.fields),
         tables::miss_curve(&found.counted),
+        tables::clock(&found.clock),
         tables::breakdown("Energy of the operations", "pj", &found.cost.operations),
         tables::breakdown(
             "Energy of the memories on the chip",

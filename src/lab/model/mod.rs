@@ -2,13 +2,15 @@
 //! what a ray caster with multipliers would cost instead.
 //!
 //! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
-//! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
+//! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
+//! units with the clock; [`rules`],
 //! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
 //! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
 pub mod caches;
 pub mod claims;
+pub mod clock;
 pub mod cost;
 pub mod frame;
 pub mod growth;

@@ -6,6 +6,7 @@ use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
 use crate::lab::float_rays::FloatStep;
+use crate::lab::model::clock::ClockCheck;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
 use crate::lab::model::ray_caster::RayCasterReport;
@@ -53,6 +54,43 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
             Cell::Text(figure),
             Cell::Text(each.rows.clone()),
             Cell::Text(each.source.clone()),
+        ]);
+    }
+    table
+}
+
+/// Units against the clock.
+#[must_use]
+pub fn clock(check: &ClockCheck) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Units against the clock of {:.2} ns: {}",
+            check.period_ps / 1e3,
+            check.sentence()
+        ),
+        &[
+            "stage",
+            "class",
+            "bits",
+            "delay_ns",
+            "pipeline_depth",
+            "depth_needed",
+            "meets",
+            "rows",
+            "source",
+        ],
+    );
+    for unit in &check.units {
+        table.rows.push(vec![
+            Cell::from(unit.stage.name()),
+            Cell::from(unit.class.name()),
+            Cell::from(u64::from(unit.width)),
+            number(unit.delay_ps / 1e3, 2),
+            Cell::from(u64::from(unit.depth)),
+            Cell::from(u64::from(unit.depth_needed)),
+            Cell::from(if unit.meets() { "yes" } else { "no" }),
+            Cell::Text(unit.rows.clone()),
+            Cell::Text(unit.source.clone()),
         ]);
     }
     table

@@ -4,7 +4,7 @@ mod cost;
 mod frame;
 mod repeats;
 
-pub use cost::{breakdown, side_by_side};
+pub use cost::{breakdown, clock, side_by_side};
 pub use frame::{
     bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
 };
