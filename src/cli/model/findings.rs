@@ -105,7 +105,7 @@ pub(super) fn find(
 
     let widths = frame::widths(&setup, graph, &hardware);
     let cost = cost::frame_cost(
-        &counted.counter,
+        &counted,
         &simulated.cycles,
         &widths,
         &setup,

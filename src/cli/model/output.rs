@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hwmodel::memory::RecordKind;
 use hwmodel::statistics::{Statistics, Value as Figure};
 use serde_json::{Value, json};
 
@@ -137,6 +138,14 @@ fn document(found: &Findings, list: &Statistics) -> Value {
         .iter()
         .map(|f| json!({ "field": f.name, "bits": f.bits, "held": format!("{:?}", f.held) }))
         .collect();
+    let by_kind: Vec<Value> = RecordKind::ALL
+        .into_iter()
+        .map(|kind| {
+            let records = &found.counted.records;
+            let accesses = records.of(kind);
+            json!({ "kind": kind, "bits": records.bits().of(kind), "popped": accesses.reads, "pushed": accesses.writes })
+        })
+        .collect();
     let cells: Vec<_> = found.counted.counter.cells().collect();
     let curve: Vec<_> = found
         .counted
@@ -164,6 +173,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "hardware": found.hardware,
             "record_bits": record::record_bits(&found.counted.fields),
             "record": record,
+            "records_by_kind": by_kind,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
             "fill_vector_bits": cost::fill_vector_bits(&found.setup),
             "accumulator_bits": cost::accumulator_bits(&found.setup),

@@ -195,6 +195,7 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::classes(&found.counted),
         tables::levels(&found.counted),
         tables::record(&found.counted.fields),
+        tables::records_by_kind(&found.counted),
         tables::miss_curve(&found.counted),
         tables::clock(&found.clock),
         tables::breakdown("Energy of the operations", "pj", &found.cost.operations),

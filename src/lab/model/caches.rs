@@ -113,7 +113,7 @@ pub fn table(
             frame::simulate(&graph.view(), setup, &hardware, overflow, &mut NoObserver)?;
         let cycles = &simulated.1.cycles;
         let widths = frame::widths(setup, graph, &hardware);
-        let energy = cost::frame_cost(&counted.counter, cycles, &widths, setup, &hardware, prices)?;
+        let energy = cost::frame_cost(counted, cycles, &widths, setup, &hardware, prices)?;
         let light = CachePoint {
             order: None,
             energy_pj: Range::new(energy.total()),

@@ -8,10 +8,11 @@ use hwmodel::cost::{
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
-use hwmodel::memory::{ACCUMULATOR_BITS, Widths};
+use hwmodel::memory::{ACCUMULATOR_BITS, RecordKind, RecordProbe, Widths};
 use hwmodel::{Memory, OpClass, Stage};
 use serde::Serialize;
 
+use super::frame::Counted;
 use crate::frame::quadtree::nodes_to;
 use crate::project::{Coverage, FrameSetup};
 
@@ -120,7 +121,7 @@ pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdo
 /// # Errors
 /// When the tables lack a figure.
 pub fn frame_cost(
-    counter: &Counter,
+    counted: &Counted,
     cycles: &CycleReport,
     widths: &Widths,
     setup: &FrameSetup,
@@ -141,9 +142,21 @@ pub fn frame_cost(
         // As many as samples, on the chip: neighbours come again and again.
         accumulator: bytes(accumulator_bits(setup)),
     };
+    let counter = &counted.counter;
     let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
+    accesses.remove(&Memory::Stack);
     let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
-    let on_chip = memory_energy_of(&accesses, widths, &stores, table)?;
+    let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
+    let others = memory_energy_of(&accesses, widths, &stores, table)?;
+    for line in others.lines {
+        on_chip.push(
+            &line.name,
+            &line.operation,
+            line.width,
+            line.times,
+            line.each,
+        );
+    }
     let outer = outer_energy(
         &OuterTraffic {
             node_bits: 8 * cycles.node_cache.bytes_in,
@@ -158,6 +171,33 @@ pub fn frame_cost(
         on_chip,
         outer,
     })
+}
+
+/// Energy of a stack of `bytes`, pJ. A record moves the bits that it holds:
+/// the stack is taken to be written and read field by field, in parallel.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn stack_energy(
+    records: &RecordProbe,
+    bytes: u64,
+    table: &CostTable,
+) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for kind in RecordKind::ALL {
+        let (bits, accesses) = (records.bits().of(kind), records.of(kind));
+        for (operation, times) in [
+            ("sram_read", accesses.reads),
+            ("sram_write", accesses.writes),
+        ] {
+            if times > 0 {
+                let each = table.memory_energy(operation, bytes, bits)?;
+                let name = format!("stack, {}", kind.name());
+                sum.push(&name, operation, bits, times, each);
+            }
+        }
+    }
+    Ok(sum)
 }
 
 /// The units of a hardware's blocks: those of classes that a frame's stages
@@ -196,6 +236,39 @@ pub fn area(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// 64 bits from 8 KB are 10 pJ, and so is writing them.
+    #[test]
+    fn records_move_the_bits_that_they_hold() {
+        use hwmodel::memory::RecordBits;
+        use hwmodel::{Probe, StageLevel};
+        let table = CostTable::load_shipped().unwrap();
+        let bits = RecordBits {
+            clip: 640,
+            screen: 320,
+            finest: 64,
+            finest_level: Some(1),
+        };
+        let mut records = RecordProbe::new(bits);
+        let place = StageLevel {
+            stage: Stage::Push,
+            level: 0,
+        };
+        records.write(Memory::Stack, 0, place); // the object, in clip space
+        records.record(0, 0);
+        records.read(Memory::Stack, 0, place);
+        for address in 0..3 {
+            records.write(Memory::Stack, address, place); // finest voxels
+        }
+        records.record(1, 1);
+        records.read(Memory::Stack, 2, place);
+        let sum = stack_energy(&records, 8192, &table).unwrap();
+        // Of the object 100 pJ twice; of the voxels 10 pJ three times and once.
+        assert!((sum.total - (200.0 + 40.0)).abs() < 1e-9, "{}", sum.total);
+        // As the widest, all six accesses would be 100 pJ.
+        let widest = RecordBits::uniform(640);
+        assert_eq!(widest.widest(), bits.widest());
+    }
 
     /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.
     #[test]

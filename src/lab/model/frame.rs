@@ -4,7 +4,7 @@ use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, Observer};
-use hwmodel::memory::{MemoryProbe, Widths};
+use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
 
 use super::ModelError;
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
@@ -30,6 +30,8 @@ pub struct Counted {
     pub counter: Counter,
     /// Where accesses went.
     pub memory: MemoryProbe,
+    /// What the records on the stack held.
+    pub records: RecordProbe,
     /// The machine's own counters.
     pub stats: Stats,
     /// The fields of a record.
@@ -95,12 +97,15 @@ pub fn count(
         light: &light,
         ..graph.view()
     };
-    let (stats, (counter, memory)) =
-        machine(overflow).render_probed(&view, setup, &mut frame, (Counter::new(), memory))?;
+    let records = RecordProbe::new(bits_by_kind(setup, graph.len()));
+    let probes = (Counter::new(), (memory, records));
+    let (stats, (counter, (memory, records))) =
+        machine(overflow).render_probed(&view, setup, &mut frame, probes)?;
     Ok(Counted {
         frame,
         counter,
         memory,
+        records,
         stats,
         fields: record_fields(setup, graph.len()),
     })

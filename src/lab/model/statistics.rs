@@ -90,6 +90,11 @@ pub fn of(
     for memory in Memory::ALL {
         let name = word(memory.name());
         let probe = &counted.memory;
+        let (read_bits, written_bits) = match memory {
+            // Records differ in what they hold.
+            Memory::Stack => (counted.records.read_bits(), counted.records.written_bits()),
+            _ => (probe.read_bits(memory), probe.written_bits(memory)),
+        };
         list.add(
             &format!("memory.{name}.reads"),
             probe.reads(memory),
@@ -104,13 +109,13 @@ pub fn of(
         );
         list.add(
             &format!("memory.{name}.read_bits"),
-            probe.read_bits(memory),
+            read_bits,
             "Bit",
             "bits read",
         );
         list.add(
             &format!("memory.{name}.written_bits"),
-            probe.written_bits(memory),
+            written_bits,
             "Bit",
             "bits written",
         );

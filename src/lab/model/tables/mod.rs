@@ -6,7 +6,8 @@ mod repeats;
 
 pub use cost::{breakdown, clock, side_by_side};
 pub use frame::{
-    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
+    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, records_by_kind,
+    stages,
 };
 pub use repeats::{caches, claims, formats, growth, lanes, rules};
 
