@@ -5,6 +5,7 @@ use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, Observer};
 use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
+use hwmodel::shifts::ShiftProbe;
 
 use super::ModelError;
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
@@ -30,6 +31,8 @@ pub struct Counted {
     pub counter: Counter,
     /// Where accesses went.
     pub memory: MemoryProbe,
+    /// By how many places lines shift.
+    pub shifts: ShiftProbe,
     /// What the records on the stack held.
     pub records: RecordProbe,
     /// The machine's own counters.
@@ -98,13 +101,14 @@ pub fn count(
         ..graph.view()
     };
     let records = RecordProbe::new(bits_by_kind(setup, graph.len()));
-    let probes = (Counter::new(), (memory, records));
-    let (stats, (counter, (memory, records))) =
+    let probes = ((Counter::new(), ShiftProbe::new()), (memory, records));
+    let (stats, ((counter, shifts), (memory, records))) =
         machine(overflow).render_probed(&view, setup, &mut frame, probes)?;
     Ok(Counted {
         frame,
         counter,
         memory,
+        shifts,
         records,
         stats,
         fields: record_fields(setup, graph.len()),
