@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::hardware::Independence;
-use crate::Stage;
+use crate::{OpClass, Stage};
 
 /// Version of the report's fields.
 pub const REPORT_VERSION: u32 = 2;
@@ -122,6 +122,9 @@ pub struct StageReport {
     /// Passes through units: more than operations where words are wider than
     /// units, none for wires.
     pub passes: u64,
+    /// Most passes that one visit had, by class in the order of [`OpClass::ALL`]:
+    /// more units than that are never used.
+    pub most_passes: [u64; OpClass::ALL.len()],
     /// Cycles in which its blocks issued operations.
     pub busy: u64,
     /// Further cycles in which its blocks waited to issue accesses.

@@ -147,6 +147,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             visits: 0,
             operations: 0,
             passes: 0,
+            most_passes: Default::default(),
             busy: 0,
             held: 0,
             utilisation: 0.0,
@@ -474,7 +475,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.account(cycles);
         let per_lane = |sum: u64| sum.div_ceil(u64::from(self.hardware.lanes));
         let mut bounds = vec![(SPAN.to_owned(), self.tasks.span)];
+        let most_passes = *self.workload.log().most_passes();
         for stage in &mut self.stages {
+            stage.most_passes = most_passes[stage.stage as usize];
             let used = stage.busy + stage.held;
             let all = (cycles * u64::from(self.hardware.lanes)).max(1);
             stage.utilisation = used as f64 / all as f64;

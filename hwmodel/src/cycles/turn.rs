@@ -141,6 +141,8 @@ pub struct TurnLog {
     latencies: Latencies,
     /// Octree level of what the turn pushes: one below its record.
     child_level: u32,
+    /// Most passes of a visit, by stage and class.
+    most_passes: [[u64; CLASSES]; STAGES],
 }
 
 /// A unit as the log needs it; `count` 0: wires.
@@ -182,6 +184,7 @@ impl TurnLog {
             units,
             latencies: Latencies::new(hardware),
             child_level: 0,
+            most_passes: [[0; CLASSES]; STAGES],
         }
     }
 
@@ -193,6 +196,11 @@ impl TurnLog {
             memory,
             write,
         });
+    }
+
+    /// Most passes that one visit had for each class of operation, by stage.
+    pub(super) fn most_passes(&self) -> &[[u64; CLASSES]; STAGES] {
+        &self.most_passes
     }
 
     /// Takes the turn's visits and accesses, and forgets them.
@@ -225,6 +233,8 @@ impl TurnLog {
             let done = std::mem::take(&mut self.done[of][class]);
             let unit = &self.units[of][class];
             if done.passes > 0 {
+                let most = &mut self.most_passes[of][class];
+                *most = done.passes.max(*most);
                 let issues = if done.passes <= unit.count {
                     1
                 } else if done.passes <= u64::from(u32::MAX) {

@@ -1,7 +1,6 @@
 //! What the model finds of a frame.
 
 use hwmodel::Overflow;
-use hwmodel::cost::Breakdown;
 use hwmodel::cycles::{Hardware, NoObserver, Progress as Ticks, Recorder, ScalingRow, TraceLimit};
 use hwmodel::cycles::{LANES, scaling};
 use hwmodel::memory::Widths;
@@ -14,6 +13,7 @@ use crate::cli::experiment::subjects;
 use crate::lab::bench::Subject;
 use crate::lab::float_rays::RayOrder;
 use crate::lab::model::ModelError;
+use crate::lab::model::area::{self, DesignArea, LightFrame};
 use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::clock::{self, ClockCheck};
@@ -38,7 +38,7 @@ pub(super) struct Findings {
     /// Samples that the hardware's picture shows otherwise than the serial machine's.
     pub(super) differing: u64,
     pub(super) cost: FrameCost,
-    pub(super) area: Breakdown,
+    pub(super) area: DesignArea,
     pub(super) clock: ClockCheck,
     pub(super) ray_caster: RayCasterReport,
     /// Wrong samples of the machine's picture.
@@ -113,7 +113,14 @@ pub(super) fn find(
         prices,
     )
     .map_err(ModelError::from)?;
-    let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let used = LightFrame {
+        counter: &counted.counter,
+        shifts: &counted.shifts,
+        cycles: &simulated.cycles,
+        setup: &setup,
+        record_bits: counted.record_bits(),
+    };
+    let area = area::light(used, &hardware, prices).map_err(ModelError::from)?;
     let clock = clock::check(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
     let tables = &args.tables;
     let rules = if tables.rules || tables.all {

@@ -61,7 +61,7 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
         &found.counted,
         &found.simulated,
         &found.cost,
-        found.area.total,
+        &found.area,
         Some(&found.ray_caster),
     );
     let panels = panels(found);
@@ -172,6 +172,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             },
             "hardware": found.hardware,
             "record_bits": record::record_bits(&found.counted.fields),
+            "shifts": found.counted.shifts.sites(),
             "record": record,
             "records_by_kind": by_kind,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),

@@ -110,10 +110,20 @@ pub(super) fn summary(found: &Findings) -> Table {
         ),
     );
     row(
-        "area of the units",
+        "area",
         format!(
-            "{:.0} NAND2 equivalents, of those that this frame uses (memories, pipeline registers and control are not in it)",
-            found.area.total
+            "{} NAND2 equivalents ({} to {}): {}; the ray caster {} ({} to {}). Wires are not in it",
+            grouped(found.area.total as u64),
+            grouped(found.area.low as u64),
+            grouped(found.area.high as u64),
+            found
+                .area
+                .parts()
+                .map(|(part, of)| format!("{part} {}", grouped(of.total as u64)))
+                .join(", "),
+            grouped(found.ray_caster.area.total as u64),
+            grouped(found.ray_caster.area.low as u64),
+            grouped(found.ray_caster.area.high as u64),
         ),
     );
     row(
@@ -205,7 +215,9 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
             &found.cost.on_chip,
         ),
         tables::breakdown("Energy of outer memory", "pj", &found.cost.outer),
-        tables::breakdown("Area of the units", "nand2", &found.area),
+        tables::area("Area of the light hardware", &found.area),
+        tables::area("Area of the ray caster", &found.ray_caster.area),
+        tables::shifts(&found.counted),
         tables::breakdown(
             "Energy of the ray caster's operations",
             "pj",

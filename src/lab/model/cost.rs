@@ -1,15 +1,16 @@
-//! Energy of a frame and area of a hardware, by the cost tables.
+//! Energy of a frame, by the cost tables.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
+use hwmodel::Memory;
 use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Costing, Goal, Store, Stores, Unit, area_of, energy_of,
-    memory_energy_of, operation_of,
+    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, Stores, energy_of,
+    memory_energy_of,
 };
 use hwmodel::count::{Accesses, Counter};
 use hwmodel::cycles::{CycleReport, Hardware};
 use hwmodel::memory::{ACCUMULATOR_BITS, RecordKind, RecordProbe, Widths};
-use hwmodel::{Memory, OpClass, Stage};
+use hwmodel::shifts::ShiftProbe;
 use serde::Serialize;
 
 use super::frame::Counted;
@@ -167,7 +168,7 @@ pub fn frame_cost(
         table,
     )?;
     Ok(FrameCost {
-        operations: energy_of(counter, table, prices.costing)?,
+        operations: operations_energy(counter, &counted.shifts, prices)?,
         on_chip,
         outer,
     })
@@ -200,42 +201,76 @@ pub fn stack_energy(
     Ok(sum)
 }
 
-/// The units of a hardware's blocks: those of classes that a frame's stages
-/// have a use for, in all lanes.
-#[must_use]
-pub fn bill(counter: &Counter, hardware: &Hardware, prices: &Prices) -> Vec<Unit> {
-    let used: BTreeSet<(Stage, OpClass)> = counter
-        .cells()
-        .map(|cell| (cell.stage, cell.class))
-        .collect();
-    let unit_of = |&(stage, class): &(Stage, OpClass)| {
-        let unit = hardware.unit(stage, class)?;
-        Some(Unit {
-            name: stage.name().to_owned(),
-            operation: operation_of(class, prices.costing.shifts).to_owned(),
-            width: unit.width,
-            count: u64::from(unit.count) * u64::from(hardware.lanes),
-        })
-    };
-    used.iter().filter_map(unit_of).collect()
-}
-
-/// Area of the blocks' units, NAND2 equivalents. Memories, registers between
-/// stages and control are not in it.
+/// Energy of the operations, pJ: those of the counter, and of its shifts those
+/// that are no wires.
 ///
 /// # Errors
 /// When the tables lack a figure.
-pub fn area(
+pub fn operations_energy(
     counter: &Counter,
-    hardware: &Hardware,
+    shifts: &ShiftProbe,
     prices: &Prices,
 ) -> Result<Breakdown, CostError> {
-    area_of(&bill(counter, hardware, prices), &prices.table, prices.goal)
+    let mut sum = energy_of(counter, &prices.table, prices.costing)?;
+    if prices.costing.shifts == ShiftUnits::Wires {
+        let mut by_bits = BTreeMap::<u32, u64>::new();
+        for ((_, bits), times) in shifts.variable() {
+            *by_bits.entry(bits).or_default() += times;
+        }
+        for (bits, times) in by_bits {
+            let each = prices.table.energy("shift_var", bits)?;
+            sum.push("shifts that are no wires", "shift_var", bits, times, each);
+        }
+    }
+    Ok(sum)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hwmodel::{Datapath, Format, OpClass, Overflow, Stage};
+
+    /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
+    #[test]
+    fn shifts_that_vary_are_billed_and_wires_are_not() {
+        let prices = Prices {
+            table: CostTable::load_shipped().unwrap(),
+            costing: Costing::default(),
+            goal: Goal::Area,
+        };
+        let mut probes = (Counter::new(), ShiftProbe::new());
+        let format = Format::new(32, 8).unwrap();
+        let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);
+        dp.stage(Stage::QuadtreeFit);
+        let word = dp.load(3);
+        for places in 1..=5 {
+            dp.shl(word, 1); // wires
+            dp.shr(word, places); // a shifter
+        }
+        dp.add(word, word);
+        let (counter, shifts) = probes;
+        assert_eq!(counter.ops_of(OpClass::Shift), 10);
+        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+        assert!(
+            (sum.total - (0.1 + 5.0 * 0.1334)).abs() < 1e-9,
+            "{}",
+            sum.total
+        );
+        let all = Costing {
+            shifts: ShiftUnits::Variable,
+            ..Costing::default()
+        };
+        let prices = Prices {
+            costing: all,
+            ..prices
+        };
+        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+        assert!(
+            (sum.total - (0.1 + 10.0 * 0.1334)).abs() < 1e-9,
+            "{}",
+            sum.total
+        );
+    }
 
     /// 64 bits from 8 KB are 10 pJ, and so is writing them.
     #[test]

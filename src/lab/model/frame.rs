@@ -130,6 +130,22 @@ pub fn count_operations(
     Ok((frame, counter, stats))
 }
 
+/// Draws a frame and counts what its operations and area are priced by.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count_priced(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    overflow: Overflow,
+) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let probes = (Counter::new(), ShiftProbe::new());
+    let (stats, (counter, shifts)) =
+        machine(overflow).render_probed(graph, setup, &mut frame, probes)?;
+    Ok((frame, counter, shifts, stats))
+}
+
 /// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
 ///
 /// # Errors

@@ -8,6 +8,7 @@
 //! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
+pub mod area;
 pub mod caches;
 pub mod claims;
 pub mod clock;

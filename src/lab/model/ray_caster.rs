@@ -1,15 +1,14 @@
 //! For comparison: a ray caster in floating point, drawing the same view with
 //! the same node format and caches, counted and priced by the same tables.
 
-use hwmodel::cost::{
-    Breakdown, CostError, CostTable, Store, Tally, Unit, area_of, energy_of_tallies,
-};
+use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
 use hwmodel::cycles::{self, Hardware, HardwareError};
 use hwmodel::memory::Cache;
 use hwmodel::{Memory, cycles::Bound};
 use serde::Serialize;
 
 use super::ModelError;
+use super::area::{self, DesignArea};
 use super::cost::{FrameCost, OuterTraffic, Prices, outer_energy};
 use super::frame;
 use super::ray_cycles::{self, RayCycles, RayHardware, RayMisses};
@@ -43,8 +42,8 @@ pub struct RayCasterReport {
     pub cost: FrameCost,
     /// How long it takes at least.
     pub cycles: RayCycles,
-    /// Area of its units, NAND2 equivalents.
-    pub area: Breakdown,
+    /// Its area, NAND2 equivalents.
+    pub area: DesignArea,
     /// Coverage against exact rays.
     pub error: CoverageError,
     /// The orders that were tried, and the frame's energy in each, pJ.
@@ -186,7 +185,7 @@ pub fn price(
         }],
         cost,
         cycles: ray_cycles::cycles(&counts, misses, &traffic, rays, hardware),
-        area: area_of(&bill(rays, hardware), &prices.table, prices.goal)?,
+        area: area::of_rays(rays, hardware, prices)?,
         error: run.error,
     })
 }
@@ -225,20 +224,6 @@ pub fn measure(
         unreachable!("there is an order");
     };
     Ok(RayCasterReport { orders, ..best })
-}
-
-/// The units of all lanes.
-fn bill(rays: &RayHardware, hardware: &Hardware) -> Vec<Unit> {
-    let unit = |(&step, unit): (&FloatStep, &cycles::Unit)| {
-        let (operation, _) = operation(step)?;
-        Some(Unit {
-            name: step.name().to_owned(),
-            operation: operation.to_owned(),
-            width: unit.width,
-            count: u64::from(unit.count) * u64::from(hardware.lanes),
-        })
-    };
-    rays.units.iter().filter_map(unit).collect()
 }
 
 /// Bits of a lane's stacks: one for each context.
@@ -337,6 +322,7 @@ mod tests {
         // The area's float adders: four of the row's middle.
         let add = report
             .area
+            .units
             .lines
             .iter()
             .find(|line| line.operation == "float_add");

@@ -4,6 +4,7 @@ use hwmodel::cycles::Cause;
 use hwmodel::statistics::Statistics;
 use hwmodel::{Memory, OpClass};
 
+use super::area::DesignArea;
 use super::cost::FrameCost;
 use super::frame::Counted;
 use super::ray_caster::RayCasterReport;
@@ -24,7 +25,7 @@ pub fn of(
     counted: &Counted,
     simulated: &Simulated,
     cost: &FrameCost,
-    area_nand2: f64,
+    area: &DesignArea,
     ray_caster: Option<&RayCasterReport>,
 ) -> Statistics {
     let mut list = Statistics::new();
@@ -145,11 +146,15 @@ pub fn of(
     list.add("energy.low", low, "pJ", "low end");
     list.add("energy.high", high, "pJ", "high end");
     list.add(
-        "area.units",
-        area_nand2,
+        "area.total",
+        area.total,
         "NAND2",
-        "area of the units that the frame uses",
+        "area of what the frame uses, middle of its range",
     );
+    for (part, of) in area.parts() {
+        let name = format!("area.{part}");
+        list.add(&name, of.total, "NAND2", "middle of its range");
+    }
     if let Some(ray_caster) = ray_caster {
         for step in FloatStep::ALL {
             let name = format!("ray_caster.{}", word(step.name()));

@@ -6,6 +6,7 @@ use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
 use crate::lab::float_rays::FloatStep;
+use crate::lab::model::area::DesignArea;
 use crate::lab::model::clock::ClockCheck;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
@@ -25,6 +26,8 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
             "times",
             "each",
             unit,
+            "low",
+            "high",
             "figure",
             "rows",
             "source",
@@ -51,12 +54,28 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
             Cell::from(line.times),
             number(each.value, 4),
             number(line.total, 1),
+            number(line.times as f64 * each.low, 1),
+            number(line.times as f64 * each.high, 1),
             Cell::Text(figure),
             Cell::Text(each.rows.clone()),
             Cell::Text(each.source.clone()),
         ]);
     }
     table
+}
+
+/// Area, part by part and line by line.
+#[must_use]
+pub fn area(title: &str, area: &DesignArea) -> Table {
+    let mut all = Breakdown::default();
+    for (part, of) in area.parts() {
+        for line in &of.lines {
+            let name = format!("{part}: {}", line.name);
+            let (operation, each) = (&line.operation, line.each.clone());
+            all.push(&name, operation, line.width, line.times, each);
+        }
+    }
+    breakdown(title, "nand2", &all)
 }
 
 /// Units against the clock.

@@ -130,6 +130,27 @@ pub fn record(fields: &[RecordField]) -> Table {
     table
 }
 
+/// Lines of the machine that shift, and by how many places.
+#[must_use]
+pub fn shifts(counted: &Counted) -> Table {
+    let mut table = Table::new(
+        "Shifts by the lines that do them: wires, or a shifter",
+        &["line", "stage", "bits", "times", "least", "most", "places"],
+    );
+    for site in counted.shifts.sites() {
+        table.rows.push(vec![
+            Cell::Text(site.site.clone()),
+            Cell::from(site.stage.name()),
+            Cell::from(u64::from(site.bits)),
+            Cell::from(site.times),
+            Cell::from(u64::from(site.least)),
+            Cell::from(u64::from(site.most)),
+            Cell::from(site.kind.name()),
+        ]);
+    }
+    table
+}
+
 /// What the records on the stack held.
 #[must_use]
 pub fn records_by_kind(counted: &Counted) -> Table {

@@ -4,10 +4,10 @@ mod cost;
 mod frame;
 mod repeats;
 
-pub use cost::{breakdown, clock, side_by_side};
+pub use cost::{area, breakdown, clock, side_by_side};
 pub use frame::{
     bounds, classes, levels, memories, miss_curve, operations_by_stage, record, records_by_kind,
-    stages,
+    shifts, stages,
 };
 pub use repeats::{caches, claims, formats, growth, lanes, rules};
 
