@@ -17,6 +17,7 @@ use crate::lab::model::area::{self, DesignArea, LightFrame};
 use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
 use crate::lab::model::clock::{self, ClockCheck};
+use crate::lab::model::compare::{self, ComparedLine, Design};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
@@ -40,6 +41,7 @@ pub(super) struct Findings {
     pub(super) cost: FrameCost,
     pub(super) area: DesignArea,
     pub(super) clock: ClockCheck,
+    pub(super) comparison: Vec<ComparedLine>,
     pub(super) ray_caster: RayCasterReport,
     /// Wrong samples of the machine's picture.
     pub(super) wrong: crate::measure::CoverageError,
@@ -122,6 +124,19 @@ pub(super) fn find(
     };
     let area = area::light(used, &hardware, prices).map_err(ModelError::from)?;
     let clock = clock::check(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let light = Design {
+        cost: &cost,
+        area: &area,
+        cycles: simulated.cycles.cycles,
+        frames_per_second: simulated.cycles.frames_per_second,
+    };
+    let rival = Design {
+        cost: &ray_caster.cost,
+        area: &ray_caster.area,
+        cycles: ray_caster.cycles.cycles,
+        frames_per_second: ray_caster.cycles.frames_per_second,
+    };
+    let comparison = compare::lines(light, rival);
     let tables = &args.tables;
     let rules = if tables.rules || tables.all {
         rules::table(graph, &camera, &options, &hardware, prices, progress)?
@@ -179,6 +194,7 @@ pub(super) fn find(
         cost,
         area,
         clock,
+        comparison,
         ray_caster,
         wrong,
         claims,

@@ -186,6 +186,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "coverage_error": found.wrong,
             "cost": found.cost,
             "area": found.area,
+            "comparison": found.comparison,
             "clock": found.clock,
             "clock_says": found.clock.sentence(),
             "ray_caster": found.ray_caster,

@@ -172,6 +172,7 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
             cycles,
             &found.ray_caster,
         ),
+        tables::comparison(&found.comparison),
         tables::claims(&found.claims),
     ];
     if !found.rules.is_empty() {

@@ -37,6 +37,8 @@ pub struct FrameCost {
     pub on_chip: Breakdown,
     /// Energy of what goes to outer memory and comes from there, pJ.
     pub outer: Breakdown,
+    /// Bits that go there and come from there.
+    pub traffic: OuterTraffic,
 }
 
 impl FrameCost {
@@ -158,19 +160,18 @@ pub fn frame_cost(
             line.each,
         );
     }
-    let outer = outer_energy(
-        &OuterTraffic {
-            node_bits: 8 * cycles.node_cache.bytes_in,
-            attribute_bits: 8 * cycles.attribute_cache.bytes_in,
-            spilled_bits: cycles.stack.spilled_bits,
-            pixel_bits: pixels.writes * u64::from(widths.pixel_bits),
-        },
-        table,
-    )?;
+    let traffic = OuterTraffic {
+        node_bits: 8 * cycles.node_cache.bytes_in,
+        attribute_bits: 8 * cycles.attribute_cache.bytes_in,
+        spilled_bits: cycles.stack.spilled_bits,
+        pixel_bits: pixels.writes * u64::from(widths.pixel_bits),
+    };
+    let outer = outer_energy(&traffic, table)?;
     Ok(FrameCost {
         operations: operations_energy(counter, &counted.shifts, prices)?,
         on_chip,
         outer,
+        traffic,
     })
 }
 

@@ -12,6 +12,7 @@ pub mod area;
 pub mod caches;
 pub mod claims;
 pub mod clock;
+pub mod compare;
 pub mod cost;
 pub mod frame;
 pub mod growth;

@@ -36,8 +36,6 @@ pub struct RayCasterReport {
     pub node_misses: u64,
     /// Misses of attributes in a cache like the hardware's.
     pub attribute_misses: u64,
-    /// Bits that go to outer memory and come from there.
-    pub traffic: OuterTraffic,
     /// What the frame costs.
     pub cost: FrameCost,
     /// How long it takes at least.
@@ -178,7 +176,6 @@ pub fn price(
         node_hits,
         node_misses,
         attribute_misses: run.attribute_misses,
-        traffic,
         orders: vec![OrderEnergy {
             order: run.order,
             energy_pj: cost.total().0,
@@ -286,6 +283,7 @@ fn cost_of(
         operations: energy_of_tallies(&operations, table)?,
         on_chip,
         outer: outer_energy(traffic, table)?,
+        traffic: *traffic,
     })
 }
 

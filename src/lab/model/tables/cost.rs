@@ -8,6 +8,7 @@ use super::{micro, number};
 use crate::lab::float_rays::FloatStep;
 use crate::lab::model::area::DesignArea;
 use crate::lab::model::clock::ClockCheck;
+use crate::lab::model::compare::ComparedLine;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
 use crate::lab::model::ray_caster::RayCasterReport;
@@ -76,6 +77,39 @@ pub fn area(title: &str, area: &DesignArea) -> Table {
         }
     }
     breakdown(title, "nand2", &all)
+}
+
+/// Both designs line by line, with the ends of every range.
+#[must_use]
+pub fn comparison(lines: &[ComparedLine]) -> Table {
+    let mut table = Table::new(
+        "Both designs, middle, low and high end; of what leaks nothing is known",
+        &[
+            "what",
+            "unit",
+            "light_hardware",
+            "low",
+            "high",
+            "ray_caster",
+            "its_low",
+            "its_high",
+            "less",
+        ],
+    );
+    for line in lines {
+        let mut row = vec![Cell::from(line.what), Cell::from(line.unit)];
+        for range in [&line.light, &line.ray_caster] {
+            let digits = if range.value >= 1000.0 { 0 } else { 3 };
+            row.extend([range.value, range.low, range.high].map(|v| number(v, digits)));
+        }
+        row.push(Cell::from(if line.overlap {
+            "the ranges overlap"
+        } else {
+            line.less.name()
+        }));
+        table.rows.push(row);
+    }
+    table
 }
 
 /// Units against the clock.

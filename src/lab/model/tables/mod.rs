@@ -4,7 +4,7 @@ mod cost;
 mod frame;
 mod repeats;
 
-pub use cost::{area, breakdown, clock, side_by_side};
+pub use cost::{area, breakdown, clock, comparison, side_by_side};
 pub use frame::{
     bounds, classes, levels, memories, miss_curve, operations_by_stage, record, records_by_kind,
     shifts, stages,
