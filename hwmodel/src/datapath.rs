@@ -4,6 +4,8 @@
 //! overflow policy. There is no call that multiplies and none that divides;
 //! the restoring divide is built by its user from [`Datapath::divide_step`].
 
+use std::panic::Location;
+
 use crate::probe::Memory;
 use crate::{
     Format, Number, OpClass, Operand, Overflow, Probe, Stage, StageLevel, WideWord, Wires, Word,
@@ -131,6 +133,12 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
+    /// Goes on with a record of this level, whose turn began before.
+    #[inline(always)]
+    pub fn resume(&mut self, level: u32) {
+        self.place.level = level;
+    }
+
     /// Names the stage to which the operations that follow belong.
     #[inline(always)]
     pub fn stage(&mut self, stage: Stage) {
@@ -181,6 +189,17 @@ impl<P: Probe> Datapath<P> {
             };
             let bits = self.width::<T>();
             self.probe.op_on(operand, class, bits, self.place);
+        }
+    }
+
+    /// Tells a probe by how many places the caller's line shifts.
+    #[inline(always)]
+    #[track_caller]
+    fn note_shift<T: Number>(&mut self, places: u32) {
+        if P::ENABLED {
+            let bits = self.width::<T>();
+            self.probe
+                .shift(bits, places, self.place, Location::caller());
         }
     }
 
@@ -276,15 +295,19 @@ impl<P: Probe> Datapath<P> {
 
     /// `a >> places`, rounded towards minus infinity; `places` may exceed the width.
     #[inline(always)]
+    #[track_caller]
     pub fn shr<T: Number>(&mut self, a: T, places: u32) -> T {
         self.note::<T>(OpClass::Shift);
+        self.note_shift::<T>(places);
         T::from_raw(a.raw() >> places.min(63))
     }
 
     /// `a << places`; overflows where bits that matter would be lost.
     #[inline(always)]
+    #[track_caller]
     pub fn shl<T: Number>(&mut self, a: T, places: u32) -> T {
         self.note::<T>(OpClass::Shift);
+        self.note_shift::<T>(places);
         let raw = a.raw();
         let shifted = if places < 64 { raw << places } else { 0 };
         if places >= 64 && raw != 0 || places < 64 && shifted >> places != raw {

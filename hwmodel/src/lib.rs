@@ -49,6 +49,7 @@ mod format;
 pub mod memory;
 mod narrow;
 pub mod probe;
+pub mod shifts;
 pub mod statistics;
 pub mod tap;
 mod word;

@@ -1,6 +1,8 @@
 //! What can be seen of the machine at work: one event for each operation and
 //! each access to a memory.
 
+use std::panic::Location;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Format, Signal};
@@ -236,6 +238,19 @@ pub trait Probe {
         self.op(class, bits, place, 1);
     }
 
+    /// A word of `bits` bits was shifted by `places`, on a line of the machine.
+    /// The same shift is an operation too: this adds by how much.
+    #[inline]
+    fn shift(
+        &mut self,
+        bits: u32,
+        places: u32,
+        place: StageLevel,
+        site: &'static Location<'static>,
+    ) {
+        let _ = (bits, places, place, site);
+    }
+
     /// A memory was read.
     #[inline]
     fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
@@ -296,6 +311,17 @@ impl<P: Probe> Probe for &mut P {
     }
 
     #[inline]
+    fn shift(
+        &mut self,
+        bits: u32,
+        places: u32,
+        place: StageLevel,
+        site: &'static Location<'static>,
+    ) {
+        (**self).shift(bits, places, place, site);
+    }
+
+    #[inline]
     fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         (**self).read(memory, address, place);
     }
@@ -349,6 +375,22 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
         }
         if B::ENABLED {
             self.1.op(class, bits, place, times);
+        }
+    }
+
+    #[inline]
+    fn shift(
+        &mut self,
+        bits: u32,
+        places: u32,
+        place: StageLevel,
+        site: &'static Location<'static>,
+    ) {
+        if A::ENABLED {
+            self.0.shift(bits, places, place, site);
+        }
+        if B::ENABLED {
+            self.1.shift(bits, places, place, site);
         }
     }
 

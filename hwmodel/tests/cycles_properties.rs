@@ -10,6 +10,7 @@ use hwmodel::cycles::{
     Cache, CycleReport, Hardware, ImageNode, Independence, NoObserver, Recorder, StackOverflow,
     TraceLimit, Unit, simulate,
 };
+use hwmodel::memory::RecordBits;
 use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 
@@ -140,6 +141,8 @@ fn hardware(seed: u64, independence: Independence) -> Hardware {
     hardware.pixels.write_ports = 1 + dice.below(2) as u32;
     hardware.pixels.buffer = 1 + dice.below(4) as u32;
     hardware.pixels.drain_interval = dice.below(9) as u32;
+    hardware.outer_memory.bytes_per_cycle = dice.below(4) as u32 * 3;
+    hardware.stack.record = RecordBits::uniform(dice.below(2000) as u32);
     hardware.check().unwrap();
     hardware
 }
@@ -254,7 +257,7 @@ proptest! {
     /// made faster or wider can make the frame slower.
     #[test]
     fn with_one_context_better_parts_are_never_slower(
-        seed: u64, hw: u64, independence in any_independence(), which in 0..20usize,
+        seed: u64, hw: u64, independence in any_independence(), which in 0..22usize,
     ) {
         let nodes = records(seed, 100);
         let mut hardware = hardware(hw, independence);
@@ -295,6 +298,8 @@ fn improve(hardware: &mut Hardware, which: usize) {
         16 => hardware.fill_vectors.read_ports += 1,
         17 => hardware.pixels.write_ports += 1,
         18 => hardware.pixels.buffer += 1,
+        20 => hardware.outer_memory.bytes_per_cycle *= 2,
+        21 => hardware.stack.record = RecordBits::uniform(hardware.stack.record.clip / 2),
         _ => hardware.pixels.drain_interval /= 2,
     }
 }
@@ -318,8 +323,8 @@ fn anomalies_with_several_contexts_are_rare_and_small() {
         }
     }
     eprintln!("{slower} of {runs} improvements made a frame slower, at worst {worst:.3} times");
-    assert_eq!((slower, runs), (105, 2000));
-    assert!((1.09..1.10).contains(&worst), "{worst}");
+    assert_eq!((slower, runs), (102, 2000));
+    assert!((1.18..1.19).contains(&worst), "{worst}");
 }
 
 #[test]

@@ -152,6 +152,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// A parent goes to the stack. `address`: its place there.
     pub(super) fn store(&mut self, parent: &mut Parent<L>, address: u64) {
+        self.dp.resume(parent.record.cube.level);
         self.dp.stage(Stage::Push);
         self.dp.write(Memory::Stack, address);
         self.counts.deepest_stack = self.counts.deepest_stack.max(address + 1);
@@ -165,6 +166,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         parent: &mut Parent<L>,
         address: u64,
     ) -> Option<Parent<L>> {
+        self.dp.resume(parent.record.cube.level);
         let expanded = match parent.expanded {
             Some(expanded) => expanded,
             None => {

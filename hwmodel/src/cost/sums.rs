@@ -49,6 +49,11 @@ pub const fn operation_of(class: OpClass, shifts: ShiftUnits) -> &'static str {
     }
 }
 
+/// Exclusive ors of the stage *order* for one octant, each with a constant.
+/// Which bits of a result are the octant's, and which their inverses, is fixed:
+/// all eight together are one inversion of the octant.
+pub const ORDERED_OCTANTS: u64 = 8;
+
 /// So many operations of one kind.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Tally {
@@ -128,6 +133,9 @@ impl Breakdown {
 
 /// What was counted, as operations of a cost table, by operation and width.
 ///
+/// The exclusive ors of the stage *order*, all of them with constants, are
+/// wires and one inversion for every [`ORDERED_OCTANTS`].
+///
 /// With [`MinMaxUnits::Pairs`], minima and maxima of the stages that find
 /// spans (child box, quadtree fit) become compares and selects.
 ///
@@ -151,6 +159,9 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
             let (compares, selects) = costing.min_max.compares_and_selects(8);
             *sums.entry(("less", bits)).or_default() += times / of_a_span * compares;
             *sums.entry(("select", bits)).or_default() += times / of_a_span * selects;
+        } else if (stage, class) == (Stage::Order, OpClass::Logic) {
+            // By eight constants: wires, and the octant's bits inverted once.
+            *sums.entry(("invert", bits)).or_default() += times.div_ceil(ORDERED_OCTANTS);
         } else {
             let operation = operation_of(class, costing.shifts);
             *sums.entry((operation, bits)).or_default() += times;

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use crate::memory::RecordBits;
 use crate::{OpClass, Stage};
 
 /// Most lanes a hardware may have.
@@ -61,6 +62,29 @@ pub struct Hardware {
     pub fill_vectors: Banks,
     /// Pixels, for all lanes.
     pub pixels: Pixels,
+    /// The port to outer memory, for all lanes.
+    #[serde(default)]
+    pub outer_memory: OuterMemory,
+}
+
+/// The port to outer memory, which cache misses and spilled records share.
+/// Pixels leave by a way of their own ([`Pixels`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OuterMemory {
+    /// Bytes it moves a cycle; 0, where nothing is said: as many as are wanted.
+    pub bytes_per_cycle: u32,
+}
+
+impl OuterMemory {
+    /// Cycles for which so many bits take the port.
+    #[must_use]
+    pub fn cycles(self, bits: u64) -> u64 {
+        match self.bytes_per_cycle {
+            0 => 0,
+            bytes => bits.div_ceil(8 * u64::from(bytes)),
+        }
+    }
 }
 
 /// How the record loop's data is organised. The picture under rules of exact coverage is the same whatever this says.
@@ -136,8 +160,12 @@ pub struct Stack {
     pub latency: u32,
     /// What becomes of a record beyond the last entry.
     pub overflow: StackOverflow,
-    /// Further cycles to take a record that was spilled.
+    /// Further cycles to take a record that was spilled, until its first bits are there.
     pub spill_cycles: u32,
+    /// Bits of the frame's records: what a spilled one moves to outer memory
+    /// and back. Whoever simulates a frame says it; a description need not.
+    #[serde(default)]
+    pub record: RecordBits,
 }
 
 /// What becomes of a record for which a stack has no entry.
@@ -327,6 +355,14 @@ impl Hardware {
         within("fill_vectors.banks", self.fill_vectors.banks, 1, MAX_KEPT)?;
         within("pixels.buffer", self.pixels.buffer, 1, MAX_KEPT)?;
         for (field, value, least) in [
+            (
+                "outer_memory.bytes_per_cycle",
+                self.outer_memory.bytes_per_cycle,
+                0,
+            ),
+            ("stack.record.clip", stack.record.clip, 0),
+            ("stack.record.screen", stack.record.screen, 0),
+            ("stack.record.finest", stack.record.finest, 0),
             ("stack.entries", stack.entries, 1),
             ("stack.ports", stack.ports, 1),
             ("stack.latency", stack.latency, 0),

@@ -3,7 +3,7 @@
 //! Accesses are booked in the order in which their stages start; one is
 //! served after all that were booked before it at the same port.
 
-use super::hardware::{Banks, Cache, Hardware, Pixels};
+use super::hardware::{Banks, Cache, Hardware, OuterMemory, Pixels};
 use super::report::{CacheReport, Cause};
 use super::turn::Access;
 use crate::Memory;
@@ -90,6 +90,39 @@ impl Port {
     }
 }
 
+/// The port to outer memory: one transfer after the other.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OuterPort {
+    of: OuterMemory,
+    free_at: u64,
+    /// Cycles for which it was taken.
+    pub(super) busy: u64,
+}
+
+impl OuterPort {
+    fn new(of: OuterMemory) -> Self {
+        Self {
+            of,
+            free_at: 0,
+            busy: 0,
+        }
+    }
+
+    /// Takes the port for so many bits, from `at` on or as soon as it is free.
+    /// Returns the first cycle, and how many it takes.
+    #[inline]
+    pub(super) fn book(&mut self, at: u64, bits: u64) -> (u64, u64) {
+        let cycles = self.of.cycles(bits);
+        if cycles == 0 {
+            return (at, 0);
+        }
+        let begun = at.max(self.free_at);
+        self.free_at = begun + cycles;
+        self.busy += cycles;
+        (begun, cycles)
+    }
+}
+
 /// When an access is issued and done, and what it waited for if it did.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Served {
@@ -140,7 +173,7 @@ impl CacheState {
     }
 
     #[inline]
-    fn access(&mut self, address: u64, at: u64) -> Served {
+    fn access(&mut self, address: u64, at: u64, outer: &mut OuterPort) -> Served {
         let issued = self.port.book(at);
         let hit = issued + u64::from(self.of.hit_latency);
         let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
@@ -166,9 +199,11 @@ impl CacheState {
         }
         let slot = (self.misses % self.slots.len() as u64) as usize;
         self.misses += 1;
-        let begun = issued.max(self.slots[slot]);
+        let line_bits = 8 * u64::from(self.of.line_bytes);
+        let (begun, moving) = outer.book(issued.max(self.slots[slot]), line_bits);
         self.port.hold(begun);
-        let done = begun + u64::from(self.of.hit_latency) + u64::from(self.of.miss_latency);
+        let away = u64::from(self.of.miss_latency).max(moving);
+        let done = begun + u64::from(self.of.hit_latency) + away;
         self.slots[slot] = done;
         set.copy_within(0..ways - 1, 1);
         set[0] = Line {
@@ -308,6 +343,7 @@ pub(super) struct Memories {
     pub(super) attributes: CacheState,
     pub(super) fill: BanksState,
     pub(super) pixels: PixelsState,
+    pub(super) outer: OuterPort,
 }
 
 impl Memories {
@@ -319,6 +355,7 @@ impl Memories {
             attributes: CacheState::new(hardware.attribute_cache),
             fill: BanksState::new(hardware.fill_vectors),
             pixels: PixelsState::new(hardware.pixels),
+            outer: OuterPort::new(hardware.outer_memory),
         }
     }
 
@@ -335,8 +372,8 @@ impl Memories {
                     cause: Cause::MemoryPort,
                 }
             }
-            Memory::Node => self.nodes.access(access.address, at),
-            Memory::Attribute => self.attributes.access(access.address, at),
+            Memory::Node => self.nodes.access(access.address, at, &mut self.outer),
+            Memory::Attribute => self.attributes.access(access.address, at, &mut self.outer),
             Memory::FillVector => self.fill.access(access, at),
             Memory::Pixel => self.pixels.write(at),
             // Beside the blending block, as wide as an accumulator, with a port
@@ -377,7 +414,11 @@ impl Latencies {
             worst[memory as usize] = 1 + read.max(write);
         }
         for (memory, cache) in caches {
-            worst[memory as usize] += u64::from(cache.miss_latency);
+            // Its own line, and before that the port for as long.
+            let moving = hardware
+                .outer_memory
+                .cycles(8 * u64::from(cache.line_bytes));
+            worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
         }
         worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval);
         Self { alone, worst }

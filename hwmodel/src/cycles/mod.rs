@@ -40,11 +40,15 @@
 //!    the stack on which it lies; one that lies on another lane's stack takes
 //!    [`Hardware::steal_cycles`] longer in stage *pop*. A record for which a
 //!    stack has no entry is an error or is *spilled*: written out in the
-//!    background and read back in `spill_cycles` more of stage *pop*.
+//!    background and read back, from the cycle in which it is taken on, in
+//!    `spill_cycles` more of stage *pop*. Either way its bits take the port to
+//!    outer memory ([`OuterMemory::cycles`]); what reading back waits for that
+//!    port, and the cycles of its own bits, come to the `spill_cycles`.
 //! 6. **Cache.** Set-associative, least recently used goes first. A hit is done after
-//!    `hit_latency`. A miss waits for one of the `misses` slots, holding the
-//!    port; it is done after `hit_latency + miss_latency`, and so is, at the
-//!    earliest, a hit on the same line.
+//!    `hit_latency`. A miss waits for one of the `misses` slots and for the port to
+//!    outer memory, which its line then takes; both while holding the
+//!    cache's port. It is done after `hit_latency` and the longer of `miss_latency` and
+//!    the line's own cycles, and so is, at the earliest, a hit on the same line.
 //! 7. **Fill vectors.** An address lies in bank `address mod banks`; each bank has
 //!    its own ports.
 //! 8. **Pixels.** Written into a buffer through ports; one that finds it full
@@ -78,7 +82,7 @@
 //! no part that is made faster or wider makes a frame slower. With several that
 //! is not so: records then meet in another order (the anomalies of list
 //! scheduling, Graham 1969). Of 2000 improvements of random hardware on random
-//! records, 105 made the frame slower, at worst by 10 % (`tests/cycles_properties.rs`).
+//! records, 102 made the frame slower, at worst by 19 % (`tests/cycles_properties.rs`).
 //!
 //! # What is left out
 //!
@@ -100,7 +104,7 @@ mod wheel;
 
 pub use hardware::{
     Banks, Cache, Hardware, HardwareError, Independence, MAX_CONTEXTS, MAX_LANES, MAX_TILE_LEVELS,
-    Organisation, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
+    Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
 pub use report::{

@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::hardware::Independence;
-use crate::Stage;
+use crate::{OpClass, Stage};
 
 /// Version of the report's fields.
-pub const REPORT_VERSION: u32 = 1;
+pub const REPORT_VERSION: u32 = 2;
 
 /// What a record waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
@@ -122,6 +122,9 @@ pub struct StageReport {
     /// Passes through units: more than operations where words are wider than
     /// units, none for wires.
     pub passes: u64,
+    /// Most passes that one visit had, by class in the order of [`OpClass::ALL`]:
+    /// more units than that are never used.
+    pub most_passes: [u64; OpClass::ALL.len()],
     /// Cycles in which its blocks issued operations.
     pub busy: u64,
     /// Further cycles in which its blocks waited to issue accesses.
@@ -175,6 +178,8 @@ pub struct StackReport {
     pub most_open: u64,
     /// Records that found no entry.
     pub spilled: u64,
+    /// Their bits: written to outer memory once and read from there once.
+    pub spilled_bits: u64,
     /// Records taken from another lane.
     pub stolen: u64,
 }
@@ -250,6 +255,9 @@ pub struct CycleReport {
     pub fill_reads: u64,
     /// Fill vectors written.
     pub fill_writes: u64,
+    /// Cycles for which the port to outer memory was taken: by lines of the
+    /// caches and by spilled records.
+    pub outer_busy: u64,
     /// Stacks.
     pub stack: StackReport,
     /// By resource, tightest first.
@@ -367,5 +375,7 @@ impl CycleReport {
     }
 }
 
+/// Name of the port to outer memory among the bounds.
+pub(super) const OUTER_PORT: &str = "outer memory port";
 /// Name of the span among the bounds.
 pub(super) const SPAN: &str = "longest chain";

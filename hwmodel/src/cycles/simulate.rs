@@ -6,13 +6,14 @@ use super::hardware::{Hardware, HardwareError, StackOverflow};
 use super::memories::Memories;
 use super::observe::{Observer, START, VisitSpan};
 use super::report::{
-    Bottleneck, Cause, ContextReport, CycleReport, REPORT_VERSION, SPAN, StackReport, StageReport,
-    Stalls,
+    Bottleneck, Cause, ContextReport, CycleReport, OUTER_PORT, REPORT_VERSION, SPAN, StackReport,
+    StageReport, Stalls,
 };
 use super::tasks::Tasks;
 use super::turn::{Child, STAGES, TurnVisits, Workload};
 use super::wheel::Wheel;
 use crate::Stage;
+use crate::memory::RecordKind;
 
 const NONE: u32 = u32::MAX;
 /// Records from one sign of progress to the next.
@@ -67,6 +68,8 @@ struct Context {
     from: u32,
     steal: u64,
     spill: u64,
+    /// Whether its record is in screen space.
+    in_screen_space: bool,
     /// The next in the line of its block.
     behind: u32,
 }
@@ -144,6 +147,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             visits: 0,
             operations: 0,
             passes: 0,
+            most_passes: Default::default(),
             busy: 0,
             held: 0,
             utilisation: 0.0,
@@ -215,6 +219,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         of.visit = 0;
         of.arrived = now;
         of.granted = false;
+        of.in_screen_space |= of.plan.changed_to_screen;
         self.work += of.plan.alone;
         self.serial += of.plan.worst + of.steal + of.spill;
         for visit in &of.plan.visits {
@@ -345,6 +350,8 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             .stored
             .saturating_sub(u64::from(self.hardware.stack.entries));
         let spills = over.min(count);
+        let record = &self.hardware.stack.record;
+        let kind = record.kind(of.plan.child_level, of.in_screen_space);
         if spills > 0 {
             if self.hardware.stack.overflow == StackOverflow::Error {
                 return Err(SimulationError::StackOverflow {
@@ -354,12 +361,19 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
                 });
             }
             self.stack.spilled += spills;
+            let bits = u64::from(record.of(kind));
+            self.stack.spilled_bits += spills * bits;
+            for _ in 0..spills {
+                // In the background: nothing waits for it but the port.
+                let (_, moving) = self.memories.outer.book(now, bits);
+                self.serial += moving;
+            }
         }
         let newly = &mut self.newly;
         self.tasks.end(
             of.task,
             of.plan.alone,
-            (lane, spills as usize),
+            (lane, spills as usize, kind),
             &of.children,
             newly,
         );
@@ -438,7 +452,14 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         of.record = self.records;
         of.from = record.lane;
         of.steal = u64::from(self.hardware.steal_cycles) * u64::from(stolen);
-        of.spill = u64::from(self.hardware.stack.spill_cycles) * u64::from(record.spilled);
+        of.in_screen_space = record.kind == RecordKind::Screen;
+        of.spill = if record.spilled {
+            let bits = u64::from(self.hardware.stack.record.of(record.kind));
+            let (begun, moving) = self.memories.outer.book(now, bits);
+            begun - now + moving + u64::from(self.hardware.stack.spill_cycles)
+        } else {
+            0
+        };
         self.records += 1;
         if self.records.is_multiple_of(PROGRESS) {
             self.observer.progress(now, self.records);
@@ -454,7 +475,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.account(cycles);
         let per_lane = |sum: u64| sum.div_ceil(u64::from(self.hardware.lanes));
         let mut bounds = vec![(SPAN.to_owned(), self.tasks.span)];
+        let most_passes = *self.workload.log().most_passes();
         for stage in &mut self.stages {
+            stage.most_passes = most_passes[stage.stage as usize];
             let used = stage.busy + stage.held;
             let all = (cycles * u64::from(self.hardware.lanes)).max(1);
             stage.utilisation = used as f64 / all as f64;
@@ -471,6 +494,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             ("busiest fill-vector bank", memories.fill.bound()),
             ("pixel port", memories.pixels.port.bound()),
             ("pixel drain", memories.pixels.drain_bound()),
+            (OUTER_PORT, memories.outer.busy),
         ] {
             bounds.push((name.to_owned(), bound));
         }
@@ -503,6 +527,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             attribute_cache: memories.attributes.report(),
             fill_reads,
             fill_writes,
+            outer_busy: memories.outer.busy,
             stack: StackReport {
                 most_open: self.tasks.most_open,
                 ..self.stack

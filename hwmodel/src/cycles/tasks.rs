@@ -7,6 +7,7 @@
 
 use super::hardware::Independence;
 use super::turn::Child;
+use crate::memory::RecordKind;
 
 const NO_TASK: u32 = u32::MAX;
 
@@ -21,6 +22,7 @@ struct Task {
     /// Its children that are not finished.
     alive: u8,
     spilled: bool,
+    kind: RecordKind,
     /// Lane on whose stack it lies.
     lane: u32,
     children: [u32; 8],
@@ -36,6 +38,7 @@ pub(super) struct StartedTask {
     pub(super) item: u32,
     pub(super) lane: u32,
     pub(super) spilled: bool,
+    pub(super) kind: RecordKind,
 }
 
 #[derive(Debug)]
@@ -83,6 +86,7 @@ impl Tasks {
             waits: 0,
             alive: 0,
             spilled: false,
+            kind: RecordKind::Clip,
             lane: 0,
             children: [NO_TASK; 8],
             begins: 0,
@@ -97,6 +101,7 @@ impl Tasks {
             item: task.item,
             lane: task.lane,
             spilled: task.spilled,
+            kind: task.kind,
         }
     }
 
@@ -114,7 +119,7 @@ impl Tasks {
     }
 
     /// The end of a turn that would have taken `alone` cycles without
-    /// contention. Its children lie on the stack of `lane`; `spills`: how
+    /// contention. Its children, all of one kind, lie on the stack of `lane`; `spills`: how
     /// many of them, the nearest (last pushed) ones, found no entry. Tasks
     /// that have become ready are appended to `ready`, the one to go last first.
     #[inline]
@@ -122,7 +127,7 @@ impl Tasks {
         &mut self,
         task: u32,
         alone: u64,
-        (lane, spills): (u32, usize),
+        (lane, spills, kind): (u32, usize, RecordKind),
         children: &[Child],
         ready: &mut Vec<u32>,
     ) {
@@ -151,6 +156,7 @@ impl Tasks {
                 waits,
                 alive: 0,
                 spilled: slot < spills,
+                kind,
                 lane,
                 children: [NO_TASK; 8],
                 begins: over,

@@ -139,6 +139,10 @@ pub struct TurnLog {
     passes_of: Box<[[[u8; WIDTHS]; CLASSES]; STAGES]>,
     units: [[Issue; CLASSES]; STAGES],
     latencies: Latencies,
+    /// Octree level of what the turn pushes: one below its record.
+    child_level: u32,
+    /// Most passes of a visit, by stage and class.
+    most_passes: [[u64; CLASSES]; STAGES],
 }
 
 /// A unit as the log needs it; `count` 0: wires.
@@ -179,6 +183,8 @@ impl TurnLog {
             passes_of,
             units,
             latencies: Latencies::new(hardware),
+            child_level: 0,
+            most_passes: [[0; CLASSES]; STAGES],
         }
     }
 
@@ -192,6 +198,11 @@ impl TurnLog {
         });
     }
 
+    /// Most passes that one visit had for each class of operation, by stage.
+    pub(super) fn most_passes(&self) -> &[[u64; CLASSES]; STAGES] {
+        &self.most_passes
+    }
+
     /// Takes the turn's visits and accesses, and forgets them.
     #[inline]
     pub(super) fn take(&mut self, plan: &mut TurnVisits) {
@@ -199,6 +210,10 @@ impl TurnLog {
         plan.accesses.clear();
         plan.alone = 0;
         plan.worst = 0;
+        plan.child_level = self.child_level;
+        // As `memory::RecordProbe` has it.
+        let divides = 1 << OpClass::DivideStep as u16;
+        plan.changed_to_screen = self.met[Stage::ToScreen as usize] & divides != 0;
         for stage in ROUND {
             if self.met[stage as usize] != 0 {
                 self.take_stage(stage, plan);
@@ -218,6 +233,8 @@ impl TurnLog {
             let done = std::mem::take(&mut self.done[of][class]);
             let unit = &self.units[of][class];
             if done.passes > 0 {
+                let most = &mut self.most_passes[of][class];
+                *most = done.passes.max(*most);
                 let issues = if done.passes <= unit.count {
                     1
                 } else if done.passes <= u64::from(u32::MAX) {
@@ -267,6 +284,11 @@ impl Probe for TurnLog {
     }
 
     #[inline]
+    fn record(&mut self, _: u64, level: u32) {
+        self.child_level = level + 1;
+    }
+
+    #[inline]
     fn read(&mut self, memory: Memory, address: u64, place: StageLevel) {
         self.access(memory, address, place.stage, false);
     }
@@ -301,4 +323,8 @@ pub(super) struct TurnVisits {
     pub(super) alone: u64,
     /// Cycles if it waits for all it ever must with nothing else under way.
     pub(super) worst: u64,
+    /// Octree level of its children.
+    pub(super) child_level: u32,
+    /// Whether its record changed to screen space.
+    pub(super) changed_to_screen: bool,
 }

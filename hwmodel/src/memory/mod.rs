@@ -3,11 +3,13 @@
 
 mod cache;
 mod curve;
+mod records;
 mod touched;
 mod traffic;
 
 pub use cache::{Cache, CacheError};
 pub use curve::{MissCurve, MissPoint};
+pub use records::{RecordAccesses, RecordBits, RecordKind, RecordProbe};
 pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, Widths};
 
 use std::collections::HashMap;

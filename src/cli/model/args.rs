@@ -11,6 +11,7 @@ use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::export::ExportArgs;
 use crate::lab::bench::Scan;
+use crate::lab::float_rays::RayOrder;
 use crate::lab::model::cost::Prices;
 
 /// Arguments of `model`.
@@ -60,6 +61,9 @@ pub(super) struct HardwareArgs {
     /// Count shifts by constants as shifters, not as wires
     #[arg(long)]
     shifters: bool,
+    /// Order of the ray caster's rays [default: the one of least energy]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    pub(super) ray_order: Option<RayOrder>,
 }
 
 /// What is told beside the frame itself.
@@ -75,6 +79,9 @@ pub(super) struct TableArgs {
     /// The same frame in words of many widths: bits=16..48, or with steps: bits=16..64+4
     #[arg(long, value_name = "bits=A..B", value_parser = bits_scan)]
     pub(super) sweep: Option<Scan>,
+    /// Node caches of 4 KiB to 1 MiB, for this hardware and for the ray caster in every order
+    #[arg(long)]
+    pub(super) caches: bool,
     /// Growing pictures of this object, and growing objects in this picture
     #[arg(long)]
     pub(super) growth: bool,

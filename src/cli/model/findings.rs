@@ -1,7 +1,6 @@
 //! What the model finds of a frame.
 
 use hwmodel::Overflow;
-use hwmodel::cost::Breakdown;
 use hwmodel::cycles::{Hardware, NoObserver, Progress as Ticks, Recorder, ScalingRow, TraceLimit};
 use hwmodel::cycles::{LANES, scaling};
 use hwmodel::memory::Widths;
@@ -12,8 +11,13 @@ use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::subjects;
 use crate::lab::bench::Subject;
+use crate::lab::float_rays::RayOrder;
 use crate::lab::model::ModelError;
+use crate::lab::model::area::{self, DesignArea, LightFrame};
+use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
+use crate::lab::model::clock::{self, ClockCheck};
+use crate::lab::model::compare::{self, ComparedLine, Design};
 use crate::lab::model::cost::{self, FrameCost, Prices};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
@@ -35,7 +39,9 @@ pub(super) struct Findings {
     /// Samples that the hardware's picture shows otherwise than the serial machine's.
     pub(super) differing: u64,
     pub(super) cost: FrameCost,
-    pub(super) area: Breakdown,
+    pub(super) area: DesignArea,
+    pub(super) clock: ClockCheck,
+    pub(super) comparison: Vec<ComparedLine>,
     pub(super) ray_caster: RayCasterReport,
     /// Wrong samples of the machine's picture.
     pub(super) wrong: crate::measure::CoverageError,
@@ -43,6 +49,7 @@ pub(super) struct Findings {
     pub(super) rules: Vec<RuleRow>,
     pub(super) formats: Vec<FormatRow>,
     pub(super) lanes: Vec<ScalingRow>,
+    pub(super) caches: Vec<CacheRow>,
     pub(super) pictures: Vec<GrowthRow>,
     pub(super) objects: Vec<GrowthRow>,
 }
@@ -93,13 +100,14 @@ pub(super) fn find(
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = rules::true_setup(graph, &camera, &options)?;
     let exact = frame::reference(&graph.view(), &true_setup)?;
-    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, &exact)?;
+    let order = args.hardware.ray_order;
+    let ray_caster = ray_caster::measure(graph, &setup, &hardware, prices, order, &exact)?;
     let wrong = frame::error(&counted.frame, &exact);
     progress.end();
 
     let widths = frame::widths(&setup, graph, &hardware);
     let cost = cost::frame_cost(
-        &counted.counter,
+        &counted,
         &simulated.cycles,
         &widths,
         &setup,
@@ -107,7 +115,28 @@ pub(super) fn find(
         prices,
     )
     .map_err(ModelError::from)?;
-    let area = cost::area(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let used = LightFrame {
+        counter: &counted.counter,
+        shifts: &counted.shifts,
+        cycles: &simulated.cycles,
+        setup: &setup,
+        record_bits: counted.record_bits(),
+    };
+    let area = area::light(used, &hardware, prices).map_err(ModelError::from)?;
+    let clock = clock::check(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    let light = Design {
+        cost: &cost,
+        area: &area,
+        cycles: simulated.cycles.cycles,
+        frames_per_second: simulated.cycles.frames_per_second,
+    };
+    let rival = Design {
+        cost: &ray_caster.cost,
+        area: &ray_caster.area,
+        cycles: ray_caster.cycles.cycles,
+        frames_per_second: ray_caster.cycles.frames_per_second,
+    };
+    let comparison = compare::lines(light, rival);
     let tables = &args.tables;
     let rules = if tables.rules || tables.all {
         rules::table(graph, &camera, &options, &hardware, prices, progress)?
@@ -132,6 +161,18 @@ pub(super) fn find(
     } else {
         Vec::new()
     };
+    let caches = if tables.caches || tables.all {
+        let drawn = Drawn {
+            graph,
+            setup: &setup,
+            counted: &counted,
+            exact: &exact,
+        };
+        let orders = order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
+        caches::table(drawn, overflow, &hardware, &orders, prices, progress)?
+    } else {
+        Vec::new()
+    };
     let (pictures, objects) = if tables.growth || tables.all {
         let sides = sides_to(size.0.max(size.1));
         let pictures = growth::pictures(name, graph, &camera, &sides, &options, progress)?;
@@ -152,12 +193,15 @@ pub(super) fn find(
         differing,
         cost,
         area,
+        clock,
+        comparison,
         ray_caster,
         wrong,
         claims,
         rules,
         formats,
         lanes,
+        caches,
         pictures,
         objects,
         subject,
@@ -252,6 +296,7 @@ impl From<ModelError> for CliError {
                 error.into()
             }
             ModelError::Simulate(error) => Self::new(Kind::Limit, error),
+            ModelError::Hardware(error) => Self::new(Kind::Input, error),
             ModelError::Cost(error) => Self::new(Kind::Input, error),
         }
     }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use hwmodel::memory::RecordKind;
 use hwmodel::statistics::{Statistics, Value as Figure};
 use serde_json::{Value, json};
 
@@ -14,7 +15,7 @@ use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
-use crate::lab::model::{cost, heat, plots, record, statistics};
+use crate::lab::model::{caches, cost, heat, plots, record, statistics};
 use crate::picture::{png, store};
 use crate::report::plot::Panel;
 use crate::report::{Cell, Table};
@@ -60,7 +61,7 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
         &found.counted,
         &found.simulated,
         &found.cost,
-        found.area.total,
+        &found.area,
         Some(&found.ray_caster),
     );
     let panels = panels(found);
@@ -121,6 +122,9 @@ fn panels(found: &Findings) -> Vec<Panel> {
     if !found.lanes.is_empty() {
         panels.push(plots::lanes(&found.lanes));
     }
+    if !found.caches.is_empty() {
+        panels.push(plots::caches(&found.caches));
+    }
     if !found.formats.is_empty() {
         panels.push(plots::formats(&found.formats));
     }
@@ -133,6 +137,14 @@ fn document(found: &Findings, list: &Statistics) -> Value {
         .fields
         .iter()
         .map(|f| json!({ "field": f.name, "bits": f.bits, "held": format!("{:?}", f.held) }))
+        .collect();
+    let by_kind: Vec<Value> = RecordKind::ALL
+        .into_iter()
+        .map(|kind| {
+            let records = &found.counted.records;
+            let accesses = records.of(kind);
+            json!({ "kind": kind, "bits": records.bits().of(kind), "popped": accesses.reads, "pushed": accesses.writes })
+        })
         .collect();
     let cells: Vec<_> = found.counted.counter.cells().collect();
     let curve: Vec<_> = found
@@ -160,7 +172,9 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             },
             "hardware": found.hardware,
             "record_bits": record::record_bits(&found.counted.fields),
+            "shifts": found.counted.shifts.sites(),
             "record": record,
+            "records_by_kind": by_kind,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
             "fill_vector_bits": cost::fill_vector_bits(&found.setup),
             "accumulator_bits": cost::accumulator_bits(&found.setup),
@@ -172,11 +186,16 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "coverage_error": found.wrong,
             "cost": found.cost,
             "area": found.area,
+            "comparison": found.comparison,
+            "clock": found.clock,
+            "clock_says": found.clock.sentence(),
             "ray_caster": found.ray_caster,
             "claims": found.claims,
             "rules": found.rules,
             "formats": found.formats,
             "lanes": found.lanes,
+            "caches": found.caches,
+            "caches_say": (!found.caches.is_empty()).then(|| caches::sentence(&found.caches)),
             "growing_pictures": found.pictures,
             "growing_objects": found.objects,
             "statistics": list,

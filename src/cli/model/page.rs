@@ -45,7 +45,7 @@ pub(super) fn html(
         figure(format!("{}", found.counted.record_bits()), "bits a record"),
         figure(
             format!("{:.0} k", found.area.total / 1e3),
-            "NAND2 equivalents of units",
+            "NAND2 equivalents",
         ),
         figure(format!("{:.1} uJ", energy / 1e6), "a frame"),
         figure(format!("{:.1}", cycles.parallelism), "work over span"),

@@ -101,10 +101,29 @@ pub(super) fn summary(found: &Findings) -> Table {
         format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
     );
     row(
-        "area of the units",
+        "clock",
         format!(
-            "{:.0} NAND2 equivalents, of those that this frame uses (memories, pipeline registers and control are not in it)",
-            found.area.total
+            "{} MHz: {}. As it is, {:.0} MHz at most",
+            cycles.clock_mhz,
+            found.clock.sentence(),
+            found.clock.fastest_mhz
+        ),
+    );
+    row(
+        "area",
+        format!(
+            "{} NAND2 equivalents ({} to {}): {}; the ray caster {} ({} to {}). Wires are not in it",
+            grouped(found.area.total as u64),
+            grouped(found.area.low as u64),
+            grouped(found.area.high as u64),
+            found
+                .area
+                .parts()
+                .map(|(part, of)| format!("{part} {}", grouped(of.total as u64)))
+                .join(", "),
+            grouped(found.ray_caster.area.total as u64),
+            grouped(found.ray_caster.area.low as u64),
+            grouped(found.ray_caster.area.high as u64),
         ),
     );
     row(
@@ -146,7 +165,14 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
         tables::stages(&found.counted, cycles),
         tables::memories(&found.counted, &found.widths, cycles),
         tables::bounds(cycles),
-        tables::side_by_side(&found.counted, &found.wrong, &found.cost, &found.ray_caster),
+        tables::side_by_side(
+            &found.counted,
+            &found.wrong,
+            &found.cost,
+            cycles,
+            &found.ray_caster,
+        ),
+        tables::comparison(&found.comparison),
         tables::claims(&found.claims),
     ];
     if !found.rules.is_empty() {
@@ -157,6 +183,9 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
     }
     if !found.lanes.is_empty() {
         all.push(tables::lanes(&found.lanes));
+    }
+    if !found.caches.is_empty() {
+        all.push(tables::caches(&found.caches));
     }
     if !found.pictures.is_empty() {
         all.push(tables::growth(
@@ -177,7 +206,9 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::classes(&found.counted),
         tables::levels(&found.counted),
         tables::record(&found.counted.fields),
+        tables::records_by_kind(&found.counted),
         tables::miss_curve(&found.counted),
+        tables::clock(&found.clock),
         tables::breakdown("Energy of the operations", "pj", &found.cost.operations),
         tables::breakdown(
             "Energy of the memories on the chip",
@@ -185,7 +216,9 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
             &found.cost.on_chip,
         ),
         tables::breakdown("Energy of outer memory", "pj", &found.cost.outer),
-        tables::breakdown("Area of the units", "nand2", &found.area),
+        tables::area("Area of the light hardware", &found.area),
+        tables::area("Area of the ray caster", &found.ray_caster.area),
+        tables::shifts(&found.counted),
         tables::breakdown(
             "Energy of the ray caster's operations",
             "pj",

@@ -1,9 +1,9 @@
 //! The ray caster's arithmetic, so that it can be counted as it is done.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a ray caster's hardware would have: one entry for each kind of step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[repr(u8)]
 pub enum FloatStep {
@@ -25,6 +25,8 @@ pub enum FloatStep {
     Shift,
     /// A node's children read.
     NodeRead,
+    /// Colour and normal of a node read.
+    AttributeRead,
     /// An entry of the ray's stack read.
     StackRead,
     /// An entry of the ray's stack written.
@@ -35,7 +37,7 @@ pub enum FloatStep {
 
 impl FloatStep {
     /// All kinds, in the order of their discriminants.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::FloatAdd,
         Self::FloatMultiply,
         Self::FloatDivide,
@@ -45,6 +47,7 @@ impl FloatStep {
         Self::Logic,
         Self::Shift,
         Self::NodeRead,
+        Self::AttributeRead,
         Self::StackRead,
         Self::StackWrite,
         Self::PixelWrite,
@@ -63,6 +66,7 @@ impl FloatStep {
             Self::Logic => "logic",
             Self::Shift => "shift",
             Self::NodeRead => "node read",
+            Self::AttributeRead => "attribute read",
             Self::StackRead => "stack read",
             Self::StackWrite => "stack write",
             Self::PixelWrite => "pixel write",
@@ -74,6 +78,10 @@ impl FloatStep {
 pub(super) trait Arithmetic {
     /// Called for each step.
     fn count(&mut self, step: FloatStep, times: u32);
+
+    /// `times` steps are to be waited for, one after the other, before the ray
+    /// goes on: its longest chain. What can be done at the same time is not in it.
+    fn wait(&mut self, step: FloatStep, times: u32);
 
     /// A node is read.
     fn node(&mut self, node: u32);
@@ -142,6 +150,9 @@ pub(super) struct Plain;
 impl Arithmetic for Plain {
     #[inline(always)]
     fn count(&mut self, _: FloatStep, _: u32) {}
+
+    #[inline(always)]
+    fn wait(&mut self, _: FloatStep, _: u32) {}
 
     #[inline(always)]
     fn node(&mut self, _: u32) {}

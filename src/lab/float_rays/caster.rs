@@ -51,11 +51,18 @@ impl Caster<'_> {
         let mut near = greatest(by, enters);
         near = by.max(near, 0.0);
         let mut exit = least(by, leaves);
+        // The slopes, the planes, the latest entry and whether it is before the first exit.
+        by.wait(FloatStep::FloatDivide, 1);
+        by.wait(FloatStep::FloatMultiply, 2);
+        by.wait(FloatStep::FloatAdd, 1);
+        by.wait(FloatStep::FloatMinMax, 4);
+        by.wait(FloatStep::FloatCompare, 1);
         if by.less(exit, near) {
             return None;
         }
         let mut node = self.graph.root;
         by.node(node);
+        by.wait(FloatStep::NodeRead, 1);
         let mut mask = self.graph.mask(node);
         if mask == 0 || self.last_level == 0 {
             return Some((node, [0; 4]));
@@ -82,6 +89,10 @@ impl Caster<'_> {
             *steps += 1;
             let leaves = [0, 1, 2].map(|k| at(by, low[k], k));
             let cell_exit = least(by, leaves);
+            // Where the ray leaves the cell; whether there is a child shows meanwhile.
+            by.wait(FloatStep::FloatMultiply, 1);
+            by.wait(FloatStep::FloatAdd, 1);
+            by.wait(FloatStep::FloatMinMax, 2);
             // The octant, and its bit of the mask.
             by.count(FloatStep::Logic, 2);
             let child_octant = octant ^ mirror;
@@ -92,6 +103,10 @@ impl Caster<'_> {
                 {
                     let level = MANTISSA_BITS - bit;
                     by.node(child);
+                    // Is there anything of the ray in it, and where is it?
+                    by.wait(FloatStep::FloatMinMax, 1);
+                    by.wait(FloatStep::FloatCompare, 1);
+                    by.wait(FloatStep::NodeRead, 1);
                     // Its place: the bits of the mask before it, counted and added.
                     by.count(FloatStep::Logic, 1);
                     by.count(FloatStep::IntegerAdd, 2);
@@ -136,6 +151,9 @@ impl Caster<'_> {
                 }
             }
             near = cell_exit;
+            // The next cell's place needs which planes end this one, and a step.
+            by.wait(FloatStep::FloatCompare, 1);
+            by.wait(FloatStep::FloatAdd, 1);
             by.count(FloatStep::Logic, 2);
             octant ^= turned;
             if octant & turned == 0 {
@@ -158,6 +176,10 @@ impl Caster<'_> {
             by.count(FloatStep::IntegerAdd, 1);
             side = f32::from_bits((bit + 127 - MANTISSA_BITS) << MANTISSA_BITS);
             by.count(FloatStep::StackRead, 1);
+            // The level, what was put aside there, and that node.
+            by.wait(FloatStep::Shift, 1);
+            by.wait(FloatStep::StackRead, 1);
+            by.wait(FloatStep::NodeRead, 1);
             let above = stack[bit as usize];
             node = above.node;
             by.node(node);

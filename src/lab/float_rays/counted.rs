@@ -1,14 +1,15 @@
 //! The ray caster as hardware: every step counted while it is executed.
 //!
 //! So that the comparison with the machine is fair to the ray caster, its rays
-//! are made as cheaply as a ray can be: one direction added to the last along a
-//! row, the eye as the origin of all; nothing is charged for the first of a row.
+//! are made as cheaply as a ray can be: in every order a constant added to the last
+//! direction, the eye as the origin of all; nothing is charged for the first of a row,
+//! and for choosing among constants nothing at all.
 
 use serde::Serialize;
 
 use super::arithmetic::{Arithmetic, FloatStep};
 use super::caster::Caster;
-use super::{MAX_LEVEL, Rays};
+use super::{MAX_LEVEL, RayOrder, Rays};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::project::FrameSetup;
@@ -17,6 +18,8 @@ use crate::project::FrameSetup;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub struct FloatRayCounts {
     steps: [u64; FloatStep::ALL.len()],
+    /// Of those, the ones that had to follow one another within a ray.
+    waits: [u64; FloatStep::ALL.len()],
     /// Rays cast: one a sample.
     pub rays: u64,
     /// Cells that rays examined.
@@ -30,6 +33,18 @@ impl FloatRayCounts {
         self.steps[step as usize]
     }
 
+    /// Steps of one kind in the rays' longest chains.
+    #[must_use]
+    pub fn waits(&self, step: FloatStep) -> u64 {
+        self.waits[step as usize]
+    }
+
+    /// Adds steps of one kind, so many of them in the longest chain.
+    pub fn add(&mut self, step: FloatStep, times: u64, waits: u64) {
+        self.steps[step as usize] += times;
+        self.waits[step as usize] += waits;
+    }
+
     /// All steps that are arithmetic, and not accesses to a memory.
     #[must_use]
     pub fn arithmetic(&self) -> u64 {
@@ -41,10 +56,19 @@ impl FloatRayCounts {
     }
 }
 
-/// Counts steps, and calls `nodes` for every node that is read.
+/// What a ray reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayRead {
+    /// A node's mask and first child.
+    Node(u32),
+    /// Colour and normal of a node.
+    Attribute(u32),
+}
+
+/// Counts steps, and calls `reads` for every node and attribute that is read.
 struct Counting<'n> {
     counts: FloatRayCounts,
-    nodes: &'n mut dyn FnMut(u32),
+    reads: &'n mut dyn FnMut(RayRead),
 }
 
 impl Arithmetic for Counting<'_> {
@@ -54,19 +78,25 @@ impl Arithmetic for Counting<'_> {
     }
 
     #[inline]
+    fn wait(&mut self, step: FloatStep, times: u32) {
+        self.counts.waits[step as usize] += u64::from(times);
+    }
+
+    #[inline]
     fn node(&mut self, node: u32) {
         self.counts.steps[FloatStep::NodeRead as usize] += 1;
-        (self.nodes)(node);
+        (self.reads)(RayRead::Node(node));
     }
 }
 
-/// Draws a frame in `f32` and counts what that takes. `nodes` is called
-/// for every node that is read, in order.
+/// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
+/// `reads` is called for every node and attribute that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
     frame: &mut Frame,
-    nodes: &mut dyn FnMut(u32),
+    order: RayOrder,
+    reads: &mut dyn FnMut(RayRead),
 ) -> FloatRayCounts {
     frame.clear();
     let rays = Rays::new(setup);
@@ -77,29 +107,35 @@ pub fn count(
     };
     let mut by = Counting {
         counts: FloatRayCounts::default(),
-        nodes,
+        reads,
     };
     let eye = rays.eye.map(|c| c as f32);
     let right = rays.right.map(|c| c as f32);
     let width = frame.width as usize;
-    for (j, nodes) in frame.node.chunks_mut(width.max(1)).enumerate() {
-        let mut direction = rays.direction(0, j as u32).map(|c| c as f32);
-        for (i, node) in nodes.iter_mut().enumerate() {
-            let mut steps = 0;
-            if let Some((seen, voxel)) = caster.cast(eye, direction, &mut steps, &mut by) {
-                *node = seen;
-                by.count(FloatStep::PixelWrite, 1);
-                if let Some(to) = frame.voxel.get_mut(j * width + i) {
-                    *to = voxel;
-                }
-            }
-            by.counts.rays += 1;
-            by.counts.cells += steps;
-            for k in 0..3 {
-                direction[k] = by.add(direction[k], right[k]);
+    let mut direction = [0f32; 3];
+    order.for_each(frame.width, frame.height, |i, j| {
+        // Sums drift along a row; the other orders' rays are taken as they should be.
+        if i == 0 || order != RayOrder::Rows {
+            direction = rays.direction(i, j).map(|c| c as f32);
+        }
+        let mut steps = 0;
+        if let Some((seen, voxel)) = caster.cast(eye, direction, &mut steps, &mut by) {
+            let at = j as usize * width + i as usize;
+            frame.node[at] = seen;
+            by.count(FloatStep::AttributeRead, 1);
+            (by.reads)(RayRead::Attribute(seen));
+            by.count(FloatStep::PixelWrite, 1);
+            if let Some(to) = frame.voxel.get_mut(at) {
+                *to = voxel;
             }
         }
-    }
+        by.counts.rays += 1;
+        by.counts.cells += steps;
+        by.wait(FloatStep::FloatAdd, 1);
+        for k in 0..3 {
+            direction[k] = by.add(direction[k], right[k]);
+        }
+    });
     by.counts
 }
 
@@ -138,7 +174,13 @@ mod tests {
         let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
         let (graph, setup) = setup("gen:sphere,depth=2", &camera);
         let mut frame = Frame::new(2, 2, false);
-        let counts = count(&graph.view(), &setup, &mut frame, &mut |_| ());
+        let counts = count(
+            &graph.view(),
+            &setup,
+            &mut frame,
+            RayOrder::Rows,
+            &mut |_| (),
+        );
         assert_eq!(frame.drawn(), 0);
         assert_eq!((counts.rays, counts.cells), (4, 0));
         let rays = 4;
@@ -153,6 +195,19 @@ mod tests {
         assert_eq!(counts.of(FloatStep::FloatCompare), (3 + 1) * rays);
         assert_eq!(counts.of(FloatStep::NodeRead), 0);
         assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
+        assert_eq!(counts.of(FloatStep::AttributeRead), 0);
+        // One after the other: a divide, two products, the plane's sum and the next
+        // ray's, four minima and maxima, a compare.
+        for (step, waits) in [
+            (FloatStep::FloatDivide, 1),
+            (FloatStep::FloatMultiply, 2),
+            (FloatStep::FloatAdd, 2),
+            (FloatStep::FloatMinMax, 4),
+            (FloatStep::FloatCompare, 1),
+            (FloatStep::NodeRead, 0),
+        ] {
+            assert_eq!(counts.waits(step), waits * rays, "{step:?}");
+        }
     }
 
     #[test]
@@ -162,8 +217,13 @@ mod tests {
         let mut plain = Frame::new(128, 128, false);
         let mut counted = plain.clone();
         let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
-        let mut nodes = 0;
-        let counts = count(&graph.view(), &setup, &mut counted, &mut |_| nodes += 1);
+        let (mut nodes, mut attributes) = (0, Vec::new());
+        let mut reads = |read| match read {
+            RayRead::Node(_) => nodes += 1,
+            RayRead::Attribute(node) => attributes.push(node),
+        };
+        let view = graph.view();
+        let counts = count(&view, &setup, &mut counted, RayOrder::Rows, &mut reads);
         let error = CoverageError::between(&counted.voxel, &plain.voxel);
         assert!(error.covered > 1000);
         assert!(error.differing() <= 8, "{error:?}");
@@ -171,5 +231,24 @@ mod tests {
         assert_eq!(counts.of(FloatStep::PixelWrite), counted.drawn() as u64);
         let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
         assert!(counts.cells.abs_diff(steps) * 100 < steps);
+        // Each ray that hits reads the attribute of what it shows.
+        let shown = counted
+            .node
+            .iter()
+            .filter(|&&node| node != crate::frame::NO_NODE);
+        assert!(shown.eq(&attributes));
+        assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
+        // A chain is no longer than all steps of a kind.
+        for step in FloatStep::ALL {
+            assert!(counts.waits(step) <= counts.of(step), "{step:?}");
+        }
+        // The other orders draw the same, but for roundings.
+        for order in [RayOrder::Tiles, RayOrder::Morton] {
+            let mut frame = plain.clone();
+            let other = count(&view, &setup, &mut frame, order, &mut |_| ());
+            assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
+            assert_eq!(other.rays, counts.rays);
+            assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());
+        }
     }
 }

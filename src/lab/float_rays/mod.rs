@@ -13,11 +13,13 @@
 mod arithmetic;
 mod caster;
 mod counted;
+mod order;
 
 pub use arithmetic::FloatStep;
 use arithmetic::Plain;
 use caster::Caster;
-pub use counted::{FloatRayCounts, count};
+pub use counted::{FloatRayCounts, RayRead, count};
+pub use order::RayOrder;
 
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::GraphView;

@@ -4,10 +4,11 @@ use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, Observer, Organisation};
-use hwmodel::memory::{MemoryProbe, Widths};
+use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
+use hwmodel::shifts::ShiftProbe;
 
 use super::ModelError;
-use super::record::{RecordField, record_bits, record_fields};
+use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
 use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
 use crate::machine::{Machine, MachineOptions, Simulated};
@@ -30,6 +31,10 @@ pub struct Counted {
     pub counter: Counter,
     /// Where accesses went.
     pub memory: MemoryProbe,
+    /// By how many places lines shift.
+    pub shifts: ShiftProbe,
+    /// What the records on the stack held.
+    pub records: RecordProbe,
     /// The machine's own counters.
     pub stats: Stats,
     /// The fields of a record.
@@ -96,16 +101,18 @@ pub fn count(
         light: &light,
         ..graph.view()
     };
-    let (stats, (counter, memory)) = machine(overflow, hardware.organisation).render_probed(
-        &view,
-        setup,
-        &mut frame,
-        (Counter::new(), memory),
-    )?;
+    let organisation = hardware.organisation;
+    let records = RecordProbe::new(bits_by_kind(setup, graph.len(), organisation));
+    let probes = ((Counter::new(), ShiftProbe::new()), (memory, records));
+    let mut machine = machine(overflow, organisation);
+    let (stats, ((counter, shifts), (memory, records))) =
+        machine.render_probed(&view, setup, &mut frame, probes)?;
     Ok(Counted {
         frame,
         counter,
         memory,
+        shifts,
+        records,
         stats,
         fields: record_fields(setup, graph.len(), hardware.organisation),
     })
@@ -118,17 +125,33 @@ pub fn count(
 pub fn count_operations(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
-    organisation: Organisation,
     overflow: Overflow,
 ) -> Result<(Frame, Counter, Stats), EngineError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     let probe = Counter::new();
-    let mut machine = machine(overflow, organisation);
+    let mut machine = machine(overflow, Organisation::default());
     let (stats, counter) = machine.render_probed(graph, setup, &mut frame, probe)?;
     Ok((frame, counter, stats))
 }
 
-/// Draws a frame on a hardware, cycle by cycle.
+/// Draws a frame and counts what its operations and area are priced by.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count_priced(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    organisation: Organisation,
+    overflow: Overflow,
+) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let probes = (Counter::new(), ShiftProbe::new());
+    let mut machine = machine(overflow, organisation);
+    let (stats, (counter, shifts)) = machine.render_probed(graph, setup, &mut frame, probes)?;
+    Ok((frame, counter, shifts, stats))
+}
+
+/// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
 ///
 /// # Errors
 /// When a word overflows under the trap policy, or a stack that does not spill.
@@ -140,8 +163,10 @@ pub fn simulate<O: Observer>(
     observer: &mut O,
 ) -> Result<(Frame, Simulated), ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut hardware = hardware.clone();
+    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
     let mut machine = machine(overflow, hardware.organisation);
-    let simulated = machine.simulate(graph, setup, &mut frame, hardware, observer)?;
+    let simulated = machine.simulate(graph, setup, &mut frame, &hardware, observer)?;
     Ok((frame, simulated))
 }
 

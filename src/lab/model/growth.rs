@@ -1,7 +1,6 @@
 //! The image-order paper's claim that cost follows the picture's pixels and not the
 //! object: the same object in growing pictures, growing objects in one picture.
 
-use hwmodel::cycles::Organisation;
 use hwmodel::{OpClass, Overflow};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -49,12 +48,7 @@ pub fn row(
         ..*camera
     };
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, options)?;
-    let (frame, counter, stats) = frame::count_operations(
-        &graph.view(),
-        &setup,
-        Organisation::default(),
-        Overflow::Trap,
-    )?;
+    let (frame, counter, stats) = frame::count_operations(&graph.view(), &setup, Overflow::Trap)?;
     let subdivided = stats.iter().find(|(name, _)| *name == "subdivided");
     let subdivided = subdivided.map_or(0, |&(_, count)| count);
     let ordering = counter.sum(|cell| cell.stage == hwmodel::Stage::Order);

@@ -2,19 +2,26 @@
 //! what a ray caster with multipliers would cost instead.
 //!
 //! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
-//! with the ray caster; [`cost`] turns counts into energy and area; [`rules`],
-//! [`sweep`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, and over pictures and objects; [`claims`] compares the image-order
+//! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
+//! units with the clock; [`rules`],
+//! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
+//! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
+pub mod area;
+pub mod caches;
 pub mod claims;
+pub mod clock;
+pub mod compare;
 pub mod cost;
 pub mod frame;
 pub mod growth;
 pub mod heat;
 #[cfg(feature = "cli")]
 pub mod plots;
+pub mod range;
 pub mod ray_caster;
+pub mod ray_cycles;
 pub mod record;
 pub mod rules;
 pub mod safe;
@@ -25,6 +32,7 @@ pub mod tables;
 pub mod vectors;
 
 use hwmodel::cost::CostError;
+use hwmodel::cycles::HardwareError;
 
 use crate::machine::SimulateError;
 use crate::project::{EngineError, SetupError};
@@ -41,6 +49,9 @@ pub enum ModelError {
     /// The hardware could not.
     #[error(transparent)]
     Simulate(#[from] SimulateError),
+    /// The hardware's description is not sound.
+    #[error(transparent)]
+    Hardware(#[from] HardwareError),
     /// A figure is missing in the cost tables.
     #[error(transparent)]
     Cost(#[from] CostError),

@@ -3,8 +3,10 @@
 use hwmodel::OpClass;
 use hwmodel::cycles::{Cause, CycleReport, Hardware, ScalingRow};
 
+use super::caches::CacheRow;
 use super::cost::FrameCost;
 use super::frame::Counted;
+use super::range::Range;
 use super::rules::Outcome;
 use super::sweep::FormatRow;
 use super::tables::operations_by_stage;
@@ -218,6 +220,41 @@ pub fn formats(rows: &[FormatRow]) -> Panel {
             },
             Series::curve("that no other beats in both", front),
         ],
+        level: None,
+    })
+}
+
+/// Energy over the size of the node cache: both designs, each with its range.
+#[must_use]
+pub fn caches(rows: &[CacheRow]) -> Panel {
+    type Of = fn(&Range) -> f64;
+    let ends: [(&str, Of); 3] = [
+        ("", |range| range.value),
+        (", low end", |range| range.low),
+        (", high end", |range| range.high),
+    ];
+    let mut series = Vec::new();
+    let mut add = |name: &str, points: Vec<(f64, Range)>| {
+        for (end, of) in ends {
+            let values = points.iter().map(|(x, range)| (*x, of(range) / 1e6));
+            series.push(Series {
+                dots: end.is_empty(),
+                ..Series::curve(format!("{name}{end}"), values)
+            });
+        }
+    };
+    let bytes = |row: &CacheRow| f64::from(row.bytes);
+    let light = rows.iter().map(|row| (bytes(row), row.light.energy_pj));
+    add("light hardware", light.collect());
+    let best = rows
+        .iter()
+        .filter_map(|row| Some((bytes(row), row.best_order()?.energy_pj)));
+    add("ray caster, best order", best.collect());
+    Panel::Chart(Chart {
+        title: "Energy of the frame over the size of the node cache".to_owned(),
+        x: axis("bytes of the node cache", Scale::Log),
+        y: axis("microjoules", Scale::Linear),
+        series,
         level: None,
     })
 }

@@ -6,6 +6,7 @@
 //! and under the rules that draw outlines there is one pose alone.
 
 use hwmodel::cycles::{Organisation, StackHolds};
+use hwmodel::memory::RecordBits;
 
 use crate::project::{CageKind, FrameSetup};
 
@@ -29,6 +30,8 @@ pub enum FieldPresence {
     InClipSpace,
     /// In screen space.
     InScreenSpace,
+    /// As a finest voxel, which has no children and hence no need of vertices.
+    AsFinestVoxel,
 }
 
 /// Silhouette plane coefficients of a record: three planes of three, and
@@ -106,11 +109,8 @@ pub fn record_fields(
     }
     if exact {
         let planes = PLANE_WORDS * wide;
-        fields.push(field(
-            "silhouette planes",
-            planes,
-            FieldPresence::InClipSpace,
-        ));
+        fields.push(field("silhouette planes", planes, FieldPresence::Always));
+        fields.push(field("least W above 0", 1, FieldPresence::AsFinestVoxel));
     } else {
         fields.push(field(
             "screen x, y",
@@ -122,15 +122,36 @@ pub fn record_fields(
     fields
 }
 
-/// Bits of a record: what it always has, and the larger of its poses.
+/// Bits of a stack's entry, which holds records of any kind.
 #[must_use]
 pub fn record_bits(fields: &[RecordField]) -> u32 {
+    bits_held(fields, None).widest()
+}
+
+/// Bits of a frame's records by their kind. Under the rules that draw outlines
+/// a cube at the level of the finest voxels is drawn and has no parts: of its
+/// vertices its turn needs one thing, whether all are before the eye.
+#[must_use]
+pub fn bits_by_kind(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> RecordBits {
+    // A parent is never a finest voxel.
+    let has_finest =
+        setup.options.coverage.draws_outlines() && organisation.stack == StackHolds::Children;
+    let fields = record_fields(setup, nodes, organisation);
+    bits_held(&fields, has_finest.then_some(setup.depth))
+}
+
+fn bits_held(fields: &[RecordField], finest_level: Option<u32>) -> RecordBits {
     let sum = |held: FieldPresence| -> u32 {
         let of = fields.iter().filter(|field| field.held == held);
         of.map(|field| field.bits).sum()
     };
-    sum(FieldPresence::Always)
-        + sum(FieldPresence::InClipSpace).max(sum(FieldPresence::InScreenSpace))
+    let always = sum(FieldPresence::Always);
+    RecordBits {
+        clip: always + sum(FieldPresence::InClipSpace),
+        screen: always + sum(FieldPresence::InScreenSpace),
+        finest: always + sum(FieldPresence::AsFinestVoxel),
+        finest_level,
+    }
 }
 
 #[cfg(test)]
@@ -142,7 +163,7 @@ mod tests {
     use crate::project::Coverage;
     use crate::project::{Camera, SetupOptions};
 
-    fn bits(options: SetupOptions, nodes: usize) -> u32 {
+    fn setup(options: SetupOptions) -> FrameSetup {
         let camera = Camera {
             eye: DVec3::new(40.0, 30.0, 20.0),
             target: DVec3::splat(8.0),
@@ -153,6 +174,11 @@ mod tests {
         };
         let setup = FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap();
         assert_eq!(setup.levels, 8);
+        setup
+    }
+
+    fn bits(options: SetupOptions, nodes: usize) -> u32 {
+        let setup = setup(options);
         record_bits(&record_fields(&setup, nodes, Organisation::default()))
     }
 
@@ -171,10 +197,18 @@ mod tests {
         let clip = 3 * 4 * 32 + 32 + 12 * 64;
         assert_eq!(bits(exact, 1024), always + clip);
         assert_eq!(bits(exact, 1025), always + clip + 1);
+        // A finest voxel: no vertices, and of the least W whether it is above 0.
+        let by_kind = bits_by_kind(&setup(exact), 1024, Organisation::default());
+        assert_eq!(by_kind.clip, always + clip);
+        assert_eq!(by_kind.finest, always + 12 * 64 + 1);
+        assert_eq!(by_kind.finest_level, Some(4));
         let any = options(Coverage::Any, CageKind::Corners);
         // A third of the fraction's bits lies below the finest voxels: levels
         // to 6, of voxels to 4, places to 64.
         let always = 10 + 3 + 3 + 3 + 2 * 3 * 7 + 4 + 16;
         assert_eq!(bits(any, 1024), always + 3 * 8 * 32 + 32);
+        let by_kind = bits_by_kind(&setup(any), 1024, Organisation::default());
+        assert_eq!(by_kind.screen, always + 2 * 8 * 32 + 4 * 32);
+        assert_eq!(by_kind.finest_level, None);
     }
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ModelError;
+use super::area::{self, LightFrame};
 use super::cost::{self, Prices};
 use super::frame;
 use super::record::{record_bits, record_fields};
@@ -80,8 +81,10 @@ pub struct Costs {
     pub deepest_stack: u64,
     /// Energy of the operations, pJ.
     pub energy_pj: f64,
-    /// Area of the units used, NAND2 equivalents.
+    /// Area, NAND2 equivalents: middle of its range.
     pub area_nand2: f64,
+    /// Of that, the units that compute.
+    pub logic_nand2: f64,
     /// Coverage against exact rays of the camera at 64 bits.
     pub error: CoverageError,
 }
@@ -107,11 +110,11 @@ pub fn measure(
     let bits = record_bits(&record_fields(&setup, graph.len(), hardware.organisation));
     let (view, overflow) = (graph.view(), Overflow::Trap);
     let trapped = |trap: String| Ok((bits, Outcome::Trapped { trap }));
-    let (frame, counter, stats) =
-        match frame::count_operations(&view, &setup, hardware.organisation, overflow) {
-            Ok(drawn) => drawn,
-            Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
-        };
+    let drawn = frame::count_priced(&view, &setup, hardware.organisation, overflow);
+    let (frame, counter, shifts, stats) = match drawn {
+        Ok(drawn) => drawn,
+        Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
+    };
     let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
     let simulated = match simulated {
         Ok((_, simulated)) => simulated,
@@ -120,19 +123,28 @@ pub fn measure(
         }
         Err(error) => return Err(error),
     };
-    let shifts = counter.ops_of(OpClass::Shift);
+    let all_shifts = counter.ops_of(OpClass::Shift);
     let deepest = stats.iter().find(|(name, _)| *name == "deepest_stack");
-    let energy = hwmodel::cost::energy_of(&counter, &prices.table, prices.costing)?;
+    let energy = cost::operations_energy(&counter, &shifts, prices)?;
+    let used = LightFrame {
+        counter: &counter,
+        shifts: &shifts,
+        cycles: &simulated.cycles,
+        setup: &setup,
+        record_bits: bits,
+    };
+    let area = area::light(used, hardware, prices)?;
     let costs = Costs {
         records: counter.records(),
-        operations: counter.ops() - shifts,
-        shifts,
+        operations: counter.ops() - all_shifts,
+        shifts: all_shifts,
         divide_steps: counter.ops_of(OpClass::DivideStep),
         widest: counter.widest(),
         cycles: simulated.cycles.cycles,
         deepest_stack: deepest.map_or(0, |&(_, depth)| depth),
         energy_pj: energy.total,
-        area_nand2: cost::area(&counter, hardware, prices)?.total,
+        area_nand2: area.total,
+        logic_nand2: area.units.total,
         error: frame::error(&frame, exact),
     };
     Ok((bits, Outcome::Drawn(Box::new(costs))))

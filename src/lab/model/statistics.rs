@@ -4,6 +4,7 @@ use hwmodel::cycles::Cause;
 use hwmodel::statistics::Statistics;
 use hwmodel::{Memory, OpClass};
 
+use super::area::DesignArea;
 use super::cost::FrameCost;
 use super::frame::Counted;
 use super::ray_caster::RayCasterReport;
@@ -24,7 +25,7 @@ pub fn of(
     counted: &Counted,
     simulated: &Simulated,
     cost: &FrameCost,
-    area_nand2: f64,
+    area: &DesignArea,
     ray_caster: Option<&RayCasterReport>,
 ) -> Statistics {
     let mut list = Statistics::new();
@@ -90,6 +91,11 @@ pub fn of(
     for memory in Memory::ALL {
         let name = word(memory.name());
         let probe = &counted.memory;
+        let (read_bits, written_bits) = match memory {
+            // Records differ in what they hold.
+            Memory::Stack => (counted.records.read_bits(), counted.records.written_bits()),
+            _ => (probe.read_bits(memory), probe.written_bits(memory)),
+        };
         list.add(
             &format!("memory.{name}.reads"),
             probe.reads(memory),
@@ -104,13 +110,13 @@ pub fn of(
         );
         list.add(
             &format!("memory.{name}.read_bits"),
-            probe.read_bits(memory),
+            read_bits,
             "Bit",
             "bits read",
         );
         list.add(
             &format!("memory.{name}.written_bits"),
-            probe.written_bits(memory),
+            written_bits,
             "Bit",
             "bits written",
         );
@@ -140,11 +146,15 @@ pub fn of(
     list.add("energy.low", low, "pJ", "low end");
     list.add("energy.high", high, "pJ", "high end");
     list.add(
-        "area.units",
-        area_nand2,
+        "area.total",
+        area.total,
         "NAND2",
-        "area of the units that the frame uses",
+        "area of what the frame uses, middle of its range",
     );
+    for (part, of) in area.parts() {
+        let name = format!("area.{part}");
+        list.add(&name, of.total, "NAND2", "middle of its range");
+    }
     if let Some(ray_caster) = ray_caster {
         for step in FloatStep::ALL {
             let name = format!("ray_caster.{}", word(step.name()));
@@ -166,6 +176,12 @@ pub fn of(
             ray_caster.counts.cells,
             "Count",
             "cells that rays looked at",
+        );
+        list.add(
+            "ray_caster.cycles",
+            ray_caster.cycles.cycles,
+            "Cycle",
+            "cycles of its frame, no fewer than",
         );
         list.add(
             "ray_caster.energy.total",
@@ -291,5 +307,17 @@ fn cycles(list: &mut Statistics, simulated: &Simulated) {
         report.stack.spilled,
         "Count",
         "records without an entry",
+    );
+    list.add(
+        "stack.spilled_bits",
+        report.stack.spilled_bits,
+        "Bit",
+        "their bits, written to outer memory and read back",
+    );
+    list.add(
+        "outer_memory.busy",
+        report.outer_busy,
+        "Cycle",
+        "cycles of its port: lines of caches and spilled records",
     );
 }

@@ -11,7 +11,6 @@ pub mod tables;
 
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::Organisation;
 use serde::{Deserialize, Serialize};
 
 use crate::frame::Frame;
@@ -202,12 +201,7 @@ pub fn draw(
 ) -> Result<Drawn, ReproduceError> {
     let setup = subject.setup((side, side), options)?;
     let graph = &subject.graph;
-    let counted = count_operations(
-        &graph.view(),
-        &setup,
-        Organisation::default(),
-        Overflow::Trap,
-    );
+    let counted = count_operations(&graph.view(), &setup, Overflow::Trap);
     let (frame, counter, stats) = counted.map_err(|source| ReproduceError::Engine {
         scene: subject.name.clone(),
         source,

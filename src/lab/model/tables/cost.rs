@@ -1,10 +1,14 @@
 //! What a frame costs, and what the ray caster does.
 
 use hwmodel::cost::{Breakdown, Fit};
+use hwmodel::cycles::CycleReport;
 use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
 use crate::lab::float_rays::FloatStep;
+use crate::lab::model::area::DesignArea;
+use crate::lab::model::clock::ClockCheck;
+use crate::lab::model::compare::ComparedLine;
 use crate::lab::model::cost::FrameCost;
 use crate::lab::model::frame::Counted;
 use crate::lab::model::ray_caster::RayCasterReport;
@@ -23,6 +27,8 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
             "times",
             "each",
             unit,
+            "low",
+            "high",
             "figure",
             "rows",
             "source",
@@ -49,9 +55,95 @@ pub fn breakdown(title: &str, unit: &'static str, sum: &Breakdown) -> Table {
             Cell::from(line.times),
             number(each.value, 4),
             number(line.total, 1),
+            number(line.times as f64 * each.low, 1),
+            number(line.times as f64 * each.high, 1),
             Cell::Text(figure),
             Cell::Text(each.rows.clone()),
             Cell::Text(each.source.clone()),
+        ]);
+    }
+    table
+}
+
+/// Area, part by part and line by line.
+#[must_use]
+pub fn area(title: &str, area: &DesignArea) -> Table {
+    let mut all = Breakdown::default();
+    for (part, of) in area.parts() {
+        for line in &of.lines {
+            let name = format!("{part}: {}", line.name);
+            let (operation, each) = (&line.operation, line.each.clone());
+            all.push(&name, operation, line.width, line.times, each);
+        }
+    }
+    breakdown(title, "nand2", &all)
+}
+
+/// Both designs line by line, with the ends of every range.
+#[must_use]
+pub fn comparison(lines: &[ComparedLine]) -> Table {
+    let mut table = Table::new(
+        "Both designs, middle, low and high end; of what leaks nothing is known",
+        &[
+            "what",
+            "unit",
+            "light_hardware",
+            "low",
+            "high",
+            "ray_caster",
+            "its_low",
+            "its_high",
+            "less",
+        ],
+    );
+    for line in lines {
+        let mut row = vec![Cell::from(line.what), Cell::from(line.unit)];
+        for range in [&line.light, &line.ray_caster] {
+            let digits = if range.value >= 1000.0 { 0 } else { 3 };
+            row.extend([range.value, range.low, range.high].map(|v| number(v, digits)));
+        }
+        row.push(Cell::from(if line.overlap {
+            "the ranges overlap"
+        } else {
+            line.less.name()
+        }));
+        table.rows.push(row);
+    }
+    table
+}
+
+/// Units against the clock.
+#[must_use]
+pub fn clock(check: &ClockCheck) -> Table {
+    let mut table = Table::new(
+        format!(
+            "Units against the clock of {:.2} ns: {}",
+            check.period_ps / 1e3,
+            check.sentence()
+        ),
+        &[
+            "stage",
+            "class",
+            "bits",
+            "delay_ns",
+            "pipeline_depth",
+            "depth_needed",
+            "meets",
+            "rows",
+            "source",
+        ],
+    );
+    for unit in &check.units {
+        table.rows.push(vec![
+            Cell::from(unit.stage.name()),
+            Cell::from(unit.class.name()),
+            Cell::from(u64::from(unit.width)),
+            number(unit.delay_ps / 1e3, 2),
+            Cell::from(u64::from(unit.depth)),
+            Cell::from(u64::from(unit.depth_needed)),
+            Cell::from(if unit.meets() { "yes" } else { "no" }),
+            Cell::Text(unit.rows.clone()),
+            Cell::Text(unit.source.clone()),
         ]);
     }
     table
@@ -63,6 +155,7 @@ pub fn side_by_side(
     counted: &Counted,
     wrong: &CoverageError,
     cost: &FrameCost,
+    cycles: &CycleReport,
     ray_caster: &RayCasterReport,
 ) -> Table {
     let mut table = Table::new(
@@ -125,6 +218,26 @@ pub fn side_by_side(
         "node reads",
         Cell::from(counter.reads(Memory::Node)),
         Cell::from(counts.of(FloatStep::NodeRead)),
+    );
+    row(
+        "attribute reads",
+        Cell::from(counter.reads(Memory::Attribute)),
+        Cell::from(counts.of(FloatStep::AttributeRead)),
+    );
+    row(
+        "order of rays",
+        Cell::None,
+        Cell::from(ray_caster.order.name()),
+    );
+    row(
+        "cycles (simulated; no fewer than)",
+        Cell::from(cycles.cycles),
+        Cell::from(ray_caster.cycles.cycles),
+    );
+    row(
+        "frames a second (simulated; at most)",
+        number(cycles.frames_per_second, 1),
+        number(ray_caster.cycles.frames_per_second, 1),
     );
     row(
         "energy of operations, uJ",

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hwmodel::cycles::{Cause, CycleReport};
-use hwmodel::memory::Widths;
+use hwmodel::memory::{RecordKind, Widths};
 use hwmodel::{Memory, OpClass, Stage};
 
 use super::{number, percent};
@@ -119,12 +119,60 @@ pub fn record(fields: &[RecordField]) -> Table {
             FieldPresence::Always => "always",
             FieldPresence::InClipSpace => "in clip space",
             FieldPresence::InScreenSpace => "in screen space",
+            FieldPresence::AsFinestVoxel => "as a finest voxel, instead of what is in clip space",
         };
         table.rows.push(vec![
             Cell::from(field.name),
             Cell::from(u64::from(field.bits)),
             Cell::from(held),
         ]);
+    }
+    table
+}
+
+/// Lines of the machine that shift, and by how many places.
+#[must_use]
+pub fn shifts(counted: &Counted) -> Table {
+    let mut table = Table::new(
+        "Shifts by the lines that do them: wires, or a shifter",
+        &["line", "stage", "bits", "times", "least", "most", "places"],
+    );
+    for site in counted.shifts.sites() {
+        table.rows.push(vec![
+            Cell::Text(site.site.clone()),
+            Cell::from(site.stage.name()),
+            Cell::from(u64::from(site.bits)),
+            Cell::from(site.times),
+            Cell::from(u64::from(site.least)),
+            Cell::from(u64::from(site.most)),
+            Cell::from(site.kind.name()),
+        ]);
+    }
+    table
+}
+
+/// What the records on the stack held.
+#[must_use]
+pub fn records_by_kind(counted: &Counted) -> Table {
+    let mut table = Table::new(
+        "Records on the stack by what they hold",
+        &["kind", "bits", "popped", "pushed", "percent_of_the_popped"],
+    );
+    let all: u64 = RecordKind::ALL
+        .iter()
+        .map(|&kind| counted.records.of(kind).reads)
+        .sum();
+    for kind in RecordKind::ALL {
+        let accesses = counted.records.of(kind);
+        if accesses.writes > 0 {
+            table.rows.push(vec![
+                Cell::from(kind.name()),
+                Cell::from(u64::from(counted.records.bits().of(kind))),
+                Cell::from(accesses.reads),
+                Cell::from(accesses.writes),
+                percent(accesses.reads as f64 / all.max(1) as f64),
+            ]);
+        }
     }
     table
 }
@@ -154,12 +202,18 @@ pub fn memories(counted: &Counted, widths: &Widths, cycles: &CycleReport) -> Tab
             Memory::Attribute => Some(&cycles.attribute_cache),
             _ => None,
         };
+        let accesses = probe.reads(memory) + probe.writes(memory);
+        let bits = match memory {
+            Memory::Stack => counted.records.read_bits() + counted.records.written_bits(),
+            _ => accesses * u64::from(widths.of(memory)),
+        };
         table.rows.push(vec![
             Cell::from(memory.name()),
             Cell::from(probe.reads(memory)),
             Cell::from(probe.writes(memory)),
-            Cell::from(u64::from(widths.of(memory))),
-            kilobytes(probe.read_bits(memory) + probe.written_bits(memory)),
+            // Of the stack on average: records differ.
+            Cell::from(bits / accesses.max(1)),
+            kilobytes(bits),
             Cell::from(probe.distinct(memory)),
             cache.map_or(Cell::None, |cache| percent(cache.hit_rate)),
             cache.map_or(Cell::None, |cache| kilobytes(8 * cache.bytes_in)),

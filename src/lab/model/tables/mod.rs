@@ -4,11 +4,12 @@ mod cost;
 mod frame;
 mod repeats;
 
-pub use cost::{breakdown, side_by_side};
+pub use cost::{area, breakdown, clock, comparison, side_by_side};
 pub use frame::{
-    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, stages,
+    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, records_by_kind,
+    shifts, stages,
 };
-pub use repeats::{claims, formats, growth, lanes, rules};
+pub use repeats::{caches, claims, formats, growth, lanes, rules};
 
 use crate::report::Cell;
 

@@ -3,11 +3,54 @@
 use hwmodel::cycles::ScalingRow;
 
 use super::{micro, number, percent};
+use crate::lab::model::caches::{self, CacheRow};
 use crate::lab::model::claims::Claim;
 use crate::lab::model::growth::GrowthRow;
 use crate::lab::model::rules::{Costs, Outcome, RuleRow};
 use crate::lab::model::sweep::FormatRow;
 use crate::report::{Cell, Table};
+
+/// Both designs with node caches of growing size; who needs less stands above it.
+#[must_use]
+pub fn caches(rows: &[CacheRow]) -> Table {
+    let mut table = Table::new(
+        caches::sentence(rows),
+        &[
+            "node_cache",
+            "design",
+            "energy_uj",
+            "low_uj",
+            "high_uj",
+            "cycles",
+            "node_misses",
+            "needs_less_energy",
+        ],
+    );
+    for row in rows {
+        let best = row.best_order().and_then(|best| best.order);
+        for point in std::iter::once(&row.light).chain(&row.ray_caster) {
+            let design = match point.order {
+                None => "light hardware".to_owned(),
+                Some(order) => format!("ray caster, {}", order.name()),
+            };
+            table.rows.push(vec![
+                Cell::Text(caches::size(row.bytes)),
+                Cell::Text(design),
+                micro(point.energy_pj.value),
+                micro(point.energy_pj.low),
+                micro(point.energy_pj.high),
+                Cell::from(point.cycles),
+                Cell::from(point.node_misses),
+                if point.order.is_some() && point.order == best {
+                    Cell::from(row.winner.name())
+                } else {
+                    Cell::None
+                },
+            ]);
+        }
+    }
+    table
+}
 
 /// What became of a frame, as cells: the figures that are requested, in their
 /// order, and a note where there are none.

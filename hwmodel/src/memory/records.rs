@@ -1,0 +1,224 @@
+//! What a record on the stack holds: fewer bits than the widest one, where
+//! less of it is needed.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
+
+/// The kinds of record that a stack holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[repr(u8)]
+pub enum RecordKind {
+    /// Its vertices are in clip space.
+    Clip,
+    /// Its vertices are in screen space, as those of all its descendants.
+    Screen,
+    /// A finest voxel: it has no children, so that it needs no vertices.
+    Finest,
+}
+
+impl RecordKind {
+    /// All kinds, in the order of their discriminants.
+    pub const ALL: [Self; 3] = [Self::Clip, Self::Screen, Self::Finest];
+
+    /// The kind in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Clip => "in clip space",
+            Self::Screen => "in screen space",
+            Self::Finest => "finest voxel",
+        }
+    }
+}
+
+/// Bits of a record by its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RecordBits {
+    /// Of [`RecordKind::Clip`].
+    pub clip: u32,
+    /// Of [`RecordKind::Screen`].
+    pub screen: u32,
+    /// Of [`RecordKind::Finest`].
+    pub finest: u32,
+    /// Octree level from which on records are finest voxels; `None`: no rule
+    /// of the frame tells them apart.
+    pub finest_level: Option<u32>,
+}
+
+impl RecordBits {
+    /// Records of one kind alone.
+    #[must_use]
+    pub const fn uniform(bits: u32) -> Self {
+        Self {
+            clip: bits,
+            screen: bits,
+            finest: bits,
+            finest_level: None,
+        }
+    }
+
+    /// Bits of a record of a kind.
+    #[must_use]
+    pub const fn of(&self, kind: RecordKind) -> u32 {
+        match kind {
+            RecordKind::Clip => self.clip,
+            RecordKind::Screen => self.screen,
+            RecordKind::Finest => self.finest,
+        }
+    }
+
+    /// What a stack's entry must hold.
+    #[must_use]
+    pub fn widest(&self) -> u32 {
+        self.clip.max(self.screen).max(self.finest)
+    }
+
+    /// The kind of a record at an octree level.
+    #[must_use]
+    pub fn kind(&self, level: u32, in_screen_space: bool) -> RecordKind {
+        match self.finest_level {
+            Some(finest) if level >= finest => RecordKind::Finest,
+            _ if in_screen_space => RecordKind::Screen,
+            _ => RecordKind::Clip,
+        }
+    }
+}
+
+/// Reads and writes of a stack's records of one kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize)]
+pub struct RecordAccesses {
+    /// Records popped.
+    pub reads: u64,
+    /// Records pushed.
+    pub writes: u64,
+}
+
+/// A probe that follows what kind each record on the stack is of, from what
+/// the machine does: a record that divides has changed to screen space, and
+/// with it all that it pushes; what it pushes lies one octree level below it.
+///
+/// ```
+/// use hwmodel::memory::{RecordBits, RecordKind, RecordProbe};
+/// use hwmodel::{Datapath, Format, Memory, Overflow, Stage, Word};
+///
+/// let bits = RecordBits { clip: 100, screen: 60, finest: 40, finest_level: Some(2) };
+/// let mut probe = RecordProbe::new(bits);
+/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
+/// dp.write(Memory::Stack, 0); // the object
+/// dp.begin_record(0, 0);
+/// dp.read(Memory::Stack, 0);
+/// dp.stage(Stage::ToScreen);
+/// let _ = dp.divide_step(Word::from_host(1), Word::from_host(3), false); // it changes
+/// dp.write(Memory::Stack, 0); // its child, in screen space
+/// dp.begin_record(1, 1);
+/// dp.read(Memory::Stack, 0);
+/// dp.write(Memory::Stack, 0); // a finest voxel
+/// assert_eq!(probe.of(RecordKind::Clip).reads, 1);
+/// assert_eq!(probe.of(RecordKind::Screen).reads, 1);
+/// assert_eq!(probe.written_bits(), 100 + 60 + 40);
+/// # Ok::<(), hwmodel::FormatError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct RecordProbe {
+    bits: RecordBits,
+    accesses: [RecordAccesses; RecordKind::ALL.len()],
+    /// By address, the kind of the record that lies there.
+    stack: Vec<RecordKind>,
+    /// Level of what is pushed next.
+    child_level: u32,
+    /// Whether the record that has its turn is in screen space by now.
+    in_screen_space: bool,
+}
+
+impl RecordProbe {
+    /// A probe that has seen nothing.
+    #[must_use]
+    pub fn new(bits: RecordBits) -> Self {
+        Self {
+            bits,
+            accesses: Default::default(),
+            stack: Vec::new(),
+            child_level: 0,
+            in_screen_space: false,
+        }
+    }
+
+    /// Bits of each kind.
+    #[must_use]
+    pub fn bits(&self) -> RecordBits {
+        self.bits
+    }
+
+    /// Accesses to records of a kind.
+    #[must_use]
+    pub fn of(&self, kind: RecordKind) -> RecordAccesses {
+        self.accesses[kind as usize]
+    }
+
+    /// Bits read, all kinds.
+    #[must_use]
+    pub fn read_bits(&self) -> u64 {
+        self.sum(|of| of.reads)
+    }
+
+    /// Bits written, all kinds.
+    #[must_use]
+    pub fn written_bits(&self) -> u64 {
+        self.sum(|of| of.writes)
+    }
+
+    fn sum(&self, times: fn(&RecordAccesses) -> u64) -> u64 {
+        RecordKind::ALL
+            .iter()
+            .map(|&kind| times(&self.of(kind)) * u64::from(self.bits.of(kind)))
+            .sum()
+    }
+}
+
+/// A stack deeper than this has no address: none is.
+const MAX_DEPTH: usize = 1 << 20;
+
+/// Whether an operation shows that its record changes to screen space.
+fn changes_to_screen(class: OpClass, stage: Stage) -> bool {
+    class == OpClass::DivideStep && stage == Stage::ToScreen
+}
+
+impl Probe for RecordProbe {
+    #[inline]
+    fn op(&mut self, class: OpClass, _: u32, place: StageLevel, _: u32) {
+        self.in_screen_space |= changes_to_screen(class, place.stage);
+    }
+
+    #[inline(always)]
+    fn op_on(&mut self, _: Operand, class: OpClass, _: u32, place: StageLevel) {
+        self.in_screen_space |= changes_to_screen(class, place.stage);
+    }
+
+    fn record(&mut self, _: u64, level: u32) {
+        self.child_level = level + 1;
+    }
+
+    fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
+        if memory == Memory::Stack {
+            let at = usize::try_from(address).unwrap_or(MAX_DEPTH);
+            let kind = self.stack.get(at).copied().unwrap_or(RecordKind::Clip);
+            self.in_screen_space = kind == RecordKind::Screen;
+            self.accesses[kind as usize].reads += 1;
+        }
+    }
+
+    fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
+        if memory == Memory::Stack {
+            let kind = self.bits.kind(self.child_level, self.in_screen_space);
+            self.accesses[kind as usize].writes += 1;
+            let at = usize::try_from(address).map_or(MAX_DEPTH, |at| at.min(MAX_DEPTH));
+            if self.stack.len() <= at {
+                self.stack.resize(at + 1, RecordKind::Clip);
+            }
+            self.stack[at] = kind;
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Shifts, told apart by how far their places vary: wires, or a shifter.
+//!
+//! A shift by one place, always, is wires. All others need a shifter: by a number of the
+//! frame, which the host sets; by one of the octree level; by one that each operation has
+//! of its own. Which one it is is not declared but seen: every line of the machine that shifts is
+//! watched for the places that it shifts by.
+
+use std::collections::{BTreeMap, HashMap};
+use std::panic::Location;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{OpClass, Operand, Probe, Stage, StageLevel};
+
+/// How far the places of a shift vary.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ShiftKind {
+    /// By one place at most, always: wires.
+    Wires,
+    /// The same in all of the frame; another frame may have another.
+    Frame,
+    /// The same at every octree level.
+    Level,
+    /// Different from operation to operation.
+    Operation,
+}
+
+impl ShiftKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Wires, Self::Frame, Self::Level, Self::Operation];
+
+    /// The kind in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Wires => "wires",
+            Self::Frame => "one a frame",
+            Self::Level => "one a level",
+            Self::Operation => "one an operation",
+        }
+    }
+}
+
+/// A line of the machine that shifts, in one stage and width.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct ShiftSite {
+    /// Where: file and line, or `midpoint` for the halving of a sum.
+    pub site: String,
+    /// Its stage.
+    pub stage: Stage,
+    /// Width of what is shifted, bits.
+    pub bits: u32,
+    /// How often.
+    pub times: u64,
+    /// Fewest places.
+    pub least: u32,
+    /// Most places.
+    pub most: u32,
+    /// How far they vary.
+    pub kind: ShiftKind,
+}
+
+/// Shifts of one line, stage, width and level.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    times: u64,
+    least: u32,
+    most: u32,
+}
+
+/// A probe that watches by how many places every line shifts.
+///
+/// ```
+/// use hwmodel::shifts::{ShiftKind, ShiftProbe};
+/// use hwmodel::{Datapath, Format, Overflow, Stage};
+///
+/// let mut probe = ShiftProbe::new();
+/// let mut dp = Datapath::new(Format::new(24, 8)?, Overflow::Trap, &mut probe);
+/// dp.stage(Stage::Draw);
+/// for level in [1, 2] {
+///     dp.begin_record(0, level);
+///     for times in [1, 2, 3] {
+///         let word = dp.load(times);
+///         dp.shl(word, 1); // always 1
+///         dp.shr(word, 4); // always 4
+///         dp.shl(word, level + 1); // by level
+///         dp.shr(word, times as u32); // by operation
+///         dp.midpoint(word, word); // a sum, and a shift by 1
+///     }
+/// }
+/// let kinds: Vec<ShiftKind> = probe.sites().iter().map(|site| site.kind).collect();
+/// use ShiftKind::{Frame, Level, Operation, Wires};
+/// assert_eq!(kinds, [Wires, Frame, Level, Operation, Wires]);
+/// // Three kinds need a shifter, six times each.
+/// assert_eq!(probe.variable().into_iter().collect::<Vec<_>>(), [((Stage::Draw, 24), 18)]);
+/// # Ok::<(), hwmodel::FormatError>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct ShiftProbe {
+    seen: HashMap<(usize, u8, u32, u32), (Place, Seen)>,
+    /// Shifts of sums, by stage and width: wires.
+    halvings: BTreeMap<(Stage, u32), u64>,
+}
+
+type Place = &'static Location<'static>;
+
+impl ShiftProbe {
+    /// A probe that has seen nothing.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Every line that shifted, by file, line, stage and width; halvings last.
+    #[must_use]
+    pub fn sites(&self) -> Vec<ShiftSite> {
+        // By place, stage and width: the levels.
+        let mut by_site = BTreeMap::<(&str, u32, u32, Stage, u32), Vec<Seen>>::new();
+        for (&(_, stage, bits, _), &(at, seen)) in &self.seen {
+            let stage = Stage::ALL[usize::from(stage)];
+            let key = (at.file(), at.line(), at.column(), stage, bits);
+            by_site.entry(key).or_default().push(seen);
+        }
+        let site = |((file, line, _, stage, bits), levels): (_, Vec<Seen>)| {
+            let least = levels.iter().map(|seen| seen.least).min().unwrap_or(0);
+            let most = levels.iter().map(|seen| seen.most).max().unwrap_or(0);
+            let kind = if levels.iter().any(|seen| seen.least < seen.most) {
+                ShiftKind::Operation
+            } else if least < most {
+                ShiftKind::Level
+            } else if most > 1 {
+                ShiftKind::Frame
+            } else {
+                ShiftKind::Wires
+            };
+            ShiftSite {
+                site: format!("{file}:{line}"),
+                stage,
+                bits,
+                times: levels.iter().map(|seen| seen.times).sum(),
+                least,
+                most,
+                kind,
+            }
+        };
+        let mut sites: Vec<ShiftSite> = by_site.into_iter().map(site).collect();
+        let halvings = self.halvings.iter();
+        sites.extend(halvings.map(|(&(stage, bits), &times)| ShiftSite {
+            site: "midpoint".to_owned(),
+            stage,
+            bits,
+            times,
+            least: 1,
+            most: 1,
+            kind: ShiftKind::Wires,
+        }));
+        sites
+    }
+
+    /// Shifts that need a shifter, by stage and width.
+    #[must_use]
+    pub fn variable(&self) -> BTreeMap<(Stage, u32), u64> {
+        let mut sums = BTreeMap::new();
+        for site in self.sites() {
+            if site.kind != ShiftKind::Wires {
+                *sums.entry((site.stage, site.bits)).or_default() += site.times;
+            }
+        }
+        sums
+    }
+
+    /// Shifts by kind.
+    #[must_use]
+    pub fn by_kind(&self) -> BTreeMap<ShiftKind, u64> {
+        let mut sums = BTreeMap::new();
+        for site in self.sites() {
+            *sums.entry(site.kind).or_default() += site.times;
+        }
+        sums
+    }
+}
+
+impl Probe for ShiftProbe {
+    #[inline]
+    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {}
+
+    #[inline]
+    fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        // The datapath halves sums of one bit more than a word, and nothing else of that width.
+        if class == OpClass::Shift && matches!(operand, Operand::Carry | Operand::WideCarry) {
+            *self.halvings.entry((place.stage, bits)).or_default() += 1;
+        }
+    }
+
+    fn shift(&mut self, bits: u32, places: u32, place: StageLevel, site: Place) {
+        let key = (
+            std::ptr::from_ref(site) as usize,
+            place.stage as u8,
+            bits,
+            place.level,
+        );
+        let (_, seen) = self.seen.entry(key).or_insert((
+            site,
+            Seen {
+                times: 0,
+                least: places,
+                most: places,
+            },
+        ));
+        seen.times += 1;
+        seen.least = seen.least.min(places);
+        seen.most = seen.most.max(places);
+    }
+}

@@ -1,0 +1,196 @@
+//! Whether the units keep up with the hardware's clock.
+//!
+//! A unit of latency `l` is a pipeline of `l + 1` steps, each of one period.
+//! Its gates' delay, by the area table, must fit into them. That is the least
+//! that must hold: delays are without wires, flip-flops and what stands before a unit in the
+//! same step, and a tree of units has the latency of the whole tree and is
+//! looked at here as one unit of it. So a unit that misses does miss; one that meets may yet not.
+
+use std::collections::BTreeSet;
+
+use hwmodel::cost::{CostError, CostTable, Goal, ShiftUnits, operation_of};
+use hwmodel::count::Counter;
+use hwmodel::cycles::Hardware;
+use hwmodel::{OpClass, Stage};
+use serde::Serialize;
+
+use super::cost::Prices;
+
+/// A unit against the clock.
+#[derive(Debug, Clone, Serialize)]
+pub struct UnitDelay {
+    /// Stage whose block has it.
+    pub stage: Stage,
+    /// What it does.
+    pub class: OpClass,
+    /// Its width, bits.
+    pub width: u32,
+    /// Delay of its gates, ps.
+    pub delay_ps: f64,
+    /// Steps of its pipeline: latency and one.
+    pub depth: u32,
+    /// Steps that it needs at this clock.
+    pub depth_needed: u32,
+    /// Rows of the table.
+    pub rows: String,
+    /// Their source.
+    pub source: String,
+}
+
+impl UnitDelay {
+    /// Whether the delay fits into the pipeline's steps.
+    #[must_use]
+    pub fn meets(&self) -> bool {
+        self.depth >= self.depth_needed
+    }
+}
+
+/// All units that a frame uses against the clock.
+#[derive(Debug, Clone, Serialize)]
+pub struct ClockCheck {
+    /// A period of the clock, ps.
+    pub period_ps: f64,
+    /// Fastest clock that every unit meets as it is, MHz.
+    pub fastest_mhz: f64,
+    /// The units, by stage and class.
+    pub units: Vec<UnitDelay>,
+}
+
+impl ClockCheck {
+    /// The units that miss the clock.
+    pub fn misses(&self) -> impl Iterator<Item = &UnitDelay> {
+        self.units.iter().filter(|unit| !unit.meets())
+    }
+
+    /// What there is to say, and what would help.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let missing: Vec<String> = self
+            .misses()
+            .map(|unit| {
+                format!(
+                    "{} of {} bits in {} ({:.2} ns in {} x {:.2} ns; a pipeline {} deep would)",
+                    unit.class.name(),
+                    unit.width,
+                    unit.stage.name(),
+                    unit.delay_ps / 1e3,
+                    unit.depth,
+                    self.period_ps / 1e3,
+                    unit.depth_needed
+                )
+            })
+            .collect();
+        if missing.is_empty() {
+            format!(
+                "no unit's gates are too slow for {:.2} ns; wires and flip-flops are not in it",
+                self.period_ps / 1e3
+            )
+        } else {
+            format!("too slow, even without wires: {}", missing.join("; "))
+        }
+    }
+}
+
+/// Compares units that a frame uses with the clock.
+///
+/// # Errors
+/// When the tables lack a delay.
+pub fn check(
+    counter: &Counter,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<ClockCheck, CostError> {
+    let used: BTreeSet<(Stage, OpClass)> = counter
+        .cells()
+        .map(|cell| (cell.stage, cell.class))
+        .collect();
+    let used = used.into_iter();
+    compare(used, hardware, &prices.table, prices.goal)
+}
+
+fn compare(
+    used: impl Iterator<Item = (Stage, OpClass)>,
+    hardware: &Hardware,
+    table: &CostTable,
+    goal: Goal,
+) -> Result<ClockCheck, CostError> {
+    let period_ps = 1e6 / hardware.clock_mhz;
+    let mut units = Vec::new();
+    let mut longest_step = 0.0f64;
+    for (stage, class) in used {
+        let Some(unit) = hardware.unit(stage, class) else {
+            continue;
+        };
+        let operation = operation_of(class, ShiftUnits::Variable);
+        let delay = table.delay(operation, unit.width, goal)?;
+        let depth = unit.latency.saturating_add(1);
+        longest_step = longest_step.max(delay.high / f64::from(depth));
+        units.push(UnitDelay {
+            stage,
+            class,
+            width: unit.width,
+            delay_ps: delay.high,
+            depth,
+            depth_needed: (delay.high / period_ps).ceil().max(1.0) as u32,
+            rows: delay.rows,
+            source: delay.source,
+        });
+    }
+    Ok(ClockCheck {
+        period_ps,
+        fastest_mhz: if longest_step > 0.0 {
+            1e6 / longest_step
+        } else {
+            f64::INFINITY
+        },
+        units,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(clock_mhz: f64, latency: u32, width: u32) -> ClockCheck {
+        let mut hardware = Hardware::preset("paper").unwrap();
+        hardware.clock_mhz = clock_mhz;
+        hardware.stages.clear();
+        let add = hardware.units.get_mut(&OpClass::Add).unwrap();
+        (add.latency, add.width) = (latency, width);
+        let table = CostTable::load_shipped().unwrap();
+        let used = [
+            (Stage::Centre, OpClass::Add),
+            (Stage::Centre, OpClass::Shift),
+        ];
+        compare(used.into_iter(), &hardware, &table, Goal::Area).unwrap()
+    }
+
+    /// The row: an adder of 32 bits takes 4680.73 ps. Shifts are wires.
+    #[test]
+    fn by_hand() {
+        let slow = of(200.0, 0, 32);
+        assert_eq!((slow.period_ps, slow.units.len()), (5000.0, 1));
+        assert!(slow.units[0].meets());
+        assert!(slow.sentence().starts_with("no unit's gates are too slow"));
+        // 2 ns: three steps, 6 ns, hold it; two do not.
+        let fast = of(500.0, 1, 32);
+        assert_eq!((fast.units[0].depth, fast.units[0].depth_needed), (2, 3));
+        assert_eq!(
+            fast.sentence(),
+            "too slow, even without wires: add of 32 bits in centre \
+             (4.68 ns in 2 x 2.00 ns; a pipeline 3 deep would)"
+        );
+        assert!((fast.fastest_mhz - 2e6 / 4680.73).abs() < 1e-9);
+        assert_eq!(of(500.0, 2, 32).misses().count(), 0);
+        // Between two rows: 33 bits.
+        let wide = 4680.73 + (6558.27 - 4680.73) / 16.0;
+        assert!((of(500.0, 2, 33).units[0].delay_ps - wide).abs() < 1e-9);
+    }
+
+    #[test]
+    fn five_gigahertz_are_not_believed() {
+        let check = of(5000.0, 1, 33);
+        assert_eq!(check.units[0].depth_needed, 24);
+        assert_eq!(check.misses().count(), 1);
+    }
+}
