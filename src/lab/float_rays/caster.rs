@@ -17,6 +17,8 @@ pub(super) struct Caster<'g> {
     pub(super) last_level: u32,
     /// Levels of the object.
     pub(super) depth: u32,
+    /// Whether a node says which of its children are leaves; these need not be read.
+    pub(super) leaf_masks: bool,
 }
 
 impl Caster<'_> {
@@ -102,16 +104,20 @@ impl Caster<'_> {
                     && let Some(child) = self.graph.child(node, child_octant)
                 {
                     let level = MANTISSA_BITS - bit;
-                    by.node(child);
+                    let child_mask = self.graph.mask(child);
+                    let is_solid = child_mask == 0 || level == self.last_level;
+                    let is_read = !(is_solid && self.leaf_masks);
+                    if is_read {
+                        by.node(child);
+                    }
                     // Is there anything of the ray in it, and where is it?
                     by.wait(FloatStep::FloatMinMax, 1);
                     by.wait(FloatStep::FloatCompare, 1);
-                    by.wait(FloatStep::NodeRead, 1);
+                    by.wait(FloatStep::NodeRead, u32::from(is_read));
                     // Its place: the bits of the mask before it, counted and added.
                     by.count(FloatStep::Logic, 1);
                     by.count(FloatStep::IntegerAdd, 2);
-                    let child_mask = self.graph.mask(child);
-                    if child_mask == 0 || level == self.last_level {
+                    if is_solid {
                         return Some((child, self.cell(low, bit, mirror)));
                     }
                     // Descend.

@@ -90,12 +90,14 @@ impl Arithmetic for Counting<'_> {
 }
 
 /// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
+/// `leaf_masks`: whether nodes say which of their children are leaves, so that these need not be read.
 /// `reads` is called for every node and attribute that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
     frame: &mut Frame,
     order: RayOrder,
+    leaf_masks: bool,
     reads: &mut dyn FnMut(RayRead),
 ) -> FloatRayCounts {
     frame.clear();
@@ -104,6 +106,7 @@ pub fn count(
         graph,
         last_level: setup.depth.min(MAX_LEVEL),
         depth: setup.depth,
+        leaf_masks,
     };
     let mut by = Counting {
         counts: FloatRayCounts::default(),
@@ -179,6 +182,7 @@ mod tests {
             &setup,
             &mut frame,
             RayOrder::Rows,
+            false,
             &mut |_| (),
         );
         assert_eq!(frame.drawn(), 0);
@@ -223,7 +227,14 @@ mod tests {
             RayRead::Attribute(node) => attributes.push(node),
         };
         let view = graph.view();
-        let counts = count(&view, &setup, &mut counted, RayOrder::Rows, &mut reads);
+        let counts = count(
+            &view,
+            &setup,
+            &mut counted,
+            RayOrder::Rows,
+            false,
+            &mut reads,
+        );
         let error = CoverageError::between(&counted.voxel, &plain.voxel);
         assert!(error.covered > 1000);
         assert!(error.differing() <= 8, "{error:?}");
@@ -238,6 +249,15 @@ mod tests {
             .filter(|&&node| node != crate::frame::NO_NODE);
         assert!(shown.eq(&attributes));
         assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
+        // A node that says which children are leaves saves each ray that hits the last read.
+        let mut frame = plain.clone();
+        let told = count(&view, &setup, &mut frame, RayOrder::Rows, true, &mut |_| ());
+        assert_eq!(frame, counted);
+        let hits = counted.drawn() as u64;
+        assert_eq!(
+            told.of(FloatStep::NodeRead) + hits,
+            counts.of(FloatStep::NodeRead)
+        );
         // A chain is no longer than all steps of a kind.
         for step in FloatStep::ALL {
             assert!(counts.waits(step) <= counts.of(step), "{step:?}");
@@ -245,7 +265,7 @@ mod tests {
         // The other orders draw the same, but for roundings.
         for order in [RayOrder::Tiles, RayOrder::Morton] {
             let mut frame = plain.clone();
-            let other = count(&view, &setup, &mut frame, order, &mut |_| ());
+            let other = count(&view, &setup, &mut frame, order, false, &mut |_| ());
             assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
             assert_eq!(other.rays, counts.rays);
             assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());

@@ -55,6 +55,7 @@ impl Engine for FloatRays {
             graph,
             last_level: setup.depth.min(MAX_LEVEL),
             depth: setup.depth,
+            leaf_masks: false,
         };
         let mut steps = 0;
         let mut drawn = 0;

@@ -126,16 +126,23 @@ pub fn cast(
     let node_entry = u64::from(hardware.node_cache.entry_bytes);
     let attribute_entry = u64::from(hardware.attribute_cache.entry_bytes);
     let view = graph.view();
-    let counts = float_rays::count(&view, setup, &mut frame, order, &mut |read| match read {
-        RayRead::Node(node) => {
-            for cache in &mut nodes {
-                cache.access(u64::from(node) * node_entry);
+    let counts = float_rays::count(
+        &view,
+        setup,
+        &mut frame,
+        order,
+        hardware.organisation.leaf_masks,
+        &mut |read| match read {
+            RayRead::Node(node) => {
+                for cache in &mut nodes {
+                    cache.access(u64::from(node) * node_entry);
+                }
             }
-        }
-        RayRead::Attribute(node) => {
-            attributes.access(u64::from(node) * attribute_entry);
-        }
-    });
+            RayRead::Attribute(node) => {
+                attributes.access(u64::from(node) * attribute_entry);
+            }
+        },
+    );
     Ok(RayRun {
         order,
         counts,
