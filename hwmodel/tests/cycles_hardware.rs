@@ -181,5 +181,5 @@ fn wrong_descriptions_are_refused_with_what_and_where() {
     hardware.contexts = 0;
     assert!(hardware.check().is_err());
     let text = Hardware::preset("huge").unwrap_err().to_string();
-    assert!(text.contains("tiny, paper and wide"), "{text}");
+    assert!(text.contains("tiny, paper, light and wide"), "{text}");
 }

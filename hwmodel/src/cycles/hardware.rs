@@ -1,7 +1,7 @@
 //! The description of a hardware: how wide each part of it is.
 //!
-//! Read from TOML; three descriptions ship in `hwmodel/machines/`, each line
-//! commented: `tiny`, `paper` and `wide`.
+//! Read from TOML; four descriptions ship in `hwmodel/machines/`, each line
+//! commented: `tiny`, `paper`, `light` and `wide`.
 
 use std::collections::BTreeMap;
 
@@ -262,14 +262,15 @@ pub enum HardwareError {
         class: String,
     },
     /// No description of this name ships.
-    #[error("no hardware of the name `{0}` ships; there are tiny, paper and wide")]
+    #[error("no hardware of the name `{0}` ships; there are tiny, paper, light and wide")]
     NoPreset(String),
 }
 
 /// Names and texts of the descriptions that ship.
-pub const PRESETS: [(&str, &str); 3] = [
+pub const PRESETS: [(&str, &str); 4] = [
     ("tiny", include_str!("../../machines/tiny.toml")),
     ("paper", include_str!("../../machines/paper.toml")),
+    ("light", include_str!("../../machines/light.toml")),
     ("wide", include_str!("../../machines/wide.toml")),
 ];
 
@@ -286,7 +287,7 @@ impl Hardware {
         Ok(hardware)
     }
 
-    /// One of those that ship: `tiny`, `paper`, `wide`.
+    /// One of those that ship: `tiny`, `paper`, `light`, `wide`.
     ///
     /// # Errors
     /// Where there is none of that name.

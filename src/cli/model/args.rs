@@ -43,7 +43,7 @@ pub(in crate::cli) struct ModelArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Hardware")]
 pub(super) struct HardwareArgs {
-    /// Hardware: tiny, paper, wide, or a TOML file like those (--print-hw shows one)
+    /// Hardware: tiny, paper, light, wide, or a TOML file like those (--print-hw shows one)
     #[arg(long = "hw", value_name = "NAME|FILE", default_value = "paper")]
     hw: String,
     /// Print the description of the hardware, and do nothing else
