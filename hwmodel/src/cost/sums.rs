@@ -180,10 +180,10 @@ pub fn tallies(counter: &Counter, costing: Costing) -> Result<Vec<Tally>, CostEr
 /// ```
 /// use hwmodel::cost::{CostTable, Costing, energy_of};
 /// use hwmodel::count::Counter;
-/// use hwmodel::{OpClass, Place, Probe, Stage};
+/// use hwmodel::{OpClass, Probe, Stage, StageLevel};
 ///
 /// let mut counter = Counter::new();
-/// let place = Place { stage: Stage::Centre, level: 0 };
+/// let place = StageLevel { stage: Stage::Centre, level: 0 };
 /// counter.op(OpClass::Add, 32, place, 1000);
 /// counter.op(OpClass::Shift, 33, place, 1000); // wires
 /// let energy = energy_of(&counter, &CostTable::load_shipped()?, Costing::default())?;
