@@ -112,6 +112,103 @@ fn tables_of_rules_formats_lanes_and_growth() {
     assert_eq!(lanes[0]["speedup"], 1.0);
 }
 
+/// Both designs at five sizes of the node cache, and the words that follow from it.
+#[test]
+fn node_caches_of_many_sizes() {
+    let found = document(&with(&["--caches"]));
+    let rows = found["caches"].as_array().expect("rows");
+    let sizes: Vec<u64> = rows.iter().filter_map(|r| r["bytes"].as_u64()).collect();
+    assert_eq!(sizes, [4096, 16_384, 65_536, 262_144, 1_048_576]);
+    let number = |value: &Value| value.as_f64().expect("a number");
+    for row in rows {
+        let rays = row["ray_caster"].as_array().expect("orders");
+        let orders: Vec<&Value> = rays.iter().map(|point| &point["order"]).collect();
+        assert_eq!(orders, ["rows", "tiles", "morton"]);
+        let best = number(&row["best"]["energy_pj"]["value"]);
+        assert!(
+            rays.iter()
+                .all(|p| number(&p["energy_pj"]["value"]) >= best)
+        );
+        let (light, best) = (&row["light"]["energy_pj"], &row["best"]["energy_pj"]);
+        let winner = if number(&light["high"]) < number(&best["low"]) {
+            "light"
+        } else if number(&best["high"]) < number(&light["low"]) {
+            "ray_caster"
+        } else {
+            "neither"
+        };
+        assert_eq!(row["winner"], winner);
+    }
+    // A larger cache misses no more, for the rays that were cast once for all sizes.
+    let misses: Vec<f64> = rows
+        .iter()
+        .map(|r| number(&r["ray_caster"][0]["node_misses"]))
+        .collect();
+    assert!(misses.is_sorted_by(|a, b| a >= b), "{misses:?}");
+    let says = found["caches_say"].as_str().expect("a sentence");
+    assert!(
+        says.starts_with("Energy of the frame over the size of the node cache"),
+        "{says}"
+    );
+    // The hardware's own size is among them, and comes to the same as without the sweep.
+    let alone = &found["cost"];
+    let sum: f64 = ["operations", "on_chip", "outer"]
+        .iter()
+        .map(|part| number(&alone[part]["total"]))
+        .sum();
+    assert!((number(&rows[1]["light"]["energy_pj"]["value"]) - sum).abs() < 1e-6 * sum);
+    let rows_alone = document(&with(&["--ray-order", "rows"]));
+    assert_eq!(rows_alone["ray_caster"]["order"], "rows");
+    let own: f64 = ["operations", "on_chip", "outer"]
+        .iter()
+        .map(|part| number(&rows_alone["ray_caster"]["cost"][part]["total"]))
+        .sum();
+    let swept = number(&rows[1]["ray_caster"][0]["energy_pj"]["value"]);
+    assert!((own - swept).abs() < 1e-6 * own);
+}
+
+/// Figures with ranges: power follows from energy and speed, and the ends say who has less.
+#[test]
+fn both_designs_line_by_line() {
+    let found = document(&SCENE);
+    let lines = found["comparison"].as_array().expect("lines");
+    let of = |what: &str| lines.iter().find(|l| l["what"] == what).expect("a line");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let energy = number(&of("energy of the frame")["light"]["value"]);
+    let rate = number(&found["simulated"]["cycles"]["frames_per_second"]);
+    let power = number(&of("power at its own speed, without leakage")["light"]["value"]);
+    assert!((power - energy * 1e-6 * rate).abs() < 1e-9 * power.max(1.0));
+    for line in lines {
+        for design in ["light", "ray_caster"] {
+            let range = ["low", "value", "high"].map(|end| number(&line[design][end]));
+            assert!(range.is_sorted(), "{line}");
+        }
+        assert_eq!(line["overlap"], line["less"] == "neither");
+    }
+    let area = &found["area"];
+    let parts =
+        ["units", "registers", "memories", "control"].map(|part| number(&area[part]["total"]));
+    assert!(parts.iter().all(|part| *part > 0.0));
+    assert!((parts.iter().sum::<f64>() - number(&area["total"])).abs() < 1e-6 * parts[2]);
+    // 200 MHz are no trouble; five gigahertz are.
+    let units = found["clock"]["units"].as_array().expect("units");
+    assert!(
+        units
+            .iter()
+            .all(|unit| unit["depth"].as_u64() >= unit["depth_needed"].as_u64())
+    );
+    // Every record is popped that was pushed.
+    let kinds = found["records_by_kind"].as_array().expect("kinds");
+    let sum = |key: &str| {
+        kinds
+            .iter()
+            .filter_map(|kind| kind[key].as_u64())
+            .sum::<u64>()
+    };
+    assert_eq!(sum("popped"), sum("pushed"));
+    assert_eq!(found["statistics"]["statistics"][0]["value"], sum("popped"));
+}
+
 #[test]
 fn threads_change_no_table() {
     let tables = ["rules", "formats", "pictures", "objects", "lanes"];
@@ -168,7 +265,7 @@ fn files_are_written_once() {
     );
     assert!(text("stats.txt").contains("Begin Simulation Statistics"));
     assert!(text("r.csv").lines().count() > 100);
-    assert!(text("r.md").contains("Area of the units"));
+    assert!(text("r.md").contains("Area of the light hardware"));
     let trace: Value = serde_json::from_str(&text("t.json")).expect("trace events");
     assert!(
         trace["traceEvents"]

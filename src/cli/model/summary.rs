@@ -1,6 +1,7 @@
 //! What the model found, as tables.
 
 use super::findings::Findings;
+use crate::lab::model::range::{Range, Winner};
 use crate::lab::model::{cost, tables};
 use crate::report::{Cell, Table, grouped};
 
@@ -18,8 +19,8 @@ pub(super) fn summary(found: &Findings) -> Table {
         &["what", "figure"],
     );
     let cycles = &found.simulated.cycles;
-    let (energy, low, high) = found.cost.total();
-    let ray = found.ray_caster.cost.total().0;
+    let light = Range::new(found.cost.total()).times(1e-6);
+    let ray = Range::new(found.ray_caster.cost.total()).times(1e-6);
     let bits = found.counted.record_bits();
     let mut row = |what: &str, figure: String| {
         table.rows.push(vec![Cell::from(what), Cell::Text(figure)]);
@@ -96,6 +97,17 @@ pub(super) fn summary(found: &Findings) -> Table {
             format!("{} kbit", grouped(accumulators / 1024)),
         );
     }
+    let spilled = cycles.stack.spilled;
+    if spilled > 0 {
+        row(
+            "spilled records",
+            format!(
+                "{}: {} kbit written to outer memory, and as many read back",
+                grouped(spilled),
+                grouped(cycles.stack.spilled_bits / 1024)
+            ),
+        );
+    }
     row(
         "node cache",
         format!("{:.1} % hits", 100.0 * cycles.node_cache.hit_rate),
@@ -129,15 +141,20 @@ pub(super) fn summary(found: &Findings) -> Table {
     row(
         "energy",
         format!(
-            "{:.1} uJ ({:.1} to {:.1}); a ray caster in float {:.1} uJ: {}",
-            energy / 1e6,
-            low / 1e6,
-            high / 1e6,
-            ray / 1e6,
-            if energy <= ray {
-                format!("{:.2} times as much", ray / energy)
-            } else {
-                format!("the light hardware needs {:.2} times as much", energy / ray)
+            "{:.1} uJ ({:.1} to {:.1}); a ray caster in float {:.1} uJ ({:.1} to {:.1}): {}",
+            light.value,
+            light.low,
+            light.high,
+            ray.value,
+            ray.low,
+            ray.high,
+            match Winner::by_ranges(light, ray) {
+                Winner::Neither => "the ranges overlap, so that neither wins".to_owned(),
+                Winner::Light => format!("{:.2} times as much", ray.value / light.value),
+                Winner::RayCaster => format!(
+                    "the light hardware needs {:.2} times as much",
+                    light.value / ray.value
+                ),
             }
         ),
     );

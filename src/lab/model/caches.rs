@@ -42,6 +42,8 @@ pub struct CacheRow {
     pub light: CachePoint,
     /// The ray caster, by order of its rays.
     pub ray_caster: Vec<CachePoint>,
+    /// Of those, the one of least energy.
+    pub best: CachePoint,
     /// Who needs less energy, the ray caster in its best order.
     pub winner: Winner,
     /// Who needs less if both pay the same for outer memory, low or high.
@@ -49,13 +51,20 @@ pub struct CacheRow {
 }
 
 impl CacheRow {
-    /// The ray caster in the order of least energy.
-    #[must_use]
-    pub fn best_order(&self) -> Option<&CachePoint> {
+    /// Both designs at a size; none where no rays were cast.
+    fn new(bytes: u32, light: CachePoint, ray_caster: Vec<CachePoint>) -> Option<Self> {
         let energy = |point: &CachePoint| point.energy_pj.value;
-        self.ray_caster
+        let best = *ray_caster
             .iter()
-            .min_by(|a, b| energy(a).total_cmp(&energy(b)))
+            .min_by(|a, b| energy(a).total_cmp(&energy(b)))?;
+        Some(Self {
+            bytes,
+            winner: Winner::by_ranges(light.energy_pj, best.energy_pj),
+            at_equal_prices: Winner::at_equal_prices(light.energy_pj, best.energy_pj),
+            light,
+            ray_caster,
+            best,
+        })
     }
 }
 
@@ -130,23 +139,14 @@ pub fn table(
             })
         };
         let points = casts.iter().map(of_rays);
-        let mut row = CacheRow {
-            bytes,
-            light,
-            ray_caster: points.collect::<Result<_, ModelError>>()?,
-            winner: Winner::Neither,
-            at_equal_prices: Winner::Neither,
-        };
-        if let Some(best) = row.best_order().map(|best| best.energy_pj) {
-            row.winner = Winner::by_ranges(light.energy_pj, best);
-            row.at_equal_prices = Winner::at_equal_prices(light.energy_pj, best);
-        }
+        let points = points.collect::<Result<_, ModelError>>()?;
         progress.advance(1);
-        Ok(row)
+        Ok(CacheRow::new(bytes, light, points))
     };
-    let rows = SIZES.par_iter().enumerate().map(row).collect();
+    let rows = SIZES.par_iter().enumerate().map(row);
+    let rows = rows.collect::<Result<Vec<_>, ModelError>>()?;
     progress.end();
-    rows
+    Ok(rows.into_iter().flatten().collect())
 }
 
 /// Who needs less energy where, as the figures have it.
@@ -206,16 +206,7 @@ mod tests {
             .zip(rays)
             .map(|(&order, &range)| point(Some(order), range))
             .collect();
-        let light = point(None, light);
-        let best = ray_caster.iter().map(|p| p.energy_pj);
-        let best = best.min_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
-        CacheRow {
-            bytes,
-            winner: Winner::by_ranges(light.energy_pj, best),
-            at_equal_prices: Winner::at_equal_prices(light.energy_pj, best),
-            light,
-            ray_caster,
-        }
+        CacheRow::new(bytes, point(None, light), ray_caster).unwrap()
     }
 
     #[test]
@@ -226,7 +217,7 @@ mod tests {
             row(65536, (3.0, 4.0), &[(1.0, 2.0), (8.0, 9.0)]),
             row(1 << 20, (3.0, 4.0), &[(1.0, 2.0), (0.5, 1.0)]),
         ];
-        assert_eq!(rows[0].best_order().unwrap().order, Some(RayOrder::Tiles));
+        assert_eq!(rows[0].best.order, Some(RayOrder::Tiles));
         assert_eq!(
             sentence(&rows),
             "Energy of the frame over the size of the node cache, the ray caster in its best order: \

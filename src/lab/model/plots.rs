@@ -100,7 +100,9 @@ pub fn roofline(counted: &Counted, report: &CycleReport, hardware: &Hardware) ->
     let bytes_a_cycle = f64::from(cache.misses) * f64::from(cache.line_bytes)
         / f64::from(cache.hit_latency + cache.miss_latency).max(1.0);
     let operations = (counted.counter.ops() - counted.counter.ops_of(OpClass::Shift)) as f64;
-    let bytes = (report.node_cache.bytes_in + report.attribute_cache.bytes_in).max(1) as f64;
+    let spilled = report.stack.spilled_bits / 4; // written and read, in bytes
+    let lines = report.node_cache.bytes_in + report.attribute_cache.bytes_in;
+    let bytes = (lines + spilled).max(1) as f64;
     let (x, y) = (operations / bytes, operations / report.cycles.max(1) as f64);
     let peak = units as f64;
     let corner = peak / bytes_a_cycle.max(f64::MIN_POSITIVE);
@@ -208,7 +210,7 @@ pub fn formats(rows: &[FormatRow]) -> Panel {
         .collect();
     Panel::Chart(Chart {
         title: "Word length: wrong samples over area (labels: bits)".to_owned(),
-        x: axis("area of the units, NAND2 equivalents", Scale::Linear),
+        x: axis("area, NAND2 equivalents", Scale::Linear),
         y: axis(
             "samples that differ from the exact picture (0 at 0.5)",
             Scale::Log,
@@ -246,9 +248,7 @@ pub fn caches(rows: &[CacheRow]) -> Panel {
     let bytes = |row: &CacheRow| f64::from(row.bytes);
     let light = rows.iter().map(|row| (bytes(row), row.light.energy_pj));
     add("light hardware", light.collect());
-    let best = rows
-        .iter()
-        .filter_map(|row| Some((bytes(row), row.best_order()?.energy_pj)));
+    let best = rows.iter().map(|row| (bytes(row), row.best.energy_pj));
     add("ray caster, best order", best.collect());
     Panel::Chart(Chart {
         title: "Energy of the frame over the size of the node cache".to_owned(),

@@ -27,7 +27,6 @@ pub fn caches(rows: &[CacheRow]) -> Table {
         ],
     );
     for row in rows {
-        let best = row.best_order().and_then(|best| best.order);
         for point in std::iter::once(&row.light).chain(&row.ray_caster) {
             let design = match point.order {
                 None => "light hardware".to_owned(),
@@ -41,7 +40,7 @@ pub fn caches(rows: &[CacheRow]) -> Table {
                 micro(point.energy_pj.high),
                 Cell::from(point.cycles),
                 Cell::from(point.node_misses),
-                if point.order.is_some() && point.order == best {
+                if point.order.is_some() && point.order == row.best.order {
                     Cell::from(row.winner.name())
                 } else {
                     Cell::None
