@@ -6,7 +6,7 @@ use super::hardware::Independence;
 use crate::{OpClass, Stage};
 
 /// Version of the report's fields.
-pub const REPORT_VERSION: u32 = 2;
+pub const REPORT_VERSION: u32 = 1;
 
 /// What a record waited for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
