@@ -66,8 +66,8 @@ pub use graph::{Graph, GraphView, PackedNormal, Voxel};
 pub use machine::{Machine, MachineOptions, Simulated};
 pub use picture::{Background, Buffer, Shading};
 pub use project::{
-    CageKind, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError, SetupOptions,
-    Stats,
+    CageKind, CameraError, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError,
+    SetupOptions, Stats,
 };
 pub use rays::Rays;
 

@@ -9,7 +9,7 @@
 //! its lock, which ends with the process that held it.
 
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -278,6 +278,14 @@ pub fn write_with(
     keep(vec![prepare(path, overwrite, fill)?])
 }
 
+/// As [`write_with`], of bytes that are at hand.
+///
+/// # Errors
+/// See [`WholeError`].
+pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
+    write_with(path, overwrite, |file| file.write_all(bytes))
+}
+
 /// A temporary folder in another, for what gets its name as a whole; removed with all in it when it is dropped, or
 /// else by the next process that writes there.
 ///
@@ -377,7 +385,6 @@ fn remove_if_left(path: &Path, is_folder: bool) {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use std::io::Write;
 
     /// Names of what is in a folder, in order.
     pub(crate) fn names(folder: &Path) -> Vec<String> {
@@ -389,21 +396,17 @@ pub(crate) mod tests {
         names
     }
 
-    fn put(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
-        write_with(path, overwrite, |file| file.write_all(bytes))
-    }
-
     #[test]
     fn whole_or_not_at_all() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/a.txt");
-        put(&path, b"one", false).unwrap();
+        write(&path, b"one", false).unwrap();
         assert!(matches!(
-            put(&path, b"two", false),
+            write(&path, b"two", false),
             Err(WholeError::Exists(_))
         ));
         assert_eq!(fs::read(&path).unwrap(), b"one");
-        put(&path, b"three", true).unwrap();
+        write(&path, b"three", true).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"three");
         let broken = write_with(&path, true, |file| {
             file.write_all(b"half")?;
@@ -452,11 +455,11 @@ pub(crate) mod tests {
             Err(WholeError::NoFolder(_))
         ));
         assert!(matches!(
-            put(&deep, b"x", true),
+            write(&deep, b"x", true),
             Err(WholeError::NoFolder(_))
         ));
         assert!(names(folder.path()).is_empty());
-        put(&folder.path().join("file"), b"x", false).unwrap();
+        write(&folder.path().join("file"), b"x", false).unwrap();
         let below = folder.path().join("file/a");
         assert!(matches!(
             check_free(&below, false),
@@ -477,20 +480,20 @@ pub(crate) mod tests {
         let at = |name: &str| folder.path().join(name);
         let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
         fs::create_dir(at("deep")).unwrap();
-        put(&at("deep/real"), b"one", false).unwrap();
+        write(&at("deep/real"), b"one", false).unwrap();
         fs::set_permissions(at("deep/real"), fs::Permissions::from_mode(0o600)).unwrap();
         symlink("deep/real", at("link")).unwrap();
         assert!(matches!(
-            put(&at("link"), b"two", false),
+            write(&at("link"), b"two", false),
             Err(WholeError::Exists(_))
         ));
-        put(&at("link"), b"two", true).unwrap();
+        write(&at("link"), b"two", true).unwrap();
         assert!(fs::symlink_metadata(at("link")).unwrap().is_symlink());
         assert_eq!(fs::read(at("deep/real")).unwrap(), b"two");
         assert_eq!(mode("deep/real"), 0o600);
         // A link to what is not there yet.
         symlink("deep/new", at("early")).unwrap();
-        put(&at("early"), b"three", true).unwrap();
+        write(&at("early"), b"three", true).unwrap();
         assert_eq!(fs::read(at("deep/new")).unwrap(), b"three");
         assert_eq!(names(&at("deep")), ["new", "real"]);
         // What is no file is not replaced.
@@ -507,7 +510,7 @@ pub(crate) mod tests {
         fs::write(left.join("rows.hex"), b"0").unwrap();
         // As another process would: this one has looked here already.
         in_progress().tidied.retain(|known| known != folder.path());
-        put(&folder.path().join("a"), b"x", false).unwrap();
+        write(&folder.path().join("a"), b"x", false).unwrap();
         assert!(used.path().exists() && !left.exists());
     }
 
@@ -515,7 +518,7 @@ pub(crate) mod tests {
     fn names_of_any_length_do() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a".repeat(255), "\u{20ac}".repeat(85), "-".to_owned()] {
-            put(&folder.path().join(&name), b"x", false).unwrap();
+            write(&folder.path().join(&name), b"x", false).unwrap();
         }
         assert_eq!(names(folder.path()).len(), 3);
     }
@@ -535,7 +538,7 @@ pub(crate) mod tests {
         // Of another process that still writes: a lock is that of an open file.
         let other = File::open(at(".shiftvox-b.far-123456.tmp")).unwrap();
         other.lock().unwrap();
-        put(&at("a.far"), b"whole", false).unwrap();
+        write(&at("a.far"), b"whole", false).unwrap();
         let left = [
             ".other.tmp",
             ".shiftvox-a.far",

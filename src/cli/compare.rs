@@ -13,7 +13,7 @@ use crate::bounded;
 use crate::measure::{ColorError, CoverageError, count_differing, difference};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::png::{self, Image};
-use crate::picture::store;
+use crate::whole;
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
@@ -75,7 +75,7 @@ struct Comparison {
 pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError> {
     if let Some(path) = &args.diff {
         super::outputs::check_picture_name(path)?;
-        store::check_free(path, args.force)?;
+        whole::check_free(path, args.force)?;
     }
     let comparison = match (read(&args.a)?, read(&args.b)?) {
         (Content::Picture(a), Content::Picture(b)) => pictures(&a, &b)?,
@@ -88,7 +88,7 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
         })?;
         let bytes = png::encode(*width, *height, rgba)
             .map_err(|e| CliError::new(Kind::Run, e).at(path.display()))?;
-        store::write(path, &bytes, args.force)?;
+        whole::write(path, &bytes, args.force)?;
     }
     tell(args, &comparison, console)?;
     if args.threshold.is_empty() {

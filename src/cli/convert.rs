@@ -12,7 +12,6 @@ use super::scene_files::Conversion;
 use super::{far, names, report, scene_files, scenes, textured};
 use crate::far::view::Opacity;
 use crate::graph::{BuildOptions, ExternalOptions};
-use crate::picture::store;
 use crate::scene::Source;
 use crate::textured::Element;
 use crate::whole;
@@ -107,7 +106,7 @@ impl ConvertArgs {
 }
 
 pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
-    store::check_free(&args.output, args.force)?;
+    whole::check_free(&args.output, args.force)?;
     let is_ending = |name: &str| args.output.extension().is_some_and(|ending| ending == name);
     if !is_ending("tvx") && (args.texels.is_some() || args.element.is_some()) {
         return Err(CliError::usage("--texels and --element are for .tvx files"));

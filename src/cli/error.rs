@@ -11,10 +11,10 @@ use crate::graph::file::FileError;
 use crate::lab::bench::BenchError;
 use crate::mesh::MeshError;
 use crate::picture::ResolveError;
-use crate::picture::store::StoreError;
 use crate::project::{EngineError, SetupError};
 use crate::report::plot::PlotError;
 use crate::scene::{OpenError, SceneError};
+use crate::whole::WholeError;
 use crate::{far, textured};
 
 /// The kinds of failure that a script can tell apart.
@@ -116,13 +116,13 @@ impl fmt::Display for CliError {
 
 impl std::error::Error for CliError {}
 
-impl From<StoreError> for CliError {
-    fn from(error: StoreError) -> Self {
+impl From<WholeError> for CliError {
+    fn from(error: WholeError) -> Self {
         let failure = Self::new(Kind::Run, &error);
         match error {
-            StoreError::Exists(_) => failure.advise("give another name, or --force to replace it"),
-            StoreError::NoFolder(_) => failure.advise("make it first, or give another name"),
-            StoreError::Io { .. } => failure,
+            WholeError::Exists(_) => failure.advise("give another name, or --force to replace it"),
+            WholeError::NoFolder(_) => failure.advise("make it first, or give another name"),
+            WholeError::Io { .. } => failure,
         }
     }
 }

@@ -17,8 +17,8 @@ use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::write_to;
 use crate::far::{BuildError, BuildOptions, FarFile, build};
 use crate::mesh::Instances;
-use crate::picture::store;
 use crate::project::Up;
+use crate::whole;
 
 /// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(
@@ -42,7 +42,7 @@ pub(super) fn convert(
     let mut data = built.map_err(|e| CliError::from(e).at(of.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    store::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
     let file = FarFile::open(of.output)?;
     let facts = Facts::of(&file);
     console.note(format!(

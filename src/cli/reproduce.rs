@@ -17,11 +17,12 @@ use crate::lab::bench::{Harness, Subject, ablation};
 use crate::lab::reproduce::{
     self, Config, Drawn, Engines, Evidence, ReproduceError, Timed, differences, figures, tables,
 };
-use crate::picture::{Picture, png, store};
+use crate::picture::{Picture, png};
 use crate::project::SetupOptions;
 use crate::report::Table;
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
+use crate::whole;
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
@@ -181,7 +182,7 @@ fn anew(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
     let config = config(args);
     config.check().map_err(CliError::usage)?;
     for name in [CONFIG, RESULTS, PAGE] {
-        store::check_free(&args.outdir.join(name), args.force)?;
+        whole::check_free(&args.outdir.join(name), args.force)?;
     }
     let context = Context::now();
     context.warn(console);
@@ -200,7 +201,7 @@ fn anew(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
         ),
         ("order.svg", one_plot(tables::order_bars(&found.order))?),
     ];
-    let write = |name: &str, bytes: &[u8]| store::write(&args.outdir.join(name), bytes, args.force);
+    let write = |name: &str, bytes: &[u8]| whole::write(&args.outdir.join(name), bytes, args.force);
     for (name, _, bytes) in &found.pictures {
         write(name, bytes)?;
     }

@@ -165,8 +165,7 @@ pub(super) fn read_mesh(
     progress: &dyn Progress,
 ) -> Result<(Mesh, Up), CliError> {
     let (mesh, y_up) = scene::read_mesh(&names::path(source), &load_options(args), progress)?;
-    let up = if y_up { Up::Y } else { Up::Z };
-    Ok((mesh, args.up_or(up)))
+    Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
 /// [`read_mesh`], and tells the mesh's warnings.
@@ -222,11 +221,10 @@ fn load_options(args: &SceneArgs) -> LoadOptions {
 fn ready(opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
     let info = opened.info.as_ref();
     let y_up = opened.mesh.as_ref().is_some_and(|mesh| mesh.y_up);
-    let up = if y_up { Up::Y } else { Up::Z };
     Scene {
         source: source.to_owned(),
         format: opened.format,
-        up: mesh_up.unwrap_or(up),
+        up: mesh_up.unwrap_or(Up::y_or_z(y_up)),
         mesh: opened.mesh,
         palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
         warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),

@@ -11,11 +11,11 @@ use super::report::{self, grouped};
 use super::scene_files::Conversion;
 use super::scenes;
 use crate::drawing::milliseconds_since;
-use crate::picture::store;
 use crate::project::Up;
 use crate::textured::levels::LevelRow;
 use crate::textured::store::{Grid, write_to};
 use crate::textured::{BuildOptions, Element, TexturedFile, build};
+use crate::whole;
 
 /// Builds textured voxels of a mesh and writes them.
 pub(super) fn convert(
@@ -29,7 +29,7 @@ pub(super) fn convert(
         build(&mesh, options, console.progress()).map_err(|e| CliError::from(e).at(of.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    store::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
     let file = TexturedFile::open(of.output)?;
     let voxels: u64 = (0..file.grids())
         .map(|g| file.grid(g).voxels().len() as u64)

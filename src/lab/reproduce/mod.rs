@@ -21,7 +21,7 @@ use crate::lab::bench::{
 };
 use crate::lab::model::frame::count_operations;
 use crate::picture::{self, Background, Picture, Shading, resolve};
-use crate::project::{CageKind, Coverage, FrameSetup, SetupOptions};
+use crate::project::{FrameSetup, SetupOptions};
 
 /// What is reproduced: `config.toml`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,22 +117,11 @@ impl Config {
     }
 }
 
-/// The image-order paper's settings.
-#[must_use]
-pub fn paper_options() -> SetupOptions {
-    SetupOptions {
-        cage: CageKind::Corners,
-        tolerance_px: f64::INFINITY,
-        coverage: Coverage::Any,
-        ..SetupOptions::of(Coverage::Any)
-    }
-}
-
 /// Settings by name: the image-order paper's, and ours.
 #[must_use]
 pub fn settings() -> [(&'static str, SetupOptions); 2] {
     [
-        ("paper", paper_options()),
+        ("paper", SetupOptions::paper()),
         ("default", SetupOptions::default()),
     ]
 }
