@@ -4,9 +4,9 @@
 //! belong together are renamed when the last of them is written. A file that is replaced keeps its permissions, and a
 //! link to a file stays a link.
 //!
-//! Who ends the program on a signal calls [`remove_unfinished`] first. What a killed or crashed process left
-//! behind is removed by the next one that writes to the folder: such a file is known by its name and by
-//! its lock, which ends with the process that held it.
+//! A signal handler must call [`remove_unfinished`] before it ends the program. What a killed or crashed process left
+//! behind is removed by the next one that writes to the folder: such a file is recognised by its name and by its lock,
+//! which ends with the process that held it.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -70,7 +70,7 @@ fn in_progress() -> MutexGuard<'static, InProgress> {
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
-        // Gone already, or not ours to remove: nothing can be done about it.
+        // It is gone already, or another user's: nothing can be done about it.
         let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
     }
     end()
@@ -135,7 +135,7 @@ pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
             io::Error::from(io::ErrorKind::NotADirectory),
         ));
     }
-    // One that is made for its files; more than one is a slip of the pen.
+    // One missing folder is created; several are taken for a typing error.
     match folder_of(folder).is_dir() {
         true => Ok(()),
         false => Err(WholeError::NoFolder(folder_of(folder).to_owned())),
@@ -286,12 +286,12 @@ pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeErro
     write_with(path, overwrite, |file| file.write_all(bytes))
 }
 
-/// A temporary folder in another, for what gets its name as a whole; removed with all in it when it is dropped, or
-/// else by the next process that writes there.
+/// Makes a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
+/// dropped; if the process is killed, by the next one that writes there.
 ///
 /// # Errors
 /// What the system says.
-pub fn temporary_folder(parent: &Path) -> Result<(TempDir, Shelter), WholeError> {
+pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -301,19 +301,19 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, Shelter), WholeError>
         let open = File::open(folder.path()).ok();
         let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
         if !is_locked || folder.path().exists() {
-            let shelter = Shelter {
+            let lock = FolderLock {
                 _guard: guard,
                 _lock: open,
             };
-            return Ok((folder, shelter));
+            return Ok((folder, lock));
         }
-        // Another process was quicker and took it for one that was left.
+        // Another process took it for one that was left behind, and removed it before it was locked.
     }
 }
 
-/// Says that a temporary folder is in use.
+/// Keeps a temporary folder from being removed by other processes, as long as it lives.
 #[derive(Debug)]
-pub struct Shelter {
+pub struct FolderLock {
     _guard: TemporaryGuard,
     _lock: Option<File>,
 }
@@ -336,16 +336,16 @@ fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Temporary
     loop {
         let file = builder.tempfile_in(folder)?;
         let guard = TemporaryGuard::new(file.path());
-        // Where there are no locks, nobody takes it for left behind either.
+        // Where the system has no locks, no process removes it either.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
             return Ok((file, guard));
         }
-        // Another process was quicker and took it for one.
+        // Another process took it for one that was left behind, and removed it before it was locked.
     }
 }
 
-/// Removes what ended processes left in a folder, the first time that this one writes to it.
+/// Removes what processes that have ended left in a folder, the first time that this one writes to it.
 fn tidy(folder: &Path) {
     {
         let mut list = in_progress();
@@ -354,7 +354,7 @@ fn tidy(folder: &Path) {
         }
         list.tidied.push(folder.to_owned());
     }
-    // Whatever cannot be read or removed stays: it does not stand in the way.
+    // What cannot be read or removed stays; it does no harm.
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
@@ -504,7 +504,7 @@ pub(crate) mod tests {
     #[test]
     fn folders_that_were_left_are_removed_and_those_in_use_are_not() {
         let folder = tempfile::tempdir().unwrap();
-        let (used, _shelter) = temporary_folder(folder.path()).unwrap();
+        let (used, _in_use) = temporary_folder(folder.path()).unwrap();
         let left = folder.path().join(".shiftvox-left.tmp");
         fs::create_dir(&left).unwrap();
         fs::write(left.join("rows.hex"), b"0").unwrap();

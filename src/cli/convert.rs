@@ -19,7 +19,7 @@ use crate::whole;
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// Scene to read, told by its content
+    /// Scene to read, recognised by its content
     #[arg(value_name = "IN", value_parser = super::names::parser())]
     input: String,
     /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
@@ -138,7 +138,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
+            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, \
+             --grid for .far and .tvx files",
         ));
     }
     scene_files::check_ending(&args.output)?;

@@ -78,7 +78,10 @@ fn check_room(triangles: u64) -> Result<(), CliError> {
     match budget::available() {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
-            format!("{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, and {free} are free"),
+            format!(
+                "{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, \
+                 and {free} are free"
+            ),
         )
         .advise("ask for fewer --instances, or leave out a part of the mesh")),
         _ => Ok(()),
@@ -123,7 +126,7 @@ pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliEr
     if console.json {
         return Ok(Some(facts.describe(&file, name)));
     }
-    console.data(facts.tell(&file, name))?;
+    console.data(facts.description(&file, name))?;
     Ok(None)
 }
 
@@ -248,7 +251,7 @@ impl Facts {
         })
     }
 
-    fn tell(&self, file: &FarFile, name: &str) -> String {
+    fn description(&self, file: &FarFile, name: &str) -> String {
         let (low, high) = file.bounds();
         let percent = |share: f64| format!("{:.1} %", share * 100.0);
         let lines = [

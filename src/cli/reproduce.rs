@@ -352,11 +352,11 @@ fn page(found: &Results, context: &Context, plots: &[(&str, String)]) -> String 
     plot(
         &mut page,
         "figure-5.svg",
-        "Both axes logarithmic; the paper's 64 x 64 is told as below 1 ms and left out.",
+        "Both axes logarithmic; the paper's 64 x 64 is given as below 1 ms and left out.",
     );
     page.chapter("Time and the object");
     page.text(
-        "The paper: 119 ms for a complex object, 110 and 60 ms for two simple ones, at a size that it does not tell; \"this shows that the rendering \
+        "The paper: 119 ms for a complex object, 110 and 60 ms for two simple ones, at a size that it does not state; \"this shows that the rendering \
          algorithm doesn't depend on the complexity of image\".",
     );
     page.table(&tables::independence(&found.objects, &found.config.growing));

@@ -157,7 +157,7 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
 
 /// Reports what was written.
 pub(super) fn report_written(
-    verb: &str,
+    command: &str,
     input: &str,
     output: &Path,
     written: &Written,
@@ -180,7 +180,7 @@ pub(super) fn report_written(
             "bytes": written.bytes,
             "warnings": written.warnings,
         });
-        console.document(&report::document(verb, fields))?;
+        console.document(&report::document(command, fields))?;
     }
     Ok(())
 }

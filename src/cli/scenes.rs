@@ -56,7 +56,7 @@ pub(super) fn choose(given: &[String], from_config: Vec<String>) -> Result<Vec<S
     Ok(names)
 }
 
-/// Opens a file or makes a `gen:` scene, and tells its warnings.
+/// Opens a file or makes a `gen:` scene, and prints its warnings.
 ///
 /// # Errors
 /// A bad input with file, offset, what was expected and what to do.
@@ -85,7 +85,7 @@ pub(super) fn open_source(
     open_with(source, name, args, &options(args), started, console)
 }
 
-/// [`open_source`], with every byte of a graph file checked: for who reads all of it.
+/// [`open_source`], with every byte of a graph file checked: for commands that read all of it.
 ///
 /// # Errors
 /// As [`open`].
@@ -115,7 +115,8 @@ fn open_with(
     let scene = ready(opened, name, args.mesh_up, started);
     if !scene.is_verified {
         console.note(format!(
-            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, which read all of it"
+            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, \
+             which read all of it"
         ));
     }
     for warning in &scene.warnings {
@@ -168,7 +169,7 @@ pub(super) fn read_mesh(
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
-/// [`read_mesh`], and tells the mesh's warnings.
+/// [`read_mesh`], and prints the mesh's warnings.
 ///
 /// # Errors
 /// As [`read_mesh`].

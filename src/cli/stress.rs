@@ -237,14 +237,14 @@ fn page(
     Ok(page.finish())
 }
 
-/// Draws one case and tells all about it.
+/// Draws one case and prints what was found.
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
     if console.json {
         let fields = json!({ "case": case.to_string(), "outcome": outcome });
         console.document(&report::document("stress case", fields))?;
     } else {
-        console.data(told(case, &outcome))?;
+        console.data(description(case, &outcome))?;
     }
     match outcome.failures.first() {
         None => Ok(()),
@@ -255,7 +255,7 @@ fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     }
 }
 
-fn told(case: &Case, outcome: &Outcome) -> String {
+fn description(case: &Case, outcome: &Outcome) -> String {
     let mut lines = vec![case.to_string()];
     lines.push(match &outcome.end {
         End::Drawn => format!(

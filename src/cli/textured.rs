@@ -63,7 +63,7 @@ pub(super) fn info(
     if console.json {
         return Ok(Some(describe(&file, name)));
     }
-    console.data(tell(&file, name, with_levels))?;
+    console.data(description(&file, name, with_levels))?;
     Ok(None)
 }
 
@@ -120,7 +120,7 @@ fn element_name(element: Element) -> &'static str {
     }
 }
 
-fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
+fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     let (low, high) = file.bounds();
     let mut parts = vec![format!(
         "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles {}\nbytes     {}",

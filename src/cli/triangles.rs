@@ -41,7 +41,7 @@ pub enum BufferName {
 /// Arguments of `triangles`.
 #[derive(Debug, Args)]
 pub struct TrianglesArgs {
-    /// Mesh: .obj, .ply, .stl, .gltf or .glb, told by its content
+    /// Mesh: .obj, .ply, .stl, .gltf or .glb, recognised by its content
     #[arg(value_name = "MESH", value_parser = crate::cli::names::parser())]
     mesh: String,
     /// Picture to write, .png

@@ -13,7 +13,7 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{Method, PixelStyle, References, VoxelMethod};
+use crate::lab::error::{DrawingMethod, PixelStyle, References, VoxelMethod};
 use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{Coverage, SetupOptions};
 use crate::report::html::Page;
@@ -130,7 +130,7 @@ pub(super) fn run(
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
-        let method = |options| -> Box<dyn Method + '_> {
+        let method = |options| -> Box<dyn DrawingMethod + '_> {
             Box::new(VoxelMethod::new(
                 &subject.graph,
                 engine,

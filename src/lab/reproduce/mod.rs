@@ -297,7 +297,7 @@ pub struct Timed {
     pub timing: Timing,
 }
 
-/// Who is timed: under the image-order paper's settings the machine alone.
+/// Which engines are timed: under the image-order paper's settings the machine alone.
 #[derive(Debug, Clone, Copy)]
 pub struct Engines<'e> {
     /// The machine.

@@ -16,7 +16,7 @@ pub fn paper_law() -> Option<PowerLaw> {
     PowerLaw::fit(&points)
 }
 
-/// Who drew: engine and settings.
+/// What drew: engine and settings.
 fn engine_label(timed: &Timed) -> String {
     format!("{}, {} settings", timed.timing.engine, timed.settings)
 }
