@@ -2,7 +2,7 @@
 //!
 //! What a file or a flag makes large is [checked](check) against the memory that is free before work begins,
 //! and [allocated](filled) so that a refusal is an error with figures and not the end of the process. Small
-//! things are allocated as ever: a system without memory for those has none for an error message either.
+//! things are allocated as usual: a system without memory for those has none for an error message either.
 
 use std::fmt;
 
@@ -13,7 +13,7 @@ pub struct Shortage {
     pub what: &'static str,
     /// Bytes that it takes, or more.
     pub needed: u64,
-    /// Bytes that are free, where the system tells.
+    /// Bytes that are free; `None` where the system does not report it.
     pub free: Option<u64>,
 }
 
@@ -31,7 +31,7 @@ impl fmt::Display for Shortage {
 /// Fails where something takes more memory than is free.
 ///
 /// # Errors
-/// [`Shortage`]; never where the system does not tell how much is free.
+/// [`Shortage`]; never where the system does not report how much is free.
 pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
     match available() {
         Some(free) if needed > free => Err(Shortage {
@@ -67,9 +67,9 @@ pub fn filled<T: Clone>(what: &'static str, item: T, items: usize) -> Result<Vec
     Ok(list)
 }
 
-/// Memory that this process can still take, bytes; none where the system does not tell.
+/// Memory that this process can still take, bytes. `None` where the system does not report it.
 ///
-/// The least of what the machine has, what the process's container may have (Linux: control groups), and what
+/// The least of what the computer has free, what the process's container may have (Linux: control groups), and what
 /// is left of its address space where that is limited (`ulimit -v`).
 #[must_use]
 pub fn available() -> Option<u64> {
@@ -88,14 +88,14 @@ pub fn available() -> Option<u64> {
     [granted, left].into_iter().flatten().chain([free]).min()
 }
 
-/// The bytes in a line that tells kibibytes.
+/// The bytes of an entry that is given in kibibytes. `None` where there is no such entry.
 fn kibibytes_of(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
     kibibytes.checked_mul(1024)
 }
 
-/// The process's limit of address space; none where there is none.
+/// The process's limit of address space, bytes. `None` where it has no limit.
 fn address_space(limits: &str) -> Option<u64> {
     let mut lines = limits.lines();
     let line = lines.find_map(|line| line.strip_prefix("Max address space"))?;
@@ -122,13 +122,13 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_had_is_told_with_figures() {
+    fn what_cannot_be_had_is_reported_with_figures() {
         let error = filled("a test", 7u64, usize::MAX / 16).expect_err("too large");
         assert_eq!(error.needed, usize::MAX as u64 / 16 * 8);
-        let told = error.to_string();
+        let message = error.to_string();
         assert!(
-            told.starts_with(&format!("a test: at least {} bytes", error.needed)),
-            "{told}"
+            message.starts_with(&format!("a test: at least {} bytes", error.needed)),
+            "{message}"
         );
         assert_eq!(filled("a test", 7u8, 3), Ok(vec![7; 3]));
         if available().is_some() {

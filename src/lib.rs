@@ -1,4 +1,4 @@
-//! Voxel rendering with nothing but adders and shifts.
+//! Exact voxel rendering on the CPU, and a model of hardware that needs only adders and shifts.
 //!
 //! `shiftvox` draws voxel files without a GPU, and counts what the same picture would cost simple hardware that has
 //! adders, shifts, logic and compares, and no multiplier, divider or floating point. Its default picture is exact: at
@@ -44,7 +44,7 @@
 //! | feature | default | what for |
 //! |---|---|---|
 //! | `png` | yes | [`Picture::save_png`] |
-//! | `mesh` | yes | meshes, Far Voxels and textured voxels; without it a binary `.stl` is of no known format |
+//! | `mesh` | yes | meshes, far voxels and textured voxels; without it a binary `.stl` is of no known format |
 //! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
 //! | `cli` | yes | the command line; needs all of them |
 //!
@@ -66,8 +66,8 @@ pub use graph::{Graph, GraphView, PackedNormal, Voxel};
 pub use machine::{Machine, MachineOptions, Simulated};
 pub use picture::{Background, Buffer, Shading};
 pub use project::{
-    CageKind, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError, SetupOptions,
-    Stats,
+    CageKind, CameraError, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError,
+    SetupOptions, Stats,
 };
 pub use rays::Rays;
 

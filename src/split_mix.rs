@@ -1,4 +1,4 @@
-//! SplitMix64: random numbers that are the same in every run and on every machine.
+//! SplitMix64: random numbers that are the same in every run and on every computer.
 
 /// The numbers that follow from a seed.
 #[derive(Debug, Clone)]

@@ -4,12 +4,12 @@
 //! belong together are renamed when the last of them is written. A file that is replaced keeps its permissions, and a
 //! link to a file stays a link.
 //!
-//! Who ends the program on a signal calls [`remove_unfinished`] first. What a killed or crashed process left
-//! behind is removed by the next one that writes to the folder: such a file is known by its name and by
-//! its lock, which ends with the process that held it.
+//! A signal handler must call [`remove_unfinished`] before it ends the program. What a killed or crashed process left
+//! behind is removed by the next one that writes to the folder: such a file is recognised by its name and by its lock,
+//! which ends with the process that held it.
 
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -70,7 +70,7 @@ fn in_progress() -> MutexGuard<'static, InProgress> {
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
-        // Gone already, or not ours to remove: nothing can be done about it.
+        // It is gone already, or another user's: nothing can be done about it.
         let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
     }
     end()
@@ -135,7 +135,7 @@ pub fn check_folder(folder: &Path) -> Result<(), WholeError> {
             io::Error::from(io::ErrorKind::NotADirectory),
         ));
     }
-    // One that is made for its files; more than one is a slip of the pen.
+    // One missing folder is created; several are taken for a typing error.
     match folder_of(folder).is_dir() {
         true => Ok(()),
         false => Err(WholeError::NoFolder(folder_of(folder).to_owned())),
@@ -278,12 +278,20 @@ pub fn write_with(
     keep(vec![prepare(path, overwrite, fill)?])
 }
 
-/// A temporary folder in another, for what gets its name as a whole; removed with all in it when it is dropped, or
-/// else by the next process that writes there.
+/// As [`write_with`], of bytes that are at hand.
+///
+/// # Errors
+/// See [`WholeError`].
+pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
+    write_with(path, overwrite, |file| file.write_all(bytes))
+}
+
+/// Makes a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
+/// dropped; if the process is killed, by the next one that writes there.
 ///
 /// # Errors
 /// What the system says.
-pub fn temporary_folder(parent: &Path) -> Result<(TempDir, Shelter), WholeError> {
+pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
     tidy(parent);
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -293,19 +301,19 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, Shelter), WholeError>
         let open = File::open(folder.path()).ok();
         let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
         if !is_locked || folder.path().exists() {
-            let shelter = Shelter {
+            let lock = FolderLock {
                 _guard: guard,
                 _lock: open,
             };
-            return Ok((folder, shelter));
+            return Ok((folder, lock));
         }
-        // Another process was quicker and took it for one that was left.
+        // Another process took it for one that was left behind, and removed it before it was locked.
     }
 }
 
-/// Says that a temporary folder is in use.
+/// Keeps a temporary folder from being removed by other processes, as long as it lives.
 #[derive(Debug)]
-pub struct Shelter {
+pub struct FolderLock {
     _guard: TemporaryGuard,
     _lock: Option<File>,
 }
@@ -328,16 +336,16 @@ fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, Temporary
     loop {
         let file = builder.tempfile_in(folder)?;
         let guard = TemporaryGuard::new(file.path());
-        // Where there are no locks, nobody takes it for left behind either.
+        // Where the system has no locks, no process removes it either.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
             return Ok((file, guard));
         }
-        // Another process was quicker and took it for one.
+        // Another process took it for one that was left behind, and removed it before it was locked.
     }
 }
 
-/// Removes what ended processes left in a folder, the first time that this one writes to it.
+/// Removes what processes that have ended left in a folder, the first time that this one writes to it.
 fn tidy(folder: &Path) {
     {
         let mut list = in_progress();
@@ -346,7 +354,7 @@ fn tidy(folder: &Path) {
         }
         list.tidied.push(folder.to_owned());
     }
-    // Whatever cannot be read or removed stays: it does not stand in the way.
+    // What cannot be read or removed stays; it does no harm.
     let Ok(entries) = fs::read_dir(folder) else {
         return;
     };
@@ -377,7 +385,6 @@ fn remove_if_left(path: &Path, is_folder: bool) {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use std::io::Write;
 
     /// Names of what is in a folder, in order.
     pub(crate) fn names(folder: &Path) -> Vec<String> {
@@ -389,21 +396,17 @@ pub(crate) mod tests {
         names
     }
 
-    fn put(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeError> {
-        write_with(path, overwrite, |file| file.write_all(bytes))
-    }
-
     #[test]
     fn whole_or_not_at_all() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/a.txt");
-        put(&path, b"one", false).unwrap();
+        write(&path, b"one", false).unwrap();
         assert!(matches!(
-            put(&path, b"two", false),
+            write(&path, b"two", false),
             Err(WholeError::Exists(_))
         ));
         assert_eq!(fs::read(&path).unwrap(), b"one");
-        put(&path, b"three", true).unwrap();
+        write(&path, b"three", true).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"three");
         let broken = write_with(&path, true, |file| {
             file.write_all(b"half")?;
@@ -452,11 +455,11 @@ pub(crate) mod tests {
             Err(WholeError::NoFolder(_))
         ));
         assert!(matches!(
-            put(&deep, b"x", true),
+            write(&deep, b"x", true),
             Err(WholeError::NoFolder(_))
         ));
         assert!(names(folder.path()).is_empty());
-        put(&folder.path().join("file"), b"x", false).unwrap();
+        write(&folder.path().join("file"), b"x", false).unwrap();
         let below = folder.path().join("file/a");
         assert!(matches!(
             check_free(&below, false),
@@ -477,20 +480,20 @@ pub(crate) mod tests {
         let at = |name: &str| folder.path().join(name);
         let mode = |name: &str| fs::metadata(at(name)).unwrap().permissions().mode() & 0o777;
         fs::create_dir(at("deep")).unwrap();
-        put(&at("deep/real"), b"one", false).unwrap();
+        write(&at("deep/real"), b"one", false).unwrap();
         fs::set_permissions(at("deep/real"), fs::Permissions::from_mode(0o600)).unwrap();
         symlink("deep/real", at("link")).unwrap();
         assert!(matches!(
-            put(&at("link"), b"two", false),
+            write(&at("link"), b"two", false),
             Err(WholeError::Exists(_))
         ));
-        put(&at("link"), b"two", true).unwrap();
+        write(&at("link"), b"two", true).unwrap();
         assert!(fs::symlink_metadata(at("link")).unwrap().is_symlink());
         assert_eq!(fs::read(at("deep/real")).unwrap(), b"two");
         assert_eq!(mode("deep/real"), 0o600);
         // A link to what is not there yet.
         symlink("deep/new", at("early")).unwrap();
-        put(&at("early"), b"three", true).unwrap();
+        write(&at("early"), b"three", true).unwrap();
         assert_eq!(fs::read(at("deep/new")).unwrap(), b"three");
         assert_eq!(names(&at("deep")), ["new", "real"]);
         // What is no file is not replaced.
@@ -501,13 +504,13 @@ pub(crate) mod tests {
     #[test]
     fn folders_that_were_left_are_removed_and_those_in_use_are_not() {
         let folder = tempfile::tempdir().unwrap();
-        let (used, _shelter) = temporary_folder(folder.path()).unwrap();
+        let (used, _in_use) = temporary_folder(folder.path()).unwrap();
         let left = folder.path().join(".shiftvox-left.tmp");
         fs::create_dir(&left).unwrap();
         fs::write(left.join("rows.hex"), b"0").unwrap();
         // As another process would: this one has looked here already.
         in_progress().tidied.retain(|known| known != folder.path());
-        put(&folder.path().join("a"), b"x", false).unwrap();
+        write(&folder.path().join("a"), b"x", false).unwrap();
         assert!(used.path().exists() && !left.exists());
     }
 
@@ -515,7 +518,7 @@ pub(crate) mod tests {
     fn names_of_any_length_do() {
         let folder = tempfile::tempdir().unwrap();
         for name in ["a".repeat(255), "\u{20ac}".repeat(85), "-".to_owned()] {
-            put(&folder.path().join(&name), b"x", false).unwrap();
+            write(&folder.path().join(&name), b"x", false).unwrap();
         }
         assert_eq!(names(folder.path()).len(), 3);
     }
@@ -535,7 +538,7 @@ pub(crate) mod tests {
         // Of another process that still writes: a lock is that of an open file.
         let other = File::open(at(".shiftvox-b.far-123456.tmp")).unwrap();
         other.lock().unwrap();
-        put(&at("a.far"), b"whole", false).unwrap();
+        write(&at("a.far"), b"whole", false).unwrap();
         let left = [
             ".other.tmp",
             ".shiftvox-a.far",

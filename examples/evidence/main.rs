@@ -4,7 +4,7 @@
 //!     cargo run --release --example evidence -- --check NAME...     # figures of blocks or pages, however long
 //!     cargo run --release --example evidence -- --write [NAME...]   # remakes all, or these
 //!
-//! It is an example and no verb of `shiftvox`, because it is of use to nobody who does not change these pages, and it
+//! It is an example and no command of `shiftvox`, because it is of use to nobody who does not change these pages, and it
 //! sees the program as a reader does: by its command line and its JSON.
 
 mod tool;

@@ -2,11 +2,12 @@
 
 use glam::DVec3;
 
-use super::Scene;
+use super::{Error, Scene};
 use crate::project;
 use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 
-/// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's.
+/// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's. With a call
+/// that is not for such a camera no picture is drawn: [`Error::Setting`](crate::Error::Setting).
 ///
 /// ```
 /// # use shiftvox::{Camera, Scene};
@@ -19,6 +20,8 @@ use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 pub struct Camera {
     place: Place,
     fov_degrees: f64,
+    /// Why a call does not apply.
+    misapplied: Option<&'static str>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +52,7 @@ impl Camera {
                 zoom: 1.0,
             },
             fov_degrees: DEFAULT_FOV,
+            misapplied: None,
         }
     }
 
@@ -63,32 +67,42 @@ impl Camera {
                 up: DVec3::Z,
             },
             fov_degrees: DEFAULT_FOV,
+            misapplied: None,
         }
     }
 
-    /// Degrees around the up axis: 0 from the front, 90 from the right. Of a fitted camera; a placed one stays.
+    /// Degrees around the up axis: 0 from the front, 90 from the right. For a fitted camera.
     #[must_use]
     pub fn azimuth(mut self, degrees: f64) -> Self {
-        if let Place::Fitted { direction, .. } = &mut self.place {
-            direction.azimuth = degrees;
+        match &mut self.place {
+            Place::Fitted { direction, .. } => direction.azimuth = degrees,
+            Place::Placed { .. } => {
+                self.misapplied = Some("an azimuth is for a fitted camera, not a placed one");
+            }
         }
         self
     }
 
-    /// Degrees above the horizon. Of a fitted camera; a placed one stays.
+    /// Degrees above the horizon. For a fitted camera.
     #[must_use]
     pub fn elevation(mut self, degrees: f64) -> Self {
-        if let Place::Fitted { direction, .. } = &mut self.place {
-            direction.elevation = degrees;
+        match &mut self.place {
+            Place::Fitted { direction, .. } => direction.elevation = degrees,
+            Place::Placed { .. } => {
+                self.misapplied = Some("an elevation is for a fitted camera, not a placed one");
+            }
         }
         self
     }
 
-    /// Magnification, above 0: 2 halves the eye's distance. Of a fitted camera; a placed one stays.
+    /// Magnification, above 0: 2 halves the eye's distance. For a fitted camera.
     #[must_use]
     pub fn zoom(mut self, factor: f64) -> Self {
-        if let Place::Fitted { zoom, .. } = &mut self.place {
-            *zoom = factor;
+        match &mut self.place {
+            Place::Fitted { zoom, .. } => *zoom = factor,
+            Place::Placed { .. } => {
+                self.misapplied = Some("a zoom is for a fitted camera, not a placed one");
+            }
         }
         self
     }
@@ -96,17 +110,26 @@ impl Camera {
     /// Keeps a fitted camera at the same distance from all sides: for turntables.
     #[must_use]
     pub fn for_turning(mut self) -> Self {
-        if let Place::Fitted { bounds, up, .. } = &mut self.place {
-            *bounds = bounds.revolved(*up);
+        match &mut self.place {
+            Place::Fitted { bounds, up, .. } => *bounds = bounds.revolved(*up),
+            Place::Placed { .. } => {
+                self.misapplied = Some("turning is for a fitted camera, not a placed one");
+            }
         }
         self
     }
 
-    /// Another direction that is seen pointing up; not along the view. Of a placed camera; a fitted one stays.
+    /// Another direction that is seen pointing up; not along the view. For a placed camera; a fitted one has
+    /// that of its scene ([`Scene::with_up`]).
     #[must_use]
     pub fn up(mut self, direction: [f64; 3]) -> Self {
-        if let Place::Placed { up, .. } = &mut self.place {
-            *up = direction.into();
+        match &mut self.place {
+            Place::Placed { up, .. } => *up = direction.into(),
+            Place::Fitted { .. } => {
+                self.misapplied = Some(
+                    "another up is for a placed camera; give the scene of a fitted one another",
+                );
+            }
         }
         self
     }
@@ -118,11 +141,16 @@ impl Camera {
         self
     }
 
-    /// The zoom of a fitted camera.
-    pub(super) fn zoom_factor(&self) -> f64 {
+    /// Whether all that was asked of the camera can be done.
+    pub(super) fn check(&self) -> Result<(), Error> {
+        if let Some(reason) = self.misapplied {
+            return Err(Error::Setting(reason.to_owned()));
+        }
         match self.place {
-            Place::Fitted { zoom, .. } => zoom,
-            Place::Placed { .. } => 1.0,
+            Place::Fitted { zoom, .. } if !(zoom.is_finite() && zoom > 0.0) => Err(Error::Setting(
+                format!("the zoom must be above 0, not {zoom}"),
+            )),
+            _ => Ok(()),
         }
     }
 

@@ -1,12 +1,9 @@
 //! Why a scene cannot be opened, drawn or saved.
 
-use crate::graph::BuildError;
-use crate::graph::vxg::VxgError;
-use crate::machine::SimulateError;
-use crate::picture::ResolveError;
-use crate::picture::store::StoreError;
 use crate::project::{EngineError, SetupError};
-use crate::scene::OpenError;
+
+/// What went wrong, for people: a message, and what it came from.
+type Reason = Box<dyn std::error::Error + Send + Sync>;
 
 /// Why a scene cannot be opened, drawn or saved. Messages name the file to blame, where there is one.
 #[derive(Debug, thiserror::Error)]
@@ -14,45 +11,30 @@ use crate::scene::OpenError;
 pub enum Error {
     /// The scene cannot be opened: a missing, damaged, unknown or too large file, or a wrong specification.
     #[error(transparent)]
-    Open(Box<OpenError>),
+    Open(Reason),
     /// The voxels make no graph: there are none, too many, or they lie too far apart.
     #[error(transparent)]
-    Build(#[from] BuildError),
+    Build(Reason),
     /// Camera and settings make no frame.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// Samples of a pixel along an axis are not 1, 2 or 4, the picture has more than 2^27 samples, or the zoom is not
-    /// above 0.
+    /// A setting that the camera or the engine does not have, samples of a pixel along an axis other than 1, 2 and 4,
+    /// a picture of more than 2^27 samples, or a zoom that is not above 0.
     #[error("{0}")]
-    Size(String),
+    Setting(String),
     /// The system gives no threads.
     #[error(transparent)]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    Threads(Reason),
     /// The engine cannot finish the frame: a word overflowed.
     #[error(transparent)]
     Engine(#[from] EngineError),
     /// The simulated hardware cannot finish the frame.
     #[error(transparent)]
-    Simulate(#[from] SimulateError),
+    Simulate(Reason),
     /// The frame makes no picture.
     #[error(transparent)]
-    Resolve(#[from] ResolveError),
+    Resolve(Reason),
     /// A file cannot be written. What stood there before still does.
     #[error(transparent)]
-    Write(#[from] StoreError),
-    /// A graph file cannot be written. What stood there before still does.
-    #[error(transparent)]
-    WriteGraph(Box<VxgError>),
-}
-
-impl From<OpenError> for Error {
-    fn from(error: OpenError) -> Self {
-        Self::Open(Box::new(error))
-    }
-}
-
-impl From<VxgError> for Error {
-    fn from(error: VxgError) -> Self {
-        Self::WriteGraph(Box::new(error))
-    }
+    Write(Reason),
 }

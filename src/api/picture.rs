@@ -5,8 +5,9 @@ use std::path::Path;
 use hwmodel::count::Counter;
 
 use super::Error;
-use crate::picture::{self, Buffer, Rows, npy, store};
+use crate::picture::{self, Buffer, Rows, npy};
 use crate::project::Stats;
+use crate::whole;
 
 /// A finished picture: buffers of `width() * height()` entries, row by row from the top left, and what the engine
 /// counted. Colours average all samples of a pixel. Depth, normal, voxel and node are those of one sample: the
@@ -132,10 +133,10 @@ impl Picture {
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let picture::Picture { width, height, .. } = self.buffers;
         let pixels = picture::png::Pixels::new(width, height, self.buffers.rgba.clone());
-        store::write_with(path.as_ref(), true, |file| {
+        whole::write_with(path.as_ref(), true, |file| {
             pixels.write(file).map_err(std::io::Error::other)
-        })?;
-        Ok(())
+        })
+        .map_err(|e| Error::Write(e.into()))
     }
 
     /// Writes a buffer as an array of NumPy: `height x width`, times the entries of a pixel where it has several.
@@ -148,11 +149,7 @@ impl Picture {
         if buffer.entries() > 1 {
             shape.push(buffer.entries());
         }
-        store::write(
-            path.as_ref(),
-            &npy::encode(&npy::Array { shape, values }),
-            true,
-        )?;
-        Ok(())
+        let bytes = npy::encode(&npy::Array { shape, values });
+        whole::write(path.as_ref(), &bytes, true).map_err(|e| Error::Write(e.into()))
     }
 }

@@ -7,7 +7,7 @@ use rayon::ThreadPoolBuilder;
 
 use super::{Camera, Error, Picture, Scene};
 use crate::fast::{Fast, FastOptions};
-use crate::frame::Frame;
+use crate::frame::{Frame, count_samples};
 use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions, Simulated};
 use crate::picture::{Background, Shading, lights, resolve};
@@ -24,12 +24,9 @@ pub enum EngineKind {
     /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
     Machine,
     /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others. Always draws the
-    /// exact picture, whatever coverage, cage and tolerance say.
+    /// exact picture, whatever cage and tolerance say; it refuses [`Coverage::Alpha`], since it blends nothing.
     Rays,
 }
-
-/// Most samples of a picture: about three gigabytes with all buffers.
-const MAX_SAMPLES: u64 = 1 << 27;
 
 /// Draws scenes. Settings are given one after the other; each has a default that is right for a picture.
 ///
@@ -152,9 +149,10 @@ impl Renderer {
     /// The rules of the image-order paper: eight corners a record, screen space at once, [`Coverage::Any`].
     #[must_use]
     pub fn paper(self) -> Self {
-        self.coverage(Coverage::Any)
-            .cage(CageKind::Corners)
-            .tolerance(f64::INFINITY)
+        let paper = SetupOptions::paper();
+        self.coverage(paper.coverage)
+            .cage(paper.cage)
+            .tolerance(paper.tolerance_px)
     }
 
     /// How a voxel's colour depends on where it looks.
@@ -178,8 +176,8 @@ impl Renderer {
         self
     }
 
-    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`], unless
-    /// [`Renderer::engine`] says another later, which counts nothing.
+    /// Counts the operations of the machine, for [`Picture::operations`]. Draws with [`EngineKind::Machine`]; another
+    /// engine, given later, counts none and is refused.
     #[must_use]
     pub fn count_operations(mut self) -> Self {
         self.engine = EngineKind::Machine;
@@ -191,8 +189,9 @@ impl Renderer {
     ///
     /// # Errors
     /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
-    /// [`Error::Size`] for samples other than 1, 2 and 4, for more than 2^27 samples in all and for a zoom of 0 or
-    /// less, [`Error::Engine`] where a word overflows, [`Error::Threads`] where the system gives no threads.
+    /// [`Error::Setting`] for samples other than 1, 2 and 4, for more than 2^27 samples in all, for a zoom of 0 or
+    /// less and for what camera or engine do not have, [`Error::Engine`] where a word overflows, [`Error::Threads`]
+    /// where the system gives no threads.
     pub fn render(
         &self,
         scene: &Scene,
@@ -204,8 +203,8 @@ impl Renderer {
         match self.threads {
             0 => draw(),
             threads => {
-                let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
-                pool.install(draw)
+                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+                pool.map_err(|e| Error::Threads(e.into()))?.install(draw)
             }
         }
     }
@@ -218,6 +217,7 @@ impl Renderer {
         width: u32,
         height: u32,
     ) -> Result<Picture, Error> {
+        self.check_engine()?;
         let setup = self.set_up(scene, camera, width, height)?;
         let light = lights(scene.graph(), &setup, self.shading);
         let view = lit(scene, &light);
@@ -241,8 +241,23 @@ impl Renderer {
                 Fast::new(options, Box::new(self.machine())).render(&view, &setup, &mut frame)?
             }
         };
-        let buffers = resolve(&frame, scene.graph(), &setup, self.shading, self.background)?;
+        let buffers = resolve(&frame, scene.graph(), &setup, self.shading, self.background);
+        let buffers = buffers.map_err(|e| Error::Resolve(e.into()))?;
         Ok(Picture::new(buffers, counters, operations))
+    }
+
+    /// Whether the engine can do what is asked of it.
+    fn check_engine(&self) -> Result<(), Error> {
+        let reason = match self.engine {
+            EngineKind::Rays if self.coverage == Coverage::Alpha => {
+                "the rays blend nothing: they draw no alpha coverage"
+            }
+            EngineKind::Fast | EngineKind::Rays if self.counts_operations => {
+                "the machine alone counts operations, not the engine that was given"
+            }
+            _ => return Ok(()),
+        };
+        Err(Error::Setting(reason.to_owned()))
     }
 
     /// Draws on a simulated hardware: its cycles, what they were spent on, and the machine's counters. Always the
@@ -263,7 +278,9 @@ impl Renderer {
         let light = lights(scene.graph(), &setup, self.shading);
         let mut frame = Frame::new(setup.width, setup.height, false);
         let (mut machine, view) = (self.machine(), lit(scene, &light));
-        Ok(machine.simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)?)
+        machine
+            .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)
+            .map_err(|e| Error::Simulate(e.into()))
     }
 
     fn machine(&self) -> Machine {
@@ -276,7 +293,7 @@ impl Renderer {
     /// The integers of a frame: what [`Engine`] draws from, for programs that draw frame after frame.
     ///
     /// # Errors
-    /// [`Error::Setup`] and [`Error::Size`], as [`Renderer::render`].
+    /// [`Error::Setup`] and [`Error::Setting`], as [`Renderer::render`].
     pub fn set_up(
         &self,
         scene: &Scene,
@@ -289,21 +306,13 @@ impl Renderer {
             2 => 1,
             4 => 2,
             other => {
-                return Err(Error::Size(format!(
+                return Err(Error::Setting(format!(
                     "a pixel has 1, 2 or 4 samples along each axis, not {other}"
                 )));
             }
         };
-        let zoom = camera.zoom_factor();
-        if !(zoom.is_finite() && zoom > 0.0) {
-            return Err(Error::Size(format!("the zoom must be above 0, not {zoom}")));
-        }
-        let samples = (u64::from(width) * u64::from(height)) << (2 * aa_log2);
-        if samples > MAX_SAMPLES {
-            return Err(Error::Size(format!(
-                "a picture of {samples} samples is too large: the most is {MAX_SAMPLES}"
-            )));
-        }
+        camera.check()?;
+        count_samples(width, height, aa_log2).map_err(|e| Error::Setting(e.to_string()))?;
         let defaults = SetupOptions::of(self.coverage);
         let options = SetupOptions {
             bits: self.bits,
@@ -330,5 +339,60 @@ fn lit<'s>(scene: &'s Scene, light: &'s [[u16; 3]]) -> GraphView<'s> {
     GraphView {
         light,
         ..scene.view()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(renderer: &Renderer, camera: &Camera, scene: &Scene) -> String {
+        match renderer.render(scene, camera, 8, 8) {
+            Err(Error::Setting(reason)) => reason,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_an_engine_does_not_have_is_refused() {
+        let scene = Scene::generate("menger,depth=1").expect("a scene");
+        let camera = Camera::fit(&scene);
+        let rays = Renderer::new().engine(EngineKind::Rays);
+        let reason = refusal(&rays.clone().coverage(Coverage::Alpha), &camera, &scene);
+        assert!(reason.contains("alpha"), "{reason}");
+        assert!(rays.render(&scene, &camera, 8, 8).is_ok());
+        let counting = Renderer::new().count_operations();
+        for engine in [EngineKind::Fast, EngineKind::Rays] {
+            let reason = refusal(&counting.clone().engine(engine), &camera, &scene);
+            assert!(reason.contains("operations"), "{reason}");
+        }
+        let counted = counting.engine(EngineKind::Machine);
+        assert!(counted.render(&scene, &camera, 8, 8).is_ok());
+    }
+
+    #[test]
+    fn what_a_camera_does_not_have_is_refused() {
+        let scene = Scene::generate("menger,depth=1").expect("a scene");
+        let placed = Camera::look_at([9.0, 9.0, 9.0], [1.0, 1.0, 1.0]);
+        let fitted = Camera::fit(&scene);
+        let renderer = Renderer::new();
+        for camera in [
+            placed.clone().azimuth(1.0),
+            placed.clone().elevation(1.0),
+            placed.clone().zoom(1.0),
+            placed.clone().for_turning(),
+            fitted.clone().up([0.0, 1.0, 0.0]),
+            fitted.clone().zoom(0.0),
+        ] {
+            assert!(!refusal(&renderer, &camera, &scene).is_empty());
+        }
+        for camera in [
+            placed.up([0.0, 1.0, 0.0]),
+            fitted.azimuth(1.0).for_turning(),
+        ] {
+            assert!(renderer.render(&scene, &camera, 8, 8).is_ok());
+        }
+        let samples = renderer.samples(3);
+        assert!(refusal(&samples, &Camera::fit(&scene), &scene).contains("1, 2 or 4"));
     }
 }

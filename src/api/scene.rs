@@ -6,7 +6,7 @@ use super::Error;
 use crate::graph::{BuildOptions, Builder, Graph, GraphView, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
-use crate::scene::{OpenOptions, Opened, open, open_bytes};
+use crate::scene::{OpenOptions, Opened, SceneFile, Source, open, open_bytes, open_source};
 
 /// What a renderer draws: a voxel graph in world coordinates.
 ///
@@ -19,7 +19,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Opens a voxel file (`.vox`, `.ply`, `.npy`, `.vxg`), whose format is told by content, or a mesh (`.obj`,
+    /// Opens a voxel file (`.vox`, `.ply`, `.npy`, `.vxg`), whose format is recognised by content, or a mesh (`.obj`,
     /// `.ply`, `.stl`, `.gltf`, `.glb`), which is voxelised at 2^9 voxels along its longest side. Other settings:
     /// [`SceneOptions`](super::SceneOptions).
     ///
@@ -27,8 +27,7 @@ impl Scene {
     /// [`Error::Open`] where the file cannot be read, is of no known format, is damaged, or holds more
     /// voxels than memory does.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
-        let path = path.as_ref().to_string_lossy();
-        Ok(open(&path, &OpenOptions::default(), &Silent)?.into())
+        open_path(path.as_ref(), &OpenOptions::default())
     }
 
     /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`. A mesh
@@ -37,7 +36,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::open`].
     pub fn from_bytes(bytes: &[u8], name: &str) -> Result<Self, Error> {
-        Ok(open_bytes(bytes, name, &OpenOptions::default(), &Silent)?.into())
+        open_memory(bytes, name, &OpenOptions::default())
     }
 
     /// Makes a scene of a generator's specification, such as `terrain,depth=9,seed=1` or `menger,depth=4`. All
@@ -47,7 +46,8 @@ impl Scene {
     /// [`Error::Open`] where no generator has the name, or its parameters are wrong.
     pub fn generate(specification: &str) -> Result<Self, Error> {
         let source = format!("{}{specification}", crate::scene::generate::PREFIX);
-        Ok(open(&source, &OpenOptions::default(), &Silent)?.into())
+        let opened = open(&source, &OpenOptions::default(), &Silent);
+        Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
     /// Builds a scene of voxels in any order, Z up. Of voxels with the same index the last one counts.
@@ -65,7 +65,8 @@ impl Scene {
             voxel_size,
             ..
         } = Placement::default();
-        let graph = builder.finish((world_origin, voxel_size), &Silent)?;
+        let graph = builder.finish((world_origin, voxel_size), &Silent);
+        let graph = graph.map_err(|e| Error::Build(e.into()))?;
         Ok(Self { graph, up: Up::Z })
     }
 
@@ -105,9 +106,9 @@ impl Scene {
     /// appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::WriteGraph`] where the system refuses.
+    /// [`Error::Write`] where the system refuses.
     pub fn save_vxg(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        Ok(vxg::write(&self.graph, path.as_ref(), true)?)
+        vxg::write(&self.graph, path.as_ref(), true).map_err(|e| Error::Write(e.into()))
     }
 
     /// The shape of the graph, as an [`Engine`](crate::Engine) walks it: for programs that draw frame after frame.
@@ -130,13 +131,26 @@ impl Scene {
     }
 }
 
+/// Opens a file, whatever its name.
+pub(super) fn open_path(path: &Path, options: &OpenOptions) -> Result<Scene, Error> {
+    let file = SceneFile::open(path).map_err(|e| Error::Open(e.into()))?;
+    let opened = open_source(Source::File(file), options, &Silent);
+    Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
+}
+
+/// Opens a file that is held in memory.
+pub(super) fn open_memory(bytes: &[u8], name: &str, options: &OpenOptions) -> Result<Scene, Error> {
+    let opened = open_bytes(bytes, name, options, &Silent);
+    Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
+}
+
 impl From<Opened> for Scene {
     /// With +Y up where that is the custom of a mesh's format.
     fn from(opened: Opened) -> Self {
         let is_y_up = opened.mesh.is_some_and(|mesh| mesh.y_up);
         Self {
             graph: opened.graph,
-            up: if is_y_up { Up::Y } else { Up::Z },
+            up: Up::y_or_z(is_y_up),
         }
     }
 }
@@ -145,5 +159,32 @@ impl From<Graph> for Scene {
     /// A scene of a graph, Z up.
     fn from(graph: Graph) -> Self {
         Self { graph, up: Up::Z }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_of_any_name_are_opened_as_files() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let bytes = std::fs::read("assets/tree.vox").expect("the bundled scene");
+        let mut names = vec![std::ffi::OsString::from("gen:menger")];
+        #[cfg(target_os = "linux")]
+        names.push(std::os::unix::ffi::OsStringExt::from_vec(
+            b"tree\xff.vox".to_vec(),
+        ));
+        for name in names {
+            let path = folder.path().join(name);
+            std::fs::write(&path, &bytes).expect("a file");
+            let scene = Scene::open(&path).expect("a scene");
+            let again = crate::SceneOptions::new().open(&path).expect("a scene");
+            assert_eq!(scene.voxels(), again.voxels());
+        }
+        // Never a generator's scene.
+        let missing = Scene::open("gen:menger,depth=2").expect_err("there is no such file");
+        assert!(matches!(missing, Error::Open(_)), "{missing}");
+        assert!(Scene::generate("menger,depth=2").is_ok());
     }
 }

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use super::scene::{open_memory, open_path};
 use super::{Error, Scene, Up};
-use crate::graph::Silent;
-use crate::scene::{OpenOptions, open, open_bytes};
+use crate::scene::OpenOptions;
 
 /// Opens scenes with other settings than the defaults.
 ///
@@ -63,8 +63,7 @@ impl SceneOptions {
     /// # Errors
     /// As [`Scene::open`], and where a setting is out of its range.
     pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
-        let path = path.as_ref().to_string_lossy();
-        Ok(self.placed(open(&path, &self.options, &Silent)?.into()))
+        Ok(self.placed(open_path(path.as_ref(), &self.options)?))
     }
 
     /// Opens a file that is held in memory: [`Scene::from_bytes`].
@@ -72,7 +71,7 @@ impl SceneOptions {
     /// # Errors
     /// As [`SceneOptions::open`].
     pub fn from_bytes(&self, bytes: &[u8], name: &str) -> Result<Scene, Error> {
-        Ok(self.placed(open_bytes(bytes, name, &self.options, &Silent)?.into()))
+        Ok(self.placed(open_memory(bytes, name, &self.options)?))
     }
 
     fn placed(&self, scene: Scene) -> Scene {

@@ -13,7 +13,7 @@ use crate::bounded;
 use crate::measure::{ColorError, CoverageError, count_differing, difference};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::png::{self, Image};
-use crate::picture::store;
+use crate::whole;
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]
@@ -24,8 +24,9 @@ pub struct CompareArgs {
     /// Reference: of the same kind and size
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the number of differing pixels, or NAME=VALUE with a
-    /// name of the report (psnr_* and ssim: at least; all others: at most); repeatable
+    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the number of
+    /// differing pixels, or NAME=VALUE with a name of the report (psnr_* and ssim: at least; all others: at
+    /// most); repeatable
     #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
     threshold: Vec<Threshold>,
     /// Picture of the differences, four times as bright
@@ -75,7 +76,7 @@ struct Comparison {
 pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError> {
     if let Some(path) = &args.diff {
         super::outputs::check_picture_name(path)?;
-        store::check_free(path, args.force)?;
+        whole::check_free(path, args.force)?;
     }
     let comparison = match (read(&args.a)?, read(&args.b)?) {
         (Content::Picture(a), Content::Picture(b)) => pictures(&a, &b)?,
@@ -88,9 +89,9 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
         })?;
         let bytes = png::encode(*width, *height, rgba)
             .map_err(|e| CliError::new(Kind::Run, e).at(path.display()))?;
-        store::write(path, &bytes, args.force)?;
+        whole::write(path, &bytes, args.force)?;
     }
-    tell(args, &comparison, console)?;
+    print(args, &comparison, console)?;
     if args.threshold.is_empty() {
         return judge(
             &["0".parse().map_err(CliError::usage)?],
@@ -110,7 +111,7 @@ fn read(path: &Path) -> Result<Content, CliError> {
     png::decode(&bytes).map(Content::Picture).map_err(|e| {
         CliError::input(e)
             .at(path.display())
-            .advise("compare takes .png pictures and .npy buffers, told by their content")
+            .advise("compare takes .png pictures and .npy buffers, recognised by their content")
     })
 }
 
@@ -212,7 +213,7 @@ fn spread<T: PartialEq>(
     (differing as u64, max_abs, apart)
 }
 
-fn tell(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {
+fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {
     if console.json {
         let mut fields = json!({ "a": names::of_path(&args.a), "b": names::of_path(&args.b), "kind": comparison.kind });
         for (name, value) in &comparison.numbers {

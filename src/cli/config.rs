@@ -91,18 +91,18 @@ impl Expanded {
         let line = file.text.lines().position(is_entry).map_or(0, |at| at + 1);
         let place = format!("{}, line {line}", file.place);
         if error.kind() == ErrorKind::UnknownArgument {
-            let told = CliError::input(format!("there is no setting `{key}` here")).at(place);
+            let refusal = CliError::input(format!("there is no setting `{key}` here")).at(place);
             return Some(match of(ContextKind::SuggestedArg) {
-                Some(near) => told.advise(format!("is `{near}` meant?")),
-                None => told.advise(
+                Some(near) => refusal.advise(format!("is `{near}` meant?")),
+                None => refusal.advise(
                     "`--help` of the command lists its flags: a setting is a flag's long name",
                 ),
             });
         }
-        let told = error.render().to_string();
-        let first = told.lines().next().unwrap_or_default();
-        let told = first.strip_prefix("error: ").unwrap_or(first);
-        Some(CliError::input(format!("`{key}`: {told}")).at(place))
+        let message = error.render().to_string();
+        let first = message.lines().next().unwrap_or_default();
+        let reason = first.strip_prefix("error: ").unwrap_or(first);
+        Some(CliError::input(format!("`{key}`: {reason}")).at(place))
     }
 }
 

@@ -90,12 +90,12 @@ impl Console {
 
     /// Reports an error after which the work goes on.
     pub(super) fn error(&self, error: &CliError) {
-        tell_error(error);
+        report_error(error);
     }
 }
 
-/// Tells an error on stderr.
-pub(super) fn tell_error(error: &CliError) {
+/// Prints an error on stderr.
+pub(super) fn report_error(error: &CliError) {
     say(&format!("shiftvox: {error}"));
 }
 
@@ -112,8 +112,8 @@ fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
 }
 
-/// A text with what could do harm to a terminal escaped: control characters but lines' ends and tabs, and bytes of names
-/// that are not UTF-8.
+/// A text with what could do harm to a terminal escaped: control characters but lines' ends and tabs, and bytes of
+/// names that are not UTF-8.
 fn harmless(text: &str) -> Cow<'_, str> {
     let is_plain = |letter| letter == '\n' || letter == '\t';
     escaped(text, |letter| match names::byte_of(letter) {

@@ -12,7 +12,6 @@ use super::scene_files::Conversion;
 use super::{far, names, report, scene_files, scenes, textured};
 use crate::far::view::Opacity;
 use crate::graph::{BuildOptions, ExternalOptions};
-use crate::picture::store;
 use crate::scene::Source;
 use crate::textured::Element;
 use crate::whole;
@@ -20,7 +19,7 @@ use crate::whole;
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// Scene to read, told by its content
+    /// Scene to read, recognised by its content
     #[arg(value_name = "IN", value_parser = super::names::parser())]
     input: String,
     /// File to write; its ending names the format: .vxg, .vox, .ply or, of a mesh,
@@ -107,7 +106,7 @@ impl ConvertArgs {
 }
 
 pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError> {
-    store::check_free(&args.output, args.force)?;
+    whole::check_free(&args.output, args.force)?;
     let is_ending = |name: &str| args.output.extension().is_some_and(|ending| ending == name);
     if !is_ending("tvx") && (args.texels.is_some() || args.element.is_some()) {
         return Err(CliError::usage("--texels and --element are for .tvx files"));
@@ -139,7 +138,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, --grid for .far and .tvx files",
+            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, \
+             --grid for .far and .tvx files",
         ));
     }
     scene_files::check_ending(&args.output)?;

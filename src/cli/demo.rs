@@ -12,7 +12,7 @@ use super::{engines, outputs, report, scenes};
 use crate::drawing::Drawable;
 use crate::picture;
 
-/// The demo's own picture: the only file that it replaces without being told to.
+/// The demo's own picture: the only file that it replaces without --force.
 const PICTURE: &str = "out/demo.png";
 /// Pixels a side.
 const SIDE: u32 = 1024;

@@ -7,10 +7,10 @@ use super::error::CliError;
 /// Version of every JSON document: raised when a field changes its meaning or goes.
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
-/// A JSON document of a verb: its schema's name and version first, then its fields.
-pub(super) fn document(verb: &str, fields: Value) -> Value {
+/// A JSON document of a command: its schema's name and version first, then its fields.
+pub(super) fn document(command: &str, fields: Value) -> Value {
     let mut document = json!({
-        "schema": format!("shiftvox.{verb}"),
+        "schema": format!("shiftvox.{command}"),
         "schema_version": SCHEMA_VERSION,
         "program_version": env!("CARGO_PKG_VERSION"),
     });
@@ -20,7 +20,7 @@ pub(super) fn document(verb: &str, fields: Value) -> Value {
     document
 }
 
-/// A verb's document with what went wrong, or a document of that alone.
+/// A command's document with what went wrong, or a document of that alone.
 pub(super) fn failed(document: Option<Value>, error: &CliError) -> Value {
     let mut document = document.unwrap_or_else(|| self::document("error", json!({})));
     document["error"] = json!(error.message);

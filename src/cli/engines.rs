@@ -302,8 +302,8 @@ const MACHINE_VARIANTS: &[Variant] = &[
 /// The nodes that the machine fetches for a frame.
 fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
     /// Notes the nodes in the order in which they are read.
-    struct TemporaryGuard(Vec<u32>);
-    impl Probe for TemporaryGuard {
+    struct FetchedNodes(Vec<u32>);
+    impl Probe for FetchedNodes {
         fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
             if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
                 self.0.push(node);
@@ -311,7 +311,8 @@ fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, Engine
         }
     }
     let mut frame = Frame::nodes_only(setup.width, setup.height);
-    let noted = TemporaryGuard(Vec::new());
-    let (_, noted) = Machine::default().render_probed(graph, setup, &mut frame, noted)?;
-    Ok(noted.0)
+    let fetched_nodes = FetchedNodes(Vec::new());
+    let (_, fetched_nodes) =
+        Machine::default().render_probed(graph, setup, &mut frame, fetched_nodes)?;
+    Ok(fetched_nodes.0)
 }

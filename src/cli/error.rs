@@ -8,13 +8,14 @@ use crate::budget::Shortage;
 use crate::drawing::DrawError;
 use crate::graph::ExternalError;
 use crate::graph::file::FileError;
+use crate::graph::vxg::VxgError;
 use crate::lab::bench::BenchError;
 use crate::mesh::MeshError;
 use crate::picture::ResolveError;
-use crate::picture::store::StoreError;
 use crate::project::{EngineError, SetupError};
 use crate::report::plot::PlotError;
 use crate::scene::{OpenError, SceneError};
+use crate::whole::WholeError;
 use crate::{far, textured};
 
 /// The kinds of failure that a script can tell apart.
@@ -116,13 +117,13 @@ impl fmt::Display for CliError {
 
 impl std::error::Error for CliError {}
 
-impl From<StoreError> for CliError {
-    fn from(error: StoreError) -> Self {
+impl From<WholeError> for CliError {
+    fn from(error: WholeError) -> Self {
         let failure = Self::new(Kind::Run, &error);
         match error {
-            StoreError::Exists(_) => failure.advise("give another name, or --force to replace it"),
-            StoreError::NoFolder(_) => failure.advise("make it first, or give another name"),
-            StoreError::Io { .. } => failure,
+            WholeError::Exists(_) => failure.advise("give another name, or --force to replace it"),
+            WholeError::NoFolder(_) => failure.advise("make it first, or give another name"),
+            WholeError::Io { .. } => failure,
         }
     }
 }
@@ -190,7 +191,7 @@ impl From<OpenError> for CliError {
         let failure = Self::new(kind, &error);
         match error {
             OpenError::Scene(SceneError::BuiltOfMesh { file, kind }) => Self::input(format!(
-                "{file}: this is a {kind} file: render and turntable draw it, info tells of it"
+                "{file}: this is a {kind} file: render and turntable draw it, info describes it"
             ))
             .advise("for anything else take the mesh that it was made of"),
             OpenError::Mesh(MeshError::Io { .. }) | OpenError::Scene(SceneError::Io { .. }) => {
@@ -206,6 +207,10 @@ impl From<OpenError> for CliError {
                 error: ExternalError::Temporary { .. },
                 ..
             } => failure.advise("choose a folder with more room with --temp"),
+            OpenError::External {
+                error: ExternalError::Write(VxgError::Exists(_)),
+                ..
+            } => failure.advise("give another name, or --force to replace it"),
             _ => failure,
         }
     }

@@ -17,8 +17,8 @@ use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::store::write_to;
 use crate::far::{BuildError, BuildOptions, FarFile, build};
 use crate::mesh::Instances;
-use crate::picture::store;
 use crate::project::Up;
+use crate::whole;
 
 /// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(
@@ -42,7 +42,7 @@ pub(super) fn convert(
     let mut data = built.map_err(|e| CliError::from(e).at(of.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    store::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
     let file = FarFile::open(of.output)?;
     let facts = Facts::of(&file);
     console.note(format!(
@@ -78,7 +78,10 @@ fn check_room(triangles: u64) -> Result<(), CliError> {
     match budget::available() {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
-            format!("{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, and {free} are free"),
+            format!(
+                "{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, \
+                 and {free} are free"
+            ),
         )
         .advise("ask for fewer --instances, or leave out a part of the mesh")),
         _ => Ok(()),
@@ -123,7 +126,7 @@ pub(super) fn info(name: &str, console: &Console) -> Result<Option<Value>, CliEr
     if console.json {
         return Ok(Some(facts.describe(&file, name)));
     }
-    console.data(facts.tell(&file, name))?;
+    console.data(facts.description(&file, name))?;
     Ok(None)
 }
 
@@ -248,7 +251,7 @@ impl Facts {
         })
     }
 
-    fn tell(&self, file: &FarFile, name: &str) -> String {
+    fn description(&self, file: &FarFile, name: &str) -> String {
         let (low, high) = file.bounds();
         let percent = |share: f64| format!("{:.1} %", share * 100.0);
         let lines = [

@@ -8,8 +8,8 @@ use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
 use super::{scene_files, scenes};
-use crate::picture::store;
 use crate::scene::Source;
+use crate::whole;
 
 /// Arguments of `generate`.
 #[derive(Debug, Args)]
@@ -27,7 +27,7 @@ pub struct GenerateArgs {
 
 pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
     scene_files::check_ending(&args.output)?;
-    store::check_free(&args.output, args.force)?;
+    whole::check_free(&args.output, args.force)?;
     let spec = if Source::is_generated(&args.spec) {
         args.spec.clone()
     } else {

@@ -79,7 +79,7 @@ fn of_one(
             if console.json {
                 return Ok(Some(describe(&scene)));
             }
-            console.data(tell(&scene, several))?;
+            console.data(description(&scene, several))?;
             Ok(None)
         }
     }
@@ -172,7 +172,7 @@ fn describe(scene: &Scene) -> Value {
     })
 }
 
-fn tell(scene: &Scene, several: bool) -> String {
+fn description(scene: &Scene, several: bool) -> String {
     let facts = Facts::of(scene);
     let graph = &scene.graph;
     let [x, y, z] = facts.size();

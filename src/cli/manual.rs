@@ -18,8 +18,9 @@ pub(super) struct CompletionsArgs {
 /// Which page.
 #[derive(Debug, Args)]
 pub(super) struct ManArgs {
-    /// Verb whose page is wanted, or a verb and an experiment; none: the program's own
-    verb: Vec<String>,
+    /// Command whose page is wanted, or a command and an experiment; none: the program's own
+    #[arg(value_name = "COMMAND")]
+    names: Vec<String>,
 }
 
 pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> Result<(), CliError> {
@@ -30,11 +31,11 @@ pub(super) fn completions(args: &CompletionsArgs, mut command: Command) -> Resul
 
 pub(super) fn man(args: &ManArgs, mut command: Command) -> Result<(), CliError> {
     command.build();
-    for verb in &args.verb {
+    for name in &args.names {
         command = command
-            .find_subcommand(verb)
+            .find_subcommand(name)
             .cloned()
-            .ok_or_else(|| CliError::usage(format!("there is no verb `{verb}`")))?;
+            .ok_or_else(|| CliError::usage(format!("there is no command `{name}`")))?;
     }
     let mut page = Vec::new();
     clap_mangen::Man::new(command).render(&mut page)?;

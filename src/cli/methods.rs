@@ -1,5 +1,7 @@
-//! The registry of drawing methods, the only one of the command line. It opens a scene once, finds the method that draws
-//! it, refuses flags that this method does not follow, and hands the scene on as one [`Drawable`].
+//! The registry of drawing methods, the only one of the command line.
+//!
+//! It opens a scene once, finds the method that draws it, refuses flags that this method does not follow, and hands the
+//! scene on as one [`Drawable`].
 
 use std::path::Path;
 use std::time::Instant;
@@ -31,7 +33,7 @@ pub(super) struct DrawArgs<'a> {
 }
 
 /// A method that draws one kind of file, which nothing else draws.
-struct Method {
+struct FileMethod {
     engine: EngineName,
     /// As flags name it.
     name: &'static str,
@@ -43,8 +45,8 @@ struct Method {
     open: fn(&Path, &DrawArgs<'_>) -> Result<Content, CliError>,
 }
 
-const METHODS: [Method; 2] = [
-    Method {
+const METHODS: [FileMethod; 2] = [
+    FileMethod {
         engine: EngineName::Far,
         name: "far",
         file: FileKind::Far,
@@ -57,7 +59,7 @@ const METHODS: [Method; 2] = [
             }))
         },
     },
-    Method {
+    FileMethod {
         engine: EngineName::Textured,
         name: "textured",
         file: FileKind::Tvx,
@@ -122,7 +124,7 @@ fn check_memory(args: &DrawArgs<'_>) -> Result<(), CliError> {
     }
 }
 
-impl Method {
+impl FileMethod {
     /// Refuses what this method does not draw, and flags that it does not follow.
     fn check(
         &self,

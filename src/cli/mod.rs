@@ -1,8 +1,6 @@
-//! The command line: one file per verb, and what verbs share.
+//! The command line: one file per command, and what commands share.
 //!
-//! stdout is data, stderr everything else. Nothing here computes. Imports go one way: `error`, `console`
-//! and `args` are at the bottom; above them `scenes` and `engines`, which open scenes and make engines;
-//! above those `methods`, which finds who draws a scene; then the verbs; this file is the top.
+//! stdout is data, stderr everything else. Nothing here computes. Imports go one way; the order is in `ARCHITECTURE.md`.
 
 pub mod args;
 mod bench;
@@ -16,11 +14,11 @@ mod engines;
 pub mod error;
 mod experiment;
 mod far;
+mod fatal_signals;
 pub mod generate;
 pub mod info;
 mod manual;
 mod methods;
-mod mishaps;
 mod model;
 mod names;
 mod outputs;
@@ -44,11 +42,11 @@ use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use console::Console;
 use error::{CliError, Kind};
 
-/// Draws voxel files and meshes with nothing but adders and shifts.
+/// Draws voxel files and meshes, the same to the bit on every computer.
 ///
-/// With no verb it draws the bundled scene, writes it to out/demo.png (replacing an older one) and says
-/// what that took. Scenes are .vox, .ply, .npy and .vxg files, told by their
-/// content, or generators such as gen:terrain,depth=10,seed=1, or meshes (.obj,
+/// With no command it draws the bundled scene, writes it to out/demo.png (replacing an older one) and says
+/// what that took. Scenes are .vox, .ply, .npy and .vxg files, recognised by
+/// their content, or generators such as gen:terrain,depth=10,seed=1, or meshes (.obj,
 /// .ply with faces, .stl, .gltf, .glb), which are voxelised at --depth.
 ///
 /// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
@@ -61,14 +59,14 @@ pub struct Cli {
     #[command(flatten)]
     common: CommonArgs,
     #[command(subcommand)]
-    verb: Option<Verb>,
+    command: Option<Command>,
 }
 
-/// Flags of every verb.
+/// Flags of every command.
 #[derive(Debug, clap::Args)]
 #[command(next_help_heading = "Common")]
 struct CommonArgs {
-    /// No notes and no progress; errors are still told
+    /// No notes and no progress; errors are still printed
     #[arg(short, long, global = true)]
     quiet: bool,
     /// More notes
@@ -78,7 +76,7 @@ struct CommonArgs {
     #[arg(long, global = true)]
     json: bool,
     /// Threads, 0 for all; never changes a bit of output [default: 0; of measurements: 1].
-    /// Experiments take a list, such as 1,2
+    /// `bench engines` and `bench scaling` take a list, such as 1,2
     #[arg(long, global = true, value_name = "N")]
     threads: Option<args::ThreadCounts>,
     /// TOML file with flags by their long names; flags on the command line come first
@@ -87,7 +85,7 @@ struct CommonArgs {
 }
 
 #[derive(Debug, Subcommand)]
-enum Verb {
+enum Command {
     /// Draw a picture of each scene
     Render(Box<render::RenderArgs>),
     /// Draw many frames around a scene
@@ -129,11 +127,11 @@ impl Cli {
     /// Threads of the pool that all work shares, 0 for all.
     fn threads(&self) -> Result<usize, CliError> {
         let given = self.common.threads.as_ref().map_or(&[][..], |t| &t.0);
-        match (given, &self.verb) {
+        match (given, &self.command) {
             ([], _) => Ok(0),
             (&[one], _) => Ok(usize::from(one)),
             // Experiments make a pool for each number and use this one to prepare.
-            (_, Some(Verb::Bench(args))) if args.takes_thread_list() => Ok(0),
+            (_, Some(Command::Bench(args))) if args.takes_thread_list() => Ok(0),
             _ => Err(CliError::usage(
                 "--threads takes one number here; lists are for bench engines and bench scaling",
             )),
@@ -150,14 +148,14 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             if error.kind != Kind::Pipe {
-                console::tell_error(&error);
+                console::report_error(&error);
             }
             error.exit_code()
         }
     }
 }
 
-/// Whether a command line asks for JSON: also where it makes no sense otherwise.
+/// Whether a command line asks for JSON, also where the rest of it is wrong.
 fn wants_json(command_line: &[OsString]) -> bool {
     let mut flags = command_line.iter().take_while(|word| *word != "--");
     flags.any(|word| word == "--json")
@@ -165,7 +163,7 @@ fn wants_json(command_line: &[OsString]) -> bool {
 
 fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
     let early = Console::new(true, 0, wants_json(&command_line));
-    mishaps::tell_when_stopped(early.json);
+    fatal_signals::install(early.json);
     let expanded = match config::expand(command_line) {
         Ok(expanded) => expanded,
         Err(error) => return early.end(Err(error)),
@@ -183,35 +181,37 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
             }
             // To stderr, and with `--json` to stdout too; a closed pipe is nobody's fault.
             let _ = error.print();
-            let told = error.render().to_string();
-            let _ = early.end(Err(CliError::usage(told.trim_end())));
+            let message = error.render().to_string();
+            let _ = early.end(Err(CliError::usage(message.trim_end())));
             std::process::exit(error.exit_code());
         }
     };
     let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
-    let result = run_verb(cli, expanded.scenes, &console);
+    let result = run_command(cli, expanded.scenes, &console);
     console.end(result)
 }
 
-fn run_verb(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), CliError> {
+fn run_command(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), CliError> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(cli.threads()?)
         .build_global()
         .map_err(|e| CliError::new(Kind::Limit, format!("cannot start the threads: {e}")))?;
-    match cli.verb {
+    match cli.command {
         None => demo::run(console),
-        Some(Verb::Render(args)) => render::run(&args, scenes, console),
-        Some(Verb::Turntable(args)) => turntable::run(&args, scenes, console),
-        Some(Verb::Triangles(args)) => triangles::run(&args, console),
-        Some(Verb::Info(args)) => info::run(&args, scenes, console),
-        Some(Verb::Convert(args)) => convert::run(&args, console),
-        Some(Verb::Generate(args)) => generate::run(&args, console),
-        Some(Verb::Compare(args)) => compare::run(&args, console),
-        Some(Verb::Model(args)) => model::run(&args, scenes, console),
-        Some(Verb::Bench(args)) => bench::run(&args, scenes, cli.common.threads.as_ref(), console),
-        Some(Verb::Stress(args)) => stress::run(&args, scenes, console),
-        Some(Verb::Reproduce(args)) => reproduce::run(&args, console),
-        Some(Verb::Completions(args)) => manual::completions(&args, Cli::command()),
-        Some(Verb::Man(args)) => manual::man(&args, Cli::command()),
+        Some(Command::Render(args)) => render::run(&args, scenes, console),
+        Some(Command::Turntable(args)) => turntable::run(&args, scenes, console),
+        Some(Command::Triangles(args)) => triangles::run(&args, console),
+        Some(Command::Info(args)) => info::run(&args, scenes, console),
+        Some(Command::Convert(args)) => convert::run(&args, console),
+        Some(Command::Generate(args)) => generate::run(&args, console),
+        Some(Command::Compare(args)) => compare::run(&args, console),
+        Some(Command::Model(args)) => model::run(&args, scenes, console),
+        Some(Command::Bench(args)) => {
+            bench::run(&args, scenes, cli.common.threads.as_ref(), console)
+        }
+        Some(Command::Stress(args)) => stress::run(&args, scenes, console),
+        Some(Command::Reproduce(args)) => reproduce::run(&args, console),
+        Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
+        Some(Command::Man(args)) => manual::man(&args, Cli::command()),
     }
 }

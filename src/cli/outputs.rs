@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 use super::args::Setting;
 use super::error::CliError;
 use crate::drawing::{Buffers, Shown};
-use crate::picture::store::Prepared;
-use crate::picture::{Buffer, Rows, npy, store};
+use crate::picture::{Buffer, Rows, npy};
+use crate::whole;
+use crate::whole::Prepared;
 
 /// The file of a buffer: `{out stem}.{aov}.npy` beside the picture.
 pub(super) fn buffer_path(picture: &Path, buffer: Buffer) -> PathBuf {
@@ -23,7 +24,7 @@ pub(super) fn paths(picture: &Path, buffers: &[Buffer]) -> Vec<PathBuf> {
 /// Fails before the work if a file would have to be replaced without `--force`.
 pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError> {
     for path in paths {
-        store::check_free(path, force)?;
+        whole::check_free(path, force)?;
     }
     Ok(())
 }
@@ -47,17 +48,17 @@ pub(super) fn write(
     buffers: &[Buffer],
     force: bool,
 ) -> Result<(), CliError> {
-    Ok(store::keep(prepare(shown, path, buffers, force)?)?)
+    Ok(whole::keep(prepare(shown, path, buffers, force)?)?)
 }
 
-/// Writes all of them under temporary names, for [`store::keep`].
+/// Writes all of them under temporary names, for [`whole::keep`].
 pub(super) fn prepare(
     shown: &Shown<'_>,
     path: &Path,
     buffers: &[Buffer],
     force: bool,
 ) -> Result<Vec<Prepared>, CliError> {
-    let picture = store::prepare(path, force, |file| {
+    let picture = whole::prepare(path, force, |file| {
         let mut file = BufWriter::new(file);
         shown.pixels.write(&mut file).map_err(io::Error::other)?;
         file.flush()
@@ -83,7 +84,7 @@ fn prepare_buffer(
         shape.push(buffer.entries());
     }
     let mut failed = None;
-    let written = store::prepare(path, force, |file| {
+    let written = whole::prepare(path, force, |file| {
         file.write_all(&npy::header(&shape, &buffer.none()))?;
         for rows in picture.steps() {
             match picture.rows(buffer, rows) {
@@ -119,8 +120,8 @@ pub(super) fn write_record(
         .map(|(name, value)| (name.to_owned(), value))
         .collect();
     let [config, stats] = record_paths(outdir);
-    store::write(&config, table.to_string().as_bytes(), force)?;
-    store::write(&stats, format!("{report:#}\n").as_bytes(), force)?;
+    whole::write(&config, table.to_string().as_bytes(), force)?;
+    whole::write(&stats, format!("{report:#}\n").as_bytes(), force)?;
     Ok(())
 }
 

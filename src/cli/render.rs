@@ -14,6 +14,7 @@ use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
 use crate::drawing::Shown;
+use crate::lab::bench::Summary;
 use crate::picture;
 use crate::project::Camera;
 
@@ -241,23 +242,27 @@ fn print_times(
     repeat: u32,
     console: &Console,
 ) -> Result<(), CliError> {
-    let (min, median, max) = report::min_median_max(shown.times_ms);
+    let times = Summary::of(shown.times_ms);
     let counters = shown.counters.iter();
     let counters = counters.map(|(name, count)| [(*name).to_owned(), report::figure(count)]);
     if repeat > 1 && !console.json {
         let ms = |name: &str, ms: f64| [name.to_owned(), format!("{ms:.3}")];
         let times = [
             ["runs".to_owned(), repeat.to_string()],
-            ms("min ms", min),
-            ms("median ms", median),
-            ms("max ms", max),
+            ms("min ms", times.min_ms),
+            ms("median ms", times.median_ms),
+            ms("max ms", times.max_ms),
         ];
         let rows = times.into_iter().chain(counters.clone()).map(Vec::from);
         let head = vec![name.to_owned(), "one frame".to_owned()];
         console.data(report::table(head, rows.collect()))?;
     }
     if let Some(path) = output {
-        console.note(format!("{}: drawn in {median:.1} ms", path.display()));
+        console.note(format!(
+            "{}: drawn in {:.1} ms",
+            path.display(),
+            times.median_ms
+        ));
     }
     for [name, count] in counters {
         console.detail(format!("  {name}: {count}"));

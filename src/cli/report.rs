@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::args::camera_line;
 pub(super) use super::document::document;
 use crate::drawing::{Figures, Shown};
+use crate::lab::bench::Summary;
 use crate::project::Camera;
 pub(super) use crate::report::grouped;
 
@@ -31,7 +32,7 @@ pub(super) fn drawn(
     shown: &Shown<'_>,
     hash: Option<&str>,
 ) -> Value {
-    let (min, median, max) = min_median_max(shown.times_ms);
+    let times = Summary::of(shown.times_ms);
     let (width, height) = shown.pixels.size();
     let map = |figures: &Figures| -> serde_json::Map<String, Value> {
         let named = figures.iter().cloned();
@@ -46,7 +47,7 @@ pub(super) fn drawn(
         "pixels_drawn": shown.pixels_drawn,
         "camera": camera(at),
         "load_ms": load_ms,
-        "render_ms": { "runs": shown.times_ms.len(), "min": min, "median": median, "max": max },
+        "render_ms": { "runs": times.runs, "min": times.min_ms, "median": times.median_ms, "max": times.max_ms },
         "counters": map(&shown.counters),
         "hash": hash,
     });
@@ -59,23 +60,6 @@ pub(super) fn drawn(
 /// A figure for people.
 pub(super) fn figure(value: &Value) -> String {
     value.as_u64().map_or_else(|| value.to_string(), grouped)
-}
-
-/// Least, middle and greatest of some times; zeros for none. The middle of an
-/// even number of times is the mean of two.
-pub(super) fn min_median_max(times: &[f64]) -> (f64, f64, f64) {
-    let mut sorted = times.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let (Some(&min), Some(&max)) = (sorted.first(), sorted.last()) else {
-        return (0.0, 0.0, 0.0);
-    };
-    let half = sorted.len() / 2;
-    let median = if sorted.len() % 2 == 1 {
-        sorted[half]
-    } else {
-        (sorted[half - 1] + sorted[half]) / 2.0
-    };
-    (min, median, max)
 }
 
 /// A table in plain text, first column left, the others right.
@@ -140,13 +124,6 @@ pub(super) fn counts(counter: &Counter) -> String {
 mod tests {
     use super::*;
     use hwmodel::{Probe, StageLevel};
-
-    #[test]
-    fn order_statistics() {
-        assert_eq!(min_median_max(&[3.0, 1.0, 2.0]), (1.0, 2.0, 3.0));
-        assert_eq!(min_median_max(&[4.0, 1.0, 2.0, 3.0]), (1.0, 2.5, 4.0));
-        assert_eq!(min_median_max(&[]), (0.0, 0.0, 0.0));
-    }
 
     #[test]
     fn the_count_table_adds_up() {

@@ -17,11 +17,12 @@ use crate::lab::bench::{Harness, Subject, ablation};
 use crate::lab::reproduce::{
     self, Config, Drawn, Engines, Evidence, ReproduceError, Timed, differences, figures, tables,
 };
-use crate::picture::{Picture, png, store};
+use crate::picture::{Picture, png};
 use crate::project::SetupOptions;
 use crate::report::Table;
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
+use crate::whole;
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
@@ -181,7 +182,7 @@ fn anew(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
     let config = config(args);
     config.check().map_err(CliError::usage)?;
     for name in [CONFIG, RESULTS, PAGE] {
-        store::check_free(&args.outdir.join(name), args.force)?;
+        whole::check_free(&args.outdir.join(name), args.force)?;
     }
     let context = Context::now();
     context.warn(console);
@@ -200,7 +201,7 @@ fn anew(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
         ),
         ("order.svg", one_plot(tables::order_bars(&found.order))?),
     ];
-    let write = |name: &str, bytes: &[u8]| store::write(&args.outdir.join(name), bytes, args.force);
+    let write = |name: &str, bytes: &[u8]| whole::write(&args.outdir.join(name), bytes, args.force);
     for (name, _, bytes) in &found.pictures {
         write(name, bytes)?;
     }
@@ -351,11 +352,11 @@ fn page(found: &Results, context: &Context, plots: &[(&str, String)]) -> String 
     plot(
         &mut page,
         "figure-5.svg",
-        "Both axes logarithmic; the paper's 64 x 64 is told as below 1 ms and left out.",
+        "Both axes logarithmic; the paper's 64 x 64 is given as below 1 ms and left out.",
     );
     page.chapter("Time and the object");
     page.text(
-        "The paper: 119 ms for a complex object, 110 and 60 ms for two simple ones, at a size that it does not tell; \"this shows that the rendering \
+        "The paper: 119 ms for a complex object, 110 and 60 ms for two simple ones, at a size that it does not state; \"this shows that the rendering \
          algorithm doesn't depend on the complexity of image\".",
     );
     page.table(&tables::independence(&found.objects, &found.config.growing));

@@ -10,8 +10,8 @@ use super::error::{CliError, Kind};
 use super::scenes::{self, Scene};
 use super::{names, report};
 use crate::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
-use crate::picture::store;
 use crate::scene::{self, OpenOptions, Source};
+use crate::whole;
 
 /// Most voxels that are written to a voxel file.
 const MAX_WRITTEN: u64 = 1 << 28;
@@ -67,7 +67,7 @@ pub(super) fn write(
     let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
     progress.begin("writing", 0);
     match ending {
-        "vxg" => store::write_with(output, force, |file| {
+        "vxg" => whole::write_with(output, force, |file| {
             vxg::write_to(graph, file).map_err(std::io::Error::other)
         })?,
         "vox" => {
@@ -75,7 +75,7 @@ pub(super) fn write(
             for voxel in voxels(graph)? {
                 writer.add(voxel);
             }
-            store::write_with(output, force, |file| {
+            whole::write_with(output, force, |file| {
                 let written = writer.write(file)?;
                 if written.colors_given > written.colors_kept {
                     warnings.push(format!(
@@ -88,7 +88,7 @@ pub(super) fn write(
         }
         "ply" => {
             let all = voxels(graph)?;
-            store::write_with(output, force, |file| {
+            whole::write_with(output, force, |file| {
                 scene::write_ply(file, all, true).map(|_| ())
             })?;
         }
@@ -157,7 +157,7 @@ fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
 
 /// Reports what was written.
 pub(super) fn report_written(
-    verb: &str,
+    command: &str,
     input: &str,
     output: &Path,
     written: &Written,
@@ -180,7 +180,7 @@ pub(super) fn report_written(
             "bytes": written.bytes,
             "warnings": written.warnings,
         });
-        console.document(&report::document(verb, fields))?;
+        console.document(&report::document(command, fields))?;
     }
     Ok(())
 }

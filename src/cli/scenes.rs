@@ -56,7 +56,7 @@ pub(super) fn choose(given: &[String], from_config: Vec<String>) -> Result<Vec<S
     Ok(names)
 }
 
-/// Opens a file or makes a `gen:` scene, and tells its warnings.
+/// Opens a file or makes a `gen:` scene, and prints its warnings.
 ///
 /// # Errors
 /// A bad input with file, offset, what was expected and what to do.
@@ -85,7 +85,7 @@ pub(super) fn open_source(
     open_with(source, name, args, &options(args), started, console)
 }
 
-/// [`open_source`], with every byte of a graph file checked: for who reads all of it.
+/// [`open_source`], with every byte of a graph file checked: for commands that read all of it.
 ///
 /// # Errors
 /// As [`open`].
@@ -115,7 +115,8 @@ fn open_with(
     let scene = ready(opened, name, args.mesh_up, started);
     if !scene.is_verified {
         console.note(format!(
-            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, which read all of it"
+            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, \
+             which read all of it"
         ));
     }
     for warning in &scene.warnings {
@@ -165,11 +166,10 @@ pub(super) fn read_mesh(
     progress: &dyn Progress,
 ) -> Result<(Mesh, Up), CliError> {
     let (mesh, y_up) = scene::read_mesh(&names::path(source), &load_options(args), progress)?;
-    let up = if y_up { Up::Y } else { Up::Z };
-    Ok((mesh, args.up_or(up)))
+    Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 
-/// [`read_mesh`], and tells the mesh's warnings.
+/// [`read_mesh`], and prints the mesh's warnings.
 ///
 /// # Errors
 /// As [`read_mesh`].
@@ -222,11 +222,10 @@ fn load_options(args: &SceneArgs) -> LoadOptions {
 fn ready(opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
     let info = opened.info.as_ref();
     let y_up = opened.mesh.as_ref().is_some_and(|mesh| mesh.y_up);
-    let up = if y_up { Up::Y } else { Up::Z };
     Scene {
         source: source.to_owned(),
         format: opened.format,
-        up: mesh_up.unwrap_or(up),
+        up: mesh_up.unwrap_or(Up::y_or_z(y_up)),
         mesh: opened.mesh,
         palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
         warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),

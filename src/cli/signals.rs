@@ -1,10 +1,11 @@
-//! What happens when the program is told to stop: Ctrl-C, `kill`, a closed terminal.
+//! Signals that stop the program: Ctrl-C, `kill`, a closed terminal.
 //!
 //! Files that are not whole yet are removed; then the program ends by the signal, as if it had not been
 //! caught, so that shells and scripts see why (130 for Ctrl-C). Without signals (not Unix), or where it is
 //! killed, a temporary file is left, which the next run that writes to its folder removes ([`crate::whole`]).
 
-/// From now on; a signal that is ignored, as shells and `nohup` have it for work in the background, stays so.
+/// Installs the handlers. A signal that the program was started to ignore, as shells and `nohup` do for work in the
+/// background, stays ignored.
 #[cfg(unix)]
 pub(super) fn tidy_up_when_stopped() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

@@ -13,9 +13,9 @@ use super::report;
 use crate::lab::stress::{
     self, Case, End, Findings, Hold, Outcome, SweepPlan, panels, rows, summary, tables,
 };
-use crate::picture::store;
 use crate::report::html::Page;
 use crate::report::plot;
+use crate::whole;
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -67,7 +67,7 @@ pub(super) fn run(
     }
     export::check(&args.export)?;
     if let Some(path) = &args.html {
-        store::check_free(path, args.export.force)?;
+        whole::check_free(path, args.export.force)?;
     }
     let plan = plan(args, &from_config)?;
     let context = Context::now();
@@ -78,7 +78,7 @@ pub(super) fn run(
     let panels = panels(&plan, &findings);
     if let Some(path) = &args.html {
         let page = page(&plan, &findings, &context, &tables, &panels)?;
-        store::write(path, page.as_bytes(), args.export.force)?;
+        whole::write(path, page.as_bytes(), args.export.force)?;
         console.note(format!("{}: written", path.display()));
     }
     let results = Results {
@@ -237,14 +237,14 @@ fn page(
     Ok(page.finish())
 }
 
-/// Draws one case and tells all about it.
+/// Draws one case and prints what was found.
 fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
     if console.json {
         let fields = json!({ "case": case.to_string(), "outcome": outcome });
         console.document(&report::document("stress case", fields))?;
     } else {
-        console.data(told(case, &outcome))?;
+        console.data(description(case, &outcome))?;
     }
     match outcome.failures.first() {
         None => Ok(()),
@@ -255,7 +255,7 @@ fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
     }
 }
 
-fn told(case: &Case, outcome: &Outcome) -> String {
+fn description(case: &Case, outcome: &Outcome) -> String {
     let mut lines = vec![case.to_string()];
     lines.push(match &outcome.end {
         End::Drawn => format!(

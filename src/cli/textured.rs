@@ -11,11 +11,11 @@ use super::report::{self, grouped};
 use super::scene_files::Conversion;
 use super::scenes;
 use crate::drawing::milliseconds_since;
-use crate::picture::store;
 use crate::project::Up;
 use crate::textured::levels::LevelRow;
 use crate::textured::store::{Grid, write_to};
 use crate::textured::{BuildOptions, Element, TexturedFile, build};
+use crate::whole;
 
 /// Builds textured voxels of a mesh and writes them.
 pub(super) fn convert(
@@ -29,7 +29,7 @@ pub(super) fn convert(
         build(&mesh, options, console.progress()).map_err(|e| CliError::from(e).at(of.input))?;
     data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    store::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
     let file = TexturedFile::open(of.output)?;
     let voxels: u64 = (0..file.grids())
         .map(|g| file.grid(g).voxels().len() as u64)
@@ -63,7 +63,7 @@ pub(super) fn info(
     if console.json {
         return Ok(Some(describe(&file, name)));
     }
-    console.data(tell(&file, name, with_levels))?;
+    console.data(description(&file, name, with_levels))?;
     Ok(None)
 }
 
@@ -120,7 +120,7 @@ fn element_name(element: Element) -> &'static str {
     }
 }
 
-fn tell(file: &TexturedFile, name: &str, with_levels: bool) -> String {
+fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     let (low, high) = file.bounds();
     let mut parts = vec![format!(
         "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles {}\nbytes     {}",

@@ -16,7 +16,8 @@ use super::{names, outputs, report, scenes};
 use crate::drawing::{Drawable, TrianglesDrawing, TrianglesStyle, milliseconds_since};
 use crate::mesh::raster::{Pattern, Samples};
 use crate::picture::npy::{self, Array, Values};
-use crate::picture::{Background, Buffer, Shading, store};
+use crate::picture::{Background, Buffer, Shading};
+use crate::whole;
 
 /// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -40,7 +41,7 @@ pub enum BufferName {
 /// Arguments of `triangles`.
 #[derive(Debug, Args)]
 pub struct TrianglesArgs {
-    /// Mesh: .obj, .ply, .stl, .gltf or .glb, told by its content
+    /// Mesh: .obj, .ply, .stl, .gltf or .glb, recognised by its content
     #[arg(value_name = "MESH", value_parser = crate::cli::names::parser())]
     mesh: String,
     /// Picture to write, .png
@@ -81,7 +82,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     outputs::check_picture_name(&args.output)?;
     args.camera.check().map_err(CliError::usage)?;
     for path in args.paths() {
-        store::check_free(&path, args.force)?;
+        whole::check_free(&path, args.force)?;
     }
     let started = Instant::now();
     let (mesh, up) = scenes::open_mesh(&args.mesh, &args.scene, console)?;
@@ -107,9 +108,9 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
         };
         let path = args.output.with_extension("coverage.npy");
         let write = |file: &mut File| file.write_all(&npy::encode(&array));
-        files.push(store::prepare(&path, args.force, write)?);
+        files.push(whole::prepare(&path, args.force, write)?);
     }
-    store::keep(files)?;
+    whole::keep(files)?;
     console.note(format!(
         "{}: {} triangles, {} samples a pixel, read in {load_ms:.1} ms, drawn in {draw_ms:.1} ms",
         args.output.display(),

@@ -13,6 +13,7 @@ use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
 use crate::drawing::Shown;
+use crate::lab::bench::Summary;
 use crate::picture;
 
 /// Arguments of `turntable`.
@@ -83,7 +84,12 @@ pub(super) fn run(
         times_ms,
         results,
     } = draw(args, name, &paths, console)?;
-    let (min, median, max) = report::min_median_max(&times_ms);
+    let Summary {
+        min_ms: min,
+        median_ms: median,
+        max_ms: max,
+        ..
+    } = Summary::of(&times_ms);
     let document = report::document(
         "turntable",
         json!({ "frames": results, "render_ms": { "min": min, "median": median, "max": max } }),

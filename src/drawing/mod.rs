@@ -16,6 +16,7 @@ use std::time::Instant;
 use serde_json::Value;
 
 use crate::budget::{self, Shortage};
+use crate::frame::{TooManySamples, count_samples};
 use crate::mesh::raster::{RasterError, SamplesError};
 use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
@@ -97,8 +98,8 @@ impl Rows for Buffers<'_> {
 #[non_exhaustive]
 pub enum DrawError {
     /// The picture would take too much memory.
-    #[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
-    TooLarge(u64),
+    #[error(transparent)]
+    TooLarge(#[from] TooManySamples),
     /// The picture takes more memory than is free.
     #[error(transparent)]
     Memory(#[from] Shortage),
@@ -136,20 +137,15 @@ pub enum DrawError {
     Samples(#[from] SamplesError),
 }
 
-/// Most samples of a picture: about three gigabytes with all that is made of them.
-const MAX_SAMPLES: u64 = 1 << 27;
-
 /// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours for each pixel.
 /// `aa_log2`: samples per pixel and axis, as a power of two.
 fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
-    match pixels << (2 * aa_log2) {
-        samples if samples > MAX_SAMPLES => Err(DrawError::TooLarge(samples)),
-        samples => Ok(budget::check(
-            "a picture of this size",
-            samples * sample_bytes + pixels * PIXEL_BYTES,
-        )?),
-    }
+    let samples = count_samples(camera.width, camera.height, aa_log2)?;
+    Ok(budget::check(
+        "a picture of this size",
+        samples * sample_bytes + pixels * PIXEL_BYTES,
+    )?)
 }
 
 /// Least bytes of a pixel's colour.

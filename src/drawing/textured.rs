@@ -93,7 +93,7 @@ impl Drawable for TexturedDrawing<'_> {
     }
 
     fn up(&self) -> Up {
-        if self.file.y_up() { Up::Y } else { Up::Z }
+        Up::y_or_z(self.file.y_up())
     }
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {

@@ -1,4 +1,4 @@
-//! What a frame came to: what was worked on, and what was skipped.
+//! The counts of a frame: what was worked on, and what was skipped.
 
 use crate::project::Stats;
 

@@ -191,7 +191,7 @@ pub(super) fn turn<I: Compiled>(walk: &mut Walk<'_, I>, record: &Record) {
 }
 
 /// Does for children that do not exist what is done for others before their
-/// turn, for who wants to know what leaving them saves.
+/// turn: to measure what leaving them out saves.
 #[inline(never)]
 fn look_at_absent<I: Compiled>(walk: &mut Walk<'_, I>, windows: &Windows, absent: u8) {
     let held = absent & windows.held & !windows.near;

@@ -6,6 +6,26 @@ pub mod quadtree;
 pub use colors::{Colors, color_word};
 pub use quadtree::{FillVectors, QuadNode};
 
+/// Most samples of a picture: about three gigabytes with all buffers.
+const MAX_SAMPLES: u64 = 1 << 27;
+
+/// A picture has more samples than memory should be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("a picture of {0} samples is too large: the most is {MAX_SAMPLES}")]
+pub struct TooManySamples(u64);
+
+/// The samples of a picture of so many pixels. `aa_log2`: samples per pixel and axis, as a power of two.
+///
+/// # Errors
+/// [`TooManySamples`] where they are more than 2^27.
+pub fn count_samples(width: u32, height: u32, aa_log2: u32) -> Result<u64, TooManySamples> {
+    let pixels = u64::from(width) * u64::from(height);
+    match pixels.saturating_mul(1 << (2 * aa_log2)) {
+        samples if samples > MAX_SAMPLES => Err(TooManySamples(samples)),
+        samples => Ok(samples),
+    }
+}
+
 /// `node` where nothing is seen.
 pub const NO_NODE: u32 = u32::MAX;
 /// `voxel` where nothing is seen.

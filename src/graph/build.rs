@@ -93,7 +93,7 @@ impl Builder {
             let sequence = self.pushed as u32;
             let record = PushedVoxel::new(voxel.index, sequence, voxel.color, normal);
             if let Err(short) = self.records.push(record) {
-                // All is lost; let go of what there is. [`Self::finish`] tells.
+                // The graph cannot be built: free the memory. `finish` reports it.
                 self.records = PushedVoxels::default();
                 self.short.get_or_insert(short);
             }

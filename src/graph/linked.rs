@@ -101,16 +101,6 @@ impl LinkedGraph {
         number
     }
 
-    /// Makes another node the root.
-    pub fn set_root(&mut self, root: u32) {
-        self.root = root;
-    }
-
-    /// Places the object.
-    pub fn set_placement(&mut self, placement: Placement) {
-        self.placement = placement;
-    }
-
     /// Makes the graph. Nothing is averaged: colours and normals are as given.
     ///
     /// # Errors

@@ -72,7 +72,7 @@ type Map<K> = HashMap<K, u32, BuildHasherDefault<Parts>>;
 /// What stands for a child that does not exist.
 const ABSENT: u32 = u32::MAX;
 
-/// Merges equal nodes. The result is the same on every machine; its cells
+/// Merges equal nodes. The result is the same on every computer; its cells
 /// are those of `graph` one for one, and so are their colours and normals
 /// under [`MergeBy::ShapeAndAttributes`].
 #[must_use]

@@ -1,7 +1,7 @@
 //! The frame's constants as machine words, loaded before the first record.
 //!
-//! This is the only module of the machine that multiplies, once for a frame
-//! and on the host; every load checks that the constant fits its word.
+//! The only module within the machine that multiplies: on the host, once a
+//! frame. Every load checks that the constant fits its word.
 
 use hwmodel::{Datapath, Probe, WideWord, Word};
 

@@ -1,5 +1,6 @@
 //! The scalar engine: frames drawn by the record loop.
 
+use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, CornerAndEdges, Corners};
@@ -94,7 +95,12 @@ impl Machine {
         let heat = frame.records.is_some().then(|| Heat::new(setup.levels));
         let canvas = (self.emptied(setup, frame), &mut *frame);
         let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, heat);
-        if !state.draw_object(most)? {
+        let is_done = if options.organisation == Organisation::default() {
+            state.draw_object(most)?
+        } else {
+            state.draw_by_tiles(most)?
+        };
+        if !is_done {
             return Ok(None);
         }
         let (stats, probe, heat) = state.finish();

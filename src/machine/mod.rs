@@ -21,7 +21,8 @@
 //! - steps on words: `shifts`, `planes`, `quadrants`, `smallest_node`,
 //!   `to_screen`, `size`, `alpha`, `canvas`;
 //! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
-//!   `verdict`, `children`, `record_loop`, and `parents`, the loop with parents on its stack;
+//!   `verdict`, `decide`, `children`, `record_loop`, and `parents`, the loop
+//!   with parents on its stack, and tiles;
 //! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
 //! - `instruments`, which watch the machine or drive it in another way. The
 //!   machine does not depend on them.
@@ -32,6 +33,7 @@ mod cage;
 mod canvas;
 mod children;
 mod constants;
+mod decide;
 mod engine;
 mod heat;
 mod instruments;

@@ -25,8 +25,8 @@ use hwmodel::{Memory, Probe, Stage, Word};
 
 use super::cage::CageCoordinate;
 use super::children::pool;
+use super::decide::RemainingWork;
 use super::record::{Pose, Record};
-use super::record_loop::RemainingWork;
 use super::state::State;
 use super::watch::Watch;
 use crate::frame::QuadNode;
@@ -110,16 +110,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Draws what is not full of the picture.
     fn draw_tile(&mut self, most_records: u64) -> Result<bool, EngineError> {
         if self.options.organisation.stack == StackHolds::Children {
-            self.push_object();
-            while !self.stack.is_empty() {
-                if self.counts.records >= most_records {
-                    return Ok(false);
-                }
-                self.turn();
-                self.check_trap()?;
-            }
-            self.check_trap()?;
-            return Ok(true);
+            return self.draw_object(most_records);
         }
         let mut stack = Vec::new();
         let mut current = self.object();

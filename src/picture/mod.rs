@@ -18,7 +18,6 @@ mod rows;
 mod shade;
 mod shares;
 mod sight;
-pub mod store;
 
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
 pub use hash::{hash, hash_rows};

@@ -27,6 +27,11 @@ pub enum Up {
 }
 
 impl Up {
+    /// +Y or else +Z.
+    pub(crate) fn y_or_z(is_y: bool) -> Self {
+        if is_y { Self::Y } else { Self::Z }
+    }
+
     /// The direction that is up.
     #[must_use]
     pub fn axis(self) -> DVec3 {

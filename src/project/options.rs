@@ -126,6 +126,16 @@ impl SetupOptions {
             aa_log2: 0,
         }
     }
+
+    /// The image-order paper's settings: eight corners a record, screen space at once, [`Coverage::Any`].
+    #[must_use]
+    pub fn paper() -> Self {
+        Self {
+            cage: CageKind::Corners,
+            tolerance_px: f64::INFINITY,
+            ..Self::of(Coverage::Any)
+        }
+    }
 }
 
 /// Shares `total` fraction bits of a position between the precision of the

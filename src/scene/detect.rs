@@ -48,12 +48,6 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// Whether files of this kind hold voxels that [`read_voxels`](super::read_voxels) yields.
-    #[must_use]
-    pub fn is_voxels(self) -> bool {
-        matches!(self, Self::Vox | Self::Ply | Self::Npy)
-    }
-
     /// Whether files of this kind hold triangles.
     #[must_use]
     pub fn is_mesh(self) -> bool {

@@ -76,7 +76,7 @@ impl<'a> Emitter<'a> {
         Ok(())
     }
 
-    /// Fails where so many voxels that are to come are more than may be handed on: for who knows their number.
+    /// Fails where so many voxels that are to come are more than may be handed on: for readers that know their number.
     pub(crate) fn expect(&self, voxels: u64) -> Result<(), Problem> {
         match self.count.saturating_add(voxels) {
             all if all > self.most => Err(self.too_many(all)),

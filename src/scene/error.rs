@@ -69,7 +69,7 @@ pub enum SceneError {
     },
     /// The content begins like none of the known formats.
     #[error(
-        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") .vxg (\"\\x89VXG\"), or a mesh (.obj, .ply, .stl, .gltf, .glb); formats are told by content, so renaming the file does not help"
+        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") .vxg (\"\\x89VXG\"), or a mesh (.obj, .ply, .stl, .gltf, .glb); formats are recognised by content, so renaming the file does not help"
     )]
     Unknown {
         /// The file, as the user named it.

@@ -21,8 +21,8 @@ pub struct OpenOptions {
     pub read: ReadOptions,
     /// How meshes are read and voxelised.
     pub mesh: MeshOptions,
-    /// Graph files of so many bytes are checked in full; of larger ones, which are mapped, the header only. Who is
-    /// going to read all of a file has it checked at any size.
+    /// Graph files of so many bytes are checked in full; of larger ones, which are mapped, the header only. What
+    /// is going to read all of a file has it checked at any size.
     pub verify_up_to: u64,
 }
 

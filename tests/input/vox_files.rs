@@ -125,7 +125,7 @@ fn dragon_by_every_rule() {
     assert_eq!(by(OutOfBounds::Drop).unwrap().voxels, 40_265 - 39_332);
     let refused = by(OutOfBounds::Error).unwrap_err().to_string();
     assert!(
-        refused.contains("SIZE [20, 20, 20]") && refused.contains("--oob"),
+        refused.contains("SIZE [20, 20, 20]") && refused.contains("wrap, keep or drop"),
         "{refused}"
     );
 }

@@ -42,14 +42,14 @@ const TO_HOST: [Allowed; 6] = [
         CONSTANT,
     ),
     allowed(
+        "decide.rs",
+        "let voxel = min.to_host() >> self.constants.sub_levels;",
+        "the voxel's number in the picture: what is shown, not what is computed with",
+    ),
+    allowed(
         "instruments/descent.rs",
         "let mut vertices = |coordinate: L| coordinate.vertices(dp).map(Word::to_host);",
         "vertices read by an experiment; nothing of it goes back",
-    ),
-    allowed(
-        "record_loop.rs",
-        "let voxel = min.to_host() >> self.constants.sub_levels;",
-        "the voxel's number in the picture: what is shown, not what is computed with",
     ),
     allowed(
         "size.rs",

@@ -1,4 +1,4 @@
-//! The program with meshes: verbs, exit codes, messages.
+//! The program with meshes: commands, exit codes, messages.
 
 use std::fs;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The program with textured voxels: verbs, exit codes, messages.
+//! The program with textured voxels: commands, exit codes, messages.
 
 use std::fs;
 use std::path::Path;

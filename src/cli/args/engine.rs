@@ -123,14 +123,8 @@ impl RuleArgs {
     /// The set-up's options, at so many samples per pixel and axis (as a power of two).
     #[must_use]
     pub fn options(&self, aa_log2: u32) -> SetupOptions {
-        let paper = SetupOptions {
-            cage: CageKind::Corners,
-            tolerance_px: f64::INFINITY,
-            coverage: Coverage::Any,
-            ..SetupOptions::of(Coverage::Any)
-        };
         let base = if self.paper {
-            paper
+            SetupOptions::paper()
         } else {
             SetupOptions::of(self.coverage.unwrap_or_default())
         };

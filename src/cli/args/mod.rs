@@ -1,4 +1,4 @@
-//! Arguments that several verbs share.
+//! Arguments that several commands share.
 
 mod camera;
 mod engine;

@@ -16,7 +16,7 @@ use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
 use crate::lab::error::{
-    self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, VoxelMethod,
+    self as experiment, DrawingMethod, ErrorPlan, PixelStyle, SceneErrors, VoxelMethod,
 };
 use crate::project::{CageKind, Coverage, SetupOptions};
 use crate::report::html::Page;
@@ -347,13 +347,13 @@ fn methods<'s>(
     options: &[SetupOptions],
     subject: &'s Subject,
     style: PixelStyle,
-) -> Vec<Box<dyn Method + 's>> {
+) -> Vec<Box<dyn DrawingMethod + 's>> {
     let asked = |name: &str| match select.engines.as_slice() {
         [] => name == engines::FAST.name,
         given => given.iter().any(|given| given == name),
     };
     let chosen = engines::CANDIDATES.iter().filter(|c| asked(c.name));
-    let mut methods: Vec<Box<dyn Method + 's>> = Vec::new();
+    let mut methods: Vec<Box<dyn DrawingMethod + 's>> = Vec::new();
     for engine in chosen {
         for &options in options {
             let engine = (engine.name, engine.make);

@@ -13,9 +13,9 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{Method, PixelStyle, References, VoxelMethod};
+use crate::lab::error::{DrawingMethod, PixelStyle, References, VoxelMethod};
 use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
-use crate::project::{CageKind, Coverage, SetupOptions};
+use crate::project::{Coverage, SetupOptions};
 use crate::report::html::Page;
 
 /// Pixels a side where nothing is said.
@@ -96,12 +96,7 @@ fn options(blends: bool) -> Vec<SetupOptions> {
         lod_px: 0.0,
         ..SetupOptions::default()
     });
-    all.push(SetupOptions {
-        coverage: Coverage::Any,
-        cage: CageKind::Corners,
-        tolerance_px: f64::INFINITY,
-        ..SetupOptions::of(Coverage::Any)
-    });
+    all.push(SetupOptions::paper());
     if blends {
         for (lod_px, aa_log2) in [(1.0, 0), (2.0, 0), (1.0, 1)] {
             all.push(SetupOptions {
@@ -135,7 +130,7 @@ pub(super) fn run(
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
-        let method = |options| -> Box<dyn Method + '_> {
+        let method = |options| -> Box<dyn DrawingMethod + '_> {
             Box::new(VoxelMethod::new(
                 &subject.graph,
                 engine,

@@ -15,14 +15,14 @@ use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{Method, PixelStyle};
+use crate::lab::error::{DrawingMethod, PixelStyle};
 use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
 use crate::mesh::Mesh;
 
 /// Samples a pixel that triangles are drawn with.
 pub(super) const TRIANGLE_SAMPLES: [u32; 3] = [1, 4, 16];
 
-/// Who draws.
+/// A family of methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum FamilyName {
     /// The image-order engine, on voxels; a mesh is voxelised at --depth.
@@ -37,7 +37,7 @@ enum FamilyName {
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Meshes")]
 pub(super) struct MeshMethodArgs {
-    /// Who draws a scene that is a mesh [default: all]
+    /// Which families draw a scene that is a mesh [default: all]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     families: Vec<FamilyName>,
     /// Rays of far voxels [default: as of convert]
@@ -115,8 +115,8 @@ impl MeshMethodArgs {
         &self,
         scene: &'m MeshScene,
         style: PixelStyle,
-    ) -> Result<Vec<Box<dyn Method + 'm>>, CliError> {
-        let mut methods: Vec<Box<dyn Method + 'm>> = Vec::new();
+    ) -> Result<Vec<Box<dyn DrawingMethod + 'm>>, CliError> {
+        let mut methods: Vec<Box<dyn DrawingMethod + 'm>> = Vec::new();
         if self.has(FamilyName::Triangles) {
             for samples in TRIANGLE_SAMPLES {
                 let method = TrianglesMethod::new(&scene.mesh, samples, style);
@@ -131,14 +131,18 @@ impl MeshMethodArgs {
                 &[Opacity::Six]
             };
             for &voxel_px in &self.far_lods {
-                methods.extend(opacities.iter().map(|&opacity| -> Box<dyn Method + 'm> {
-                    let settings = FarSettings {
-                        file: (*label).to_owned(),
-                        opacity,
-                        voxel_px,
-                    };
-                    Box::new(FarMethod::new(file, settings, style))
-                }));
+                methods.extend(
+                    opacities
+                        .iter()
+                        .map(|&opacity| -> Box<dyn DrawingMethod + 'm> {
+                            let settings = FarSettings {
+                                file: (*label).to_owned(),
+                                opacity,
+                                voxel_px,
+                            };
+                            Box::new(FarMethod::new(file, settings, style))
+                        }),
+                );
             }
         }
         Ok(methods)

@@ -21,7 +21,7 @@ use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
-use crate::lab::error::{Method, PixelStyle, Refused, VoxelMethod};
+use crate::lab::error::{DrawingMethod, PixelStyle, Refused, VoxelMethod};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{
     self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
@@ -195,13 +195,13 @@ fn textured_of(
 }
 
 /// A method, and what is known of it.
-type Candidate<'m> = (Facts, Box<dyn Method + 'm>);
+type Candidate<'m> = (Facts, Box<dyn DrawingMethod + 'm>);
 
 fn candidate<'m>(
     label: impl Into<String>,
     bytes: u64,
     build_ms: f64,
-    method: impl Method + 'm,
+    method: impl DrawingMethod + 'm,
 ) -> Candidate<'m> {
     let facts = Facts {
         label: label.into(),
@@ -211,7 +211,7 @@ fn candidate<'m>(
     (facts, Box::new(method))
 }
 
-/// Everyone who draws. Another method joins here.
+/// All methods that take part. Another one joins here.
 fn methods<'m>(
     args: &MethodsArgs,
     mesh: &'m Mesh,

@@ -10,9 +10,10 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::subjects::file_stem;
 use crate::cli::names;
 use crate::measure::difference;
-use crate::picture::{png, store};
+use crate::picture::png;
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
+use crate::whole;
 
 /// A page beside the files of every experiment.
 #[derive(Debug, Clone, Args)]
@@ -42,7 +43,7 @@ pub(super) fn check(
     scenes: &[String],
 ) -> Result<(), CliError> {
     if let Some(path) = &args.export_html {
-        store::check_free(path, export.force)?;
+        whole::check_free(path, export.force)?;
         let others = [
             &export.export_json,
             &export.export_csv,
@@ -55,7 +56,7 @@ pub(super) fn check(
         }
     }
     for path in svg_paths(export, scenes) {
-        store::check_free(&path, export.force)?;
+        whole::check_free(&path, export.force)?;
     }
     Ok(())
 }
@@ -82,7 +83,7 @@ pub(super) fn write_plots(
     let names: Vec<String> = scenes.iter().map(|(name, _)| name.clone()).collect();
     let paths = svg_paths(export, &names);
     let write = |path: &Path, panels: &[Panel]| {
-        store::write(path, plot::svg(panels)?.as_bytes(), export.force)?;
+        whole::write(path, plot::svg(panels)?.as_bytes(), export.force)?;
         console.note(format!("{}: written", path.display()));
         Ok::<(), CliError>(())
     };
@@ -109,7 +110,7 @@ pub(super) fn write_page(
     let Some(path) = &args.export_html else {
         return Ok(());
     };
-    store::write(path, page()?.finish().as_bytes(), export.force)?;
+    whole::write(path, page()?.finish().as_bytes(), export.force)?;
     console.note(format!("{}: written", path.display()));
     Ok(())
 }
@@ -164,6 +165,6 @@ pub(super) fn write_strip(
     force: bool,
 ) -> Result<(), CliError> {
     let name = format!("{}--{}.png", file_stem(scene), file_stem(method));
-    store::write(&folder.join(name), png, force)?;
+    whole::write(&folder.join(name), png, force)?;
     Ok(())
 }

@@ -19,7 +19,7 @@ pub(in crate::cli) struct Context {
 }
 
 impl Context {
-    /// What the system tells of itself.
+    /// What the system reports of itself.
     pub(in crate::cli) fn now() -> Self {
         let command: Vec<String> = std::env::args_os()
             .skip(1)

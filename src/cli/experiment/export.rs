@@ -9,9 +9,9 @@ use serde_json::Value;
 
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::picture::store;
 use crate::report::plot::{self, Panel};
 use crate::report::{Cell, Table};
+use crate::whole;
 
 /// Files that the results are written to.
 #[derive(Debug, Clone, Args)]
@@ -62,7 +62,7 @@ pub(in crate::cli) fn check(args: &ExportArgs) -> Result<(), CliError> {
     .flatten()
     .collect();
     for (place, path) in paths.iter().enumerate() {
-        store::check_free(path, args.force)?;
+        whole::check_free(path, args.force)?;
         if paths[..place].contains(path) {
             return Err(CliError::usage(format!(
                 "{}: two exports to one file",
@@ -81,7 +81,7 @@ pub(in crate::cli) fn write(
 ) -> Result<(), CliError> {
     let file = |path: &Option<PathBuf>, text: &dyn Fn() -> Result<String, CliError>| {
         let Some(path) = path else { return Ok(()) };
-        store::write(path, text()?.as_bytes(), args.force)?;
+        whole::write(path, text()?.as_bytes(), args.force)?;
         console.note(format!("{}: written", path.display()));
         Ok::<(), CliError>(())
     };

@@ -16,9 +16,10 @@ use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
 use crate::lab::model::{caches, cost, heat, plots, record, statistics};
-use crate::picture::{png, store};
+use crate::picture::png;
 use crate::report::plot::Panel;
 use crate::report::{Cell, Table};
+use crate::whole;
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
@@ -28,7 +29,7 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
         .into_iter()
         .flatten()
     {
-        store::check_free(path, args.export.force)?;
+        whole::check_free(path, args.export.force)?;
         let others = [&files.html, &files.stats, &files.heat, &files.trace];
         if others
             .iter()
@@ -49,7 +50,7 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
 }
 
 fn file(path: &Path, bytes: &[u8], force: bool, console: &Console) -> Result<(), CliError> {
-    store::write(path, bytes, force)?;
+    whole::write(path, bytes, force)?;
     console.note(format!("{}: written", path.display()));
     Ok(())
 }

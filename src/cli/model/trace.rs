@@ -6,7 +6,7 @@ use hwmodel::cycles::{Hardware, Recorder};
 
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::picture::store;
+use crate::whole;
 
 /// The format of a trace.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ pub(super) fn write(
         TraceKind::Events => recorder.write_chrome(hardware, &mut text)?,
         TraceKind::Waves => recorder.write_vcd(hardware, &mut text)?,
     }
-    store::write(path, &text, force)?;
+    whole::write(path, &text, force)?;
     console.note(format!("{}: written", path.display()));
     Ok(())
 }

@@ -11,7 +11,7 @@ use crate::far::record::{Node, triangle_bytes};
 use crate::graph::file::{self, HEADER_BYTES};
 
 /// Writes far voxels: to a temporary file, say, that then gets its name
-/// ([`crate::picture::store::write_with`]).
+/// ([`crate::whole::write_with`]).
 ///
 /// # Errors
 /// The writer's byte order; a machine that stores the highest byte first.

@@ -19,7 +19,7 @@ pub enum VxgError {
         source: io::Error,
     },
     /// The file exists, and overwriting was not requested.
-    #[error("{}: the file exists; use another name, or allow overwriting (--force)", .0.display())]
+    #[error("{}: the file exists already", .0.display())]
     Exists(PathBuf),
     /// The file is not as it should be.
     #[error(

@@ -1,4 +1,4 @@
-//! How much of a mapped file is in memory, as the system tells (Linux: `/proc/self/smaps`).
+//! How much of a mapped file is in memory, as the system reports (Linux: `/proc/self/smaps`).
 
 use std::ops::Range;
 
@@ -20,7 +20,7 @@ pub struct MappedPages {
 
 impl Graph {
     /// Pages of the mapped file; none where the graph owns its arrays or the
-    /// system does not tell.
+    /// system does not report it.
     #[must_use]
     pub fn mapped_pages(&self) -> Option<MappedPages> {
         let Store::Mapped(map, _) = &self.color else {

@@ -1,4 +1,4 @@
-//! Who can be measured: engines by name, and engines with a part switched off.
+//! What can be measured: engines by name, and engines with a part switched off.
 
 use crate::graph::GraphView;
 use crate::project::{Engine, EngineError, FrameSetup, SetupOptions};

@@ -14,7 +14,7 @@ pub struct Clock {
 pub struct Elapsed {
     /// On the wall.
     pub wall_ms: f64,
-    /// On a processor, by the calling thread alone; `None` where the system does not tell it.
+    /// On a processor, by the calling thread alone; `None` where the system does not report it.
     pub thread_ms: Option<f64>,
 }
 

@@ -36,13 +36,13 @@ pub struct Contender<'c> {
     pub setup: FrameSetup,
     /// Threads of the pool that it draws in, 1 or more.
     pub threads: usize,
-    /// Who draws.
+    /// What draws it.
     pub drawer: Drawer<'c>,
     /// Nodes whose attributes are read besides those that are seen.
     pub attributes: Vec<u32>,
 }
 
-/// Who draws the frames of a contender.
+/// What draws the frames of a contender.
 pub enum Drawer<'c> {
     /// An engine, every one.
     Engine(Box<dyn Engine + Send>),

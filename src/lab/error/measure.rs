@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
-use super::method::{Method, Refused, Shown, VertexLevel, over_levels};
+use super::method::{DrawingMethod, Refused, Shown, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::PixelStyle;
@@ -268,7 +268,7 @@ impl Exact {
 /// picture is no error but a row with the reason.
 pub fn measure(
     subject: &Subject,
-    methods: &mut [Box<dyn Method + '_>],
+    methods: &mut [Box<dyn DrawingMethod + '_>],
     plan: &ErrorPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
@@ -402,7 +402,7 @@ pub(in crate::lab) type Times = Vec<(Summary, Option<Summary>)>;
 
 /// Lets methods draw in turn from a camera, those that take part.
 pub(in crate::lab) fn race(
-    methods: &mut [Box<dyn Method + '_>],
+    methods: &mut [Box<dyn DrawingMethod + '_>],
     taking_part: &[bool],
     camera: &Camera,
     schedule: Schedule,

@@ -1,7 +1,7 @@
-//! Who can be measured: anything that draws a picture from a camera.
+//! What can be measured: anything that draws a picture from a camera.
 //!
 //! An experiment does not depend on how a picture is made. It asks a
-//! [`Method`] what it is called and how it is set, sets it up for a camera,
+//! [`DrawingMethod`] what it is called and how it is set, sets it up for a camera,
 //! lets it draw frames, which are timed, and lets it show one, which is not.
 
 use crate::measure::Spread;
@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::project::{Camera, Stats};
 
 /// A way to draw a scene: an engine with its settings, or any other renderer.
-pub trait Method: Send {
+pub trait DrawingMethod: Send {
     /// Which family it is of, such as `voxels`: methods of one family have the
     /// same settings by name and order.
     fn family(&self) -> &'static str;

@@ -1,6 +1,6 @@
 //! Run time against error.
 //!
-//! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
+//! A [`DrawingMethod`] draws; a [`Reference`] is what it should have drawn, made of
 //! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene, error and time;
 //! [`beaten_by`] and the plots show which of them are worth having.
 
@@ -19,7 +19,7 @@ pub use measure::{
     ErrorPlan, MethodErrors, Outcome, References, SampleError, SceneErrors, measure,
 };
 pub(in crate::lab) use measure::{as_map, outcome_or_reason, race};
-pub use method::{Method, Refused, Samples, Shown, VertexLevel, over_levels};
+pub use method::{DrawingMethod, Refused, Samples, Shown, VertexLevel, over_levels};
 #[cfg(feature = "cli")]
 pub use pareto::panels;
 pub use pareto::{beaten_by, dominated};

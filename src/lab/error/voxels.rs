@@ -5,7 +5,7 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{Memory, Stage};
 
 use super::cut::cut_at;
-use super::method::{Method, Refused, Samples, Shown};
+use super::method::{DrawingMethod, Refused, Samples, Shown};
 use super::vertices::vertex_levels;
 use crate::frame::{Colors, Frame, NO_NODE};
 use crate::graph::{Graph, GraphView};
@@ -174,7 +174,7 @@ fn coverage_name(coverage: Coverage) -> &'static str {
     }
 }
 
-impl Method for VoxelMethod<'_> {
+impl DrawingMethod for VoxelMethod<'_> {
     fn family(&self) -> &'static str {
         "voxels"
     }

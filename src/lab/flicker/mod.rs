@@ -14,7 +14,7 @@ pub use motion::Motion;
 
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Subject};
-use crate::lab::error::{Method, PixelStyle, References, Refused, Sampling};
+use crate::lab::error::{DrawingMethod, PixelStyle, References, Refused, Sampling};
 use crate::measure::{Flicker, LinearPicture, SizeError};
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -98,7 +98,7 @@ pub struct Films {
 pub fn film(
     subject: &Subject,
     motion: Motion,
-    methods: &mut [Box<dyn Method + '_>],
+    methods: &mut [Box<dyn DrawingMethod + '_>],
     plan: &FilmPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
@@ -177,13 +177,13 @@ fn light_of(picture: &Picture) -> LinearPicture {
 
 /// Films one method.
 pub(in crate::lab) fn film_flicker(
-    method: &mut dyn Method,
+    method: &mut dyn DrawingMethod,
     cameras: &[Camera],
     truth: &[LinearPicture],
 ) -> Result<FilmFlicker, Refused> {
     let mut film = Vec::new();
     let mut pops = Vec::new();
-    let cut_of = |method: &mut dyn Method, camera: &Camera| {
+    let cut_of = |method: &mut dyn DrawingMethod, camera: &Camera| {
         let picture = method.picture_with_cut_of(camera)?;
         Ok::<_, Refused>(picture.as_ref().map(light_of))
     };

@@ -3,7 +3,7 @@
 use crate::drawing::mesh_view::{light_of, picture_of_far, view_of};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarPicture, FarViewer, Opacity, ViewOptions};
-use crate::lab::error::{Method, PixelStyle, Refused, Shown};
+use crate::lab::error::{DrawingMethod, PixelStyle, Refused, Shown};
 use crate::mesh::raster::RasterCamera;
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -79,7 +79,7 @@ pub fn opacity_in_words(opacity: Opacity) -> &'static str {
     }
 }
 
-impl Method for FarMethod<'_> {
+impl DrawingMethod for FarMethod<'_> {
     fn family(&self) -> &'static str {
         "far voxels"
     }

@@ -6,8 +6,8 @@ use super::distance::at_distance;
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Schedule, Summary};
 use crate::lab::error::{
-    Judge, Method, PictureError, PixelStyle, Reference, Refused, Shown, as_map, of_triangles,
-    outcome_or_reason, race,
+    DrawingMethod, Judge, PictureError, PixelStyle, Reference, Refused, Shown, as_map,
+    of_triangles, outcome_or_reason, race,
 };
 use crate::lab::flicker::{Motion, film_flicker};
 use crate::measure::LinearPicture;
@@ -112,7 +112,7 @@ pub struct MeshMethods {
 pub fn measure(
     (name, mesh): (&str, &dyn Surface),
     camera: &Camera,
-    methods: &mut [Box<dyn Method + '_>],
+    methods: &mut [Box<dyn DrawingMethod + '_>],
     facts: Vec<Facts>,
     plan: &MethodsPlan,
     progress: &dyn Progress,
@@ -133,7 +133,7 @@ pub fn measure(
 fn at(
     mesh: &dyn Surface,
     camera: &Camera,
-    methods: &mut [Box<dyn Method + '_>],
+    methods: &mut [Box<dyn DrawingMethod + '_>],
     plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<Distance, BenchError> {
@@ -209,7 +209,7 @@ struct Seen {
 }
 
 fn seen(
-    method: &mut dyn Method,
+    method: &mut dyn DrawingMethod,
     cameras: &[Camera],
     judge: &Judge<'_>,
     truth: &[LinearPicture],

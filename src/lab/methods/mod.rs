@@ -1,6 +1,6 @@
 //! All methods on a mesh, side by side, from full screen to a few pixels.
 //!
-//! Each method is a [`Method`](crate::lab::error::Method): triangles, the
+//! Each method is a [`DrawingMethod`](crate::lab::error::DrawingMethod): triangles, the
 //! image-order engine on the voxelised mesh, far voxels, textured voxels;
 //! another joins as one more adaptor. They take part in [`error`](crate::lab::error)
 //! and [`flicker`](crate::lab::flicker) too. The truth is the mesh's triangles with

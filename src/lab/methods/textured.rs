@@ -2,7 +2,7 @@
 
 use super::triangles::{options, shown};
 use crate::drawing::mesh_view::{picture_of_triangles, view_of};
-use crate::lab::error::{Method, PixelStyle, Refused, Shown};
+use crate::lab::error::{DrawingMethod, PixelStyle, Refused, Shown};
 use crate::mesh::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use crate::picture::Picture;
 use crate::project::Camera;
@@ -64,7 +64,7 @@ impl<'f> TexturedMethod<'f> {
     }
 }
 
-impl Method for TexturedMethod<'_> {
+impl DrawingMethod for TexturedMethod<'_> {
     fn family(&self) -> &'static str {
         "textured voxels"
     }

@@ -2,7 +2,7 @@
 
 use crate::drawing::mesh_view::{light_of, picture_of_triangles, view_of};
 use crate::graph::Silent;
-use crate::lab::error::{Method, PixelStyle, Refused, Shown};
+use crate::lab::error::{DrawingMethod, PixelStyle, Refused, Shown};
 use crate::mesh::Surface;
 use crate::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples};
 use crate::picture::Picture;
@@ -42,7 +42,7 @@ impl<'m> TrianglesMethod<'m> {
     }
 }
 
-impl Method for TrianglesMethod<'_> {
+impl DrawingMethod for TrianglesMethod<'_> {
     fn family(&self) -> &'static str {
         "triangles"
     }

@@ -20,7 +20,7 @@ use crate::lab::bench::{
 };
 use crate::lab::model::frame::count_operations;
 use crate::picture::{self, Background, Picture, Shading, resolve};
-use crate::project::{CageKind, Coverage, FrameSetup, SetupOptions};
+use crate::project::{FrameSetup, SetupOptions};
 
 /// What is reproduced: `config.toml`.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -116,22 +116,11 @@ impl Config {
     }
 }
 
-/// The image-order paper's settings.
-#[must_use]
-pub fn paper_options() -> SetupOptions {
-    SetupOptions {
-        cage: CageKind::Corners,
-        tolerance_px: f64::INFINITY,
-        coverage: Coverage::Any,
-        ..SetupOptions::of(Coverage::Any)
-    }
-}
-
 /// Settings by name: the image-order paper's, and ours.
 #[must_use]
 pub fn settings() -> [(&'static str, SetupOptions); 2] {
     [
-        ("paper", paper_options()),
+        ("paper", SetupOptions::paper()),
         ("default", SetupOptions::default()),
     ]
 }
@@ -302,7 +291,7 @@ pub struct Timed {
     pub timing: Timing,
 }
 
-/// Who is timed: under the image-order paper's settings the machine alone.
+/// Which engines are timed: under the image-order paper's settings the machine alone.
 #[derive(Debug, Clone, Copy)]
 pub struct Engines<'e> {
     /// The machine.

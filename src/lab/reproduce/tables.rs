@@ -6,13 +6,6 @@ use crate::lab::bench::{PowerLaw, ablation};
 use crate::report::plot::{Bar, Chart, Panel, Series};
 use crate::report::{Cell, Table};
 
-/// The image-order paper's times of Figures 3 and 4, milliseconds.
-pub const PAPER_FIGURES: [(&str, f64); 3] = [
-    ("Figure 3, a complex object", 119.0),
-    ("Figure 4, a simple object", 110.0),
-    ("Figure 4, another simple object", 60.0),
-];
-
 /// The law of the image-order paper's Table I, the first row (<1) left out.
 #[must_use]
 pub fn paper_law() -> Option<PowerLaw> {
@@ -23,7 +16,7 @@ pub fn paper_law() -> Option<PowerLaw> {
     PowerLaw::fit(&points)
 }
 
-/// Who drew: engine and settings.
+/// What drew: engine and settings.
 fn engine_label(timed: &Timed) -> String {
     format!("{}, {} settings", timed.timing.engine, timed.settings)
 }

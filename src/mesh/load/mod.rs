@@ -1,4 +1,4 @@
-//! Files to meshes. The format is the caller's to tell, by content.
+//! Files to meshes. The caller finds the format, by content.
 
 mod gltf;
 mod mtl;

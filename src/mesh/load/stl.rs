@@ -1,6 +1,6 @@
 //! Stereolithography meshes, by the crate `stl_io`.
 //!
-//! Binary or ASCII is told by the length: a file of 84 + 50 n bytes whose
+//! Binary and ASCII are distinguished by the length: a file of 84 + 50 n bytes whose
 //! header counts n triangles is binary, whatever it begins with. Normals in
 //! the file are not used: they are often wrong, and say nothing that the
 //! corners do not.

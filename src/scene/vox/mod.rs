@@ -176,7 +176,7 @@ fn survey(
                     model.offset + 4 * i as u64,
                     format!("a position inside SIZE {:?}", model.size),
                     format!("{:?}", [x, y, z]),
-                    "choose what to do with such voxels by --oob wrap, keep or drop",
+                    "choose what to do with such voxels: wrap, keep or drop them",
                 ));
             }
         }

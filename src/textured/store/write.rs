@@ -10,7 +10,7 @@ use crate::graph::file::{self, HEADER_BYTES};
 use crate::textured::{Element, GridData, TexturedData};
 
 /// Writes textured voxels: to a temporary file, say, that then gets its name
-/// ([`crate::picture::store::write_with`]).
+/// ([`crate::whole::write_with`]).
 ///
 /// # Errors
 /// The writer's byte order; a machine that stores the highest byte first.

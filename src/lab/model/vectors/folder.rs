@@ -4,8 +4,8 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::picture::store::StoreError;
 use crate::whole;
+use crate::whole::WholeError;
 
 /// The file that identifies a folder of vectors.
 pub(super) const MANIFEST: &str = "manifest.json";
@@ -19,7 +19,7 @@ pub(super) const ROWS: &str = "hex";
 pub enum FolderError {
     /// It is there already, or cannot be written.
     #[error(transparent)]
-    Store(#[from] StoreError),
+    Store(#[from] WholeError),
     /// What is there did not come from here, and is not replaced even on demand.
     #[error("{path} holds more than vectors ({other}), so it is not replaced")]
     Foreign {
@@ -31,7 +31,7 @@ pub enum FolderError {
 }
 
 fn failed(path: &Path, source: io::Error) -> FolderError {
-    FolderError::Store(StoreError::Io {
+    FolderError::Store(WholeError::Io {
         path: path.to_owned(),
         source,
     })
@@ -52,7 +52,7 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
         Err(e) => return Err(failed(path, e)),
         Ok(metadata) => metadata.file_type(),
     };
-    let exists = || FolderError::Store(StoreError::Exists(path.to_owned()));
+    let exists = || FolderError::Store(WholeError::Exists(path.to_owned()));
     let foreign = |other: &str| FolderError::Foreign {
         path: path.to_owned(),
         other: other.to_owned(),
@@ -90,7 +90,7 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
 /// Whether vectors may be written to a folder; called before long work.
 ///
 /// # Errors
-/// [`StoreError::Exists`] where a file or a folder with anything in it is there
+/// [`WholeError::Exists`] where a file or a folder with anything in it is there
 /// and may not be overwritten; [`FolderError::Foreign`] where it may, but holds other things.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), FolderError> {
     find_target(path, overwrite)?;
@@ -156,7 +156,7 @@ mod tests {
         let again = put(&path, false, "two.hex");
         assert!(matches!(
             again,
-            Err(FolderError::Store(StoreError::Exists(_)))
+            Err(FolderError::Store(WholeError::Exists(_)))
         ));
         put(&path, true, "two.hex").unwrap();
         assert!(names(&path).contains(&"two.hex".to_owned()));

@@ -23,8 +23,8 @@ pub use ports::{Field, Ports};
 use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions};
-use crate::picture::store::{self, StoreError};
 use crate::project::{EngineError, FrameSetup};
+use crate::whole::{self, WholeError};
 use recorder::Recorder;
 
 /// Version of the manifest and of what blocks there are.
@@ -65,7 +65,7 @@ pub enum VectorsError {
     Folder(#[from] FolderError),
     /// A file in it cannot.
     #[error(transparent)]
-    Store(#[from] StoreError),
+    Store(#[from] WholeError),
     /// A value is too large for the wires that the manifest gives it: a
     /// constant of the frame beyond its word.
     #[error("a value at block {0} does not fit its wires: use wider words")]
@@ -98,9 +98,9 @@ pub fn write(
         let recordings = recorder.finish()?;
         let manifest = manifest::document(setup, request, &stats, &recordings);
         let text = serde_json::to_string_pretty(&manifest)? + "\n";
-        store::write(&folder.join(folder::MANIFEST), text.as_bytes(), false)?;
+        whole::write(&folder.join(folder::MANIFEST), text.as_bytes(), false)?;
         let readme = readme::text(setup.format, &recordings);
-        store::write(&folder.join(folder::README), readme.as_bytes(), false)?;
+        whole::write(&folder.join(folder::README), readme.as_bytes(), false)?;
         Ok(Recorded {
             blocks: recordings.iter().filter(|r| r.rows > 0).count(),
             rows: recordings.iter().map(|r| r.rows).sum(),

@@ -11,8 +11,8 @@ use super::blocks::{Description, describe};
 use super::folder::ROWS;
 use super::ports::Ports;
 use crate::machine::Block;
-use crate::picture::store::StoreError;
 use crate::project::FrameSetup;
+use crate::whole::WholeError;
 
 /// A file of rows in the making.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl Rows {
         });
         match made {
             Ok(file) => Ok(Self { path, file }),
-            Err(source) => Err(StoreError::Io { path, source }.into()),
+            Err(source) => Err(WholeError::Io { path, source }.into()),
         }
     }
 
@@ -39,7 +39,7 @@ impl Rows {
     }
 
     fn failed(&self, source: io::Error) -> VectorsError {
-        VectorsError::from(StoreError::Io {
+        VectorsError::from(WholeError::Io {
             path: self.path.clone(),
             source,
         })

@@ -1,18 +1,18 @@
-//! Ends that no code sees coming: memory that the system refuses, and a mapped file that another program cuts short.
+//! Refused memory (SIGABRT) and a mapped file cut short (SIGBUS).
 //!
-//! Both come as signals to the thread at work, which cannot go on. Its handler wakes a thread that waits for nothing
-//! else; that one says what happened, removes what is unfinished and ends the program with the exit code that such
-//! a failure has everywhere. Where that thread does not come to it, the handler ends the program after a while.
+//! Both arrive as signals in a thread that cannot continue. The handler wakes a waiting thread, which reports the
+//! error, removes unfinished files and exits with the usual code. If that thread does not act within five seconds, the
+//! handler exits itself.
 
-/// From now on, with a JSON document where one is wanted.
+/// Installs the handlers. `json`: whether the error is also printed as a JSON document.
 #[cfg(unix)]
-pub(super) fn tell_when_stopped(json: bool) {
+pub(super) fn install(json: bool) {
     // Where there is no pipe or no thread, the program ends as any other does.
     let _ = handlers::install(json);
 }
 
 #[cfg(not(unix))]
-pub(super) fn tell_when_stopped(_json: bool) {}
+pub(super) fn install(_json: bool) {}
 
 #[cfg(unix)]
 mod handlers {
@@ -40,7 +40,7 @@ mod handlers {
             }
         };
         std::thread::Builder::new()
-            .name("mishaps".to_owned())
+            .name("fatal-signals".to_owned())
             .stack_size(1 << 18)
             .spawn(wait)?;
         WAKE.store(writer.into_raw_fd(), Ordering::Relaxed);
@@ -85,7 +85,7 @@ mod handlers {
             _ => CliError::new(kind(signal), "the system refuses memory that is needed")
                 .advise("ask for a smaller picture or a scene of fewer levels, or give the program more memory"),
         };
-        console::tell_error(&error);
+        console::report_error(&error);
         remove_unfinished(|| {
             if json {
                 let document = console::as_json(&document::failed(None, &error));
