@@ -1,11 +1,11 @@
 //! However the record loop's data is organised (children or parents on the stack, leaves told by their parents, the
 //! picture by tiles), every frame is the same to the bit, drawn serially or on simulated hardware.
 
-use hwmodel::Memory;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
     Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
 };
+use hwmodel::{Memory, OpClass, Probe, StageLevel};
 use rayon::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
@@ -186,4 +186,48 @@ fn parents_are_stored_less_often_and_leaves_are_not_read() {
     assert!(stored < subdivided, "a last child's parent is not stored");
     assert!(2 * subdivided < records, "{subdivided} of {records}");
     assert!(deepest <= u64::from(graph.depth), "{deepest}");
+}
+
+/// The samples that are drawn, in order.
+#[derive(Default)]
+struct Drawn(Vec<u64>);
+
+impl Probe for Drawn {
+    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {}
+
+    fn read(&mut self, _: Memory, _: u64, _: StageLevel) {}
+
+    fn write(&mut self, memory: Memory, address: u64, _: StageLevel) {
+        if memory == Memory::Pixel {
+            self.0.push(address);
+        }
+    }
+}
+
+/// A walk for a tile draws nothing outside of it.
+#[test]
+fn tiles_are_drawn_one_after_the_other() {
+    let graph = graph_of_spec("gen:terrain,depth=6");
+    let camera = camera_at(CameraPlace::Outside, &graph, (64, 64), &mut Dice::new(7));
+    let options = SetupOptions::default();
+    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+    for stack in [StackHolds::Children, StackHolds::Parents] {
+        let organisation = Organisation {
+            stack,
+            leaf_masks: true,
+            tile_levels: 2,
+        };
+        let mut frame = Frame::new(64, 64, false);
+        let drawn = machine(organisation).render_probed(
+            &graph.view(),
+            &setup,
+            &mut frame,
+            Drawn::default(),
+        );
+        let (_, Drawn(samples)) = drawn.unwrap();
+        let tile = |sample: &u64| (sample / 64 / 16, sample % 64 / 16);
+        assert!(samples.is_sorted_by_key(tile), "{stack:?}");
+        let tiles: std::collections::BTreeSet<_> = samples.iter().map(tile).collect();
+        assert!(tiles.len() > 4, "{}", tiles.len());
+    }
 }
