@@ -80,11 +80,11 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         let tile_levels = self.tile_levels();
         let side = 1u32 << tile_levels;
-        for tile in 0..side * side {
+        for tile in 0..side << tile_levels {
             let tile = QuadNode {
                 level: tile_levels,
-                x: tile % side,
-                y: tile / side,
+                x: tile & (side - 1),
+                y: tile >> tile_levels,
             };
             if self.canvas.fill.vector(tile) == FULL {
                 // It lies beside the picture.

@@ -233,7 +233,7 @@ impl<L: CageCoordinate> Steps<'_, L> {
     }
 
     /// Puts a tile's view of the fill vectors into place.
-    fn show(&mut self, tile: usize) {
+    fn switch_to(&mut self, tile: usize) {
         if tile != self.shown {
             self.tiles[self.shown].swap(&mut self.state);
             self.tiles[tile].swap(&mut self.state);
@@ -255,7 +255,7 @@ impl<L: CageCoordinate> Steps<'_, L> {
             return;
         }
         self.tiles.push(TileView::new(quad));
-        self.show(self.tiles.len() - 1);
+        self.switch_to(self.tiles.len() - 1);
         match self.state.options.organisation.stack {
             StackHolds::Children => {
                 self.state.push_object();
@@ -306,7 +306,7 @@ impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
         let (work, tile) = self.waiting[item as usize];
         self.free.push(item);
-        self.show(tile);
+        self.switch_to(tile);
         match work {
             Work::Tiles(quad) => self.begin_tiles(quad, children),
             Work::Record(record) => {

@@ -6,6 +6,7 @@
 //! them, so it serves only as the tests' second opinion.
 
 mod header;
+mod numbers;
 mod source;
 
 use std::io::BufRead;
@@ -16,7 +17,8 @@ use super::emit::Emitter;
 use super::error::{Fault, Problem, printable};
 use super::{FileKind, ReadOptions, SceneInfo};
 use crate::graph::PackedNormal;
-use header::{Element, Encoding, Property, Scalar};
+use header::{Element, Property};
+use numbers::{Encoding, Scalar};
 use source::{Number, Source, decode, parse_number};
 
 /// Longest line of an ASCII body, bytes.

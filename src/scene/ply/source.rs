@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read};
 
-use super::header::{Encoding, Scalar};
+use super::numbers::{Encoding, Scalar};
 use crate::scene::error::{Fault, Problem};
 
 /// A number as a file has it.
