@@ -176,10 +176,9 @@ fn graphs_of_any_sharing_are_read_or_refused_in_time() {
     let started = Instant::now();
     for seed in 0..60 {
         let file = Graph::random(1000 + seed, 30 + seed as u32 * 4).bytes();
-        match open_bytes(&file, "a.vox", &OpenOptions::default(), &Silent) {
-            Ok(opened) => assert!(opened.graph.voxels < 1 << 24),
-            // Some hold no voxels, and how much memory is free decides of others.
-            Err(_) => {}
+        // Some hold no voxels, and how much memory is free decides of others.
+        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &Silent) {
+            assert!(opened.graph.voxels < 1 << 24);
         }
     }
     assert!(
