@@ -159,7 +159,14 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     let source = Source::find(names::path(&args.input))?;
     let started = Instant::now();
-    let scene = scenes::open_whole(source, &args.input, &args.scene, started, console)?;
+    let scene = scenes::open_source(
+        source,
+        &args.input,
+        &args.scene,
+        scenes::Verify::All,
+        started,
+        console,
+    )?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
     scene_files::report_written("convert", &args.input, &args.output, &written, console)
 }

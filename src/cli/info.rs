@@ -75,7 +75,14 @@ fn of_one(
         Some(FileKind::Far) => far::info(name, console),
         Some(FileKind::Tvx) => textured::info(name, args.levels, console),
         _ => {
-            let scene = scenes::open_whole(source, name, &args.scene, started, console)?;
+            let scene = scenes::open_source(
+                source,
+                name,
+                &args.scene,
+                scenes::Verify::All,
+                started,
+                console,
+            )?;
             if console.json {
                 return Ok(Some(describe(&scene)));
             }

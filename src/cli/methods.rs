@@ -101,7 +101,14 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         check_memory(args)?;
         args.engine.check_of_voxels().map_err(CliError::usage)?;
         let scene_args = args.engine.rules.scene_args(args.scene);
-        let scene = scenes::open_source(source?, name, &scene_args, started, console)?;
+        let scene = scenes::open_source(
+            source?,
+            name,
+            &scene_args,
+            scenes::Verify::IfSmall,
+            started,
+            console,
+        )?;
         return Ok(Opened {
             engine: asked.unwrap_or_default(),
             load_ms: scene.load_ms,

@@ -66,12 +66,22 @@ pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Sc
         Source::find(names::path(name))?,
         name,
         args,
+        Verify::IfSmall,
         started,
         console,
     )
 }
 
-/// [`open`], of what was found already, at `started`.
+/// How much of a graph file is verified before it is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verify {
+    /// All of a small one, the header of a large one.
+    IfSmall,
+    /// All.
+    All,
+}
+
+/// [`open`], of what was found already, at `started`. Commands that read all of a scene verify all of it.
 ///
 /// # Errors
 /// As [`open`].
@@ -79,39 +89,18 @@ pub(super) fn open_source(
     source: Source,
     name: &str,
     args: &SceneArgs,
+    verify: Verify,
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
-    open_with(source, name, args, &options(args), started, console)
-}
-
-/// [`open_source`], with every byte of a graph file checked: for commands that read all of it.
-///
-/// # Errors
-/// As [`open`].
-pub(super) fn open_whole(
-    source: Source,
-    name: &str,
-    args: &SceneArgs,
-    started: Instant,
-    console: &Console,
-) -> Result<Scene, CliError> {
-    let options = OpenOptions {
-        verify_up_to: u64::MAX,
-        ..options(args)
+    let options = match verify {
+        Verify::IfSmall => options(args),
+        Verify::All => OpenOptions {
+            verify_up_to: u64::MAX,
+            ..options(args)
+        },
     };
-    open_with(source, name, args, &options, started, console)
-}
-
-fn open_with(
-    source: Source,
-    name: &str,
-    args: &SceneArgs,
-    options: &OpenOptions,
-    started: Instant,
-    console: &Console,
-) -> Result<Scene, CliError> {
-    let opened = scene::open_source(source, options, console.progress())?;
+    let opened = scene::open_source(source, &options, console.progress())?;
     let scene = ready(opened, name, args.mesh_up, started);
     if !scene.is_verified {
         console.note(format!(

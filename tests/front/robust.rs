@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
 use shiftvox::graph::vxg;
+use shiftvox::split_mix::SplitMix;
 
 const LINES: [&[&str]; 6] = [
     &[
@@ -61,19 +62,6 @@ const LINES: [&[&str]; 6] = [
 /// Runs, and the longest that all of them together may take.
 const RUNS: u64 = 48;
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// Numbers that depend on the seed alone.
-struct Dice(u64);
-
-impl Dice {
-    fn below(&mut self, end: u64) -> u64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % end
-    }
-}
 
 fn start(folder: &Path, before: &str, line: &[&str], stdout: Stdio, stderr: File) -> Child {
     Command::new("sh")
@@ -153,7 +141,7 @@ fn whatever_happens_it_ends_in_order() {
     let errors = folder.path().join("stderr");
     let (mut stopped, mut failed) = (0, 0);
     for run in 0..RUNS {
-        let mut dice = Dice(run.wrapping_mul(0x9e37_79b9_7f4a_7c15) + 77);
+        let mut dice = SplitMix::new(run);
         let line = LINES[dice.below(LINES.len() as u64) as usize];
         let mut before = String::new();
         let (mut stdout, mut signal) = (Stdio::piped(), None);

@@ -7,17 +7,14 @@ use std::time::{Duration, Instant};
 use crate::input_support::{VoxFile, read};
 use shiftvox::graph::Silent;
 use shiftvox::scene::{OpenOptions, ReadOptions, open_bytes};
+use shiftvox::split_mix::SplitMix;
 
 /// Numbers that depend on the seed alone.
-struct Dice(u64);
+struct Dice(SplitMix);
 
 impl Dice {
     fn below(&mut self, end: u32) -> u32 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        ((self.0 >> 33) % u64::from(end)) as u32
+        self.0.below(u64::from(end)) as u32
     }
 }
 
@@ -47,7 +44,7 @@ fn rotation(dice: &mut Dice) -> u8 {
 
 impl Graph {
     fn random(seed: u64, inner: u32) -> Self {
-        let mut dice = Dice(seed);
+        let mut dice = Dice(SplitMix::new(seed));
         for _ in 0..4 {
             dice.below(2);
         }

@@ -192,6 +192,11 @@ mod tests {
         counts
     }
 
+    fn bound(report: &RayCycles, name: &str) -> u64 {
+        let found = report.bounds.iter().find(|bound| bound.resource == name);
+        found.unwrap().cycles
+    }
+
     #[test]
     fn bounds_by_hand() {
         let rays = RayHardware::shipped();
@@ -214,14 +219,7 @@ mod tests {
             ..OuterTraffic::default()
         };
         let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name: &str| {
-            report
-                .bounds
-                .iter()
-                .find(|b| b.resource == name)
-                .unwrap()
-                .cycles
-        };
+        let of = |name| bound(&report, name);
         assert_eq!(of("float add units"), 250);
         assert_eq!(of("float compare units"), 100);
         assert_eq!(of("float divide units"), 9 * 26 / 3);
@@ -236,14 +234,7 @@ mod tests {
         // Twice the lanes: the units' share halves, the caches' does not.
         hardware.lanes = 2;
         let report = cycles(&counts, misses, &traffic, &rays, &hardware);
-        let of = |name: &str| {
-            report
-                .bounds
-                .iter()
-                .find(|b| b.resource == name)
-                .unwrap()
-                .cycles
-        };
+        let of = |name| bound(&report, name);
         assert_eq!((of("float add units"), of("node cache port")), (125, 70));
     }
 }
