@@ -22,6 +22,7 @@ use super::cost::{Prices, accumulator_bits, fill_vector_bits, stack_bits};
 use super::range::Range;
 use super::ray_caster;
 use super::ray_cycles::RayHardware;
+use super::record::context_bits;
 use crate::project::FrameSetup;
 
 /// Area of a design, NAND2 equivalents, line by line.
@@ -211,7 +212,8 @@ pub fn light(
         };
         area.units(&format!("{}, shifters", stage.name()), of, prices)?;
     }
-    let contexts = hardware.all_contexts() * u64::from(frame.record_bits);
+    let each = context_bits(frame.setup, frame.record_bits, hardware.organisation);
+    let contexts = hardware.all_contexts() * each;
     area.register_bits("records of the contexts", contexts, prices)?;
     area.memory(
         "record stack",

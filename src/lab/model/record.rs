@@ -128,6 +128,22 @@ pub fn record_bits(fields: &[RecordField]) -> u32 {
     bits_held(fields, None).widest()
 }
 
+/// Bits of a context's registers: the record that it works on, and, where parents lie on the stack, the parent
+/// with its children's vertices.
+#[must_use]
+pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisation) -> u64 {
+    let record = u64::from(record_bits);
+    if organisation.stack == StackHolds::Children {
+        return record;
+    }
+    // Of each coordinate: 27 vertices, or eight corners and the edges that they share.
+    let numbers = match setup.options.cage {
+        CageKind::Corners => 27,
+        CageKind::Frame => 8 + 3,
+    };
+    2 * record + 3 * numbers * u64::from(setup.format.bits())
+}
+
 /// Bits of a frame's records by their kind. Under the rules that draw outlines
 /// a cube at the level of the finest voxels is drawn and has no parts: of its
 /// vertices its turn needs one thing, whether all are before the eye.
@@ -180,6 +196,17 @@ mod tests {
     fn bits(options: SetupOptions, nodes: usize) -> u32 {
         let setup = setup(options);
         record_bits(&record_fields(&setup, nodes, Organisation::default()))
+    }
+
+    #[test]
+    fn contexts_of_parents_hold_two_records_and_the_children_s_vertices() {
+        let frame = setup(SetupOptions::default());
+        let parents = Organisation {
+            stack: StackHolds::Parents,
+            ..Organisation::default()
+        };
+        assert_eq!(context_bits(&frame, 1000, Organisation::default()), 1000);
+        assert_eq!(context_bits(&frame, 1000, parents), 2000 + 3 * 11 * 64);
     }
 
     #[test]
