@@ -294,6 +294,30 @@ fn files_are_written_once() {
     assert!(text("t.vcd").contains("$enddefinitions"));
 }
 
+/// The best hardware known for the rule, and the paper's for the paper's rules.
+#[test]
+fn the_default_hardware_follows_the_rule() {
+    for (flags, wanted) in [
+        (&[] as &[&str], "light"),
+        (&["--coverage", "alpha"], "light"),
+        (&["--paper"], "paper"),
+        (&["--coverage", "center"], "paper"),
+        (&["--rules"], "paper"),
+        (&["--paper", "--hw", "light"], "light"),
+    ] {
+        let printed = shiftvox()
+            .args(["model", "--print-hw"])
+            .args(flags)
+            .output()
+            .expect("it runs");
+        let printed = String::from_utf8(printed.stdout).expect("text");
+        let named = printed
+            .lines()
+            .any(|line| line.starts_with(&format!("name = \"{wanted}\"")));
+        assert!(named, "{flags:?}: {printed}");
+    }
+}
+
 #[test]
 fn hardware_and_costs_of_one_s_own() {
     let folder = TempDir::new().expect("a folder");

@@ -43,9 +43,10 @@ pub(in crate::cli) struct ModelArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Hardware")]
 pub(super) struct HardwareArgs {
-    /// Hardware: tiny, paper, light, wide, or a TOML file like those (--print-hw shows one)
-    #[arg(long = "hw", value_name = "NAME|FILE", default_value = "paper")]
-    hw: String,
+    /// Hardware: tiny, paper, light, wide, or a TOML file like those (--print-hw shows one) [default: light;
+    /// paper where boxes and not outlines are drawn, and with --rules]
+    #[arg(long = "hw", value_name = "NAME|FILE")]
+    hw: Option<String>,
     /// Print the description of the hardware, and do nothing else
     #[arg(long)]
     pub(super) print_hw: bool,
@@ -146,18 +147,31 @@ fn read(path: &Path) -> Result<String, CliError> {
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
 }
 
-impl HardwareArgs {
-    /// Its description as TOML: a shipped one with its comments, or the user's.
-    pub(super) fn text(&self) -> Result<String, CliError> {
-        if let Some((_, text)) = PRESETS.iter().find(|(name, _)| *name == self.hw) {
+impl ModelArgs {
+    /// The hardware's name or file: the best one known for the rule, unless told otherwise. Tiles are of use only to
+    /// rules that draw outlines, and rules are compared on the paper's own hardware.
+    fn hardware_name(&self) -> &str {
+        let draws_outlines = self.rules.options(0).coverage.draws_outlines();
+        let best = if draws_outlines && !self.tables.rules {
+            "light"
+        } else {
+            "paper"
+        };
+        self.hardware.hw.as_deref().unwrap_or(best)
+    }
+
+    /// The hardware's description as TOML: a shipped one with its comments, or the user's.
+    pub(super) fn hardware_text(&self) -> Result<String, CliError> {
+        let name = self.hardware_name();
+        if let Some((_, text)) = PRESETS.iter().find(|(preset, _)| *preset == name) {
             return Ok((*text).to_owned());
         }
-        let path = PathBuf::from(&self.hw);
+        let path = PathBuf::from(name);
         if !path.exists() {
             let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
             return Err(CliError::new(
                 Kind::Input,
-                format!("no hardware and no file is called {}", self.hw),
+                format!("no hardware and no file is called {name}"),
             )
             .advise(format!(
                 "take one of {}, or print one with --print-hw and change it",
@@ -169,10 +183,12 @@ impl HardwareArgs {
 
     /// The hardware.
     pub(super) fn hardware(&self) -> Result<Hardware, CliError> {
-        Hardware::from_toml(&self.text()?)
-            .map_err(|error| CliError::new(Kind::Input, error).at(self.hw.clone()))
+        Hardware::from_toml(&self.hardware_text()?)
+            .map_err(|error| CliError::new(Kind::Input, error).at(self.hardware_name()))
     }
+}
 
+impl HardwareArgs {
     /// The cost tables and choices.
     pub(super) fn prices(&self) -> Result<Prices, CliError> {
         let wrong = |error| CliError::new(Kind::Input, error);

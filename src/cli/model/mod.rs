@@ -20,11 +20,11 @@ pub(super) fn run(
     console: &Console,
 ) -> Result<(), CliError> {
     if args.hardware.print_hw {
-        return console.data(args.hardware.text()?.trim_end());
+        return console.data(args.hardware_text()?.trim_end());
     }
     output::check(args)?;
     vectors::check(args)?;
-    let hardware = args.hardware.hardware()?;
+    let hardware = args.hardware()?;
     let prices = args.hardware.prices()?;
     let mut names = args.scenes.clone();
     if names.is_empty() {
