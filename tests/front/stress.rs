@@ -44,8 +44,6 @@ fn a_sweep_is_told_in_every_form() {
         "s.md",
         "--export-svg",
         "s.svg",
-        "--html",
-        "s.html",
     ];
     let told = shiftvox(folder.path(), &line).success();
     let document: Value = serde_json::from_str(&stdout_of(&told)).unwrap();
@@ -61,8 +59,6 @@ fn a_sweep_is_told_in_every_form() {
     );
     assert!(read("s.csv").starts_with("scene,bits,coverage,tolerance_px,cases"));
     assert!(read("s.svg").contains("by bits of a word and scene"));
-    let html = read("s.html");
-    assert!(html.contains("By rule") && html.contains("cyclic:4,1") && html.contains("<svg"));
     // Nothing is replaced unasked.
     let again = shiftvox(folder.path(), &line).code(1);
     assert!(stderr_of(&again).contains("--force"));

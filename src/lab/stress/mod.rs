@@ -23,5 +23,5 @@ pub use check::{Check, End, Failure, Outcome, PATIENCE, STRICT_TOLERANCE};
 pub use scene::StressScene;
 pub use sweep::{COVERAGES, Failed, Findings, Key, SweepPlan, TOLERANCES, Tally, run_case, sweep};
 #[cfg(feature = "cli")]
-pub use tables::{panels, rows, summary, tables};
+pub use tables::{panels, rows, tables};
 pub use vertex::{Hold, Worst};

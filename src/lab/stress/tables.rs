@@ -79,33 +79,21 @@ fn counts(tally: &Tally) -> [u64; 13] {
     ]
 }
 
-/// What people read first.
-#[must_use]
-pub fn summary(findings: &Findings) -> Vec<(String, String)> {
-    let total = findings.total();
-    let exact = added(findings, |key| COVERAGES[key.coverage].draws_outlines());
-    let strict = added(findings, |key| {
-        TOLERANCES[key.tolerance] <= STRICT_TOLERANCE
-    });
-    let figure = |value: u64, what: &str| (Cell::from(value).for_people(), what.to_owned());
-    vec![
-        figure(total.cases, "frames"),
-        figure(total.failed, "failed"),
-        figure(total.trapped, "trapped, place told"),
-        figure(total.refused, "refused by the set-up"),
-        figure(exact.holes, "holes in closed surfaces under exact"),
-        figure(strict.order, "order violations, tolerance up to 1/64"),
-    ]
-}
-
 /// The tables for people.
 #[must_use]
 pub fn tables(plan: &SweepPlan, findings: &Findings) -> Vec<Table> {
+    let scenes = plan.scenes.iter().enumerate();
+    let by_scene = scenes.map(|(scene, name)| {
+        let sum = added(findings, |key| key.scene == scene);
+        (Cell::Text(name.to_string()), sum)
+    });
+    let viewpoints = findings.viewpoints.iter();
+    let by_viewpoint = viewpoints.map(|(name, tally)| (Cell::from(*name), tally.clone()));
     let mut tables = vec![
-        by_scene(plan, findings),
+        frames("By scene", "scene", by_scene),
         by_rule(findings),
         vertices(findings),
-        by_viewpoint(findings),
+        frames("By viewpoint", "viewpoint", by_viewpoint),
         checks(findings),
     ];
     let counted = [
@@ -124,9 +112,14 @@ pub fn tables(plan: &SweepPlan, findings: &Findings) -> Vec<Table> {
     tables
 }
 
-fn by_scene(plan: &SweepPlan, findings: &Findings) -> Table {
+/// Frames and their ends, a row for each name.
+fn frames<'n>(
+    title: &str,
+    what: &'static str,
+    tallies: impl Iterator<Item = (Cell, Tally)> + 'n,
+) -> Table {
     let columns = [
-        "scene",
+        what,
         "frames",
         "drawn",
         "trapped",
@@ -135,31 +128,10 @@ fn by_scene(plan: &SweepPlan, findings: &Findings) -> Table {
         "failed",
         "most_records",
     ];
-    let mut table = Table::new("By scene", &columns);
-    for (scene, name) in plan.scenes.iter().enumerate() {
-        let sum = added(findings, |key| key.scene == scene);
-        let mut row = vec![Cell::Text(name.to_string())];
-        row.extend(counts(&sum)[..7].iter().map(|&c| Cell::from(c)));
-        table.rows.push(row);
-    }
-    table
-}
-
-fn by_viewpoint(findings: &Findings) -> Table {
-    let columns = [
-        "viewpoint",
-        "frames",
-        "drawn",
-        "trapped",
-        "refused",
-        "cut_off",
-        "failed",
-        "most_records",
-    ];
-    let mut table = Table::new("By viewpoint", &columns);
-    for (name, tally) in &findings.viewpoints {
-        let mut row = vec![Cell::from(*name)];
-        row.extend(counts(tally)[..7].iter().map(|&c| Cell::from(c)));
+    let mut table = Table::new(title, &columns);
+    for (name, tally) in tallies {
+        let mut row = vec![name];
+        row.extend(counts(&tally)[..7].iter().map(|&c| Cell::from(c)));
         table.rows.push(row);
     }
     table
@@ -296,8 +268,7 @@ pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
                 (name.to_string(), plan.bits.iter().map(tile).collect())
             })
             .collect(),
-        legend: "share of frames with a picture; the others were refused or trapped with the place told; red: something that must be kept was not"
-            .to_owned(),
+        legend: "share of frames with a picture; the others were refused or trapped; red: a check failed".to_owned(),
     };
     let closed = plan
         .scenes
