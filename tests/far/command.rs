@@ -327,10 +327,10 @@ fn what_is_wrong_is_said_with_an_exit_code() {
     shiftvox(at).args(copies("sheet.obj")).assert().code(5);
     if cfg!(target_os = "linux") {
         let output = shiftvox(at).args(copies("one.obj")).assert().code(5);
-        let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
         assert!(
-            told.contains("one.obj") && told.contains("are free"),
-            "{told}"
+            stderr.contains("one.obj") && stderr.contains("are free"),
+            "{stderr}"
         );
     }
     shiftvox(at)
@@ -383,11 +383,11 @@ fn a_file_has_its_own_engine_and_no_idle_flags() {
         for flags in other {
             let render = ["render", file, "-o", "x.png"];
             let output = shiftvox(at).args(render).args(flags).assert().code(2);
-            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
             let flag = flags[0].trim_start_matches('-');
             assert!(
-                told.contains(file) && told.contains(flag),
-                "{flags:?}: {told}"
+                stderr.contains(file) && stderr.contains(flag),
+                "{flags:?}: {stderr}"
             );
             let turn = ["turntable", file, "--frames", "1", "-o", "#.png"];
             shiftvox(at).args(turn).args(flags).assert().code(2);
@@ -396,9 +396,9 @@ fn a_file_has_its_own_engine_and_no_idle_flags() {
             let wrong = [verb, file, "-o", "x.png"];
             let count = if verb == "model" { 2 } else { 4 };
             let output = shiftvox(at).args(&wrong[..count]).assert().code(4);
-            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-            assert!(told.contains("render and turntable draw it"), "{told}");
-            assert_eq!(told.matches(file).count(), 1, "{told}");
+            let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            assert!(stderr.contains("render and turntable draw it"), "{stderr}");
+            assert_eq!(stderr.matches(file).count(), 1, "{stderr}");
         }
     }
     // One command for files of three kinds.

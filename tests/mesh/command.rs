@@ -145,8 +145,8 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
             &["convert", file, "out.vxg", "--memory", "64M"],
         ] {
             let assert = shiftvox(folder.path()).args(verb).assert().code(4);
-            let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
-            assert!(told.contains(expected), "{told}");
+            let stderr = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+            assert!(stderr.contains(expected), "{stderr}");
             assert!(
                 !folder.path().join("out.vxg").exists() && !folder.path().join("out.png").exists()
             );
@@ -162,9 +162,9 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
         .args(["triangles", "axes.vox", "-o", "x.png"])
         .assert()
         .code(4);
-    let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    let stderr = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
     assert!(
-        told.contains("axes.vox: this is a .vox file, which has no triangles"),
-        "{told}"
+        stderr.contains("axes.vox: this is a .vox file, which has no triangles"),
+        "{stderr}"
     );
 }

@@ -56,13 +56,13 @@ fn convert_info_render() {
     let levels = grid["levels"].as_array().unwrap();
     assert_eq!(levels.last().unwrap()["faces"], 242);
     assert_eq!(levels[0]["primitives"], 0);
-    let told = shiftvox(at)
+    let output = shiftvox(at)
         .args(["info", "a.tvx", "--levels"])
         .assert()
         .success();
-    let told = String::from_utf8(told.get_output().stdout.clone()).unwrap();
+    let output = String::from_utf8(output.get_output().stdout.clone()).unwrap();
     for word in ["sub-textures", "surfels", "242", "afresh"] {
-        assert!(told.contains(word), "{word}: {told}");
+        assert!(output.contains(word), "{word}: {output}");
     }
     let camera = ["--size", "64", "--json", "--hash", "-q"];
     let render = |more: &[&str]| {
@@ -158,9 +158,9 @@ fn what_is_refused() {
     ];
     for (line, code, word) in cases {
         let output = shiftvox(at).args(line.split(' ')).assert().code(code);
-        let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-        assert!(told.contains(word), "{line}: {told}");
-        assert!(!told.contains("panicked"), "{told}");
+        let output = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        assert!(output.contains(word), "{line}: {output}");
+        assert!(!output.contains("panicked"), "{output}");
         for output in ["x.tvx", "x.vxg", "x.far", "x.png"] {
             assert!(!at.join(output).exists(), "{line}");
         }
