@@ -9,6 +9,7 @@ mod meshes;
 mod methods;
 mod picture_export;
 mod scaling;
+mod select;
 mod vertex_error;
 mod walk;
 

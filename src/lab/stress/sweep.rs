@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::case::Case;
-use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
+use super::check::{Oracle, PATIENCE, check};
+use super::outcome::{Check, End, Outcome};
 use super::scene::StressScene;
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};

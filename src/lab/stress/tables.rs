@@ -1,7 +1,8 @@
 //! What a sweep found, as tables and heat maps.
 
 use super::case::coverage_name;
-use super::check::{Check, STRICT_TOLERANCE};
+use super::check::STRICT_TOLERANCE;
+use super::outcome::Check;
 use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
 use super::vertex::{Hold, Worst};
 use crate::report::plot::{HeatCell, HeatMap, Panel};
