@@ -320,12 +320,6 @@ fn ablation_of_the_fast_engine_changes_no_picture() {
     assert_eq!(count(kept, "records"), 0);
     let all = "attributes of all read";
     assert!(count(all, "attributes_read") > count(whole, "samples_drawn"));
-    if cfg!(target_os = "linux") {
-        let (some, all) = ("first frame of the file", "first frame, all pages read");
-        assert!(count(some, "pages_resident") <= count(all, "pages_resident"));
-        // Every page but those of the header and between the arrays.
-        assert!(count(all, "pages_resident") + 8 >= count(all, "pages_mapped"));
-    }
 }
 
 #[test]

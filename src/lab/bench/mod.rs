@@ -11,7 +11,6 @@ mod clock;
 pub mod engines;
 pub mod harness;
 pub mod measure;
-mod pages;
 mod power_law;
 pub mod scaling;
 mod scan;
