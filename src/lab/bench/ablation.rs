@@ -185,24 +185,9 @@ fn ratio(ms: f64, of_ms: f64) -> f64 {
 /// The rows as a table.
 #[must_use]
 pub fn table(rows: &[AblationRow]) -> Table {
-    let columns = [
-        "scene",
-        "size",
-        "engine",
-        "variant",
-        "median_ms",
-        "deviation_ms",
-        "thread_median_ms",
-        "time_ratio",
-        "work",
-        "work_unit",
-        "picture",
-        "changed",
-        "extra",
-        "missing",
-        "other_voxel",
-    ];
-    let mut table = Table::new("Techniques switched off in turn", &columns);
+    let columns = "scene size engine variant median_ms deviation_ms thread_median_ms time_ratio \
+        work work_unit picture changed extra missing other_voxel";
+    let mut table = Table::of("Techniques switched off in turn", columns);
     for row in rows {
         let picture = if row.changed == 0 { "same" } else { "changed" };
         table.rows.push(vec![

@@ -29,26 +29,9 @@ fn added<'f>(findings: &'f Findings, wanted: impl Fn(&Key) -> bool + 'f) -> Tall
 /// A row for each scene, width and rule.
 #[must_use]
 pub fn rows(plan: &SweepPlan, findings: &Findings) -> Table {
-    let columns = [
-        "scene",
-        "bits",
-        "coverage",
-        "tolerance_px",
-        "cases",
-        "drawn",
-        "trapped",
-        "refused",
-        "cut_off",
-        "failed",
-        "most_records",
-        "inside",
-        "holes",
-        "order",
-        "covered",
-        "extra",
-        "missing",
-    ];
-    let mut table = Table::new("Outcomes", &columns);
+    let columns = "scene bits coverage tolerance_px cases drawn trapped refused cut_off failed \
+        most_records inside holes order covered extra missing";
+    let mut table = Table::of("Outcomes", columns);
     for (key, tally) in &findings.tallies {
         let mut row: Vec<Cell> = vec![
             Cell::Text(plan.scenes[key.scene].to_string()),
@@ -139,23 +122,11 @@ fn frames<'n>(
 }
 
 fn by_rule(findings: &Findings) -> Table {
-    let columns = [
-        "coverage",
-        "tolerance",
-        "frames_drawn",
-        "samples_inside_closed",
-        "holes",
-        "one_in",
-        "must_be_0",
-        "order",
-        "covered",
-        "extra",
-        "missing",
-        "failed",
-    ];
-    let mut table = Table::new(
+    let columns = "coverage tolerance frames_drawn samples_inside_closed holes one_in must_be_0 \
+        order covered extra missing failed";
+    let mut table = Table::of(
         "By rule: holes in closed surfaces, order, coverage against the oracle",
-        &columns,
+        columns,
     );
     for (coverage, rule) in COVERAGES.iter().enumerate() {
         for (tolerance, px) in TOLERANCES.iter().enumerate() {
@@ -191,18 +162,11 @@ fn by_rule(findings: &Findings) -> Table {
 }
 
 fn vertices(findings: &Findings) -> Table {
-    let columns = [
-        "held_in",
-        "bits",
-        "vertices",
-        "worst_seen_px",
-        "its_bound_px",
-        "seen_over_bound",
-        "nearest_to_a_bound",
-    ];
-    let mut table = Table::new(
+    let columns = "held_in bits vertices worst_seen_px its_bound_px seen_over_bound \
+        nearest_to_a_bound";
+    let mut table = Table::of(
         "Vertex error: worst seen in the picture beside its bound; greatest quotient of error and bound anywhere",
-        &columns,
+        columns,
     );
     for (place, hold) in Hold::ALL.iter().enumerate() {
         let of_hold = findings.worst.iter().filter(|((h, _), _)| *h == place);
