@@ -1,6 +1,5 @@
 //! What a sweep found, as tables and heat maps.
 
-use super::case::coverage_name;
 use super::check::STRICT_TOLERANCE;
 use super::outcome::Check;
 use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
@@ -36,7 +35,7 @@ pub fn rows(plan: &SweepPlan, findings: &Findings) -> Table {
         let mut row: Vec<Cell> = vec![
             Cell::Text(plan.scenes[key.scene].to_string()),
             u64::from(key.bits).into(),
-            coverage_name(COVERAGES[key.coverage]).into(),
+            COVERAGES[key.coverage].name().into(),
             Cell::Text(TOLERANCES[key.tolerance].to_string()),
         ];
         row.extend(counts(tally).map(Cell::from));
@@ -138,7 +137,7 @@ fn by_rule(findings: &Findings) -> Table {
             });
             let one_in = (sum.holes > 0).then(|| sum.inside / sum.holes);
             table.rows.push(vec![
-                coverage_name(*rule).into(),
+                rule.name().into(),
                 Cell::Text(tolerance_name(*px)),
                 sum.drawn.into(),
                 sum.inside.into(),
