@@ -33,8 +33,8 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     let mut file = open(path)?;
     let bytes = file.metadata()?.len();
     let too_long = |bytes| {
-        let told = format!("it has {bytes} bytes or more, and at most {most} are read");
-        io::Error::new(io::ErrorKind::FileTooLarge, told)
+        let message = format!("it has {bytes} bytes or more, and at most {most} are read");
+        io::Error::new(io::ErrorKind::FileTooLarge, message)
     };
     if bytes > most {
         return Err(too_long(bytes));
@@ -78,8 +78,8 @@ mod tests {
         let path = folder.path().join("a");
         fs::write(&path, b"abc").unwrap();
         assert_eq!(read(&path, 3).unwrap(), b"abc");
-        let told = read(&path, 2).unwrap_err().to_string();
-        assert!(told.starts_with("it has 3 bytes or more"), "{told}");
+        let message = read(&path, 2).unwrap_err().to_string();
+        assert!(message.starts_with("it has 3 bytes or more"), "{message}");
         assert_eq!(read_settings(&path).unwrap(), "abc");
         assert!(read(folder.path(), 9).is_err());
         let devices = if cfg!(unix) {
@@ -88,8 +88,8 @@ mod tests {
             &[]
         };
         for device in devices {
-            let told = read(Path::new(device), 9).unwrap_err().to_string();
-            assert_eq!(told, "it is not a regular file");
+            let message = read(Path::new(device), 9).unwrap_err().to_string();
+            assert_eq!(message, "it is not a regular file");
         }
     }
 }

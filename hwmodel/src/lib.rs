@@ -56,7 +56,6 @@ mod word;
 
 pub use datapath::{Datapath, Trap, TrapOp};
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
-pub use narrow::Narrow;
 pub use probe::{Memory, NoProbe, OpClass, Operand, Probe, Stage, StageLevel};
 pub use tap::{Short, Signal, SignalKind, Wires};
-pub use word::{Number, WideWord, Word};
+pub use word::{Narrow, Number, WideWord, Word};

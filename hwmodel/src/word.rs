@@ -98,6 +98,34 @@ mod sealed {
 }
 pub(crate) use sealed::Raw;
 
+/// A number of few bits, 0 or more: a weight or a colour. Like a [`Word`] it has no operators: what
+/// is done with it is a call on a [`Datapath`] that names the bits.
+///
+/// ```compile_fail,E0369
+/// let a = hwmodel::Narrow::from_host(6);
+/// let _ = a * a; // a narrow number cannot be multiplied
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[repr(transparent)]
+pub struct Narrow(pub(crate) u32);
+
+impl Narrow {
+    /// Zero.
+    pub const ZERO: Self = Self(0);
+
+    /// A number that the host prepared, or that comes from a memory.
+    #[must_use]
+    pub const fn from_host(value: u32) -> Self {
+        Self(value)
+    }
+
+    /// The number's value for the host, or for a memory.
+    #[must_use]
+    pub const fn to_host(self) -> u32 {
+        self.0
+    }
+}
+
 /// [`Word`] or [`WideWord`]: what the datapath works on.
 pub trait Number: Raw {}
 

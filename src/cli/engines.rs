@@ -91,7 +91,7 @@ pub(super) fn count_operations(
     Ok(counter)
 }
 
-const MACHINE: Candidate = Candidate {
+pub(super) const MACHINE: Candidate = Candidate {
     name: "machine",
     about: "the paper's loop in machine words",
     work: "records",

@@ -1,7 +1,5 @@
 //! `stress`: the numerical stability sweep.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use serde_json::json;
 
@@ -11,11 +9,8 @@ use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::report;
 use crate::lab::stress::{
-    self, Case, End, Findings, Hold, Outcome, SweepPlan, panels, rows, summary, tables,
+    self, Case, End, Findings, Hold, Outcome, SweepPlan, panels, rows, tables,
 };
-use crate::report::html::Page;
-use crate::report::plot;
-use crate::whole;
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -47,9 +42,6 @@ pub(super) struct StressArgs {
     /// Draw one case alone: a line that a failing sweep prints
     #[arg(long, value_name = "CASE", conflicts_with_all = ["scenes", "thorough", "bits", "size", "rules", "viewpoints"])]
     case: Option<Case>,
-    /// One page with tables and plots
-    #[arg(long, value_name = "FILE")]
-    html: Option<PathBuf>,
     #[command(flatten)]
     export: ExportArgs,
 }
@@ -66,28 +58,18 @@ pub(super) fn run(
         return run_case(case, console);
     }
     export::check(&args.export)?;
-    if let Some(path) = &args.html {
-        whole::check_free(path, args.export.force)?;
-    }
     let plan = plan(args, &from_config)?;
     let context = Context::now();
     let started = std::time::Instant::now();
     let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
     let seconds = started.elapsed().as_secs_f64();
-    let tables = tables(&plan, &findings);
-    let panels = panels(&plan, &findings);
-    if let Some(path) = &args.html {
-        let page = page(&plan, &findings, &context, &tables, &panels)?;
-        whole::write(path, page.as_bytes(), args.export.force)?;
-        console.note(format!("{}: written", path.display()));
-    }
     let results = Results {
         document: document(&plan, &findings, &context),
         rows: rows(&plan, &findings),
         more_tables: Vec::new(),
         preface: format!("`{}`\n", context.command_line()),
-        tables,
-        panels,
+        tables: tables(&plan, &findings),
+        panels: panels(&plan, &findings),
     };
     export::write(&results, &args.export, console)?;
     let total = findings.total();
@@ -197,44 +179,6 @@ fn document(plan: &SweepPlan, findings: &Findings, context: &Context) -> serde_j
             "results": rows,
         }),
     )
-}
-
-fn page(
-    plan: &SweepPlan,
-    findings: &Findings,
-    context: &Context,
-    tables: &[crate::report::Table],
-    panels: &[plot::Panel],
-) -> Result<String, CliError> {
-    let mut page = Page::new("Numerical stability");
-    page.lines(&context.command_line());
-    page.text(&format!(
-        "{} scenes, words of {} widths from 16 to 64 bits with three fractions each, pictures of {:?} pixels a side, seed {}. \
-         Every frame is drawn by the machine and held against the exact ray caster, the specification and the bounds on its vertices' error.",
-        plan.scenes.len(),
-        plan.bits.len(),
-        plan.pixels,
-        plan.seed
-    ));
-    page.key_figures(&summary(findings));
-    if !findings.failed.is_empty() {
-        page.chapter("What failed");
-        for failed in &findings.failed {
-            let case = failed.minimal.as_ref().unwrap_or(&failed.case);
-            page.section(failed.check.name());
-            page.text(failed.minimal_detail.as_ref().unwrap_or(&failed.detail));
-            page.lines(&format!("shiftvox stress --case '{case}'"));
-        }
-    }
-    page.chapter("Plots");
-    for panel in panels {
-        page.plot(&plot::svg(std::slice::from_ref(panel))?, "");
-    }
-    for table in tables {
-        page.chapter(table.title.split(':').next().unwrap_or(&table.title));
-        page.table(table);
-    }
-    Ok(page.finish())
 }
 
 /// Draws one case and prints what was found.

@@ -4,22 +4,22 @@
 //! Which samples a voxel draws, and in which order, is found as under `exact`; a
 //! sample stays open until it is opaque enough.
 
+use super::band::Band;
 use super::lanes::Isa;
-use super::state::Walk;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
 
-/// What the sides of what is drawn count for, by axis.
+/// The weights of a voxel's visible sides, by axis.
 #[derive(Debug, Clone, Copy, Default)]
-struct Aim {
+struct SideWeights {
     /// In sixteenths of an outline.
     counts: [u32; 3],
     /// Whether a side's share is large enough for a full one to hide all.
     is_seen: [bool; 3],
 }
 
-/// What the sides of a voxel with this lowest corner and side count for.
-fn aim(eye: &OpacityEye, min: [i32; 3], side: i32) -> Aim {
+/// The weights of the sides of a voxel with this lowest corner and side.
+fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> SideWeights {
     let along: [i64; 3] = std::array::from_fn(|k| {
         let centre = i64::from(min[k]) + i64::from(side / 2);
         ((centre >> eye.shift) - eye.at[k]).abs()
@@ -32,13 +32,13 @@ fn aim(eye: &OpacityEye, min: [i32; 3], side: i32) -> Aim {
     let squared = shares.iter().map(|share| share * share).sum::<i64>();
     // The root, to the nearest: 9 to 16.
     let length = (9..16).find(|n| squared <= n * (n + 1)).unwrap_or(16);
-    Aim {
+    SideWeights {
         counts: shares.map(|share| ((2 * share * share / length + 1) >> 1) as u32),
         is_seen: shares.map(|share| share >= SEEN_SHARE),
     }
 }
 
-impl<I: Isa> Walk<'_, I> {
+impl<I: Isa> Band<'_, I> {
     /// Shows a voxel at open samples of the square whose first sample is given,
     /// eight bits a row. Those that are drawn by that: all, unless voxels are blended.
     #[inline(always)]
@@ -49,7 +49,7 @@ impl<I: Isa> Walk<'_, I> {
         node: u32,
         voxel: [i32; 4],
     ) -> u64 {
-        match &self.view.opacity_eye {
+        match &self.constants.opacity_eye {
             None => {
                 self.pixels.show(self.isa, corner, samples, node, voxel);
                 samples
@@ -104,17 +104,17 @@ impl<I: Isa> Walk<'_, I> {
     /// A voxel's weight, 0 to 256.
     fn weight(&self, eye: &OpacityEye, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
         let opacity = self.graph.opacity_of(node);
-        let side = self.view.levels[level as usize].side;
-        let aim = aim(eye, [x, y, z], side);
+        let side = self.constants.levels[level as usize].side;
+        let weights = side_weights(eye, [x, y, z], side);
         let half = i64::from(side / 2);
         let mut weight = 0;
         for (k, min) in [x, y, z].into_iter().enumerate() {
-            let is_high = self.view.eye_floor[k] >= i64::from(min) + half;
+            let is_high = self.constants.eye_floor[k] >= i64::from(min) + half;
             let covered = u32::from(sixteenths(opacity.from_side(k, is_high)));
-            if covered == SHARES as u32 && aim.is_seen[k] {
+            if covered == SHARES as u32 && weights.is_seen[k] {
                 return ALL_LEFT;
             }
-            weight += covered * aim.counts[k];
+            weight += covered * weights.counts[k];
         }
         weight
     }

@@ -10,49 +10,49 @@
 //! block's parts are the voxels: the same look-ups twice, 4096 voxels a brick.
 //! A block's parts are put in order when the first line asks for them.
 
-use super::heading::Samples;
+use super::band::{Band, Brick, Hit, voxel_at};
+use super::directions::Samples;
 use super::lanes::Isa;
 use super::lines::{Lines, Meeting, OFFSETS};
 use super::parts::Part;
-use super::place::Place;
+use super::projection::Projection;
 use super::squares::{DrawSquare, SAMPLES, each_square};
-use super::state::{Brick, Hit, Walk, voxel_at};
 use super::strips::STRIPS;
 use super::window::Window;
 
 /// Draws squares of a brick of two levels, or of four (`DEEP`).
 struct BySamples<'b, I: Isa, const DEEP: bool> {
     brick: Brick<'b>,
-    place: Place<I>,
+    projection: Projection<I>,
 }
 
 /// Draws a brick of two levels.
 #[inline(always)]
-pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
-    draw_levels::<I, false>(walk, brick, window);
+pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
+    draw_levels::<I, false>(band, brick, window);
 }
 
 /// Draws a brick of four levels.
 #[inline(always)]
-pub(super) fn draw_deep<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
-    draw_levels::<I, true>(walk, brick, window);
+pub(super) fn draw_deep<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
+    draw_levels::<I, true>(band, brick, window);
 }
 
 #[inline(always)]
 fn draw_levels<I: Isa, const DEEP: bool>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     brick: Brick<'_>,
     window: &Window,
 ) {
-    walk.counters.bricks += 1;
-    let isa = walk.isa;
-    let level = &walk.view.levels[brick.record.level as usize];
+    band.counters.bricks += 1;
+    let isa = band.isa;
+    let level = &band.constants.levels[brick.record.level as usize];
     let across = if DEEP { 16.0 } else { 4.0 };
-    let place = Place::new(isa, walk.view, level, brick.record.centre, across);
+    let projection = Projection::new(isa, band.constants, level, brick.record.centre, across);
     // Where there is one square anyway, it would not be worth its time.
     let window = if window.right - window.left > 7 || window.bottom - window.top > 7 {
         let parts = brick.parts.exist;
-        place.window(isa, walk.view, level, across, parts, window)
+        projection.window(isa, band.constants, level, across, parts, window)
     } else {
         *window
     };
@@ -60,25 +60,25 @@ fn draw_levels<I: Isa, const DEEP: bool>(
         return;
     }
     if DEEP {
-        brick.parts.prefetch_below(walk.isa, walk.graph);
+        brick.parts.prefetch_below(band.isa, band.graph);
     } else {
-        brick.parts.prefetch(walk.isa, walk.graph);
+        brick.parts.prefetch(band.isa, band.graph);
     }
-    each_square(walk, &window, &BySamples::<I, DEEP> { brick, place });
+    each_square(band, &window, &BySamples::<I, DEEP> { brick, projection });
 }
 
 impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, I, DEEP> {
     #[inline(always)]
-    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64 {
-        draw_samples::<I, DEEP>(walk, self, samples)
+    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64 {
+        draw_samples::<I, DEEP>(band, self, samples)
     }
 }
 
 /// Draws what samples show: returns those drawn.
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
-    walk: &mut Walk<'_, I>,
-    &BySamples { brick, place }: &BySamples<'_, I, DEEP>,
+    band: &mut Band<'_, I>,
+    &BySamples { brick, projection }: &BySamples<'_, I, DEEP>,
     samples: &Samples<'_, I>,
 ) -> u64 {
     let &Samples {
@@ -87,29 +87,29 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         octant,
         ..
     } = samples;
-    let isa = walk.isa;
+    let isa = band.isa;
     let strips = &*STRIPS;
-    walk.counters.samples_tested += u64::from(open.count_ones());
-    let lines = Lines::new(isa, walk.view, &place, samples);
+    band.counters.samples_tested += u64::from(open.count_ones());
+    let lines = Lines::new(isa, band.constants, &projection, samples);
     let tables = strips.touched(lines.tables);
     let exist = isa.turned_parts(brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
-    let any = isa.parts_of_samples(tables, &cells, exist, open, &mut walk.found);
+    let any = isa.parts_of_samples(tables, &cells, exist, open, &mut band.candidates);
     let pair = u32::from(octant) * 9;
     if DEEP && any != 0 {
-        brick.parts.prefetch_masks(isa, walk.graph);
+        brick.parts.prefetch_masks(isa, band.graph);
     }
     let mut ready = 0u64;
     let (mut drawn, mut left) = (0u64, any);
-    if !DEEP && !walk.blends {
-        (drawn, left) = meet_first(walk, &lines, any, pair);
+    if !DEEP && !band.blends {
+        (drawn, left) = meet_first(band, &lines, any, pair);
     }
     let mut count = drawn.count_ones() as usize;
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
         let line = lines.line(isa, SAMPLES[bit]);
-        let mut wanted = walk.found.0[bit];
+        let mut wanted = band.candidates.0[bit];
         'sample: while wanted != 0 {
             let number = wanted.trailing_zeros() as usize & 63;
             wanted &= wanted - 1;
@@ -117,12 +117,12 @@ fn draw_samples<I: Isa, const DEEP: bool>(
             let (line, mut parts) = if DEEP {
                 if ready >> number & 1 == 0 {
                     ready |= 1 << number;
-                    prepare(walk, brick, number, octant);
+                    prepare(band, brick, number, octant);
                 }
                 let line = line.about(isa, &OFFSETS[number]);
                 let [x, y, z] = lines.cells(isa, &line);
                 let parts = tables[0][x] & tables[1][y] & tables[2][z];
-                (line, parts & walk.blocks.exist[number])
+                (line, parts & band.brick_blocks.exist[number])
             } else {
                 (line, 1 << number)
             };
@@ -138,11 +138,11 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     block: number as u8,
                     part: (part as u32 ^ pair) as u8,
                 };
-                if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(walk, brick, square, hit, pair) {
+                if meeting == Meeting::Doubt && !is_hit::<I, DEEP>(band, brick, square, hit, pair) {
                     continue;
                 }
-                if walk.blends {
-                    let (is_full, levels) = blend::<I, DEEP>(walk, brick, square, hit, pair);
+                if band.blends {
+                    let (is_full, levels) = blend::<I, DEEP>(band, brick, square, hit, pair);
                     if !is_full {
                         // A voxel of several parts is taken once.
                         let same = match levels {
@@ -158,40 +158,40 @@ fn draw_samples<I: Isa, const DEEP: bool>(
                     }
                 }
                 drawn |= 1 << bit;
-                walk.hits[count & 63] = hit;
+                band.hits[count & 63] = hit;
                 if DEEP {
-                    let node = hit.part::<I, DEEP>(walk, brick).node;
-                    isa.prefetch(walk.pixels.color, node as usize);
-                    walk.nodes[count & 63] = node;
+                    let node = hit.part::<I, DEEP>(band, brick).node;
+                    isa.prefetch(band.pixels.color, node as usize);
+                    band.nodes[count & 63] = node;
                 }
                 count += 1;
                 break 'sample;
             }
         }
     }
-    if !walk.blends {
-        show_hits::<I, DEEP>(walk, brick, square, count, pair);
+    if !band.blends {
+        show_hits::<I, DEEP>(band, brick, square, count, pair);
     }
-    walk.counters.samples_drawn += u64::from(drawn.count_ones());
+    band.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
 }
 
 /// The first part that each sample's line may meet: samples that meet it, whose hits come first, and samples that
-/// may meet others. Without a branch: what a line meets cannot be foretold.
+/// may meet others. Without a branch: what a line meets cannot be predicted.
 #[inline(always)]
-fn meet_first<I: Isa>(walk: &mut Walk<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
-    let isa = walk.isa;
+fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
+    let isa = band.isa;
     let (mut drawn, mut others) = (0u64, 0u64);
     let (mut count, mut left) = (0, any);
     while left != 0 {
         let bit = left.trailing_zeros() as usize & 63;
         left &= left - 1;
         let line = lines.line(isa, SAMPLES[bit]);
-        let parts = walk.found.0[bit];
+        let parts = band.candidates.0[bit];
         let part = parts.trailing_zeros() as usize & 63;
         let [is_met, may_be_met] = lines.are_inside(isa, &line, &OFFSETS[part]);
         // The next hit takes its place if it is none.
-        walk.hits[count & 63] = Hit {
+        band.hits[count & 63] = Hit {
             bit: bit as u8,
             block: 0,
             part: (part as u32 ^ pair) as u8,
@@ -200,7 +200,7 @@ fn meet_first<I: Isa>(walk: &mut Walk<'_, I>, lines: &Lines<I>, any: u64, pair: 
         drawn |= u64::from(is_met) << bit;
         // Without the first if that is missed for certain.
         let parts = parts & parts.wrapping_sub(u64::from(!may_be_met));
-        walk.found.0[bit] = parts;
+        band.candidates.0[bit] = parts;
         others |= u64::from((parts != 0) & !is_met) << bit;
     }
     (drawn, others)
@@ -209,24 +209,24 @@ fn meet_first<I: Isa>(walk: &mut Walk<'_, I>, lines: &Lines<I>, any: u64, pair: 
 impl Hit {
     /// The part.
     #[inline(always)]
-    fn part<I: Isa, const DEEP: bool>(self, walk: &Walk<'_, I>, brick: Brick<'_>) -> Part {
+    fn part<I: Isa, const DEEP: bool>(self, band: &Band<'_, I>, brick: Brick<'_>) -> Part {
         let parts = if DEEP {
-            &walk.blocks.parts[usize::from(self.block & 63)]
+            &band.brick_blocks.parts[usize::from(self.block & 63)]
         } else {
             brick.parts
         };
-        parts.part(walk.graph, u32::from(self.part))
+        parts.part(band.graph, u32::from(self.part))
     }
 
     /// The node, and where in the brick it is.
     #[inline(never)]
     fn path<I: Isa, const DEEP: bool>(
         self,
-        walk: &Walk<'_, I>,
+        band: &Band<'_, I>,
         brick: Brick<'_>,
         pair: u32,
     ) -> (u32, Path) {
-        let part = self.part::<I, DEEP>(walk, brick);
+        let part = self.part::<I, DEEP>(band, brick);
         let path = Path {
             block: DEEP.then(|| u32::from(self.block) ^ pair),
             part: u32::from(self.part),
@@ -240,33 +240,33 @@ impl Hit {
 /// hold up the next.
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
     count: usize,
     pair: u32,
 ) {
-    let first = walk.pixels.at(square.left, square.top);
+    let first = band.pixels.at(square.left, square.top);
     let count = count.min(64);
     for i in 0..count {
-        let hit = walk.hits[i];
-        let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
+        let hit = band.hits[i];
+        let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
         let node = if DEEP {
-            walk.nodes[i]
+            band.nodes[i]
         } else {
-            hit.part::<I, DEEP>(walk, brick).node
+            hit.part::<I, DEEP>(band, brick).node
         };
-        let word = walk.pixels.word(node);
-        if let Some(shown) = walk.pixels.shown.get_mut(at) {
+        let word = band.pixels.word(node);
+        if let Some(shown) = band.pixels.shown.get_mut(at) {
             *shown = word;
         }
     }
-    if walk.pixels.wants_voxels() {
-        let side = walk.view.levels[brick.record.level as usize].side;
+    if band.pixels.wants_voxels() {
+        let side = band.constants.levels[brick.record.level as usize].side;
         for i in 0..count {
-            let hit = walk.hits[i];
-            let at = first + walk.places[usize::from(hit.bit & 63)] as usize;
-            walk.pixels.voxel[at] = hit.path::<I, DEEP>(walk, brick, pair).1.voxel(brick, side);
+            let hit = band.hits[i];
+            let at = first + band.sample_offsets[usize::from(hit.bit & 63)] as usize;
+            band.pixels.voxel[at] = hit.path::<I, DEEP>(band, brick, pair).1.voxel(brick, side);
         }
     }
 }
@@ -275,41 +275,44 @@ fn show_hits<I: Isa, const DEEP: bool>(
 /// below the brick or block it is.
 #[inline(never)]
 fn blend<I: Isa, const DEEP: bool>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
     hit: Hit,
     pair: u32,
 ) -> (bool, u32) {
-    let (node, path) = hit.path::<I, DEEP>(walk, brick, pair);
-    let voxel = path.voxel(brick, walk.view.levels[brick.record.level as usize].side);
-    let full = walk.show([square.left, square.top], 1 << hit.bit, node, voxel);
+    let (node, path) = hit.path::<I, DEEP>(band, brick, pair);
+    let voxel = path.voxel(
+        brick,
+        band.constants.levels[brick.record.level as usize].side,
+    );
+    let full = band.show([square.left, square.top], 1 << hit.bit, node, voxel);
     (full != 0, path.levels)
 }
 
 /// Whether a sample that is in doubt meets what it may, by the exact rule.
 #[inline(never)]
 fn is_hit<I: Isa, const DEEP: bool>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
     hit: Hit,
     pair: u32,
 ) -> bool {
-    let (_, path) = hit.path::<I, DEEP>(walk, brick, pair);
-    is_covered(walk, brick, square, usize::from(hit.bit), &path)
+    let (_, path) = hit.path::<I, DEEP>(band, brick, pair);
+    is_covered(band, brick, square, usize::from(hit.bit), &path)
 }
 
 /// Puts a block's parts in order.
 #[inline(always)]
-fn prepare<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
+fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octant: u8) {
     let block = brick
         .parts
-        .part(walk.graph, number as u32 ^ (u32::from(octant) * 9));
-    let parts = &mut walk.blocks.parts[number & 63];
-    parts.read(walk.isa, walk.graph, block.node, false, 0);
-    parts.prefetch(walk.isa, walk.graph);
-    walk.blocks.exist[number & 63] = walk.isa.turned_parts(parts.exist, octant);
+        .part(band.graph, number as u32 ^ (u32::from(octant) * 9));
+    let parts = &mut band.brick_blocks.parts[number & 63];
+    parts.read(band.isa, band.graph, block.node, false, 0);
+    parts.prefetch(band.isa, band.graph);
+    band.brick_blocks.exist[number & 63] = band.isa.turned_parts(parts.exist, octant);
 }
 
 /// Where in a brick a voxel is.
@@ -351,18 +354,21 @@ impl Path {
 /// Whether a voxel covers a sample, by the exact rule.
 #[inline(never)]
 pub(super) fn is_covered<I: Isa>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     brick: Brick<'_>,
     square: &Window,
     bit: usize,
     path: &Path,
 ) -> bool {
-    walk.counters.exact_samples += 1;
-    let [x, y, z, level] = path.voxel(brick, walk.view.levels[brick.record.level as usize].side);
-    let side = walk.view.levels[level as usize].side;
+    band.counters.exact_samples += 1;
+    let [x, y, z, level] = path.voxel(
+        brick,
+        band.constants.levels[brick.record.level as usize].side,
+    );
+    let side = band.constants.levels[level as usize].side;
     let at = [
         square.left + (bit as i32 & 7),
         square.top + (bit as i32 >> 3),
     ];
-    walk.exact.covers([x, y, z], side, at)
+    band.exact.covers([x, y, z], side, at)
 }

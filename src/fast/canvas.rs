@@ -1,9 +1,9 @@
 //! The picture in the making: which samples are drawn, and what they show.
 //!
 //! One bit a sample, set while it is open, in words of 8 x 8 samples (tiles), and one bit a tile, in
-//! words of 8 x 8 tiles (blocks). So a few words tell whether anything can still
-//! be drawn in a window. What lies outside the picture is drawn from the start,
-//! as in the image quadtree. A square is what is no larger than a tile, anywhere.
+//! words of 8 x 8 tiles (blocks). So a few words decide whether anything can still
+//! be drawn in a window. What lies outside the picture counts as drawn from the start,
+//! as in the image quadtree. A square is at most as large as a tile and may lie anywhere.
 
 use super::lanes::Isa;
 use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window};
@@ -17,8 +17,8 @@ const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 pub(super) struct Fill<'p> {
     /// The band's samples.
     pub(super) bounds: Window,
-    grid: Grid,
-    /// Place of the band's first tile in the whole picture.
+    grid: TileGrid,
+    /// Index of the band's first tile in the whole picture.
     first_tile: usize,
     /// Row of the band's first blocks in the whole picture; of these the band may have the lower tiles alone.
     first_block_row: i32,
@@ -45,7 +45,7 @@ pub(super) struct FillMemory {
 
 impl FillMemory {
     /// Makes room for a picture in bands; no more is allocated for the next of its size.
-    pub(super) fn resize(&mut self, grid: &Grid) {
+    pub(super) fn resize(&mut self, grid: &TileGrid) {
         // Beyond the last tile there is room for what lies below and beside
         // it, so that squares there can be looked at like others.
         let beyond = grid.tiles_across + 2;
@@ -66,7 +66,7 @@ impl FillMemory {
 
 impl FillPart<'_> {
     /// The first rows of tiles, and the others. `top`: the first of these rows in the picture.
-    pub(super) fn split(self, grid: &Grid, top: usize, rows: usize) -> (Self, Self) {
+    pub(super) fn split(self, grid: &TileGrid, top: usize, rows: usize) -> (Self, Self) {
         let (tiles, tiles_rest) = self.tiles.split_at_mut(rows * grid.tiles_across);
         let block_rows = (top + rows).div_ceil(TILES_PER_BLOCK) - top / TILES_PER_BLOCK;
         let (blocks, blocks_rest) = self.blocks.split_at_mut(block_rows * grid.blocks_across);
@@ -77,13 +77,13 @@ impl FillPart<'_> {
 
 /// How many tiles and blocks a picture has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Grid {
+pub(super) struct TileGrid {
     pub(super) tiles_across: usize,
     pub(super) tiles_down: usize,
     pub(super) blocks_across: usize,
 }
 
-impl Grid {
+impl TileGrid {
     /// The grid of a picture: whole blocks across, whole tiles down.
     pub(super) fn new(width: u32, height: u32) -> Self {
         let blocks_across = (width as usize).div_ceil(1 << BLOCK_LOG2);
@@ -124,7 +124,7 @@ static SQUARES: [u64; 64] = {
 
 impl<'p> Fill<'p> {
     /// An empty band. `bounds.top` is a multiple of a tile's side.
-    pub(super) fn clear(grid: &Grid, bounds: Window, part: FillPart<'p>) -> Self {
+    pub(super) fn clear(grid: &TileGrid, bounds: Window, part: FillPart<'p>) -> Self {
         let across = (bounds.right - bounds.left + 1) as u64;
         let down = (bounds.bottom - bounds.top + 1) as u64;
         let fill = Self {
@@ -149,7 +149,7 @@ impl<'p> Fill<'p> {
         fill
     }
 
-    /// Place of the tile in column `x` and row `y` of tiles.
+    /// Index of the tile in column `x` and row `y` of tiles.
     #[inline(always)]
     fn tile_at(&self, x: i32, y: i32) -> usize {
         let from_top = (y as usize).wrapping_mul(self.grid.tiles_across);
@@ -158,7 +158,7 @@ impl<'p> Fill<'p> {
             .wrapping_sub(self.first_tile)
     }
 
-    /// Place of a tile's block, and its bit there.
+    /// Index of a tile's block, and the tile's bit there.
     #[inline(always)]
     fn block_of(&self, x: i32, y: i32) -> (usize, u64) {
         let row = ((y >> 3) - self.first_block_row) as usize;
@@ -199,7 +199,7 @@ impl<'p> Fill<'p> {
     fn mark_at(&mut self, at: usize, x: i32, y: i32, samples: u64) {
         if let Some(tile) = self.part.tiles.get_mut(at) {
             *tile &= !samples;
-            // Without a branch for tiles of which nothing is drawn: those cannot be foretold.
+            // Without a branch for tiles of which nothing is drawn: those cannot be predicted.
             if (*tile == 0) & (samples != 0) {
                 let (block, bit) = self.block_of(x, y);
                 self.part.blocks[block] &= !bit;
@@ -319,7 +319,7 @@ impl Pixels<'_> {
         color.map_or(0, |&color| color_word(color))
     }
 
-    /// Place of a sample.
+    /// Index of a sample.
     #[inline(always)]
     pub(super) fn at(&self, x: i32, y: i32) -> usize {
         (y - self.top) as usize * self.width + x as usize

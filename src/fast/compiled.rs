@@ -1,22 +1,22 @@
-//! The steps of the walk, compiled for each instruction set.
+//! The steps of the traversal, compiled for each instruction set.
 
+use super::band::{Band, Brick, Compiled, Record};
 use super::lanes::Scalar;
-use super::state::{Brick, Compiled, Record, Walk};
 use super::window::Window;
-use super::{bricks, voxels, walk};
+use super::{bricks, traversal, voxels};
 
 impl Compiled for Scalar {
-    fn turn(self, walk: &mut Walk<'_, Self>, record: &Record) {
-        walk::turn(walk, record);
+    fn visit_children(self, band: &mut Band<'_, Self>, record: &Record) {
+        traversal::visit_children(band, record);
     }
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window) {
-        bricks::draw(walk, brick, window);
+    fn brick(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window) {
+        bricks::draw(band, brick, window);
     }
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window) {
-        bricks::draw_deep(walk, brick, window);
+    fn deep_brick(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window) {
+        bricks::draw_deep(band, brick, window);
     }
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window) {
-        voxels::draw(walk, brick, window);
+    fn voxels(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window) {
+        voxels::draw(band, brick, window);
     }
 }
 
@@ -30,20 +30,20 @@ mod avx2 {
         ($($name:ident($($argument:ident: $type:ty),*) = $body:path;)*) => {
             impl Compiled for Avx2 {
                 $(#[inline(always)]
-                fn $name(self, walk: &mut Walk<'_, Self>, $($argument: $type),*) {
+                fn $name(self, band: &mut Band<'_, Self>, $($argument: $type),*) {
                     #[inline(never)]
                     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
-                    fn compiled(walk: &mut Walk<'_, Avx2>, $($argument: $type),*) {
-                        $body(walk, $($argument),*);
+                    fn compiled(band: &mut Band<'_, Avx2>, $($argument: $type),*) {
+                        $body(band, $($argument),*);
                     }
                     // SAFETY: an `Avx2` is only made where these features were found.
-                    unsafe { compiled(walk, $($argument),*) };
+                    unsafe { compiled(band, $($argument),*) };
                 })*
             }
         };
     }
     compiled! {
-        turn(record: &Record) = walk::turn;
+        visit_children(record: &Record) = traversal::visit_children;
         brick(brick: Brick<'_>, window: &Window) = bricks::draw;
         deep_brick(brick: Brick<'_>, window: &Window) = bricks::draw_deep;
         voxels(brick: Brick<'_>, window: &Window) = voxels::draw;

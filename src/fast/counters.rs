@@ -2,7 +2,7 @@
 
 use crate::project::Stats;
 
-/// Counts of one frame, or of one band of it.
+/// Counts of a frame, or of a band of it.
 #[derive(Debug, Default, Clone, Copy)]
 pub(super) struct Counters {
     /// Nodes whose children were looked at.

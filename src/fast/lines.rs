@@ -14,11 +14,11 @@
 //! All is turned so that lines run upwards along each axis (`v_k >= 0`). The
 //! unit of length is the side of a part. Errors: `spec/fast.md`.
 
-use super::heading::{RELATIVE_ERROR, Samples};
+use super::constants::Constants;
+use super::directions::{RELATIVE_ERROR, Samples};
 use super::lanes::{Four, Isa};
-use super::place::Place;
+use super::projection::Projection;
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
-use super::view::View;
 
 /// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
@@ -60,7 +60,7 @@ pub(super) struct Lines<I: Isa> {
     pub(super) error: f32,
     /// Of that, the rounding.
     pub(super) rounding: f32,
-    /// Whether a function is blind: it tells nothing.
+    /// Whether a function is blind: its table excludes no part.
     pub(super) has_blind: bool,
     /// What is nearer to a part's outline than this is in doubt.
     doubt: I::Four,
@@ -99,12 +99,12 @@ pub(super) struct Line<I: Isa> {
     half: I::Four,
 }
 
-/// How a line and a part are to each other.
+/// Whether a line meets a part.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Meeting {
     Misses,
     Meets,
-    /// Too close to the outline to tell.
+    /// Nearer to the outline than the arithmetic's error.
     Doubt,
 }
 
@@ -117,10 +117,15 @@ fn greatest<F: Four>(four: F) -> f32 {
 impl<I: Isa> Lines<I> {
     /// The lines of samples, against a node.
     #[inline(always)]
-    pub(super) fn new(isa: I, view: &View, place: &Place<I>, samples: &Samples<'_, I>) -> Self {
+    pub(super) fn new(
+        isa: I,
+        constants: &Constants,
+        projection: &Projection<I>,
+        samples: &Samples<'_, I>,
+    ) -> Self {
         let Samples {
             square,
-            heading,
+            directions,
             octant,
             ..
         } = samples;
@@ -128,35 +133,37 @@ impl<I: Isa> Lines<I> {
         let zero = isa.splat(0.0);
         let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
         let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
-        let columns = isa.four(&view.direction_lanes[0]).flip(turn);
-        let rows = isa.four(&view.direction_lanes[1]).flip(turn);
-        let middle = heading.middle.flip(turn);
+        let columns = isa.four(&constants.direction_lanes[0]).flip(turn);
+        let rows = isa.four(&constants.direction_lanes[1]).flip(turn);
+        let middle = directions.middle.flip(turn);
         let first = middle.sub(columns.fma(half_across, rows.mul(half_down)));
         // Where lines of a square run both ways, the middle may be of the others.
         let middle = middle.max(zero);
         let (next, last) = (middle.next(), middle.last());
         let width = next.add(last);
         let inverse = isa.splat(1.0).div(width.max(isa.splat(f32::MIN_POSITIVE)));
-        let spread = heading.spread.next().add(heading.spread.last());
-        let spread = if heading.is_mixed {
+        let spread = directions.spread.next().add(directions.spread.last());
+        let spread = if directions.is_mixed {
             spread.add(spread)
         } else {
             spread
         };
-        let step_x = place.step[0].flip(pair);
-        let step_y = place.step[1].flip(pair);
+        let step_x = projection.step[0].flip(pair);
+        let step_y = projection.step[1].flip(pair);
         let from = [
-            (f64::from(square.left) - place.centre[0]) as f32,
-            (f64::from(square.top) - place.centre[1]) as f32,
+            (f64::from(square.left) - projection.centre[0]) as f32,
+            (f64::from(square.top) - projection.centre[1]) as f32,
         ];
         let moment = step_x.fma(isa.splat(from[0]), step_y.mul(isa.splat(from[1])));
         // The centre's own rounding in f64, of which the bound takes 16 times 2^-24.
-        let unsure = place.centre.map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
+        let unsure = projection
+            .centre
+            .map(|c| (c.abs() as f32 + 1.0) * CENTRE_ERROR);
         let reach_x = isa.splat(from[0].abs() + (square.right - square.left) as f32 + unsure[0]);
         let reach_y = isa.splat(from[1].abs() + (square.bottom - square.top) as f32 + unsure[1]);
         let size = step_x.abs().fma(reach_x, step_y.abs().mul(reach_y));
-        let directions = heading.size.next().add(heading.size.last());
-        let doubt = directions
+        let direction_size = directions.size.next().add(directions.size.last());
+        let doubt = direction_size
             .fma(isa.splat(FARTHEST), size)
             .mul(isa.splat(RELATIVE_ERROR))
             // Above 0: a value of 0 is never certain.
@@ -336,7 +343,7 @@ pub(super) static NO_OFFSET: Offset = Offset {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::fast::heading::{Heading, STEPS};
+    use crate::fast::directions::{Directions, STEPS};
     use crate::fast::lanes::Scalar;
     use crate::fast::window::Window;
     use crate::graph::Placement;
@@ -354,7 +361,9 @@ pub(super) mod tests {
     }
 
     /// A view of an object of 64 voxels a side, from anywhere.
-    pub(in crate::fast) fn view(next: &mut impl FnMut() -> f64) -> Option<(FrameSetup, View)> {
+    pub(in crate::fast) fn random_frame(
+        next: &mut impl FnMut() -> f64,
+    ) -> Option<(FrameSetup, Constants)> {
         let mut point =
             |size: f64| glam::DVec3::new(next() - 0.5, next() - 0.5, next() - 0.5) * size;
         let (eye, target) = (point(300.0), point(80.0));
@@ -368,8 +377,8 @@ pub(super) mod tests {
         };
         let placement = Placement::default();
         let setup = FrameSetup::new(&camera, &placement, 6, &SetupOptions::default()).ok()?;
-        let view = View::new(&setup).ok()?;
-        Some((setup, view))
+        let constants = Constants::new(&setup).ok()?;
+        Some((setup, constants))
     }
 
     /// The worst of `|f - truth| / doubt` over lines, parts and functions, of bricks of two levels
@@ -381,29 +390,30 @@ pub(super) mod tests {
         let mut worst = 0f64;
         let mut checked = 0;
         while checked < 200_000 {
-            let Some((setup, view)) = view(&mut next) else {
+            let Some((setup, constants)) = random_frame(&mut next) else {
                 continue;
             };
             for _ in 0..50 {
                 let level = 1 + (next() * 3.0) as usize;
-                let side = f64::from(view.levels[level].side);
+                let side = f64::from(constants.levels[level].side);
                 let at =
                     [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side + side / 2.0);
                 let centre = [0, 1, 2].map(|c| {
                     let along = |k: usize| setup.edge_clip[k][c] as f64 * at[k];
                     setup.origin_clip[c] as f64 + along(0) + along(1) + along(2)
                 });
-                if centre[2] - view.levels[level].half_depth <= 0.0 {
+                if centre[2] - constants.levels[level].half_depth <= 0.0 {
                     continue;
                 }
                 let side = side / 4.0;
-                let place = Place::new(isa, &view, &view.levels[level], centre, 4.0);
+                let projection =
+                    Projection::new(isa, &constants, &constants.levels[level], centre, 4.0);
                 let [left, top] = [0, 1].map(|i| {
                     let spread = (next() - 0.5) * 16.0;
-                    (place.centre[i] + spread).clamp(0.0, 280.0) as i32
+                    (projection.centre[i] + spread).clamp(0.0, 280.0) as i32
                 });
-                if (f64::from(left) - place.centre[0]).abs() > 40.0
-                    || (f64::from(top) - place.centre[1]).abs() > 40.0
+                if (f64::from(left) - projection.centre[0]).abs() > 40.0
+                    || (f64::from(top) - projection.centre[1]).abs() > 40.0
                 {
                     continue;
                 }
@@ -413,34 +423,36 @@ pub(super) mod tests {
                     right: left + 7,
                     bottom: top + 7,
                 };
-                let heading = Heading::of(isa, &view, &square);
-                if heading.is_mixed {
+                let directions = Directions::of(isa, &constants, &square);
+                if directions.is_mixed {
                     continue;
                 }
                 let samples = Samples {
                     square: &square,
                     open: u64::MAX,
-                    heading,
-                    octant: heading.octant,
+                    directions,
+                    octant: directions.octant,
                 };
-                let lines = Lines::new(isa, &view, &place, &samples);
+                let lines = Lines::new(isa, &constants, &projection, &samples);
                 for sample in [0, 7, 20, 63] {
                     let [x, y] = [sample & 7, sample >> 3];
                     let line = lines.line(isa, [x as f32, y as f32]);
                     let q = [f64::from(left + x), f64::from(top + y), 1.0];
-                    let v = view.direction.map(|d| d[0] * q[0] + d[1] * q[1] + d[2]);
+                    let v = constants
+                        .direction
+                        .map(|d| d[0] * q[0] + d[1] * q[1] + d[2]);
                     let p = [
-                        centre[0] * view.root_samples - centre[2] / 2.0,
-                        centre[1] * view.root_samples - centre[2] / 2.0,
+                        centre[0] * constants.root_samples - centre[2] / 2.0,
+                        centre[1] * constants.root_samples - centre[2] / 2.0,
                         centre[2],
                     ];
-                    let turned = |k: usize| heading.octant >> (2 - k) & 1 == 1;
+                    let turned = |k: usize| directions.octant >> (2 - k) & 1 == 1;
                     for part in [0, 21, 42, 63] {
                         let shift = line.shift(isa, &OFFSETS[part]);
                         let value = line.moment.sub(shift);
                         for j in 0..3 {
                             let (n, l) = ((j + 1) % 3, (j + 2) % 3);
-                            let e = view.edge[j];
+                            let e = constants.edge[j];
                             let plane = [
                                 p[1] * e[2] - p[2] * e[1],
                                 p[2] * e[0] - p[0] * e[2],
@@ -448,7 +460,7 @@ pub(super) mod tests {
                             ];
                             let dot: f64 = (0..3).map(|c| plane[c] * q[c]).sum();
                             let turn = if turned(n) == turned(l) { 1.0 } else { -1.0 };
-                            let moment = dot * view.scale / side * turn;
+                            let moment = dot * constants.scale / side * turn;
                             let offset = &OFFSETS[part];
                             let truth = moment
                                 - (f64::from(offset.next[j]) * v[l].abs()

@@ -1,43 +1,42 @@
 //! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! What the machine does for records this engine does for samples. Under
-//! `exact` the picture is one mathematical fact (`SPEC.md`): each sample shows
-//! the first voxel on its ray. So the engine is free in its numbers and its
-//! order: approximate arithmetic whose error is bounded decides nearly all samples,
-//! and the exact rule what is left in doubt (`spec/fast.md`).
+//! Under `exact` the picture is defined without reference to an algorithm (`SPEC.md`): each sample shows the first
+//! voxel on its ray. So this engine may work sample by sample, where the machine works record by record, and in
+//! approximate numbers: arithmetic with a bounded error decides nearly all samples, the exact rule those in doubt
+//! (`spec/fast.md`).
 //!
 //! ```text
-//! for each band of the picture, from the whole object down (walk):
-//!     leave what is behind the eye, beside the picture, or hidden
+//! for each band of the picture, from the whole object down (traversal):
+//!     skip what is behind the eye, beside the picture, or hidden
 //!     small voxels (bricks):  64 or 4096 to a step; for each open sample, which of them its
 //!                             line may meet (strips), and the first that it does (lines)
 //!     voxels (voxels):        one by one, against 64 samples at once
-//!     large or near ones:     by exact planes (exact)
+//!     large or near ones:     by exact planes (planes, exact)
 //! ```
 //!
-//! Frames under other rules (and records, where asked for, and numbers too large
-//! for it) are handed to the engine it is made with.
+//! Frames that it does not draw ([`Declined`]: other rules, positions too large, records asked for) go to the engine
+//! that it is made with.
 
 mod alpha;
+mod band;
 mod bricks;
 mod canvas;
 mod compiled;
+mod constants;
 mod counters;
+mod directions;
 mod exact;
-mod heading;
 mod lanes;
 mod lines;
 mod orders;
 mod parts;
-mod place;
 mod planes;
+mod projection;
 mod squares;
-mod state;
 mod strips;
 mod switches;
-mod view;
+mod traversal;
 mod voxels;
-mod walk;
 mod window;
 
 use std::ops::Range;
@@ -45,14 +44,14 @@ use std::ops::Range;
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
-use canvas::{Fill, FillMemory, FillPart, Grid, Pixels};
+use band::{Band, BrickBlocks, Compiled, Hit};
+use canvas::{Fill, FillMemory, FillPart, Pixels, TileGrid};
+use constants::Constants;
+pub use constants::Declined;
 use counters::Counters;
 use exact::Exact;
 use lanes::Scalar;
-use state::{Blocks, Compiled, Hit, Walk};
 pub use switches::Switches;
-pub use view::Declined;
-use view::View;
 use window::{TILE_LOG2, Window};
 
 /// Which instructions the engine uses. Never changes a bit of a picture.
@@ -82,21 +81,21 @@ pub struct FastOptions {
 /// The fast engine.
 pub struct Fast {
     options: FastOptions,
-    /// Draws what this engine does not.
+    /// Draws the frames that this engine does not.
     fallback: Box<dyn Engine + Send>,
     fill: FillMemory,
     /// The constants of the last frame, good for the next of the same set-up.
     prepared: Option<Prepared>,
     /// Counts of the last frame.
     counters: Counters,
-    /// Why it was handed on.
+    /// Why the last frame went to the fallback.
     declined: Option<Declined>,
 }
 
 /// A frame's constants.
 struct Prepared {
     setup: FrameSetup,
-    view: Result<View, Declined>,
+    constants: Result<Constants, Declined>,
     exact: Exact,
 }
 
@@ -136,27 +135,27 @@ impl Fast {
             Some(prepared) if prepared.setup == *setup => prepared,
             other => other.insert(Prepared {
                 setup: setup.clone(),
-                view: View::new(setup),
+                constants: Constants::new(setup),
                 exact: Exact::new(setup),
             }),
         };
-        self.declined = prepared.view.as_ref().err().copied();
-        let Ok(view) = &prepared.view else {
+        self.declined = prepared.constants.as_ref().err().copied();
+        let Ok(constants) = &prepared.constants else {
             return false;
         };
         let job = Job {
-            view,
+            constants,
             exact: &prepared.exact,
             graph,
             switches: &self.options.switches,
         };
-        let grid = Grid::new(setup.width, setup.height);
+        let grid = TileGrid::new(setup.width, setup.height);
         self.fill.resize(&grid);
         let threads = match self.options.threads {
             0 => rayon::current_num_threads(),
             threads => threads,
         };
-        let piece = Piece {
+        let buffers = BandBuffers {
             grid,
             bounds: Window {
                 left: 0,
@@ -167,12 +166,12 @@ impl Fast {
             fill: self.fill.part(),
             pixels,
         };
-        let object = view.rows(setup.height);
+        let object = constants.rows(setup.height);
         let object = object.start >> TILE_LOG2..object.end.div_ceil(1 << TILE_LOG2);
-        let counters = match self.options.instructions.found() {
+        let counters = match self.options.instructions.best() {
             #[cfg(target_arch = "x86_64")]
-            Found::Avx2(isa) => run_bands(&job, piece, isa, &object, threads),
-            Found::Scalar(isa) => run_bands(&job, piece, isa, &object, threads),
+            InstructionSet::Avx2(isa) => run_bands(&job, buffers, isa, &object, threads),
+            InstructionSet::Scalar(isa) => run_bands(&job, buffers, isa, &object, threads),
         };
         self.counters = counters;
         true
@@ -262,30 +261,30 @@ fn pixels_of(frame: &mut Frame) -> Pixels<'_> {
 }
 
 /// A set of instructions that the processor has.
-enum Found {
+enum InstructionSet {
     #[cfg(target_arch = "x86_64")]
     Avx2(lanes::Avx2),
     Scalar(Scalar),
 }
 
 impl Instructions {
-    /// The best of these that the processor has.
-    fn found(self) -> Found {
+    /// The best of these sets that the processor has.
+    fn best(self) -> InstructionSet {
         #[cfg(target_arch = "x86_64")]
         if let Some(isa) = lanes::Avx2::detect().filter(|_| self != Self::Scalar) {
-            return Found::Avx2(isa);
+            return InstructionSet::Avx2(isa);
         }
-        Found::Scalar(Scalar)
+        InstructionSet::Scalar(Scalar)
     }
 
     /// Whether the processor has these; without, the next lower set is used.
     #[must_use]
     pub fn are_available(self) -> bool {
-        let found = self.found();
+        let best = self.best();
         match self {
             Self::Auto | Self::Scalar => true,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => matches!(found, Found::Avx2(_)),
+            Self::Avx2 => matches!(best, InstructionSet::Avx2(_)),
             #[cfg(not(target_arch = "x86_64"))]
             Self::Avx2 => false,
         }
@@ -294,15 +293,15 @@ impl Instructions {
 
 /// What all bands of a frame have in common.
 struct Job<'j> {
-    view: &'j View,
+    constants: &'j Constants,
     exact: &'j Exact,
     graph: &'j GraphView<'j>,
     switches: &'j Switches,
 }
 
-/// A band of the picture: whole rows of tiles.
-struct Piece<'p> {
-    grid: Grid,
+/// The memory of a band of the picture: whole rows of tiles.
+struct BandBuffers<'p> {
+    grid: TileGrid,
     bounds: Window,
     fill: FillPart<'p>,
     pixels: Pixels<'p>,
@@ -323,8 +322,8 @@ fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) ->
     begin - top + size
 }
 
-impl Piece<'_> {
-    /// The first rows of tiles, and the others.
+impl BandBuffers<'_> {
+    /// Splits off the first rows of tiles.
     fn split(self, rows: usize) -> (Self, Self) {
         let top = self.bounds.top + ((rows << TILE_LOG2) as i32);
         let samples = (top - self.bounds.top) as usize * self.pixels.width;
@@ -336,7 +335,7 @@ impl Piece<'_> {
         let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
         let (blend, blend_rest) = self.pixels.blend.split_at_mut(blends);
         let (width, color) = (self.pixels.width, self.pixels.color);
-        let piece = |bounds: Window, fill, shown, voxel, blend| Self {
+        let part = |bounds: Window, fill, shown, voxel, blend| Self {
             grid: self.grid,
             bounds,
             fill,
@@ -355,29 +354,30 @@ impl Piece<'_> {
         };
         let lower = Window { top, ..self.bounds };
         (
-            piece(upper, fill, shown, voxel, blend),
-            piece(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
+            part(upper, fill, shown, voxel, blend),
+            part(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
         )
     }
 }
 
-/// Draws a band after the other, each while others draw the rest. `object`: rows of tiles that the object covers.
+/// Draws the first band, while other threads draw the rest in the same way. `object`: rows of tiles that the
+/// object covers.
 fn run_bands<I: Compiled>(
     job: &Job<'_>,
-    piece: Piece<'_>,
+    buffers: BandBuffers<'_>,
     isa: I,
     object: &Range<usize>,
     threads: usize,
 ) -> Counters {
-    let tiles = piece.bounds.coarser(TILE_LOG2);
+    let tiles = buffers.bounds.coarser(TILE_LOG2);
     let rows = (tiles.bottom - tiles.top + 1) as usize;
     let first = first_band(tiles.top as usize, rows, object, threads);
     if first == rows {
-        return run(job, piece, isa);
+        return run(job, buffers, isa);
     }
-    let (band, rest) = piece.split(first);
+    let (upper, rest) = buffers.split(first);
     let (mut counters, others) = rayon::join(
-        || run(job, band, isa),
+        || run(job, upper, isa),
         || run_bands(job, rest, isa, object, threads),
     );
     counters.add(&others);
@@ -385,26 +385,26 @@ fn run_bands<I: Compiled>(
 }
 
 /// Draws one band.
-fn run<I: Compiled>(job: &Job<'_>, mut piece: Piece<'_>, isa: I) -> Counters {
-    let mut blocks = Blocks::default();
-    piece.pixels.clear();
-    let fill = Fill::clear(&piece.grid, piece.bounds, piece.fill);
-    let mut walk = Walk {
+fn run<I: Compiled>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
+    let mut brick_blocks = BrickBlocks::default();
+    buffers.pixels.clear();
+    let fill = Fill::clear(&buffers.grid, buffers.bounds, buffers.fill);
+    let mut band = Band {
         isa,
-        view: job.view,
+        constants: job.constants,
         exact: job.exact,
         graph: job.graph,
         switches: job.switches,
         fill,
-        blends: job.view.opacity_eye.is_some(),
-        places: std::array::from_fn(|i| ((i >> 3) * piece.pixels.width + (i & 7)) as u32),
-        pixels: piece.pixels,
+        blends: job.constants.opacity_eye.is_some(),
+        sample_offsets: std::array::from_fn(|i| ((i >> 3) * buffers.pixels.width + (i & 7)) as u32),
+        pixels: buffers.pixels,
         counters: Counters::default(),
-        found: lanes::Found([0; 64]),
+        candidates: lanes::Candidates([0; 64]),
         hits: [Hit::default(); 64],
         nodes: [0; 64],
-        blocks: &mut blocks,
+        brick_blocks: &mut brick_blocks,
     };
-    walk::start(&mut walk);
-    walk.counters
+    traversal::draw_object(&mut band);
+    band.counters
 }

@@ -73,7 +73,7 @@ impl Parts {
         parts
     }
 
-    /// [`Parts::of`], in its place: to move parts there takes longer than to make them.
+    /// [`Parts::of`], in place: to move parts there takes longer than to make them.
     #[inline(always)]
     pub(super) fn read<I: Isa>(
         &mut self,

@@ -1,8 +1,8 @@
 //! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of samples at a time.
 
+use super::band::Band;
 use super::exact::{Cover, Outline};
 use super::lanes::Isa;
-use super::state::Walk;
 use super::window::{BLOCK_LOG2, TILE_LOG2, Window};
 
 /// The part of a window in a cell of a grid of `2^log2` samples.
@@ -19,33 +19,33 @@ fn cell_of(x: i32, y: i32, log2: u32, window: &Window) -> Window {
 
 /// Draws all open samples of a window that the silhouette covers.
 pub(super) fn draw<I: Isa>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     outline: &Outline,
     window: &Window,
     node: u32,
     voxel: [i32; 4],
 ) {
-    walk.counters.solids += 1;
+    band.counters.solids += 1;
     for y in window.top >> BLOCK_LOG2..=window.bottom >> BLOCK_LOG2 {
         for x in window.left >> BLOCK_LOG2..=window.right >> BLOCK_LOG2 {
             let block = cell_of(x, y, BLOCK_LOG2, window);
-            if block.is_empty() || walk.switches.hidden && !walk.fill.is_open(&block) {
+            if block.is_empty() || band.switches.hidden && !band.fill.is_open(&block) {
                 continue;
             }
-            let cover = if walk.switches.whole_blocks {
+            let cover = if band.switches.whole_blocks {
                 outline.cover(&block)
             } else {
                 Cover::Some
             };
             if cover != Cover::None {
-                draw_block(walk, outline, &block, cover, node, voxel);
+                draw_block(band, outline, &block, cover, node, voxel);
             }
         }
     }
 }
 
 fn draw_block<I: Isa>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     outline: &Outline,
     block: &Window,
     cover: Cover,
@@ -54,13 +54,13 @@ fn draw_block<I: Isa>(
 ) {
     for y in block.top >> TILE_LOG2..=block.bottom >> TILE_LOG2 {
         for x in block.left >> TILE_LOG2..=block.right >> TILE_LOG2 {
-            let open = walk.fill.open_in_tile(x, y, block);
+            let open = band.fill.open_in_tile(x, y, block);
             if open == 0 {
                 continue;
             }
             let (left, top) = (x << TILE_LOG2, y << TILE_LOG2);
             let tile = cell_of(x, y, TILE_LOG2, block);
-            let cover = if cover == Cover::All || !walk.switches.whole_blocks {
+            let cover = if cover == Cover::All || !band.switches.whole_blocks {
                 cover
             } else {
                 outline.cover(&tile)
@@ -75,8 +75,8 @@ fn draw_block<I: Isa>(
                         let bit = left_over.trailing_zeros() as i32;
                         let sample = left_over & left_over.wrapping_neg();
                         left_over ^= sample;
-                        walk.counters.exact_samples += 1;
-                        if outline.covers(walk.exact, left + (bit & 7), top + (bit >> 3)) {
+                        band.counters.exact_samples += 1;
+                        if outline.covers(band.exact, left + (bit & 7), top + (bit >> 3)) {
                             covered |= sample;
                         }
                     }
@@ -84,10 +84,10 @@ fn draw_block<I: Isa>(
                 }
             };
             if samples != 0 {
-                walk.counters.tiles_filled += u64::from(samples == u64::MAX);
-                let drawn = walk.show([left, top], samples, node, voxel);
-                walk.counters.samples_drawn += u64::from(drawn.count_ones());
-                walk.fill.mark_tile(x, y, drawn);
+                band.counters.tiles_filled += u64::from(samples == u64::MAX);
+                let drawn = band.show([left, top], samples, node, voxel);
+                band.counters.samples_drawn += u64::from(drawn.count_ones());
+                band.fill.mark_tile(x, y, drawn);
             }
         }
     }

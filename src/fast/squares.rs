@@ -1,8 +1,8 @@
 //! Windows, square by square: at most 8 x 8 samples, of which some are open.
 
-use super::heading::{Heading, Samples, by_octant};
+use super::band::Band;
+use super::directions::{Directions, Samples, by_octant};
 use super::lanes::Isa;
-use super::state::Walk;
 use super::window::Window;
 
 /// Column and row of a square's samples.
@@ -19,14 +19,14 @@ pub(super) static SAMPLES: [[f32; 2]; 64] = {
 /// What draws squares.
 pub(super) trait DrawSquare<I: Isa> {
     /// Draws what samples show; returns those drawn.
-    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64;
+    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64;
 }
 
 /// Takes a window apart into squares with open samples, and those into samples
 /// whose lines begin in one octant, which nearly always is all.
 #[inline(always)]
 pub(super) fn each_square<I: Isa>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     window: &Window,
     drawer: &impl DrawSquare<I>,
 ) {
@@ -40,29 +40,29 @@ pub(super) fn each_square<I: Isa>(
                 right: (left + 7).min(window.right),
                 bottom: (top + 7).min(window.bottom),
             };
-            let open = walk.fill.open_in_square(&square);
+            let open = band.fill.open_in_square(&square);
             if open != 0 {
-                walk.counters.squares += 1;
-                let heading = Heading::of(walk.isa, walk.view, &square);
+                band.counters.squares += 1;
+                let directions = Directions::of(band.isa, band.constants, &square);
                 let mut samples = Samples {
                     square: &square,
                     open,
-                    heading,
-                    octant: heading.octant,
+                    directions,
+                    octant: directions.octant,
                 };
                 let mut groups = [0; 8];
-                if heading.is_mixed {
-                    groups = by_octant(walk.view, walk.exact, &square, open);
+                if directions.is_mixed {
+                    groups = by_octant(band.constants, band.exact, &square, open);
                     samples.take_group(&mut groups);
                 }
                 let mut drawn = 0;
                 loop {
-                    drawn |= drawer.draw(walk, &samples);
-                    if !heading.is_mixed || !samples.take_group(&mut groups) {
+                    drawn |= drawer.draw(band, &samples);
+                    if !directions.is_mixed || !samples.take_group(&mut groups) {
                         break;
                     }
                 }
-                walk.fill.mark_square(&square, drawn);
+                band.fill.mark_square(&square, drawn);
             }
             left += 8;
         }

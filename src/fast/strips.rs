@@ -56,7 +56,7 @@ pub(super) const MOST_ERROR: [f32; CLASSES] = [
 
 /// Tables of one margin.
 const PER_MARGIN: usize = 3 * SHARES;
-/// The table that tells nothing.
+/// The table that excludes no part.
 const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
 /// By cell, parts.

@@ -5,13 +5,13 @@
 //! (`strips.rs`); then, in order, each part against all samples, in numbers of 16
 //! bits. Samples well inside are drawn, those near the outline are decided one by one.
 
+use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
-use super::heading::Samples;
+use super::directions::Samples;
 use super::lanes::{Four, Isa};
 use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
-use super::place::Place;
+use super::projection::Projection;
 use super::squares::{DrawSquare, SAMPLES, each_square};
-use super::state::{Brick, Walk};
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, STRIPS};
 use super::window::Window;
 
@@ -26,40 +26,40 @@ const LARGEST: f32 = 30_000.0;
 /// Draws squares voxel by voxel.
 struct ByVoxels<'b, I: Isa> {
     brick: Brick<'b>,
-    place: Place<I>,
+    projection: Projection<I>,
     /// Whether the brick is a solid.
     is_single: bool,
 }
 
 /// Draws a brick voxel by voxel, or a solid.
 #[inline(always)]
-pub(super) fn draw<I: Isa>(walk: &mut Walk<'_, I>, brick: Brick<'_>, window: &Window) {
+pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
     let is_single = brick.parts.is_single();
-    let level = &walk.view.levels[brick.record.level as usize];
+    let level = &band.constants.levels[brick.record.level as usize];
     let across = if is_single { 1.0 } else { 4.0 };
-    let place = Place::new(walk.isa, walk.view, level, brick.record.centre, across);
-    walk.counters.bricks += u64::from(!is_single);
+    let projection = Projection::new(band.isa, band.constants, level, brick.record.centre, across);
+    band.counters.bricks += u64::from(!is_single);
     let drawer = ByVoxels {
         brick,
-        place,
+        projection,
         is_single,
     };
-    each_square(walk, window, &drawer);
+    each_square(band, window, &drawer);
 }
 
 impl<I: Isa> DrawSquare<I> for ByVoxels<'_, I> {
     #[inline(always)]
-    fn draw(&self, walk: &mut Walk<'_, I>, samples: &Samples<'_, I>) -> u64 {
-        draw_samples(walk, self, samples)
+    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64 {
+        draw_samples(band, self, samples)
     }
 }
 
 #[inline(always)]
 fn draw_samples<I: Isa>(
-    walk: &mut Walk<'_, I>,
+    band: &mut Band<'_, I>,
     &ByVoxels {
         brick,
-        place,
+        projection,
         is_single,
     }: &ByVoxels<'_, I>,
     samples: &Samples<'_, I>,
@@ -70,8 +70,8 @@ fn draw_samples<I: Isa>(
         octant,
         ..
     } = samples;
-    let isa = walk.isa;
-    let lines = Lines::new(isa, walk.view, &place, samples);
+    let isa = band.isa;
+    let lines = Lines::new(isa, band.constants, &projection, samples);
     let mut wanted = if is_single {
         1
     } else {
@@ -118,7 +118,7 @@ fn draw_samples<I: Isa>(
         if held == 0 {
             continue;
         }
-        let part = brick.parts.part(walk.graph, number as u32 ^ pair);
+        let part = brick.parts.part(band.graph, number as u32 ^ pair);
         let path = Path {
             block: None,
             part: number as u32 ^ pair,
@@ -134,23 +134,26 @@ fn draw_samples<I: Isa>(
             let is_met = match lines.meets(isa, &line, offset) {
                 Meeting::Misses => false,
                 Meeting::Meets => true,
-                Meeting::Doubt => is_covered(walk, brick, square, bit, &path),
+                Meeting::Doubt => is_covered(band, brick, square, bit, &path),
             };
             covered |= u64::from(is_met) << bit;
         }
         if covered != 0 {
-            walk.counters.solids += 1;
-            let voxel = if walk.pixels.wants_voxels() || walk.view.opacity_eye.is_some() {
-                path.voxel(brick, walk.view.levels[brick.record.level as usize].side)
+            band.counters.solids += 1;
+            let voxel = if band.pixels.wants_voxels() || band.constants.opacity_eye.is_some() {
+                path.voxel(
+                    brick,
+                    band.constants.levels[brick.record.level as usize].side,
+                )
             } else {
                 [0; 4]
             };
-            let full = walk.show(corner, covered, part.node, voxel);
+            let full = band.show(corner, covered, part.node, voxel);
             left &= !full;
             drawn |= full;
         }
     }
-    walk.counters.samples_drawn += u64::from(drawn.count_ones());
+    band.counters.samples_drawn += u64::from(drawn.count_ones());
     drawn
 }
 

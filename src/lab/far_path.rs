@@ -156,22 +156,10 @@ fn quantile(ms: &[f64], share: f64) -> f64 {
 /// A row for each kind; counts are means of a frame.
 #[must_use]
 pub fn table(name: &str, walks: &[FarPathTimes]) -> Table {
-    let columns = [
-        "opacity",
-        "median_ms",
-        "slowest_tenth_ms",
-        "worst_ms",
-        "nodes_visited",
-        "queries",
-        "hidden",
-        "voxel_nodes",
-        "leaves",
-        "opaque_voxels",
-        "transparent_voxels",
-        "triangles",
-    ];
+    let columns = "opacity median_ms slowest_tenth_ms worst_ms nodes_visited queries hidden \
+        voxel_nodes leaves opaque_voxels transparent_voxels triangles";
     let title = format!("{name}: a walk, means of a frame");
-    let mut table = Table::new(title, &columns);
+    let mut table = Table::of(title, columns);
     for walk in walks {
         let mean = |sum: u64| Cell::Count(sum / walk.ms.len().max(1) as u64);
         let sums = &walk.sums;

@@ -354,7 +354,7 @@ mod tests {
     /// code, by way of the crate `nv-flip` 0.1.2.
     #[test]
     fn the_authors_program_says_the_same() {
-        let told = [
+        let expected = [
             (0, 1, [0.205_291, 0.201_712, 0.084_091, 0.241_525]),
             (0, 2, [0.147_576, 0.964_051, 0.0, 0.649_032]),
             (0, 3, [0.925_414, 0.617_441, 0.976_864, 0.968_656]),
@@ -362,12 +362,15 @@ mod tests {
             (6, 7, [1.0, 1.0, 1.0, 1.0]),
             (4, 8, [0.616_885, 0.857_687, 0.737_334, 0.625_571]),
         ];
-        for (a, b, told) in told {
+        for (a, b, expected) in expected {
             let map = flip(a, b);
             let at = |x: usize, y: usize| map.error[y * SIZE.0 as usize + x];
             let found = [map.mean(), at(21, 20), at(0, 0), at(24, 10)];
-            for (found, told) in found.into_iter().zip(told) {
-                assert!((found - told).abs() < 1e-4, "{a}, {b}: {found} {told}");
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < 1e-4,
+                    "{a}, {b}: {found} {expected}"
+                );
             }
         }
     }

@@ -25,6 +25,20 @@ pub enum CageKind {
     Frame,
 }
 
+impl CageKind {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Corners, Self::Frame];
+
+    /// Its name in settings and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Corners => "corners",
+            Self::Frame => "frame",
+        }
+    }
+}
+
 /// Which samples a voxel covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -53,6 +67,20 @@ pub enum Coverage {
 }
 
 impl Coverage {
+    /// All rules.
+    pub const ALL: [Self; 4] = [Self::Any, Self::Center, Self::Exact, Self::Alpha];
+
+    /// Its name in settings and results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Any => "any",
+            Self::Center => "center",
+            Self::Exact => "exact",
+            Self::Alpha => "alpha",
+        }
+    }
+
     /// Whether voxels are drawn by their silhouettes.
     #[inline]
     #[must_use]

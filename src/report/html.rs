@@ -210,7 +210,7 @@ mod tests {
             .rows
             .push(vec![Cell::from("<script>"), Cell::from(1234)]);
         let sentence =
-            "what is told in a sentence is broken into lines, or its end is out of sight";
+            "what is said in a sentence is broken into lines, or its end is out of sight";
         table.rows.push(vec![Cell::from(sentence), Cell::from(5)]);
         page.table(&table);
         page.plot("<?xml version=\"1.0\"?>\n<svg width=\"1\"></svg>", "a plot");
@@ -221,7 +221,7 @@ mod tests {
         assert!(html.contains("<h2 id=\"c1\">Times &amp; sizes</h2>"));
         assert!(html.contains("<td class=\"w\">&lt;script&gt;</td><td>1,234</td>"));
         assert!(html.contains("<th class=\"w\">scene name</th>"));
-        assert!(html.contains("<td class=\"w long\">what is told"));
+        assert!(html.contains("<td class=\"w long\">what is said"));
         assert!(html.contains("<figure><svg width=\"1\"></svg>"));
         assert!(html.contains("data:image/png;base64,AQID"));
         assert!(!html.contains("<?xml") && !html.contains("<script"));

@@ -99,6 +99,13 @@ impl Table {
         }
     }
 
+    /// A table without rows whose columns are named in a line, with blanks between them.
+    #[must_use]
+    pub fn of(title: impl Into<String>, columns: &'static str) -> Self {
+        let columns: Vec<&'static str> = columns.split_whitespace().collect();
+        Self::new(title, &columns)
+    }
+
     /// Whether a column has an entry in words, which are set to the left.
     #[must_use]
     pub fn is_of_words(&self, column: usize) -> bool {

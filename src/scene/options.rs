@@ -37,7 +37,7 @@ pub struct ReadOptions {
     /// sRGB colour of voxels in files without colours.
     pub default_color: [u8; 3],
     /// Most voxels that are handed on, those at one place counted each. More are an error: before the first is
-    /// handed on where the file tells their number, else as soon as there are more.
+    /// handed on where the file states their number, else as soon as there are more.
     pub most_voxels: u64,
 }
 

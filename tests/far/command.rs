@@ -38,18 +38,14 @@ fn convert_info_render() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let settings = [
-        "--leaf-triangles",
-        "50",
-        "--grid",
-        "16",
-        "--rays",
-        "20000",
-        "-q",
-    ];
+    let settings = "--leaf-triangles 50 --grid 16 --rays 20000 -q".split(' ');
     for (output, threads) in [("a.far", "1"), ("b.far", "2")] {
         let command = ["convert", "sheet.obj", output, "--threads", threads];
-        shiftvox(at).args(command).args(settings).assert().success();
+        shiftvox(at)
+            .args(command)
+            .args(settings.clone())
+            .assert()
+            .success();
     }
     assert_eq!(
         fs::read(at.join("a.far")).unwrap(),
@@ -77,19 +73,8 @@ fn convert_info_render() {
     let mut hashes = Vec::new();
     for opacity in ["none", "scalar", "six"] {
         // So far away that its nodes are drawn as voxels.
-        let render = [
-            "render",
-            "a.far",
-            "--engine",
-            "far",
-            "--size",
-            "256",
-            "--hash",
-            "--eye",
-            "200,200,200",
-            "--target",
-            "5,1,5",
-        ];
+        let render = "render a.far --engine far --size 256 --hash --eye 200,200,200 --target 5,1,5"
+            .split(' ');
         let more = ["--far-opacity", opacity, "-o", "{stem}.png", "--force"];
         let output = shiftvox(at).args(render).args(more).assert().success();
         hashes.push(output.get_output().stdout.clone());
@@ -173,15 +158,7 @@ fn copies_budgets_and_walks() {
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
     let convert = ["convert", "sheet.obj", "four.far", "--instances", "4"];
-    let settings = [
-        "--leaf-triangles",
-        "60",
-        "--grid",
-        "12",
-        "--rays",
-        "20000",
-        "-q",
-    ];
+    let settings = "--leaf-triangles 60 --grid 12 --rays 20000 -q".split(' ');
     shiftvox(at).args(convert).args(settings).assert().success();
     let json = |arguments: &[&str]| -> serde_json::Value {
         let output = shiftvox(at)
@@ -227,26 +204,8 @@ fn meshes_are_measured_against_their_triangles() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let measure = [
-        "bench",
-        "error",
-        "sheet.obj",
-        "--families",
-        "triangles,far",
-        "--depth",
-        "3",
-    ];
-    let settings = [
-        "--size",
-        "48",
-        "--runs",
-        "1",
-        "--warmup",
-        "0",
-        "--far-rays",
-        "5000",
-        "--json",
-    ];
+    let measure = "bench error sheet.obj --families triangles,far --depth 3".split(' ');
+    let settings = "--size 48 --runs 1 --warmup 0 --far-rays 5000 --json".split(' ');
     let output = shiftvox(at).args(measure).args(settings).assert().success();
     let document: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
     let scene = &document["scenes"][0];
@@ -260,26 +219,8 @@ fn meshes_are_measured_against_their_triangles() {
     assert!(error("triangles 16") < error("triangles 4"));
     assert!(error("triangles 4") < error("triangles 1"));
     assert!(error("far six") < 0.1);
-    let film = [
-        "bench",
-        "flicker",
-        "sheet.obj",
-        "--families",
-        "far",
-        "--motions",
-        "dolly",
-    ];
-    let settings = [
-        "--frames",
-        "2",
-        "--size",
-        "32",
-        "--depth",
-        "3",
-        "--far-rays",
-        "5000",
-        "--json",
-    ];
+    let film = "bench flicker sheet.obj --families far --motions dolly".split(' ');
+    let settings = "--frames 2 --size 32 --depth 3 --far-rays 5000 --json".split(' ');
     shiftvox(at).args(film).args(settings).assert().success();
 }
 
@@ -300,21 +241,9 @@ fn a_dolly_shows_where_levels_change() {
         "--depth",
         "3",
     ];
-    let settings = [
-        "--frames",
-        "70",
-        "--size",
-        "24",
-        "--zoom",
-        "0.3",
-        "--reference-samples",
-        "2",
-        "--far-rays",
-        "30000",
-        "--far-lods",
-        "1",
-        "--json",
-    ];
+    let settings = "--frames 70 --size 24 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
+        --far-lods 1 --json"
+        .split(' ');
     let output = shiftvox(at).args(film).args(settings).assert().success();
     let document: serde_json::Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
     let films = document["films"][0]["films"].as_array().unwrap();
@@ -398,10 +327,10 @@ fn what_is_wrong_is_said_with_an_exit_code() {
     shiftvox(at).args(copies("sheet.obj")).assert().code(5);
     if cfg!(target_os = "linux") {
         let output = shiftvox(at).args(copies("one.obj")).assert().code(5);
-        let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+        let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
         assert!(
-            told.contains("one.obj") && told.contains("are free"),
-            "{told}"
+            stderr.contains("one.obj") && stderr.contains("are free"),
+            "{stderr}"
         );
     }
     shiftvox(at)
@@ -454,11 +383,11 @@ fn a_file_has_its_own_engine_and_no_idle_flags() {
         for flags in other {
             let render = ["render", file, "-o", "x.png"];
             let output = shiftvox(at).args(render).args(flags).assert().code(2);
-            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
             let flag = flags[0].trim_start_matches('-');
             assert!(
-                told.contains(file) && told.contains(flag),
-                "{flags:?}: {told}"
+                stderr.contains(file) && stderr.contains(flag),
+                "{flags:?}: {stderr}"
             );
             let turn = ["turntable", file, "--frames", "1", "-o", "#.png"];
             shiftvox(at).args(turn).args(flags).assert().code(2);
@@ -467,9 +396,9 @@ fn a_file_has_its_own_engine_and_no_idle_flags() {
             let wrong = [verb, file, "-o", "x.png"];
             let count = if verb == "model" { 2 } else { 4 };
             let output = shiftvox(at).args(&wrong[..count]).assert().code(4);
-            let told = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
-            assert!(told.contains("render and turntable draw it"), "{told}");
-            assert_eq!(told.matches(file).count(), 1, "{told}");
+            let stderr = String::from_utf8_lossy(&output.get_output().stderr).into_owned();
+            assert!(stderr.contains("render and turntable draw it"), "{stderr}");
+            assert_eq!(stderr.matches(file).count(), 1, "{stderr}");
         }
     }
     // One command for files of three kinds.

@@ -320,56 +320,12 @@ fn ablation_of_the_fast_engine_changes_no_picture() {
     assert_eq!(count(kept, "records"), 0);
     let all = "attributes of all read";
     assert!(count(all, "attributes_read") > count(whole, "samples_drawn"));
-    if cfg!(target_os = "linux") {
-        let (some, all) = ("first frame of the file", "first frame, all pages read");
-        assert!(count(some, "pages_resident") <= count(all, "pages_resident"));
-        // Every page but those of the header and between the arrays.
-        assert!(count(all, "pages_resident") + 8 >= count(all, "pages_mapped"));
-    }
-}
-
-#[test]
-fn coherence_falls_with_the_step() {
-    let folder = folder();
-    let line = [
-        "coherence",
-        "gen:menger,depth=3",
-        "--size",
-        "96",
-        "--steps",
-        "0,0.1,5",
-        "--json",
-        "--export-csv",
-        "r.csv",
-        "--export-svg",
-        "r.svg",
-    ];
-    let document = json_of(&bench(folder.path(), &line).success());
-    assert_eq!(document["schema"], "shiftvox.bench coherence");
-    let results = document["results"].as_array().unwrap();
-    let shares = |name: &str| -> Vec<f64> {
-        let of = results.iter().map(|r| r[name].as_f64().unwrap());
-        of.collect()
-    };
-    for name in ["node_share", "sample_share"] {
-        let shares = shares(name);
-        assert_eq!(shares[0], 1.0, "{name}");
-        assert!(shares[0] > shares[1] && shares[1] > shares[2], "{shares:?}");
-    }
-    assert_eq!(results[0]["pairs"], 4);
-    let csv = fs::read_to_string(folder.path().join("r.csv")).unwrap();
-    assert_eq!(rows(&csv).len(), 3);
-    assert!(folder.path().join("r.svg").exists());
-    // The same in every run.
-    let again = [&line[..6], &["--json"]].concat();
-    let again = json_of(&bench(folder.path(), &again).success());
-    assert_eq!(document["results"], again["results"]);
 }
 
 #[test]
 fn wrong_experiments_exit_with_2() {
     let folder = folder();
-    let lines: [&[&str]; 16] = [
+    let lines: [&[&str]; 14] = [
         &[],
         &["speed"],
         &["engines", SCENE, "--scan", "size=64"],
@@ -384,8 +340,6 @@ fn wrong_experiments_exit_with_2() {
         &["ablation", SCENE, "--threads", "2"],
         &["ablation", SCENE, "--engines", "rays"],
         &["vertex-error", "--threads", "1,2"],
-        &["coherence", SCENE, "--steps", "1,361"],
-        &["coherence", SCENE, "--threads", "1,2"],
     ];
     for line in lines {
         let assert = bench(folder.path(), line).code(2);

@@ -144,7 +144,7 @@ fn a_frame_has_the_pages_of_its_nodes_in_memory() {
     assert!(touched.seen > 1000 && touched.fetched > touched.seen);
     let untouched = vxg::open(&path).unwrap();
     let Some((pages, resident)) = untouched.mapped_pages().zip(touched.resident) else {
-        eprintln!("skipped: this system does not tell the pages of a mapping");
+        eprintln!("skipped: this system does not report the pages of a mapping");
         return;
     };
     let length = std::fs::metadata(&path).unwrap().len();

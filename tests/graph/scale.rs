@@ -126,7 +126,7 @@ fn sixty_million_voxels_stay_within_their_memory() {
     let bytes = graph.bytes();
     eprintln!("{bytes} bytes, {:.2} a voxel", bytes as f64 / voxels as f64);
     let Some(peak) = memory_of_process("VmHWM:") else {
-        eprintln!("skipped: this system does not tell the peak of memory");
+        eprintln!("skipped: this system does not report the peak of memory");
         return;
     };
     eprintln!(
@@ -167,7 +167,7 @@ fn a_scene_larger_than_its_memory_stays_within_it() {
         report.temporary_bytes as f64 / voxels
     );
     let Some(peak) = memory_of_process("VmHWM:") else {
-        eprintln!("skipped: this system does not tell the peak of memory");
+        eprintln!("skipped: this system does not report the peak of memory");
         return;
     };
     assert!(peak <= memory, "{peak} bytes");

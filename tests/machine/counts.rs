@@ -264,41 +264,61 @@ fn fit_tests(turn: &Turn) -> u64 {
         .count() as u64
 }
 
+/// What a cage coordinate costs: halvings and additions of the vertex pool, numbers that are held, minima, maxima and
+/// additions of a span.
+const CAGES: [(CageKind, [u64; 5]); 2] = [
+    (CageKind::Corners, [19, 0, 8, 7 + 7, 0]),
+    (CageKind::Frame, [3, 7, 4, 3 + 3, 6]),
+];
+
+/// Pool, box and fit of the table above, for both cages in both spaces.
 #[test]
-fn the_paper_s_record_in_screen_space() {
-    each_subdivided(
-        &options(CageKind::Corners, f64::INFINITY),
-        |name, setup, turn, c| {
-            let bits = setup.format.bits();
-            check_centre_and_order(setup, turn);
-            assert_eq!(
-                turn.ops(Stage::VertexPool),
-                ops(&[
-                    (OpClass::Add, bits + 1, 2 * 19),
-                    (OpClass::Shift, bits + 1, 2 * 19)
-                ]),
-                "{name}"
-            );
-            assert_eq!(
-                turn.ops(Stage::ChildBox),
-                ops(&[
-                    (OpClass::Select, bits, 6 * c),
-                    (OpClass::MinMax, bits, 2 * (7 + 7) * c)
-                ]),
-                "{name}, {c} children"
-            );
-            let tests = fit_tests(turn);
-            assert!(tests >= c, "{name}: each child is tested once at least");
-            assert_eq!(
-                sum(turn.children_s_fits()),
-                ops(&[
-                    (OpClass::Compare, bits, 2 * 2 * tests),
-                    (OpClass::Logic, 4, tests)
-                ]),
-                "{name}"
-            );
-        },
-    );
+fn a_subdivided_record_costs_what_the_table_says() {
+    for (cage, [halvings, pool_adds, numbers, min_max, adds]) in CAGES {
+        for tolerance in [0.0, f64::INFINITY] {
+            let in_clip = tolerance == 0.0;
+            let coordinates = if in_clip { 3 } else { 2 };
+            // In clip space the box has the span of W alone, which is compared with the near plane.
+            let spans = if in_clip { 1 } else { 2 };
+            each_subdivided(&options(cage, tolerance), |name, setup, turn, c| {
+                let bits = setup.format.bits();
+                check_centre_and_order(setup, turn);
+                assert_eq!(
+                    turn.ops(Stage::VertexPool),
+                    ops(&[
+                        (OpClass::Add, bits + 1, coordinates * halvings),
+                        (OpClass::Shift, bits + 1, coordinates * halvings),
+                        (OpClass::Add, bits, coordinates * pool_adds),
+                    ]),
+                    "{name}, {cage:?}"
+                );
+                assert_eq!(
+                    turn.ops(Stage::ChildBox),
+                    ops(&[
+                        (OpClass::Select, bits, 6 * c),
+                        (OpClass::MinMax, bits, spans * min_max * c),
+                        (OpClass::Add, bits, spans * adds * c),
+                        (OpClass::Compare, bits, if in_clip { c } else { 0 }),
+                    ]),
+                    "{name}, {cage:?}, {c} children"
+                );
+                if in_clip {
+                    check_clip_fit(name, setup, turn, [numbers, min_max, adds]);
+                    return;
+                }
+                let tests = fit_tests(turn);
+                assert!(tests >= c, "{name}: each child is tested once at least");
+                assert_eq!(
+                    sum(turn.children_s_fits()),
+                    ops(&[
+                        (OpClass::Compare, bits, 2 * 2 * tests),
+                        (OpClass::Logic, 4, tests)
+                    ]),
+                    "{name}, {cage:?}"
+                );
+            });
+        }
+    }
 }
 
 /// Test by test: two compares an axis, one look at a fill vector, one and.
@@ -321,98 +341,6 @@ fn the_fit_is_one_small_step_over_and_over() {
             }
         },
     );
-}
-
-#[test]
-fn the_paper_s_record_in_clip_space() {
-    each_subdivided(&options(CageKind::Corners, 0.0), |name, setup, turn, c| {
-        let bits = setup.format.bits();
-        check_centre_and_order(setup, turn);
-        assert_eq!(
-            turn.ops(Stage::VertexPool),
-            ops(&[
-                (OpClass::Add, bits + 1, 3 * 19),
-                (OpClass::Shift, bits + 1, 3 * 19)
-            ]),
-            "{name}"
-        );
-        assert_eq!(
-            turn.ops(Stage::ChildBox),
-            ops(&[
-                (OpClass::Select, bits, 6 * c),
-                (OpClass::MinMax, bits, (7 + 7) * c),
-                (OpClass::Compare, bits, c)
-            ]),
-            "{name}"
-        );
-        check_clip_fit(name, setup, turn, [8, 7 + 7, 0]);
-    });
-}
-
-#[test]
-fn the_frame_s_record_in_screen_space() {
-    each_subdivided(
-        &options(CageKind::Frame, f64::INFINITY),
-        |name, setup, turn, c| {
-            let bits = setup.format.bits();
-            check_centre_and_order(setup, turn);
-            assert_eq!(
-                turn.ops(Stage::VertexPool),
-                ops(&[
-                    (OpClass::Add, bits + 1, 2 * 3),
-                    (OpClass::Shift, bits + 1, 2 * 3),
-                    (OpClass::Add, bits, 2 * 7)
-                ]),
-                "{name}"
-            );
-            assert_eq!(
-                turn.ops(Stage::ChildBox),
-                ops(&[
-                    (OpClass::Select, bits, 6 * c),
-                    (OpClass::MinMax, bits, 2 * (3 + 3) * c),
-                    (OpClass::Add, bits, 2 * 6 * c)
-                ]),
-                "{name}"
-            );
-            let tests = fit_tests(turn);
-            assert_eq!(
-                sum(turn.children_s_fits()),
-                ops(&[
-                    (OpClass::Compare, bits, 2 * 2 * tests),
-                    (OpClass::Logic, 4, tests)
-                ]),
-                "{name}"
-            );
-        },
-    );
-}
-
-#[test]
-fn the_frame_s_record_in_clip_space() {
-    each_subdivided(&options(CageKind::Frame, 0.0), |name, setup, turn, c| {
-        let bits = setup.format.bits();
-        check_centre_and_order(setup, turn);
-        assert_eq!(
-            turn.ops(Stage::VertexPool),
-            ops(&[
-                (OpClass::Add, bits + 1, 3 * 3),
-                (OpClass::Shift, bits + 1, 3 * 3),
-                (OpClass::Add, bits, 3 * 7)
-            ]),
-            "{name}"
-        );
-        assert_eq!(
-            turn.ops(Stage::ChildBox),
-            ops(&[
-                (OpClass::Select, bits, 6 * c),
-                (OpClass::MinMax, bits, (3 + 3) * c),
-                (OpClass::Add, bits, 6 * c),
-                (OpClass::Compare, bits, c)
-            ]),
-            "{name}"
-        );
-        check_clip_fit(name, setup, turn, [4, 3 + 3, 6]);
-    });
 }
 
 /// The fit in clip space, where a cage coordinate has `numbers` numbers and its span
@@ -448,7 +376,7 @@ fn the_view_from_within_costs_the_same() {
     let walls = |[x, y, z]: [i32; 3]| x == 0 || y == 15 || z == 0;
     let graph = octree(4, &walls);
     let camera = camera([7.3, 5.1, 8.6], [2.0, 16.0, 3.0], 16);
-    for (cage, halvings, adds) in [(CageKind::Corners, 19, 0), (CageKind::Frame, 3, 7)] {
+    for (cage, [halvings, adds, ..]) in CAGES {
         let setup = setup(&graph, &camera, &options(cage, 0.25));
         let bits = setup.format.bits();
         let pool = |coordinates: u64| {

@@ -93,7 +93,7 @@ fn unchanged(stats: &Stats) -> u64 {
 enum Step {
     /// A camera and settings of those that there are; whether it is counted.
     Draw(usize, usize, bool),
-    /// The viewer is told to forget.
+    /// The viewer is asked to forget.
     Forget,
     /// The engine fails once.
     Fail(usize, usize),

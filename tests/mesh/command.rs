@@ -75,31 +75,14 @@ fn conversions_keep_the_place_and_do_not_depend_on_memory() {
 fn triangles_and_voxels_of_a_cube_are_nearly_one_picture() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("cube.obj"), CUBE).unwrap();
-    let camera = [
-        "--eye", "5,4,6", "--target", "1,1,1", "--up", "0,1,0", "--size", "128",
-    ];
-    shiftvox(folder.path())
-        .args([
-            "render", "cube.obj", "-o", "a.png", "--depth", "9", "--aa", "4", "-q",
-        ])
-        .args(camera)
-        .assert()
-        .success();
-    shiftvox(folder.path())
-        .args([
-            "triangles",
-            "cube.obj",
-            "-o",
-            "b.png",
-            "--samples",
-            "16",
-            "--aov",
-            "depth,coverage",
-            "-q",
-        ])
-        .args(camera)
-        .assert()
-        .success();
+    for line in [
+        "render cube.obj -o a.png --depth 9 --aa 4 -q",
+        "triangles cube.obj -o b.png --samples 16 --aov depth,coverage -q",
+    ] {
+        let camera = "--eye 5,4,6 --target 1,1,1 --up 0,1,0 --size 128";
+        let words = line.split(' ').chain(camera.split(' '));
+        shiftvox(folder.path()).args(words).assert().success();
+    }
     let ok = shiftvox(folder.path())
         .args(["compare", "a.png", "b.png", "--threshold", "psnr_srgb=35"])
         .assert();
@@ -162,8 +145,8 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
             &["convert", file, "out.vxg", "--memory", "64M"],
         ] {
             let assert = shiftvox(folder.path()).args(verb).assert().code(4);
-            let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
-            assert!(told.contains(expected), "{told}");
+            let stderr = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+            assert!(stderr.contains(expected), "{stderr}");
             assert!(
                 !folder.path().join("out.vxg").exists() && !folder.path().join("out.png").exists()
             );
@@ -179,9 +162,9 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
         .args(["triangles", "axes.vox", "-o", "x.png"])
         .assert()
         .code(4);
-    let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+    let stderr = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
     assert!(
-        told.contains("axes.vox: this is a .vox file, which has no triangles"),
-        "{told}"
+        stderr.contains("axes.vox: this is a .vox file, which has no triangles"),
+        "{stderr}"
     );
 }

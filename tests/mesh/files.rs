@@ -71,13 +71,13 @@ fn wavefront_with_materials_polygons_and_negative_indices() {
     assert_eq!((of(3).name.as_str(), of(3).alpha), ("blue", 0.5));
     assert_eq!(of(4).name, "no material");
     assert_eq!(mesh.corner_normals().len(), 0);
-    let told = mesh.warnings().join("; ");
+    let warnings = mesh.warnings().join("; ");
     for part in [
         "have textures",
         "1 triangles have no material",
         "1 of 6 triangles of a material with opacity 0",
     ] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(warnings.contains(part), "{part}: {warnings}");
     }
     // sRGB 0.5 is 0.214 of the light; as linear light it is itself.
     assert!((of(0).diffuse[0] - 0.2140).abs() < 1e-4);

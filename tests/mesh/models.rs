@@ -31,11 +31,11 @@ fn models_have_their_triangles_and_voxels() {
         assert!(y_up);
         assert_eq!(mesh.triangles().len(), drawn, "{name}");
         let left_out = in_file - drawn as u64;
-        let told = mesh
+        let is_reported = mesh
             .warnings()
             .iter()
             .any(|w| w.starts_with(&format!("{left_out} of {in_file} ")));
-        assert_eq!(told, left_out > 0, "{name}: {:?}", mesh.warnings());
+        assert_eq!(is_reported, left_out > 0, "{name}: {:?}", mesh.warnings());
         // All of them have materials that were found.
         assert!(mesh.material_of().iter().all(|&m| m > 0), "{name}");
         let grid = Grid::around(&mesh, 8).unwrap();

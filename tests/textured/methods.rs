@@ -38,30 +38,10 @@ fn all_methods_in_all_forms() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("blades.obj"), blades()).unwrap();
-    let command = [
-        "bench",
-        "methods",
-        "blades.obj",
-        "--size",
-        "64",
-        "--least",
-        "16",
-        "--depth",
-        "6",
-        "--runs",
-        "1",
-        "--frames",
-        "2",
-        "--json",
-        "--export-csv",
-        "m.csv",
-        "--export-svg",
-        "m.svg",
-        "--export-html",
-        "m.html",
-        "--strips",
-        "strips",
-    ];
+    let command = "bench methods blades.obj --size 64 --least 16 --depth 6 --runs 1 --frames 2 \
+        --json --export-csv m.csv --export-svg m.svg --export-html m.html --strips \
+        strips"
+        .split(' ');
     let output = shiftvox(at).args(command).assert().success();
     let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
     let mesh = &document["meshes"][0];
@@ -123,17 +103,7 @@ fn what_is_refused_and_what_is_left_out() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("blades.obj"), blades()).unwrap();
-    let small = [
-        "bench",
-        "methods",
-        "blades.obj",
-        "--size",
-        "16",
-        "--runs",
-        "1",
-        "--frames",
-        "0",
-    ];
+    let small = "bench methods blades.obj --size 16 --runs 1 --frames 0".split(' ');
     let some = ["--least", "16", "--only", "triangles,textured", "--json"];
     let output = shiftvox(at).args(small).args(some).assert().success();
     let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();

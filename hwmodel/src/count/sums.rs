@@ -5,7 +5,7 @@ use std::ops::AddAssign;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CountRow, Counter, LEVELS, READS, SETS, SHORT, SIZED, WRITES};
+use super::counter::{CountRow, Counter, LEVELS, READS, SETS, SHORT, SIZED, WRITES};
 use crate::probe::{Memory, OpClass, Stage};
 
 /// How often operations of one kind were executed at one place.

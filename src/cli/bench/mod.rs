@@ -2,7 +2,6 @@
 
 mod ablation;
 mod args;
-mod coherence;
 mod engines;
 mod error;
 mod flicker;
@@ -10,6 +9,7 @@ mod meshes;
 mod methods;
 mod picture_export;
 mod scaling;
+mod select;
 mod vertex_error;
 mod walk;
 
@@ -61,11 +61,6 @@ enum Experiment {
     /// From where the mesh fills the picture to where it is 8 pixels high: time, error against triangles with
     /// 256 samples a pixel, flicker, bytes, build time, counters.
     Methods(Box<methods::MethodsArgs>),
-    /// What the next frame of a turntable has in common with the last
-    ///
-    /// The camera circles its target. From four sides a frame is compared with one a step further on: which of
-    /// its nodes were seen before, and which samples show the same node. Nothing is timed.
-    Coherence(Box<coherence::CoherenceArgs>),
     /// Frame times of far voxels along a walk, with and without opacities (.far files; see convert)
     Walk(Box<walk::WalkArgs>),
     /// How far the image-order paper's screen-space midpoints are from exact projection
@@ -98,7 +93,6 @@ pub(super) fn run(
         Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Flicker(args) => flicker::run(args, scenes, console),
         Experiment::Methods(args) => methods::run(args, console),
-        Experiment::Coherence(args) => coherence::run(args, scenes, console),
         Experiment::Walk(args) => walk::run(args, console),
         Experiment::VertexError => vertex_error::run(console),
     }

@@ -5,10 +5,8 @@ use glam::DVec3;
 use crate::cli::args::{CameraArgs, SceneArgs};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
-use crate::cli::names;
 use crate::cli::scenes;
 use crate::cli::scenes::Scene;
-use crate::graph::Store;
 use crate::lab::bench::Subject;
 use crate::project::{Bounds, Camera};
 
@@ -100,10 +98,8 @@ pub(in crate::cli) fn open(
         let bounds = Bounds::of(&scene.graph);
         camera.camera(&bounds, scene.up, size, 0.0)
     });
-    let is_mapped = matches!(scene.graph.color, Store::Mapped(..));
     Ok(Subject {
         name: name.to_owned(),
-        file: is_mapped.then(|| names::path(name)),
         graph: scene.graph,
         camera,
     })

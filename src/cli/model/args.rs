@@ -67,7 +67,7 @@ pub(super) struct HardwareArgs {
     pub(super) ray_order: Option<RayOrder>,
 }
 
-/// What is told beside the frame itself.
+/// What is reported beside the frame itself.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Tables")]
 pub(super) struct TableArgs {
@@ -204,8 +204,8 @@ impl HardwareArgs {
             let own = own.operations();
             if let Some(stranger) = own.iter().find(|name| !known.contains(name)) {
                 let known = known.join(", ");
-                let told = format!("there is no operation `{stranger}`; there are {known}");
-                return Err(CliError::new(Kind::Input, told).at(name));
+                let message = format!("there is no operation `{stranger}`; there are {known}");
+                return Err(CliError::new(Kind::Input, message).at(name));
             }
             table = table.with_overrides(&name, &text).map_err(wrong)?;
         }

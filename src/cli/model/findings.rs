@@ -221,10 +221,10 @@ fn simulate(
     let view = subject.graph.view();
     let progress = console.progress();
     progress.begin("cycles", counted.counter.records());
-    let mut told = 0;
+    let mut reported = 0;
     let mut ticks = Ticks(|_, records: u64| {
-        progress.advance(records.saturating_sub(told));
-        told = records;
+        progress.advance(records.saturating_sub(reported));
+        reported = records;
     });
     let drawn = match &args.files.trace {
         None => frame::simulate(&view, setup, hardware, overflow, &mut ticks)?,

@@ -11,13 +11,32 @@
 
 use glam::DVec3;
 
-use super::sample::{Seen, Shot, Target, main_normal};
+use super::shot::{Shot, Target};
 use crate::far::blend::{DIRECTIONS, Fit};
 
 /// Least cosine between normals of one object.
 const ONE_OBJECT: f64 = 0.9;
 /// How far behind a voxel the same object must go on, voxels along the ray.
 const GOES_ON: f64 = 16.0;
+
+/// The surface at a ray's end.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SurfaceSample {
+    /// Unit vector to the eye.
+    pub(super) towards_eye: DVec3,
+    /// Unit normal on the eye's side.
+    pub(super) normal: DVec3,
+    /// Linear light.
+    pub(super) color: DVec3,
+}
+
+/// A voxel that was seen.
+#[derive(Debug)]
+pub(super) struct Seen {
+    pub(super) place: [u8; 3],
+    pub(super) samples: Vec<SurfaceSample>,
+    pub(super) counted: Counted,
+}
 
 /// What probes found of a voxel.
 #[derive(Debug, Clone, Copy)]
@@ -157,4 +176,25 @@ impl Target<'_> {
             }
         }
     }
+}
+
+/// The direction in which normals agree best, whichever side they were seen from.
+pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
+    let mut columns = [DVec3::ZERO; 3];
+    let mut sum = DVec3::ZERO;
+    for sample in samples {
+        let n = sample.normal;
+        let aligned = if n.dot(sum) < 0.0 { -n } else { n };
+        sum += aligned;
+        for k in 0..3 {
+            columns[k] += n * n[k];
+        }
+    }
+    // The eigenvector of the greatest eigenvalue, by repetition.
+    let mut axis = sum.normalize_or(DVec3::Z);
+    for _ in 0..16 {
+        let turned = columns[0] * axis.x + columns[1] * axis.y + columns[2] * axis.z;
+        axis = turned.normalize_or(axis);
+    }
+    axis
 }

@@ -2,9 +2,11 @@
 
 use glam::DVec3;
 
+use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Occluders;
-use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled, Seen, Target};
+use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
+use super::shot::Target;
 use super::{shader_fit, surface_sample};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind};

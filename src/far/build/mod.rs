@@ -3,11 +3,13 @@
 //! The same triangles and options give the same bytes on any number of
 //! threads: a node's rays depend on its number and on nothing else.
 
+mod chance;
 mod count;
 mod grid;
 mod rays;
 mod sample;
 mod shader_fit;
+mod shot;
 mod split;
 mod touch;
 
@@ -25,8 +27,10 @@ use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity, triangle_bytes};
 use crate::graph::{PackedNormal, Progress};
 use crate::mesh::{Surface, barycentric, linear_to_srgb};
+use count::SurfaceSample;
 use rays::Occluders;
-use sample::{Rays, SurfaceSample, Target};
+use sample::Rays;
+use shot::Target;
 use split::{Branch, split};
 
 /// How far voxels are built.

@@ -5,47 +5,22 @@
 //! there: a voxel that none reaches is dropped.
 //! Then *probes* are aimed at random points of the outlines of the voxels that
 //! were seen, from random directions: what share of them ends in a voxel is
-//! its opacity, which `count` finds. Rays begin on the surface S, all points
-//! of which are `distance` voxels from the grid; everything from there on hides.
+//! its opacity (`count.rs`).
 
 use std::collections::VecDeque;
-use std::ops::Range;
 
 use glam::DVec3;
 
-use super::count::Counted;
-use super::grid::Grid;
-use super::rays::Occluders;
+use super::chance::Chance;
+use super::count::{Counted, Seen, SurfaceSample};
+use super::shot::{Shot, Target};
 use super::touch::{POINTS, Touched, touched};
-use crate::far::blend::Blend;
-use crate::split_mix::SplitMix;
 
-/// Steps of the search for S along a ray; it is nearly straight after the first.
-const STEPS_TO_S: u32 = 3;
 /// Most visibility rays from random directions at a voxel that none reached yet.
 pub(super) const MOST_VISIBILITY_RAYS: u32 = 24;
 /// Most of them from where neighbours were seen: what one window lets a ray
 /// through to lies side by side, and a random direction seldom finds the window.
 pub(super) const MOST_FOLLOWED: u8 = 24;
-
-/// The surface at a ray's end.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SurfaceSample {
-    /// Unit vector to the eye.
-    pub(super) towards_eye: DVec3,
-    /// Unit normal on the eye's side.
-    pub(super) normal: DVec3,
-    /// Linear light.
-    pub(super) color: DVec3,
-}
-
-/// A voxel that was seen.
-#[derive(Debug)]
-pub(super) struct Seen {
-    pub(super) place: [u8; 3],
-    pub(super) samples: Vec<SurfaceSample>,
-    pub(super) counted: Counted,
-}
 
 /// What the rays of a node found.
 #[derive(Debug)]
@@ -58,17 +33,6 @@ pub(super) struct Sampled {
     pub(super) hits: u32,
 }
 
-/// A node that is sampled.
-pub(super) struct Target<'t> {
-    pub(super) occluders: &'t Occluders,
-    pub(super) grid: Grid,
-    /// The node's own triangles among the occluders.
-    pub(super) own: Range<usize>,
-    /// Least distance of an eye that sees it, voxels.
-    pub(super) distance: f64,
-    pub(super) opacity_blend: Blend,
-}
-
 /// How many rays a node gets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Rays {
@@ -76,31 +40,6 @@ pub(super) enum Rays {
     PerVoxel(u32),
     /// So many in all, of which at most half are visibility rays.
     InAll(u32),
-}
-
-/// A ray that ended, in voxels of the grid.
-pub(super) struct Shot {
-    pub(super) from: DVec3,
-    pub(super) direction: DVec3,
-    /// Where it ends along its direction; infinite where it meets nothing.
-    pub(super) end: f64,
-    /// The triangle that it meets.
-    pub(super) triangle: usize,
-}
-
-/// Random numbers of a node.
-pub(super) struct Chance(SplitMix);
-
-impl Chance {
-    pub(super) fn new(seed: u64) -> Self {
-        let scrambled = seed.wrapping_mul(0xd134_2543_de82_ef95) ^ 0x9e37_79b9_7f4a_7c15;
-        Self(SplitMix::new(scrambled))
-    }
-
-    /// 0 to 1, without 1.
-    pub(super) fn unit(&mut self) -> f64 {
-        self.0.unit()
-    }
 }
 
 impl Target<'_> {
@@ -160,21 +99,6 @@ impl Target<'_> {
             rays: shots.len() as u32,
             hits,
         }
-    }
-
-    /// The voxel in which a ray ends at one of the node's own triangles.
-    pub(super) fn end_of(&self, shot: &Shot) -> Option<[u8; 3]> {
-        if !self.own.contains(&shot.triangle) {
-            return None;
-        }
-        let mut last = None;
-        for crossing in self.grid.along(shot.from, shot.direction) {
-            last = Some(crossing.place);
-            if crossing.leave > shot.end {
-                break;
-            }
-        }
-        last
     }
 
     /// Aims visibility rays at every voxel until one reaches something in it.
@@ -253,38 +177,6 @@ impl Target<'_> {
             shots.push(shot);
         }
     }
-
-    /// A ray from S through a point of the grid.
-    fn shoot(&self, point: DVec3, direction: DVec3) -> Shot {
-        let from = point - direction * self.back_to_surface(point, direction);
-        let meeting = self.occluders.nearest(self.grid.world(from), direction);
-        Shot {
-            from,
-            direction,
-            end: meeting.map_or(f64::INFINITY, |m| m.distance / self.grid.voxel),
-            triangle: meeting.map_or(usize::MAX, |m| m.triangle),
-        }
-    }
-
-    /// How far back from a point of the grid along a direction S is, voxels.
-    fn back_to_surface(&self, point: DVec3, direction: DVec3) -> f64 {
-        let cells = DVec3::from_array(self.grid.cells.map(f64::from));
-        // The distance from the grid grows ever faster along the ray: Newton's
-        // steps from beyond S come nearer to it and never go past.
-        let mut back = self.distance + cells.length();
-        for _ in 0..STEPS_TO_S {
-            let at = point - direction * back;
-            let outside = (at - cells).max(DVec3::ZERO) + at.min(DVec3::ZERO);
-            let distance = outside.length();
-            let slope = -outside.dot(direction) / distance;
-            // Beyond the grid there is a slope; not for a direction of zero length.
-            if slope.is_nan() || slope <= 0.0 {
-                break;
-            }
-            back -= (distance - self.distance) / slope;
-        }
-        back
-    }
 }
 
 /// The visibility rays of a node, as they are shot.
@@ -355,25 +247,4 @@ fn entry(place: [u8; 3], direction: DVec3, chance: &mut Chance) -> DVec3 {
     let mut point = DVec3::new(chance.unit(), chance.unit(), chance.unit());
     point[axis] = if direction[axis] < 0.0 { 1.0 } else { 0.0 };
     point + DVec3::from_array(place.map(f64::from))
-}
-
-/// The direction in which normals agree best, whichever side they were seen from.
-pub(super) fn main_normal(samples: &[SurfaceSample]) -> DVec3 {
-    let mut columns = [DVec3::ZERO; 3];
-    let mut sum = DVec3::ZERO;
-    for sample in samples {
-        let n = sample.normal;
-        let aligned = if n.dot(sum) < 0.0 { -n } else { n };
-        sum += aligned;
-        for k in 0..3 {
-            columns[k] += n * n[k];
-        }
-    }
-    // The eigenvector of the greatest eigenvalue, by repetition.
-    let mut axis = sum.normalize_or(DVec3::Z);
-    for _ in 0..16 {
-        let turned = columns[0] * axis.x + columns[1] * axis.y + columns[2] * axis.z;
-        axis = turned.normalize_or(axis);
-    }
-    axis
 }

@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::count::Counted;
-use super::sample::{Seen, SurfaceSample, main_normal};
+use super::count::{Counted, Seen, SurfaceSample, main_normal};
 use crate::far::blend::{Blend, DIRECTIONS, Fit};
 use crate::far::record::{Opacity, OpacityKind, Shader, Voxel};
 
@@ -203,7 +202,7 @@ mod tests {
     /// Counts of evenly spread directions, of which a share of each hits.
     fn counted(rays: u32, share: impl Fn(DVec3) -> f64) -> Counted {
         let mut counted = Counted::default();
-        let mut chance = crate::far::build::sample::Chance::new(5);
+        let mut chance = crate::far::build::chance::Chance::new(5);
         let samples = samples(|eye| (eye, eye));
         for ray in 0..rays as usize {
             // The first few are spread, too.

@@ -6,8 +6,8 @@
 
 use glam::{DVec3, IVec3};
 
+use super::chance::Chance;
 use super::grid::Grid;
-use super::sample::Chance;
 
 /// Points that are kept of a voxel.
 pub(super) const POINTS: usize = 4;

@@ -2,7 +2,7 @@
 //! that have them: plain code that defines what they do, and AVX2.
 //!
 //! An instruction set is a value that can only be had where the processor has
-//! it. Whoever holds one may call its steps. The walk itself is compiled once
+//! it. Whoever holds one may call its steps. The traversal is compiled once
 //! for each set (`compiled.rs`), so that these steps become a
 //! few instructions in the middle of it and not calls.
 //!
@@ -17,11 +17,11 @@ pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::Avx2;
 
+use super::constants::Constants;
 use super::strips::Row;
-use super::view::View;
 use super::window::Window;
 
-/// Four `f32`, of which a fourth is along for the ride.
+/// Four `f32`: three axes, and a fourth lane that is not used.
 pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
@@ -101,10 +101,16 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
 
     /// The windows of the children of a node of level `level`, whose centre's
     /// clip vector is given, in a band. A child's window holds all samples in its box.
-    fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows;
+    fn windows(
+        self,
+        constants: &Constants,
+        level: usize,
+        centre: &[f64; 3],
+        band: &Window,
+    ) -> Windows;
 
     /// By open sample of a square, which of the `wanted` parts the tables name, in
-    /// `found`; returns the open samples that have any, eight bits a row. `cells`: the three functions'
+    /// `candidates`; returns the open samples that have any, eight bits a row. `cells`: the three functions'
     /// values in cells at the first sample, and what a column and a row add.
     fn parts_of_samples(
         self,
@@ -112,7 +118,7 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
         cells: &[Self::Four; 3],
         wanted: u64,
         open: u64,
-        found: &mut Found,
+        candidates: &mut Candidates,
     ) -> u64;
 
     /// How far the three functions are from 0 at most, by sample of a square: values, at the first
@@ -144,7 +150,7 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32);
 }
 
-/// Parts by sample of a square.
+/// By sample of a square: the parts that its line may meet.
 #[derive(Debug)]
 #[repr(C, align(32))]
-pub(super) struct Found(pub(super) [u64; 64]);
+pub(super) struct Candidates(pub(super) [u64; 64]);

@@ -105,8 +105,14 @@ impl Isa for Scalar {
         [value; 4]
     }
 
-    fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows {
-        let (own, below) = (&view.levels[level], &view.levels[level + 1]);
+    fn windows(
+        self,
+        constants: &Constants,
+        level: usize,
+        centre: &[f64; 3],
+        band: &Window,
+    ) -> Windows {
+        let (own, below) = (&constants.levels[level], &constants.levels[level + 1]);
         let half = f64::from(own.side) / 4.0;
         let mut windows = Windows {
             sides: [[0; 8]; 4],
@@ -122,8 +128,8 @@ impl Isa for Scalar {
             }
             let mut side = [0; 4];
             for (axis, c) in [x, y].into_iter().enumerate() {
-                let at = c * view.root_samples / w - 0.5;
-                let edges = view.edge.iter().map(|e| (e[axis] - at * e[2]).abs());
+                let at = c * constants.root_samples / w - 0.5;
+                let edges = constants.edge.iter().map(|e| (e[axis] - at * e[2]).abs());
                 let extent = edges.sum::<f64>() * (half / nearest);
                 let extent = extent + (extent + at.abs() + 1.0) * TINY_WINDOW_MARGIN;
                 let (first, last) = ([band.left, band.top][axis], [band.right, band.bottom][axis]);
@@ -144,7 +150,7 @@ impl Isa for Scalar {
         cells: &[[f32; 4]; 3],
         wanted: u64,
         open: u64,
-        found: &mut Found,
+        candidates: &mut Candidates,
     ) -> u64 {
         let mut any = 0;
         for sample in (0..64).filter(|sample| open >> sample & 1 != 0) {
@@ -152,7 +158,7 @@ impl Isa for Scalar {
             let [first, step_x, step_y] = *cells;
             let at = step_x.fma([x; 4], step_y.fma([y; 4], first)).cells();
             let parts = (0..3).fold(wanted, |parts, j| parts & tables[j][at[j] % CELLS]);
-            found.0[sample] = parts;
+            candidates.0[sample] = parts;
             any |= u64::from(parts != 0) << sample;
         }
         any

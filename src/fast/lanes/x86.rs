@@ -162,10 +162,16 @@ impl Isa for Avx2 {
     }
 
     #[inline(always)]
-    fn windows(self, view: &View, level: usize, centre: &[f64; 3], band: &Window) -> Windows {
-        let (own, below) = (&view.levels[level], &view.levels[level + 1]);
+    fn windows(
+        self,
+        constants: &Constants,
+        level: usize,
+        centre: &[f64; 3],
+        band: &Window,
+    ) -> Windows {
+        let (own, below) = (&constants.levels[level], &constants.levels[level + 1]);
         if centre[2] > own.tiny_depth {
-            return Scalar.windows(view, level, centre, band);
+            return Scalar.windows(constants, level, centre, band);
         }
         let mut windows = Windows {
             sides: [[0; 8]; 4],
@@ -188,7 +194,7 @@ impl Isa for Avx2 {
                 }};
             }
             let (w_low, w_high) = (at!(2, 0), at!(2, 4));
-            let root = _mm256_set1_pd(view.root_samples);
+            let root = _mm256_set1_pd(constants.root_samples);
             let (over_low, over_high) = (_mm256_div_pd(root, w_low), _mm256_div_pd(root, w_high));
             let half_sample = _mm256_set1_pd(0.5);
             let depth = _mm256_set1_pd(below.half_depth);
@@ -208,7 +214,7 @@ impl Isa for Avx2 {
                     _mm256_fmsub_pd(at!(axis, 4), over_high, half_sample)
                 );
                 let mut edges = zero;
-                for e in &view.edge_lanes {
+                for e in &constants.edge_lanes {
                     let along = _mm256_fnmadd_ps(at, _mm256_set1_ps(e[2]), _mm256_set1_ps(e[axis]));
                     edges = _mm256_add_ps(edges, _mm256_and_ps(plain, along));
                 }
@@ -242,7 +248,7 @@ impl Isa for Avx2 {
         cells: &[Floats; 3],
         wanted: u64,
         open: u64,
-        found: &mut Found,
+        candidates: &mut Candidates,
     ) -> u64 {
         let mut any = 0u64;
         // SAFETY: as above; cells are looked up below `CELLS`, which is what a
@@ -265,7 +271,7 @@ impl Isa for Avx2 {
             ];
             let rows = 8 - open.leading_zeros() as usize / 8;
             let mut left = open;
-            for row in found.0.chunks_exact_mut(8).take(rows) {
+            for row in candidates.0.chunks_exact_mut(8).take(rows) {
                 let is_open = left & 0xff != 0;
                 left >>= 8;
                 if !is_open {
@@ -442,7 +448,7 @@ impl Isa for Avx2 {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
             let (mut left, mut at) = (samples, first);
-            // All eight rows, drawn or not: how many there are cannot be foretold.
+            // All eight rows, drawn or not: how many there are cannot be predicted.
             // Rows begin at `first + row * width`, and all of their entries are in the slice.
             let end = width
                 .saturating_mul(7)

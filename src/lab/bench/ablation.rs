@@ -1,13 +1,10 @@
 //! `bench ablation`: what each technique is worth, by switching it off.
 
-use std::path::Path;
-
 use serde::Serialize;
 
 use super::candidate::{Candidate, Family, Frames};
-use super::harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
+use super::harness::{BenchError, Contender, Drawer, Harness, Measured};
 use super::measure::{Subject, as_map, counter, picture_of};
-use super::pages::{self, FirstFrames};
 use super::statistics::Summary;
 use crate::measure::CoverageError;
 use crate::project::{Contents, FrameSetup, SetupOptions, Stats, Viewer};
@@ -120,17 +117,6 @@ pub fn run(
             row.counters.push(("attributes_read", read));
         }
     }
-    drop(contenders);
-    if let Some(file) = &subject.file {
-        rows.extend(page_rows(
-            subject,
-            file,
-            &setup,
-            families,
-            &right,
-            harness.schedule(),
-        )?);
-    }
     Ok(rows)
 }
 
@@ -157,39 +143,6 @@ fn with_frames(contender: Contender<'_>, frames: Frames) -> Result<Contender<'_>
         attributes,
         ..contender
     })
-}
-
-/// The rows about pages of the file that a scene is mapped from: of each
-/// family two, whose times are compared with each other.
-fn page_rows(
-    subject: &Subject,
-    file: &Path,
-    setup: &FrameSetup,
-    families: &[Family],
-    right: &[[i32; 4]],
-    schedule: Schedule,
-) -> Result<Vec<AblationRow>, BenchError> {
-    let size = (setup.width, setup.height);
-    let mut rows: Vec<AblationRow> = Vec::new();
-    for family in families {
-        let mut needed: Option<(f64, Vec<[i32; 4]>)> = None;
-        for (reads_all, variant, about) in pages::VARIANTS {
-            let mut engine = (family.whole.make)(1);
-            let measured = pages::measure(file, setup, &mut engine, reads_all, schedule)?;
-            let Some(FirstFrames { measured, voxels }) = measured else {
-                continue;
-            };
-            let mut row = blank(subject, size, &family.whole, variant, about);
-            row.work_unit = pages::RESIDENT;
-            fill_in(&mut row, measured);
-            let (needed_ms, picture) = needed.get_or_insert((row.median_ms(), voxels.clone()));
-            row.time_ratio = ratio(row.median_ms(), *needed_ms);
-            row.changed = crate::measure::count_differing(&voxels, picture);
-            row.coverage = CoverageError::between(&voxels, right);
-            rows.push(row);
-        }
-    }
-    Ok(rows)
 }
 
 fn blank(
@@ -232,24 +185,9 @@ fn ratio(ms: f64, of_ms: f64) -> f64 {
 /// The rows as a table.
 #[must_use]
 pub fn table(rows: &[AblationRow]) -> Table {
-    let columns = [
-        "scene",
-        "size",
-        "engine",
-        "variant",
-        "median_ms",
-        "deviation_ms",
-        "thread_median_ms",
-        "time_ratio",
-        "work",
-        "work_unit",
-        "picture",
-        "changed",
-        "extra",
-        "missing",
-        "other_voxel",
-    ];
-    let mut table = Table::new("Techniques switched off in turn", &columns);
+    let columns = "scene size engine variant median_ms deviation_ms thread_median_ms time_ratio \
+        work work_unit picture changed extra missing other_voxel";
+    let mut table = Table::of("Techniques switched off in turn", columns);
     for row in rows {
         let picture = if row.changed == 0 { "same" } else { "changed" };
         table.rows.push(vec![

@@ -8,22 +8,9 @@ use crate::report::{Cell, Table};
 /// The times as a table.
 #[must_use]
 pub fn table(timings: &[Timing]) -> Table {
-    let columns = [
-        "scene",
-        "size",
-        "engine",
-        "threads",
-        "median_ms",
-        "min_ms",
-        "deviation_ms",
-        "thread_median_ms",
-        "work",
-        "work_unit",
-        "extra",
-        "missing",
-        "other_voxel",
-    ];
-    let mut table = Table::new("Engines: clear, traverse and colour", &columns);
+    let columns = "scene size engine threads median_ms min_ms deviation_ms thread_median_ms work \
+        work_unit extra missing other_voxel";
+    let mut table = Table::of("Engines: clear, traverse and colour", columns);
     for timing in timings {
         let coverage = timing.coverage;
         table.rows.push(vec![

@@ -1,7 +1,5 @@
 //! Scenes, sizes, engines and thread counts become contenders and times.
 
-use std::path::PathBuf;
-
 use serde::{Serialize, Serializer};
 
 use super::candidate::Candidate;
@@ -21,8 +19,6 @@ pub struct Subject {
     pub graph: Graph,
     /// The camera; its size in pixels is replaced.
     pub camera: Camera,
-    /// The file that the scene is mapped from, if it is.
-    pub file: Option<PathBuf>,
 }
 
 impl Subject {

@@ -2,17 +2,15 @@
 //!
 //! [`harness`] runs whoever competes in turn; [`mod@measure`] makes contenders
 //! of scenes, sizes, engines and thread counts; the experiments [`engines`],
-//! [`scaling`], [`ablation`] and [`coherence`] define what is measured and how it is shown. Engines
+//! [`scaling`] and [`ablation`] define what is measured and how it is shown. Engines
 //! are passed in as lists of [`Candidate`]s: no engine is named here.
 
 pub mod ablation;
 mod candidate;
 mod clock;
-pub mod coherence;
 pub mod engines;
 pub mod harness;
 pub mod measure;
-mod pages;
 mod power_law;
 pub mod scaling;
 mod scan;

@@ -114,24 +114,9 @@ impl Growth {
 /// All times; `exponent` is the growth from the row before.
 #[must_use]
 pub fn points_table(growths: &[Growth]) -> Table {
-    let columns = [
-        "growing",
-        "scene",
-        "engine",
-        "threads",
-        "size",
-        "pixels",
-        "voxels",
-        "median_ms",
-        "min_ms",
-        "deviation_ms",
-        "thread_median_ms",
-        "exponent",
-        "work",
-        "work_unit",
-        "paper_table_1_ms",
-    ];
-    let mut table = Table::new("Growth of a frame's time", &columns);
+    let columns = "growing scene engine threads size pixels voxels median_ms min_ms deviation_ms \
+        thread_median_ms exponent work work_unit paper_table_1_ms";
+    let mut table = Table::of("Growth of a frame's time", columns);
     for growth in growths {
         let mut before: Option<&Timing> = None;
         for timing in &growth.points {
@@ -168,20 +153,10 @@ pub fn points_table(growths: &[Growth]) -> Table {
 /// The laws, one row for time and one for work of each series.
 #[must_use]
 pub fn laws_table(growths: &[Growth]) -> Table {
-    let columns = [
-        "growing",
-        "series",
-        "engine",
-        "threads",
-        "of",
-        "points",
-        "exponent",
-        "r_squared",
-        "worst_ratio",
-    ];
+    let columns = "growing series engine threads of points exponent r_squared worst_ratio";
     let title =
         "Fitted power laws: exponent, share explained, greatest factor between a point and the law";
-    let mut table = Table::new(title, &columns);
+    let mut table = Table::of(title, columns);
     for growth in growths {
         let unit = growth.points.first().map_or("work", |t| t.work_unit);
         for (of, law) in [("time", growth.time_law), (unit, growth.work_law)] {

@@ -204,17 +204,9 @@ fn add_new(names: &mut Vec<&'static str>, more: impl Iterator<Item = &'static st
 /// Vertex errors by octree level of some methods of a scene.
 #[must_use]
 pub fn vertex_table(scene: &SceneErrors, wanted: &dyn Fn(&str) -> bool) -> Table {
-    let columns = [
-        "method",
-        "level",
-        "records",
-        "on_screen",
-        "mean_px",
-        "p999_px",
-        "worst_px",
-    ];
+    let columns = "method level records on_screen mean_px p999_px worst_px";
     let title = format!("{}: vertices against exact projection", scene.scene);
-    let mut table = Table::new(title, &columns);
+    let mut table = Table::of(title, columns);
     for row in scene.rows.iter().filter(|row| wanted(&row.method)) {
         for level in row.outcome.iter().flat_map(|o| &o.vertex_levels) {
             table.rows.push(vec![

@@ -158,22 +158,6 @@ pub fn tolerance_in_words(tolerance_px: f64) -> String {
     tolerance_px.to_string()
 }
 
-fn cage_name(cage: CageKind) -> &'static str {
-    match cage {
-        CageKind::Corners => "corners",
-        CageKind::Frame => "frame",
-    }
-}
-
-fn coverage_name(coverage: Coverage) -> &'static str {
-    match coverage {
-        Coverage::Any => "any",
-        Coverage::Center => "center",
-        Coverage::Exact => "exact",
-        Coverage::Alpha => "alpha",
-    }
-}
-
 impl DrawingMethod for VoxelMethod<'_> {
     fn family(&self) -> &'static str {
         "voxels"
@@ -181,11 +165,11 @@ impl DrawingMethod for VoxelMethod<'_> {
 
     fn name(&self) -> String {
         let o = &self.options;
-        let mut name = coverage_name(o.coverage).to_owned();
+        let mut name = o.coverage.name().to_owned();
         if !o.coverage.draws_outlines() {
             name += &format!(" {}", tolerance_in_words(o.tolerance_px));
         }
-        name += &format!(" {}", cage_name(o.cage));
+        name += &format!(" {}", o.cage.name());
         if o.bits != 64 || o.frac.is_some() {
             name += &format!(" {} bits", o.bits);
         }
@@ -207,9 +191,9 @@ impl DrawingMethod for VoxelMethod<'_> {
     fn settings(&self) -> Vec<(&'static str, String)> {
         let o = &self.options;
         vec![
-            ("coverage", coverage_name(o.coverage).to_owned()),
+            ("coverage", o.coverage.name().to_owned()),
             ("tolerance", tolerance_in_words(o.tolerance_px)),
-            ("cage", cage_name(o.cage).to_owned()),
+            ("cage", o.cage.name().to_owned()),
             ("bits", o.bits.to_string()),
             ("lod", o.lod_px.to_string()),
             ("aa", (1 << o.aa_log2).to_string()),
@@ -222,7 +206,7 @@ impl DrawingMethod for VoxelMethod<'_> {
             0 => String::new(),
             aa => format!(", aa {}", 1 << aa),
         };
-        format!("{}{aa}", coverage_name(self.options.coverage))
+        format!("{}{aa}", self.options.coverage.name())
     }
 
     fn begin(&mut self, camera: &Camera) -> Result<(), Refused> {

@@ -225,21 +225,10 @@ fn most(values: &[f64]) -> f64 {
 /// floor as a method of its own.
 #[must_use]
 pub fn table(films: &[Films]) -> Table {
-    let columns = [
-        "scene",
-        "motion",
-        "method",
-        "flicker",
-        "flicker_worst",
-        "pop",
-        "pop_worst",
-        "popped",
-        "error",
-        "remark",
-    ];
-    let mut table = Table::new(
+    let columns = "scene motion method flicker flicker_worst pop pop_worst popped error remark";
+    let mut table = Table::of(
         "Flicker and pop: rms of linear light, in thousandths of white",
-        &columns,
+        columns,
     );
     let thousandths = |value: f64| Cell::Number(1e3 * value, 2);
     for films in films {

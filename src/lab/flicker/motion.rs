@@ -1,8 +1,8 @@
 //! Cameras that move.
 
+use glam::DVec3;
 use serde::Serialize;
 
-use crate::lab::bench::coherence::turned;
 use crate::project::{Camera, CameraError};
 
 /// How a camera moves from frame to frame.
@@ -71,10 +71,21 @@ impl Motion {
     }
 }
 
+/// A camera that went around its target, about the direction that is up.
+fn turned(camera: &Camera, degrees: f64) -> Camera {
+    let axis = camera.up.normalize_or_zero();
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let offset = camera.eye - camera.target;
+    let along = axis * axis.dot(offset);
+    let around: DVec3 = (offset - along) * cos + axis.cross(offset) * sin;
+    Camera {
+        eye: camera.target + along + around,
+        ..*camera
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
-
     use super::*;
 
     fn camera() -> Camera {
@@ -108,5 +119,23 @@ mod tests {
         let by = DVec3::new(0.3, 0.0, 0.0);
         assert!((panned.eye - camera().eye - by).length() < 1e-12);
         assert!((panned.target - by).length() < 1e-12);
+    }
+
+    #[test]
+    fn a_turn_keeps_height_and_distance() {
+        let camera = Camera {
+            eye: DVec3::new(5.0, 1.0, 7.0),
+            target: DVec3::new(2.0, 1.0, 3.0),
+            up: DVec3::Z * 4.0,
+            fov_degrees: 60.0,
+            width: 1,
+            height: 1,
+        };
+        let quarter = turned(&camera, 90.0).eye;
+        assert!(
+            (quarter - DVec3::new(2.0, 4.0, 7.0)).length() < 1e-12,
+            "{quarter}"
+        );
+        assert_eq!(turned(&camera, 0.0), camera);
     }
 }

@@ -251,11 +251,11 @@ mod tests {
         assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
         // A node that says which children are leaves saves each ray that hits the last read.
         let mut frame = plain.clone();
-        let told = count(&view, &setup, &mut frame, RayOrder::Rows, true, &mut |_| ());
+        let with_leaf_masks = count(&view, &setup, &mut frame, RayOrder::Rows, true, &mut |_| ());
         assert_eq!(frame, counted);
         let hits = counted.drawn() as u64;
         assert_eq!(
-            told.of(FloatStep::NodeRead) + hits,
+            with_leaf_masks.of(FloatStep::NodeRead) + hits,
             counts.of(FloatStep::NodeRead)
         );
         // A chain is no longer than all steps of a kind.

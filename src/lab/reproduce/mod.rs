@@ -1,33 +1,26 @@
-//! The image-order paper's results in one go: Table I, the claim that time does not
-//! depend on the object, the claim about occlusion order, and its figures.
+//! The image-order paper's results in one go: Table I, the claim that time does not depend on the object, and the
+//! claim about occlusion order.
 //!
-//! What does not depend on the machine (hashes of pictures, records,
-//! operations) is one list, [`Evidence`]; a rerun compares it. Times are
-//! another. The image-order paper's results and ours: `spec/lab.md`.
+//! What does not depend on the computer (hashes of pictures, records, operations) is one list, [`Evidence`]; times
+//! are another. The image-order paper's results and ours: `spec/lab.md`.
 
-pub mod figures;
 #[cfg(feature = "cli")]
 pub mod tables;
 
 use hwmodel::Overflow;
-use hwmodel::count::Counter;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use crate::frame::Frame;
 use crate::graph::Progress;
 use crate::lab::bench::{
     BenchError, BenchPlan, Candidate, Family, Harness, Schedule, Subject, Timing, ablation, measure,
 };
 use crate::lab::model::frame::count_operations;
-use crate::picture::{self, Background, Picture, Shading, resolve};
-use crate::project::{FrameSetup, SetupOptions};
+use crate::picture::{self, Background, Shading, resolve};
+use crate::project::SetupOptions;
 
-/// What is reproduced: `config.toml`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Config {
-    /// Version of this table.
-    pub version: u32,
+/// What is reproduced, and how.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
     /// Sides of Table I's pictures, pixels.
     pub sides: Vec<u32>,
     /// Side of the pictures in which objects are compared, pixels.
@@ -38,38 +31,26 @@ pub struct Config {
     pub complex: Vec<String>,
     /// Scenes of one kind and growing detail.
     pub growing: Vec<String>,
-    /// Frames before those that count.
-    pub warmup: u32,
-    /// Frames that count.
-    pub runs: u32,
+    /// How often each contender draws.
+    pub schedule: Schedule,
 }
 
-/// [`Config::version`] of this program.
-pub const VERSION: u32 = 1;
-
-impl Default for Config {
+impl Default for Plan {
     fn default() -> Self {
         let text = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let terrain = |depth| format!("gen:terrain,depth={depth}");
         Self {
-            version: VERSION,
             sides: vec![64, 128, 256, 512, 1024],
             object_side: 512,
             simple: text(&["gen:sphere,depth=5", "gen:checker,depth=2"]),
             complex: text(&["bundled", "gen:menger,depth=5", "gen:truss,depth=8"]),
-            growing: text(&[
-                "gen:terrain,depth=6",
-                "gen:terrain,depth=7",
-                "gen:terrain,depth=8",
-                "gen:terrain,depth=9",
-                "gen:terrain,depth=10",
-            ]),
-            warmup: 1,
-            runs: 5,
+            growing: (6..=10).map(terrain).collect(),
+            schedule: Schedule { warmup: 1, runs: 5 },
         }
     }
 }
 
-impl Config {
+impl Plan {
     /// All scenes, each once, in order.
     #[must_use]
     pub fn scenes(&self) -> Vec<String> {
@@ -80,39 +61,6 @@ impl Config {
             }
         }
         all
-    }
-
-    /// How often each contender draws.
-    #[must_use]
-    pub fn schedule(&self) -> Schedule {
-        Schedule {
-            warmup: self.warmup,
-            runs: self.runs,
-        }
-    }
-
-    /// Whether it can be run, in words if not.
-    ///
-    /// # Errors
-    /// Says what is wrong.
-    pub fn check(&self) -> Result<(), String> {
-        if self.version != VERSION {
-            return Err(format!(
-                "version {} of the configuration, this program has {VERSION}",
-                self.version
-            ));
-        }
-        let sides = || self.sides.iter().chain([&self.object_side]);
-        if self.sides.is_empty() || sides().any(|side| !(1..=4096).contains(side)) {
-            return Err("sides must be 1 to 4096 pixels, one at the least".to_owned());
-        }
-        if self.simple.is_empty() || self.complex.is_empty() {
-            return Err("there must be a simple and a complex scene".to_owned());
-        }
-        if self.runs == 0 || self.runs > 10_000 || self.warmup > 1000 {
-            return Err("runs must be 1 to 10000, warmup 0 to 1000".to_owned());
-        }
-        Ok(())
     }
 }
 
@@ -125,8 +73,8 @@ pub fn settings() -> [(&'static str, SetupOptions); 2] {
     ]
 }
 
-/// What a frame is on every machine.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+/// What a frame is on every computer.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Evidence {
     /// The scene.
     pub scene: String,
@@ -146,17 +94,6 @@ pub struct Evidence {
     pub voxels: u64,
     /// Nodes of the scene.
     pub nodes: u64,
-}
-
-/// A frame that was drawn for the evidence.
-#[derive(Debug)]
-pub struct Drawn {
-    /// What it is.
-    pub evidence: Evidence,
-    /// What it shows.
-    pub picture: Picture,
-    /// All operations.
-    pub counter: Counter,
 }
 
 /// Why something was not reproduced.
@@ -179,74 +116,37 @@ pub enum ReproduceError {
 }
 
 /// Draws one frame on the machine and counts.
-///
-/// # Errors
-/// When it cannot be set up or drawn.
-pub fn draw(
+fn count(
     subject: &Subject,
     side: u32,
     name: &str,
     options: &SetupOptions,
-) -> Result<Drawn, ReproduceError> {
+) -> Result<Evidence, ReproduceError> {
     let setup = subject.setup((side, side), options)?;
     let graph = &subject.graph;
     let counted = count_operations(&graph.view(), &setup, Overflow::Trap);
-    let (frame, counter, stats) = counted.map_err(|source| ReproduceError::Engine {
+    let (frame, counter, _) = counted.map_err(|source| ReproduceError::Engine {
         scene: subject.name.clone(),
         source,
     })?;
-    let picture = shown(&frame, subject, &setup)?;
-    let records = stats.iter().find(|(name, _)| *name == "records");
-    Ok(Drawn {
-        evidence: Evidence {
-            scene: subject.name.clone(),
-            settings: name.to_owned(),
-            side,
-            hash: picture::hash(&picture),
-            covered: frame.drawn() as u64,
-            records: records.map_or(0, |r| r.1),
-            operations: counter.ops(),
-            voxels: graph.voxels,
-            nodes: graph.len() as u64,
-        },
-        picture,
-        counter,
-    })
-}
-
-fn shown(
-    frame: &Frame,
-    subject: &Subject,
-    setup: &FrameSetup,
-) -> Result<Picture, picture::ResolveError> {
-    resolve(
-        frame,
-        &subject.graph,
-        setup,
+    let picture = resolve(
+        &frame,
+        graph,
+        &setup,
         Shading::Lambert,
         Background::default(),
-    )
-}
-
-/// The picture that an engine draws of a subject.
-///
-/// # Errors
-/// When it cannot be set up or drawn.
-pub fn picture_by(
-    candidate: &Candidate,
-    subject: &Subject,
-    side: u32,
-    options: &SetupOptions,
-) -> Result<Picture, ReproduceError> {
-    let setup = subject.setup((side, side), options)?;
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let mut engine = (candidate.make)(1);
-    let drawn = engine.render(&subject.graph.view(), &setup, &mut frame);
-    drawn.map_err(|source| ReproduceError::Engine {
+    )?;
+    Ok(Evidence {
         scene: subject.name.clone(),
-        source,
-    })?;
-    Ok(shown(&frame, subject, &setup)?)
+        settings: name.to_owned(),
+        side,
+        hash: picture::hash(&picture),
+        covered: frame.drawn() as u64,
+        records: counter.records(),
+        operations: counter.ops(),
+        voxels: graph.voxels,
+        nodes: graph.len() as u64,
+    })
 }
 
 /// All that is the same on every machine: Table I's scene at every size, and
@@ -255,16 +155,16 @@ pub fn picture_by(
 /// # Errors
 /// When a frame cannot be set up or drawn.
 pub fn evidence(
-    config: &Config,
+    plan: &Plan,
     subjects: &[Subject],
     progress: &dyn Progress,
-) -> Result<Vec<Drawn>, ReproduceError> {
+) -> Result<Vec<Evidence>, ReproduceError> {
     let mut wanted: Vec<(&Subject, u32)> = Vec::new();
     if let Some(first) = subjects.first() {
-        wanted.extend(config.sides.iter().map(|&side| (first, side)));
+        wanted.extend(plan.sides.iter().map(|&side| (first, side)));
     }
     for subject in subjects {
-        let one = (subject, config.object_side);
+        let one = (subject, plan.object_side);
         let is_there = |(s, side): &(&Subject, u32)| s.name == one.0.name && *side == one.1;
         if !wanted.iter().any(is_there) {
             wanted.push(one);
@@ -274,7 +174,7 @@ pub fn evidence(
     let mut all = Vec::new();
     for (subject, side) in wanted {
         for (name, options) in settings() {
-            all.push(draw(subject, side, name, &options)?);
+            all.push(count(subject, side, name, &options)?);
             progress.advance(1);
         }
     }
@@ -370,49 +270,4 @@ pub fn order(
         }
     }
     Ok(rows)
-}
-
-/// Entries in which two lists of evidence differ, in words.
-#[must_use]
-pub fn differences(recorded: &[Evidence], found: &[Evidence]) -> Vec<String> {
-    let mut all = Vec::new();
-    for was in recorded {
-        let same = |e: &&Evidence| {
-            (&e.scene, &e.settings, e.side) == (&was.scene, &was.settings, was.side)
-        };
-        let name = format!(
-            "{}, {} settings, {} pixels a side",
-            was.scene, was.settings, was.side
-        );
-        let Some(is) = found.iter().find(same) else {
-            all.push(format!("{name}: was recorded, is not drawn"));
-            continue;
-        };
-        if is.hash != was.hash {
-            all.push(format!(
-                "{name}: the picture's hash is {}, was {}",
-                is.hash, was.hash
-            ));
-        }
-        let counts = [
-            ("covered pixels", was.covered, is.covered),
-            ("records", was.records, is.records),
-            ("operations", was.operations, is.operations),
-            ("voxels", was.voxels, is.voxels),
-            ("nodes", was.nodes, is.nodes),
-        ];
-        for (what, was, is) in counts {
-            if was != is {
-                all.push(format!("{name}: {is} {what}, were {was}"));
-            }
-        }
-    }
-    if found.len() != recorded.len() {
-        all.push(format!(
-            "{} frames, {} were recorded",
-            found.len(),
-            recorded.len()
-        ));
-    }
-    all
 }

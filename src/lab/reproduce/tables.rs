@@ -43,20 +43,11 @@ fn evidence_of<'e>(all: &'e [Evidence], timed: &Timed) -> Option<&'e Evidence> {
 /// Table I.
 #[must_use]
 pub fn table_one(times: &[Timed], evidence: &[Evidence]) -> Table {
-    let columns = [
-        "engine",
-        "size",
-        "paper_ms",
-        "median_ms",
-        "min_ms",
-        "paper_over_ours",
-        "records",
-        "operations",
-        "exponent_from_row_above",
-    ];
-    let mut table = Table::new(
+    let columns = "engine size paper_ms median_ms min_ms paper_over_ours records operations \
+        exponent_from_row_above";
+    let mut table = Table::of(
         "Table I: a frame's time by the picture's size (processor time of one thread; the operations are the machine's)",
-        &columns,
+        columns,
     );
     for name in names(times) {
         let mut before: Option<(f64, f64)> = None;
@@ -125,17 +116,9 @@ pub fn laws(times: &[Timed]) -> Table {
 /// Objects of all kinds at one size.
 #[must_use]
 pub fn objects(times: &[Timed], evidence: &[Evidence]) -> Table {
-    let columns = [
-        "engine",
-        "scene",
-        "voxels",
-        "covered_pixels",
-        "median_ms",
-        "us_a_covered_pixel",
-        "records",
-        "records_a_covered_pixel",
-    ];
-    let mut table = Table::new("Objects at one size", &columns);
+    let columns = "engine scene voxels covered_pixels median_ms us_a_covered_pixel records \
+        records_a_covered_pixel";
+    let mut table = Table::of("Objects at one size", columns);
     for name in names(times) {
         for timed in times.iter().filter(|t| engine_label(t) == name) {
             let timing = &timed.timing;
@@ -162,14 +145,9 @@ pub fn objects(times: &[Timed], evidence: &[Evidence]) -> Table {
 /// of scenes of one kind.
 #[must_use]
 pub fn independence(times: &[Timed], growing: &[String]) -> Table {
-    let columns = [
-        "engine",
-        "voxels_greatest_over_least",
-        "time_greatest_over_least",
-        "exponent_in_voxels_all",
-        "exponent_in_voxels_one_kind",
-    ];
-    let mut table = Table::new("Does time depend on the object?", &columns);
+    let columns = "engine voxels_greatest_over_least time_greatest_over_least \
+        exponent_in_voxels_all exponent_in_voxels_one_kind";
+    let mut table = Table::of("Does time depend on the object?", columns);
     for name in names(times) {
         let of_name = || times.iter().filter(|t| engine_label(t) == name);
         let spread = |y: &dyn Fn(&Timed) -> f64| {
@@ -198,17 +176,9 @@ pub fn independence(times: &[Timed], growing: &[String]) -> Table {
 /// Techniques that rest on occlusion order.
 #[must_use]
 pub fn order(rows: &[(&'static str, ablation::AblationRow)]) -> Table {
-    let columns = [
-        "scene",
-        "settings",
-        "machine",
-        "median_ms",
-        "times_as_long",
-        "records",
-        "pixels_that_change",
-        "wrong_against_exact",
-    ];
-    let mut table = Table::new("With and without occlusion order", &columns);
+    let columns = "scene settings machine median_ms times_as_long records pixels_that_change \
+        wrong_against_exact";
+    let mut table = Table::of("With and without occlusion order", columns);
     for (settings, row) in rows {
         if !row.variant.starts_with("occlusion")
             && !row.variant.starts_with("fill")
@@ -233,16 +203,8 @@ pub fn order(rows: &[(&'static str, ablation::AblationRow)]) -> Table {
 /// The recorded frames.
 #[must_use]
 pub fn hashes(evidence: &[Evidence]) -> Table {
-    let columns = [
-        "scene",
-        "settings",
-        "side",
-        "hash",
-        "covered",
-        "records",
-        "operations",
-    ];
-    let mut table = Table::new("Frames, the same on every machine", &columns);
+    let columns = "scene settings side hash covered records operations";
+    let mut table = Table::of("Frames, the same on every machine", columns);
     for e in evidence {
         table.rows.push(vec![
             Cell::Text(e.scene.clone()),

@@ -55,31 +55,11 @@ impl fmt::Display for Case {
         write!(
             f,
             ";cage={};tolerance={};coverage={};lod={}",
-            cage_name(options.cage),
+            options.cage.name(),
             options.tolerance_px,
-            coverage_name(options.coverage),
+            options.coverage.name(),
             options.lod_px
         )
-    }
-}
-
-/// A cage's name.
-#[must_use]
-pub fn cage_name(cage: CageKind) -> &'static str {
-    match cage {
-        CageKind::Corners => "corners",
-        CageKind::Frame => "frame",
-    }
-}
-
-/// A rule's name.
-#[must_use]
-pub fn coverage_name(coverage: Coverage) -> &'static str {
-    match coverage {
-        Coverage::Any => "any",
-        Coverage::Center => "center",
-        Coverage::Exact => "exact",
-        Coverage::Alpha => "alpha",
     }
 }
 
@@ -136,20 +116,12 @@ impl FromStr for Case {
                 "tolerance" => options.tolerance_px = real("pixels, or inf")?,
                 "lod" => options.lod_px = real("pixels")?,
                 "cage" => {
-                    options.cage = match value {
-                        "corners" => CageKind::Corners,
-                        "frame" => CageKind::Frame,
-                        _ => return Err(wrong("corners or frame")),
-                    }
+                    let named = CageKind::ALL.into_iter().find(|cage| cage.name() == value);
+                    options.cage = named.ok_or_else(|| wrong("corners or frame"))?;
                 }
                 "coverage" => {
-                    options.coverage = match value {
-                        "any" => Coverage::Any,
-                        "center" => Coverage::Center,
-                        "exact" => Coverage::Exact,
-                        "alpha" => Coverage::Alpha,
-                        _ => return Err(wrong("any, center or exact")),
-                    }
+                    let named = Coverage::ALL.into_iter().find(|rule| rule.name() == value);
+                    options.coverage = named.ok_or_else(|| wrong("any, center, exact or alpha"))?;
                 }
                 _ => {
                     return Err(format!(
@@ -236,9 +208,9 @@ impl Case {
         }
         line += &format!(
             " --cage {} --tolerance {} --coverage {} --lod {} -o failing.png",
-            cage_name(options.cage),
+            options.cage.name(),
             options.tolerance_px,
-            coverage_name(options.coverage),
+            options.coverage.name(),
             options.lod_px
         );
         Some(line)

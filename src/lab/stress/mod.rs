@@ -8,6 +8,7 @@ pub mod case;
 mod check;
 #[cfg(test)]
 mod mutants;
+mod outcome;
 pub mod scene;
 mod shrink;
 mod specified;
@@ -19,9 +20,10 @@ mod vertex;
 pub mod viewpoint;
 
 pub use case::Case;
-pub use check::{Check, End, Failure, Outcome, PATIENCE, STRICT_TOLERANCE};
+pub use check::{PATIENCE, STRICT_TOLERANCE};
+pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;
 pub use sweep::{COVERAGES, Failed, Findings, Key, SweepPlan, TOLERANCES, Tally, run_case, sweep};
 #[cfg(feature = "cli")]
-pub use tables::{panels, rows, summary, tables};
+pub use tables::{panels, rows, tables};
 pub use vertex::{Hold, Worst};

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::case::Case;
-use super::check::{Check, Oracle, check};
+use super::check::{Oracle, check};
+use super::outcome::Check;
 use super::scene::StressScene;
 use super::subject::Subject;
 use crate::project::CageKind;

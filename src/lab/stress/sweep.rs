@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::case::Case;
-use super::check::{Check, End, Oracle, Outcome, PATIENCE, check};
+use super::check::{Oracle, PATIENCE, check};
+use super::outcome::{Check, End, Outcome};
 use super::scene::StressScene;
 use super::shrink::Shrinker;
 use super::subject::{Product, Subject};
@@ -460,8 +461,8 @@ fn shrink_failures(
             if let Ok(graph) = minimal.scene.graph() {
                 let mut oracle = Oracle::default();
                 let again = check(subject, &minimal, &graph, plan.most_records, &mut oracle);
-                let told = again.failures.into_iter().find(|f| f.check == kind);
-                failed.minimal_detail = told.map(|f| f.detail);
+                let failure = again.failures.into_iter().find(|f| f.check == kind);
+                failed.minimal_detail = failure.map(|f| f.detail);
                 failed.render = minimal.render_line(&graph);
             }
             failed.minimal = Some(minimal.to_string());

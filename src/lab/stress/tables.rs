@@ -1,7 +1,7 @@
 //! What a sweep found, as tables and heat maps.
 
-use super::case::coverage_name;
-use super::check::{Check, STRICT_TOLERANCE};
+use super::check::STRICT_TOLERANCE;
+use super::outcome::Check;
 use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
 use super::vertex::{Hold, Worst};
 use crate::report::plot::{HeatCell, HeatMap, Panel};
@@ -28,31 +28,14 @@ fn added<'f>(findings: &'f Findings, wanted: impl Fn(&Key) -> bool + 'f) -> Tall
 /// A row for each scene, width and rule.
 #[must_use]
 pub fn rows(plan: &SweepPlan, findings: &Findings) -> Table {
-    let columns = [
-        "scene",
-        "bits",
-        "coverage",
-        "tolerance_px",
-        "cases",
-        "drawn",
-        "trapped",
-        "refused",
-        "cut_off",
-        "failed",
-        "most_records",
-        "inside",
-        "holes",
-        "order",
-        "covered",
-        "extra",
-        "missing",
-    ];
-    let mut table = Table::new("Outcomes", &columns);
+    let columns = "scene bits coverage tolerance_px cases drawn trapped refused cut_off failed \
+        most_records inside holes order covered extra missing";
+    let mut table = Table::of("Outcomes", columns);
     for (key, tally) in &findings.tallies {
         let mut row: Vec<Cell> = vec![
             Cell::Text(plan.scenes[key.scene].to_string()),
             u64::from(key.bits).into(),
-            coverage_name(COVERAGES[key.coverage]).into(),
+            COVERAGES[key.coverage].name().into(),
             Cell::Text(TOLERANCES[key.tolerance].to_string()),
         ];
         row.extend(counts(tally).map(Cell::from));
@@ -79,33 +62,21 @@ fn counts(tally: &Tally) -> [u64; 13] {
     ]
 }
 
-/// What people read first.
-#[must_use]
-pub fn summary(findings: &Findings) -> Vec<(String, String)> {
-    let total = findings.total();
-    let exact = added(findings, |key| COVERAGES[key.coverage].draws_outlines());
-    let strict = added(findings, |key| {
-        TOLERANCES[key.tolerance] <= STRICT_TOLERANCE
-    });
-    let figure = |value: u64, what: &str| (Cell::from(value).for_people(), what.to_owned());
-    vec![
-        figure(total.cases, "frames"),
-        figure(total.failed, "failed"),
-        figure(total.trapped, "trapped, place told"),
-        figure(total.refused, "refused by the set-up"),
-        figure(exact.holes, "holes in closed surfaces under exact"),
-        figure(strict.order, "order violations, tolerance up to 1/64"),
-    ]
-}
-
 /// The tables for people.
 #[must_use]
 pub fn tables(plan: &SweepPlan, findings: &Findings) -> Vec<Table> {
+    let scenes = plan.scenes.iter().enumerate();
+    let by_scene = scenes.map(|(scene, name)| {
+        let sum = added(findings, |key| key.scene == scene);
+        (Cell::Text(name.to_string()), sum)
+    });
+    let viewpoints = findings.viewpoints.iter();
+    let by_viewpoint = viewpoints.map(|(name, tally)| (Cell::from(*name), tally.clone()));
     let mut tables = vec![
-        by_scene(plan, findings),
+        frames("By scene", "scene", by_scene),
         by_rule(findings),
         vertices(findings),
-        by_viewpoint(findings),
+        frames("By viewpoint", "viewpoint", by_viewpoint),
         checks(findings),
     ];
     let counted = [
@@ -124,9 +95,14 @@ pub fn tables(plan: &SweepPlan, findings: &Findings) -> Vec<Table> {
     tables
 }
 
-fn by_scene(plan: &SweepPlan, findings: &Findings) -> Table {
+/// Frames and their ends, a row for each name.
+fn frames<'n>(
+    title: &str,
+    what: &'static str,
+    tallies: impl Iterator<Item = (Cell, Tally)> + 'n,
+) -> Table {
     let columns = [
-        "scene",
+        what,
         "frames",
         "drawn",
         "trapped",
@@ -135,54 +111,21 @@ fn by_scene(plan: &SweepPlan, findings: &Findings) -> Table {
         "failed",
         "most_records",
     ];
-    let mut table = Table::new("By scene", &columns);
-    for (scene, name) in plan.scenes.iter().enumerate() {
-        let sum = added(findings, |key| key.scene == scene);
-        let mut row = vec![Cell::Text(name.to_string())];
-        row.extend(counts(&sum)[..7].iter().map(|&c| Cell::from(c)));
-        table.rows.push(row);
-    }
-    table
-}
-
-fn by_viewpoint(findings: &Findings) -> Table {
-    let columns = [
-        "viewpoint",
-        "frames",
-        "drawn",
-        "trapped",
-        "refused",
-        "cut_off",
-        "failed",
-        "most_records",
-    ];
-    let mut table = Table::new("By viewpoint", &columns);
-    for (name, tally) in &findings.viewpoints {
-        let mut row = vec![Cell::from(*name)];
-        row.extend(counts(tally)[..7].iter().map(|&c| Cell::from(c)));
+    let mut table = Table::new(title, &columns);
+    for (name, tally) in tallies {
+        let mut row = vec![name];
+        row.extend(counts(&tally)[..7].iter().map(|&c| Cell::from(c)));
         table.rows.push(row);
     }
     table
 }
 
 fn by_rule(findings: &Findings) -> Table {
-    let columns = [
-        "coverage",
-        "tolerance",
-        "frames_drawn",
-        "samples_inside_closed",
-        "holes",
-        "one_in",
-        "must_be_0",
-        "order",
-        "covered",
-        "extra",
-        "missing",
-        "failed",
-    ];
-    let mut table = Table::new(
+    let columns = "coverage tolerance frames_drawn samples_inside_closed holes one_in must_be_0 \
+        order covered extra missing failed";
+    let mut table = Table::of(
         "By rule: holes in closed surfaces, order, coverage against the oracle",
-        &columns,
+        columns,
     );
     for (coverage, rule) in COVERAGES.iter().enumerate() {
         for (tolerance, px) in TOLERANCES.iter().enumerate() {
@@ -194,7 +137,7 @@ fn by_rule(findings: &Findings) -> Table {
             });
             let one_in = (sum.holes > 0).then(|| sum.inside / sum.holes);
             table.rows.push(vec![
-                coverage_name(*rule).into(),
+                rule.name().into(),
                 Cell::Text(tolerance_name(*px)),
                 sum.drawn.into(),
                 sum.inside.into(),
@@ -218,18 +161,11 @@ fn by_rule(findings: &Findings) -> Table {
 }
 
 fn vertices(findings: &Findings) -> Table {
-    let columns = [
-        "held_in",
-        "bits",
-        "vertices",
-        "worst_seen_px",
-        "its_bound_px",
-        "seen_over_bound",
-        "nearest_to_a_bound",
-    ];
-    let mut table = Table::new(
+    let columns = "held_in bits vertices worst_seen_px its_bound_px seen_over_bound \
+        nearest_to_a_bound";
+    let mut table = Table::of(
         "Vertex error: worst seen in the picture beside its bound; greatest quotient of error and bound anywhere",
-        &columns,
+        columns,
     );
     for (place, hold) in Hold::ALL.iter().enumerate() {
         let of_hold = findings.worst.iter().filter(|((h, _), _)| *h == place);
@@ -296,8 +232,7 @@ pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
                 (name.to_string(), plan.bits.iter().map(tile).collect())
             })
             .collect(),
-        legend: "share of frames with a picture; the others were refused or trapped with the place told; red: something that must be kept was not"
-            .to_owned(),
+        legend: "share of frames with a picture; the others were refused or trapped; red: a check failed".to_owned(),
     };
     let closed = plan
         .scenes

@@ -275,7 +275,7 @@ impl<L: CageCoordinate> Steps<'_, L> {
 
     /// A parent's turn: its next child that can be seen, and what is left of it.
     fn parent_turn(&mut self, mut parent: Parent<L>, children: &mut Vec<Child>) {
-        // The scheduler has stacks of its own; addresses tell reads from one another, no more.
+        // The scheduler has stacks of its own; addresses only distinguish one read from another.
         let address = u64::from(parent.record.cube.level);
         let Some(child) = self.state.parent_turn(&mut parent, address) else {
             if !parent.is_done() {

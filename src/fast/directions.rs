@@ -1,8 +1,8 @@
 //! Where the lines of a square's samples run: their direction, and the octant that they begin in.
 
+use super::constants::Constants;
 use super::exact::Exact;
 use super::lanes::{Four, Isa};
-use super::view::View;
 use super::window::Window;
 
 /// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
@@ -11,12 +11,12 @@ pub(super) const STEPS: f32 = 18.0;
 /// Of what lines' values are made of, the error of their sum.
 pub(super) const RELATIVE_ERROR: f32 = STEPS / (1 << 24) as f32;
 /// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
-/// of numbers up to 2^13 times as large (`View::new`).
+/// of numbers up to 2^13 times as large (`Constants::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 
 /// The direction of lines in a square's middle, and by how much it changes from there.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Heading<I: Isa> {
+pub(super) struct Directions<I: Isa> {
     pub(super) middle: I::Four,
     pub(super) spread: I::Four,
     /// What directions are summed of, at most.
@@ -27,10 +27,10 @@ pub(super) struct Heading<I: Isa> {
     pub(super) is_mixed: bool,
 }
 
-impl<I: Isa> Heading<I> {
+impl<I: Isa> Directions<I> {
     #[inline(always)]
-    pub(super) fn of(isa: I, view: &View, square: &Window) -> Self {
-        let [columns, rows, first] = view.direction_lanes.map(|d| isa.four(&d));
+    pub(super) fn of(isa: I, constants: &Constants, square: &Window) -> Self {
+        let [columns, rows, first] = constants.direction_lanes.map(|d| isa.four(&d));
         let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
         let half_down = isa.splat((square.bottom - square.top) as f32 * 0.5);
         let x = isa.splat(square.left as f32).add(half_across);
@@ -65,7 +65,7 @@ pub(super) struct Samples<'s, I: Isa> {
     pub(super) square: &'s Window,
     /// Which, eight bits a row.
     pub(super) open: u64,
-    pub(super) heading: Heading<I>,
+    pub(super) directions: Directions<I>,
     pub(super) octant: u8,
 }
 
@@ -84,7 +84,12 @@ impl<I: Isa> Samples<'_, I> {
 
 /// The samples of a square whose lines begin in each octant, by each sample's own sign.
 #[inline(never)]
-pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) -> [u64; 8] {
+pub(super) fn by_octant(
+    constants: &Constants,
+    exact: &Exact,
+    square: &Window,
+    open: u64,
+) -> [u64; 8] {
     let mut parts = [0; 8];
     let mut left = open;
     while left != 0 {
@@ -94,7 +99,7 @@ pub(super) fn by_octant(view: &View, exact: &Exact, square: &Window, open: u64) 
         let [x, y] = at.map(f64::from);
         let mut octant = 0;
         for k in 0..3 {
-            let [along_x, along_y, first] = view.direction[k];
+            let [along_x, along_y, first] = constants.direction[k];
             let value = along_x * x + along_y * y + first;
             let size = along_x.abs() * x + along_y.abs() * y + first.abs();
             let is_downwards = if value.abs() > size * DIRECTION_ERROR {

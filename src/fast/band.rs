@@ -1,49 +1,49 @@
-//! What the steps of the walk share: the band that is drawn, and what they hand to each other.
+//! A band of the picture while it is drawn: what the steps of the traversal share and pass on to each other.
 
 use super::canvas::{Fill, Pixels};
+use super::constants::Constants;
 use super::counters::Counters;
 use super::exact::Exact;
-use super::lanes::{Found, Isa};
+use super::lanes::{Candidates, Isa};
 use super::parts::Parts;
 use super::switches::Switches;
-use super::view::View;
 use super::window::Window;
 use crate::graph::GraphView;
 
-/// The walk over one band of the picture.
+/// A band of the picture while it is drawn.
 #[derive(Debug)]
-pub(super) struct Walk<'w, I> {
+pub(super) struct Band<'b, I> {
     pub(super) isa: I,
-    pub(super) view: &'w View,
-    pub(super) exact: &'w Exact,
-    pub(super) graph: &'w GraphView<'w>,
-    pub(super) switches: &'w Switches,
-    pub(super) fill: Fill<'w>,
-    pub(super) pixels: Pixels<'w>,
+    pub(super) constants: &'b Constants,
+    pub(super) exact: &'b Exact,
+    pub(super) graph: &'b GraphView<'b>,
+    pub(super) switches: &'b Switches,
+    pub(super) fill: Fill<'b>,
+    pub(super) pixels: Pixels<'b>,
     pub(super) counters: Counters,
     /// Whether voxels are blended.
     pub(super) blends: bool,
-    /// How far a square's samples are from its first one in the picture.
-    pub(super) places: [u32; 64],
-    /// Parts by sample of the square that is worked on.
-    pub(super) found: Found,
-    /// What its samples show.
+    /// By sample of a square: how many entries of the picture it lies behind the square's first sample.
+    pub(super) sample_offsets: [u32; 64],
+    /// By sample of the current square: the parts that its line may meet.
+    pub(super) candidates: Candidates,
+    /// What the samples of the current square show.
     pub(super) hits: [Hit; 64],
     /// The node that each of them shows; used only for bricks of four levels without blending.
     pub(super) nodes: [u32; 64],
-    /// The blocks of the brick of four levels that is worked on.
-    pub(super) blocks: &'w mut Blocks,
+    /// The blocks of the current brick of four levels.
+    pub(super) brick_blocks: &'b mut BrickBlocks,
 }
 
 /// The blocks of a brick of four levels: its parts, with theirs.
 #[derive(Debug)]
-pub(super) struct Blocks {
+pub(super) struct BrickBlocks {
     /// Which parts of each block exist. Blocks and parts are both in order of occlusion.
     pub(super) exist: [u64; 64],
     pub(super) parts: [Parts; 64],
 }
 
-impl Default for Blocks {
+impl Default for BrickBlocks {
     fn default() -> Self {
         Self {
             exist: [0; 64],
@@ -52,7 +52,7 @@ impl Default for Blocks {
     }
 }
 
-/// A node whose turn has come.
+/// A node at its place in the object: the unit of work above bricks.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record {
     pub(super) node: u32,
@@ -87,15 +87,16 @@ pub(super) struct Hit {
     pub(super) part: u8,
 }
 
-/// Steps of the walk, each compiled as a whole for an instruction set: what is inlined into a step uses that set.
+/// Steps of the traversal, each compiled as a whole for an instruction set: what is inlined into a step uses that
+/// set.
 /// Declared here, below the steps that call each other through it; `compiled.rs` defines them.
 pub(super) trait Compiled: Isa {
-    /// A record's turn.
-    fn turn(self, walk: &mut Walk<'_, Self>, record: &Record);
+    /// Visits the children of a record, nearest first.
+    fn visit_children(self, band: &mut Band<'_, Self>, record: &Record);
     /// Draws a brick of two levels, sample by sample.
-    fn brick(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window);
+    fn brick(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window);
     /// Draws a brick of four levels, sample by sample.
-    fn deep_brick(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window);
+    fn deep_brick(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window);
     /// Draws a brick, or a solid, voxel by voxel.
-    fn voxels(self, walk: &mut Walk<'_, Self>, brick: Brick<'_>, window: &Window);
+    fn voxels(self, band: &mut Band<'_, Self>, brick: Brick<'_>, window: &Window);
 }

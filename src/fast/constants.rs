@@ -1,7 +1,7 @@
-//! The constants of a frame, as the walk needs them.
+//! The constants of a frame, as the traversal needs them.
 //!
 //! Clip vectors of nodes are halves of whole numbers in `f64`, and exact:
-//! [`View::new`] takes no frame whose positions, times sixteen, leave 53 bits.
+//! [`Constants::new`] takes no frame whose positions, times sixteen, leave 53 bits.
 //! So the compares with depths of level of detail are the machine's.
 
 use crate::project::vector::cross;
@@ -87,7 +87,7 @@ impl Declined {
 
 /// The constants of a frame.
 #[derive(Debug, Clone)]
-pub(super) struct View {
+pub(super) struct Constants {
     /// By octree level.
     pub(super) levels: Vec<Level>,
     /// Octree level of the finest voxels.
@@ -105,11 +105,11 @@ pub(super) struct View {
     pub(super) direction: [[f64; 3]; 3],
     /// The same, by coefficient, then by axis.
     pub(super) direction_lanes: [[f32; 4]; 3],
-    /// [`View::edge`] by coordinate, then by axis.
+    /// [`Constants::edge`] by coordinate, then by axis.
     pub(super) edge_columns: [[f64; 4]; 3],
-    /// [`View::edge`], rounded.
+    /// [`Constants::edge`], rounded.
     pub(super) edge_lanes: [[f32; 3]; 3],
-    /// What a product of two edges is scaled by for [`View::direction`].
+    /// What a product of two edges is scaled by for [`Constants::direction`].
     pub(super) scale: f64,
     /// 1 / the scale.
     pub(super) inverse_scale: f64,
@@ -119,7 +119,7 @@ pub(super) struct View {
     pub(super) opacity_eye: Option<OpacityEye>,
 }
 
-impl View {
+impl Constants {
     /// The constants of a frame.
     ///
     /// # Errors

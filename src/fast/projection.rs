@@ -1,19 +1,19 @@
-//! Where a node lies in the picture: its centre, what a step of a sample is to it, and the window about its parts.
+//! A node projected to the picture: its centre, the slopes of its moments, and the window about its parts.
 
+use super::constants::{Constants, Level};
 use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
-use super::view::{Level, View};
 use super::window::Window;
 
-/// Rounding of [`Place::window`], of what the window is made of: `spec/fast.md`, section 5.
+/// Rounding of [`Projection::window`], of what the window is made of: `spec/fast.md`, section 5.
 const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 
-/// Half a node's depth over its centre's, from which on [`Place::window`] leaves windows as they are: rounding
+/// Half a node's depth over its centre's, from which on [`Projection::window`] leaves windows as they are: rounding
 /// counts the more the nearer that is to 1.
 const NEAR: f32 = 0.25;
 
-/// A node's centre and edges in the picture.
+/// A node's centre in the picture, and the slopes of its moments (`spec/fast.md`, section 2).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place<I: Isa> {
+pub(super) struct Projection<I: Isa> {
     /// Column and row of its centre.
     pub(super) centre: [f64; 2],
     /// 1 / its depth.
@@ -22,29 +22,30 @@ pub(super) struct Place<I: Isa> {
     pub(super) step: [I::Four; 2],
 }
 
-impl<I: Isa> Place<I> {
-    /// The place of a node of a level with this clip vector. The unit of its steps is the side of `across` parts.
+impl<I: Isa> Projection<I> {
+    /// The projection of a node of a level, the clip vector of its centre given. A node is `across` parts wide; the
+    /// unit of its slopes is the side of a part.
     #[inline(always)]
     pub(super) fn new(
         isa: I,
-        view: &View,
+        constants: &Constants,
         level: &Level,
         [x, y, w]: [f64; 3],
         across: f64,
     ) -> Self {
         let inverse = 1.0 / w;
-        let to_samples = view.root_samples * inverse;
+        let to_samples = constants.root_samples * inverse;
         let centre = [x * to_samples - 0.5, y * to_samples - 0.5];
-        let unit = view.scale * w * across * level.inverse_side;
+        let unit = constants.scale * w * across * level.inverse_side;
         Self {
             centre,
             inverse,
-            step: isa.steps(&view.edge_columns, centre, unit),
+            step: isa.steps(&constants.edge_columns, centre, unit),
         }
     }
 
     /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the node as given to
-    /// [`Place::new`]; it lies before the eye. All of the window where the eye is near ([`NEAR`]).
+    /// [`Projection::new`]; it lies before the eye. All of the window where the eye is near ([`NEAR`]).
     ///
     /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth,
     /// which is at most half a node's from the centre's.
@@ -52,7 +53,7 @@ impl<I: Isa> Place<I> {
     pub(super) fn window(
         &self,
         isa: I,
-        view: &View,
+        constants: &Constants,
         level: &Level,
         across: f64,
         parts: u64,
@@ -65,7 +66,7 @@ impl<I: Isa> Place<I> {
         }
         let [middle, half] = isa.extent(parts);
         let side = f64::from(level.side);
-        let scale = side * side / (4.0 * across) * view.inverse_scale;
+        let scale = side * side / (4.0 * across) * constants.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
         let spread = isa.splat(share).div(isa.splat(1.0 - share));
         // Left and top with their sign turned, right and bottom: outward is upward.
@@ -101,7 +102,7 @@ impl<I: Isa> Place<I> {
 mod tests {
     use super::*;
     use crate::fast::lanes::Scalar;
-    use crate::fast::lines::tests::{numbers, view};
+    use crate::fast::lines::tests::{numbers, random_frame};
     use crate::fast::strips::along;
 
     /// Windows hold the picture of each corner of each part, and are hardly larger.
@@ -110,11 +111,11 @@ mod tests {
         let mut next = numbers();
         let (mut checked, mut far, mut tight) = (0, 0, 0);
         while checked < 20_000 {
-            let Some((setup, view)) = view(&mut next) else {
+            let Some((setup, constants)) = random_frame(&mut next) else {
                 continue;
             };
             let index = (next() * 4.0) as usize;
-            let level = &view.levels[index];
+            let level = &constants.levels[index];
             let side = f64::from(level.side);
             let min = [0, 1, 2].map(|_| ((next() * 64.0 / side) as i32) as f64 * side);
             let clip = |at: [f64; 3]| {
@@ -137,7 +138,7 @@ mod tests {
                         min[k] + steps as f64 * side / 4.0
                     });
                     let [x, y, w] = clip(at);
-                    let [x, y] = [x, y].map(|c| c * view.root_samples / w - 0.5);
+                    let [x, y] = [x, y].map(|c| c * constants.root_samples / w - 0.5);
                     ends = [
                         ends[0].min(x),
                         ends[1].min(y),
@@ -153,8 +154,8 @@ mod tests {
                 bottom: 299,
             };
             let across = [4.0, 16.0][checked % 2];
-            let place = Place::new(Scalar, &view, level, centre, across);
-            let window = place.window(Scalar, &view, level, across, parts, &bounds);
+            let projection = Projection::new(Scalar, &constants, level, centre, across);
+            let window = projection.window(Scalar, &constants, level, across, parts, &bounds);
             let [left, top, right, bottom] = [
                 ends[0].ceil().max(0.0),
                 ends[1].ceil().max(0.0),

@@ -8,10 +8,6 @@
 //! walk goes to and fro, have sets of their own. Only where a set passes to
 //! another level are its counts added to the tables.
 
-mod sums;
-
-pub use sums::{AccessCount, Accesses, OpCount};
-
 use crate::Format;
 use crate::probe::{Memory, OpClass, Operand, Probe, Stage, StageLevel};
 
@@ -24,31 +20,31 @@ const MEMORIES: usize = Memory::ALL.len();
 
 /// Counts that stand together: operations of one stage by class, short
 /// operands of one stage by number of bits, or accesses of one stage by memory.
-type CountRow = [u64; 8];
+pub(super) type CountRow = [u64; 8];
 
 /// First row, each of one row a stage, of words, of words with their carry, of
 /// wide words, of these with their carry,
-const SIZED: [usize; 4] = [0, STAGES, 2 * STAGES, 3 * STAGES];
+pub(super) const SIZED: [usize; 4] = [0, STAGES, 2 * STAGES, 3 * STAGES];
 /// of logic on fewer than eight bits, by their number,
-const SHORT: usize = 4 * STAGES;
+pub(super) const SHORT: usize = 4 * STAGES;
 /// of reads,
-const READS: usize = 5 * STAGES;
+pub(super) const READS: usize = 5 * STAGES;
 /// and of writes.
-const WRITES: usize = 6 * STAGES;
+pub(super) const WRITES: usize = 6 * STAGES;
 const ROWS: usize = 7 * STAGES;
 
 /// Sets of fresh counts: level `l` counts in set `l % SETS`. More sets are
 /// settled less often and take more of the first-level cache, 6 KB each.
-const SETS: usize = 16;
+pub(super) const SETS: usize = 16;
 
 const _: () = assert!(CLASSES <= 8 && MEMORIES <= 8);
 
 /// Counts of operations of a width that is met now and then.
 #[derive(Debug, Clone)]
-struct Table {
-    bits: u32,
+pub(super) struct Table {
+    pub(super) bits: u32,
     /// By level, stage and class; on the heap, for there may be many tables.
-    counts: Vec<[[u64; CLASSES]; STAGES]>,
+    pub(super) counts: Vec<[[u64; CLASSES]; STAGES]>,
 }
 
 /// Counts of one or more frames.
@@ -77,18 +73,18 @@ struct Table {
 #[derive(Debug, Clone)]
 pub struct Counter {
     /// Counts of each set since it passed to its level.
-    fresh: [[CountRow; ROWS]; SETS],
+    pub(super) fresh: [[CountRow; ROWS]; SETS],
     /// Level at which each set counts, 0..LEVELS.
-    levels: [usize; SETS],
+    pub(super) levels: [usize; SETS],
     /// The set that counts now, 0..SETS.
     set: usize,
     /// Widths of the operands of `SIZED`.
-    widths: [u32; 4],
+    pub(super) widths: [u32; 4],
     /// By level.
-    settled: Vec<[CountRow; ROWS]>,
+    pub(super) settled: Vec<[CountRow; ROWS]>,
     /// One for each other width, in the order in which they were met.
-    tables: Vec<Table>,
-    records: [u64; LEVELS],
+    pub(super) tables: Vec<Table>,
+    pub(super) records: [u64; LEVELS],
 }
 
 impl Default for Counter {
@@ -117,7 +113,7 @@ impl Counter {
     }
 
     /// Where in `tables` a width is; a table is made for one not met before.
-    fn table_of(&mut self, bits: u32) -> usize {
+    pub(super) fn table_of(&mut self, bits: u32) -> usize {
         let known = self.tables.iter().position(|table| table.bits == bits);
         known.unwrap_or_else(|| {
             let counts = vec![Default::default(); LEVELS];

@@ -1,0 +1,169 @@
+//! Temporary files and folders: listed while they are written, so that a signal handler can remove them, and locked,
+//! so that other processes know which of them were left behind.
+
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::{Builder, NamedTempFile, TempDir};
+
+use super::error::{WholeError, failed};
+
+/// How temporary names begin and end.
+const PREFIX: &str = ".shiftvox-";
+const SUFFIX: &str = ".tmp";
+/// Most bytes of a file's name that its temporary name repeats; names have at most 255.
+const MOST_NAME: usize = 100;
+
+/// What this process is writing.
+pub(super) struct InProgress {
+    /// Temporary files and folders that have not got their names yet.
+    unfinished: Vec<PathBuf>,
+    /// Folders that were searched for what other processes left behind.
+    pub(super) tidied: Vec<PathBuf>,
+}
+
+static IN_PROGRESS: Mutex<InProgress> = Mutex::new(InProgress {
+    unfinished: Vec::new(),
+    tidied: Vec::new(),
+});
+
+pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
+    // Lists of names, usable even after a panic.
+    IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes all that this process has begun to write, then calls `end`, during which no file gets its name:
+/// for signal handlers.
+pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
+    let mut list = in_progress();
+    for path in list.unfinished.drain(..) {
+        // It is gone already, or another user's: nothing can be done about it.
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+    }
+    end()
+}
+
+/// A temporary file or folder, listed for removal until this is dropped.
+#[derive(Debug)]
+pub struct TemporaryGuard(PathBuf);
+
+impl TemporaryGuard {
+    /// Lists one that was just made.
+    #[must_use]
+    pub fn new(path: &Path) -> Self {
+        in_progress().unfinished.push(path.to_owned());
+        Self(path.to_owned())
+    }
+}
+
+impl Drop for TemporaryGuard {
+    fn drop(&mut self) {
+        in_progress().unfinished.retain(|path| *path != self.0);
+    }
+}
+
+impl InProgress {
+    /// Takes a file off the list, whose lock is held.
+    pub(super) fn forget(&mut self, guard: TemporaryGuard) {
+        self.unfinished.retain(|path| *path != guard.0);
+        std::mem::forget(guard);
+    }
+}
+
+/// Makes a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
+/// dropped; if the process is killed, by the next one that writes there.
+///
+/// # Errors
+/// What the system says.
+pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeError> {
+    tidy(parent);
+    let mut builder = Builder::new();
+    builder.prefix(PREFIX).suffix(SUFFIX);
+    loop {
+        let folder = builder.tempdir_in(parent).map_err(|e| failed(parent, e))?;
+        let guard = TemporaryGuard::new(folder.path());
+        let open = File::open(folder.path()).ok();
+        let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
+        if !is_locked || folder.path().exists() {
+            let lock = FolderLock {
+                _guard: guard,
+                _lock: open,
+            };
+            return Ok((folder, lock));
+        }
+        // Another process took it for one that was left behind, and removed it before it was locked.
+    }
+}
+
+/// Keeps a temporary folder from being removed by other processes, as long as it lives.
+#[derive(Debug)]
+pub struct FolderLock {
+    _guard: TemporaryGuard,
+    _lock: Option<File>,
+}
+
+/// A temporary file for a place, locked for as long as it is open.
+pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile, TemporaryGuard)> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let end = (0..=name.len().min(MOST_NAME))
+        .rev()
+        .find(|&end| name.is_char_boundary(end));
+    let prefix = format!("{PREFIX}{}-", &name[..end.unwrap_or(0)]);
+    let mut builder = Builder::new();
+    builder.prefix(&prefix).suffix(SUFFIX);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // What any new file gets; the process's mask takes its share.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        let guard = TemporaryGuard::new(file.path());
+        // Where the system has no locks, no process removes it either.
+        let is_locked = file.as_file().lock().is_ok();
+        if !is_locked || file.path().exists() {
+            return Ok((file, guard));
+        }
+        // Another process took it for one that was left behind, and removed it before it was locked.
+    }
+}
+
+/// Removes what processes that have ended left in a folder, the first time that this one writes to it.
+pub(super) fn tidy(folder: &Path) {
+    {
+        let mut list = in_progress();
+        if list.tidied.iter().any(|known| known == folder) {
+            return;
+        }
+        list.tidied.push(folder.to_owned());
+    }
+    // What cannot be read or removed stays; it does no harm.
+    let Ok(entries) = fs::read_dir(folder) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let Ok(kind) = entry.file_type() else {
+            continue;
+        };
+        if (kind.is_file() || kind.is_dir()) && name.starts_with(PREFIX) && name.ends_with(SUFFIX) {
+            remove_if_left(&entry.path(), kind.is_dir());
+        }
+    }
+}
+
+fn remove_if_left(path: &Path, is_folder: bool) {
+    let Ok(file) = File::options().read(true).write(!is_folder).open(path) else {
+        return;
+    };
+    match file.try_lock() {
+        // Removed while it is locked: see `temporary`.
+        Ok(()) if is_folder => drop(fs::remove_dir_all(path)),
+        Ok(()) => drop(fs::remove_file(path)),
+        Err(TryLockError::WouldBlock | TryLockError::Error(_)) => {}
+    }
+}
