@@ -40,7 +40,8 @@ enum Place {
 }
 
 impl Camera {
-    /// A camera that sees all of a scene, whatever the picture's size: from the front right and above
+    /// A camera that sees all of a scene, and of voxels that were made of a mesh all of the mesh, whatever the
+    /// picture's size: from the front right and above
     /// (azimuth 45, elevation 35.264 degrees), with a vertical field of view of 40 degrees.
     #[must_use]
     pub fn fit(scene: &Scene) -> Self {

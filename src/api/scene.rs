@@ -70,10 +70,14 @@ impl Scene {
         Ok(Self { graph, up: Up::Z })
     }
 
-    /// The same scene with another axis up, which [`Camera::fit`](super::Camera::fit) follows.
+    /// The same scene with another axis up, which [`Camera::fit`](super::Camera::fit) follows; kept by
+    /// [`Scene::save_vxg`] where the scene was made of a mesh.
     #[must_use]
     pub fn with_up(mut self, up: Up) -> Self {
         self.up = up;
+        if let Some(mesh) = &mut self.graph.placement.mesh {
+            mesh.y_up = up == Up::Y;
+        }
         self
     }
 
@@ -98,7 +102,7 @@ impl Scene {
     /// Lowest and highest corner of the box around all voxels, world units.
     #[must_use]
     pub fn bounds(&self) -> [[f64; 3]; 2] {
-        let bounds = Bounds::of(&self.graph);
+        let bounds = Bounds::of_voxels(&self.graph);
         [bounds.low.to_array(), bounds.high.to_array()]
     }
 
@@ -117,7 +121,8 @@ impl Scene {
         self.graph.view()
     }
 
-    /// Which axis is up: Z for voxels, Y for meshes other than STL, unless [`Scene::with_up`] said another.
+    /// Which axis is up: Z for voxels, Y for meshes other than STL and what was made of them, unless
+    /// [`Scene::with_up`] said another.
     #[must_use]
     pub fn up(&self) -> Up {
         self.up
@@ -145,20 +150,16 @@ pub(super) fn open_memory(bytes: &[u8], name: &str, options: &OpenOptions) -> Re
 }
 
 impl From<Opened> for Scene {
-    /// With +Y up where that is the custom of a mesh's format.
     fn from(opened: Opened) -> Self {
-        let is_y_up = opened.mesh.is_some_and(|mesh| mesh.y_up);
-        Self {
-            graph: opened.graph,
-            up: Up::y_or_z(is_y_up),
-        }
+        opened.graph.into()
     }
 }
 
 impl From<Graph> for Scene {
-    /// A scene of a graph, Z up.
+    /// A scene of a graph, Z up unless it was made of a mesh with Y up.
     fn from(graph: Graph) -> Self {
-        Self { graph, up: Up::Z }
+        let up = Up::of(&graph);
+        Self { graph, up }
     }
 }
 

@@ -196,6 +196,7 @@ pub(super) fn options(args: &SceneArgs) -> OpenOptions {
             depth: args.mesh_depth(),
             load: load_options(args),
             opacities: args.opacities,
+            y_up: args.mesh_up.map(|up| up == Up::Y),
         },
         ..OpenOptions::default()
     }
@@ -208,13 +209,16 @@ fn load_options(args: &SceneArgs) -> LoadOptions {
     }
 }
 
-fn ready(opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
+fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
     let info = opened.info.as_ref();
-    let y_up = opened.mesh.as_ref().is_some_and(|mesh| mesh.y_up);
+    // What was said of a file that keeps it is kept in what is written of it.
+    if let (Some(up), Some(mesh)) = (mesh_up, &mut opened.graph.placement.mesh) {
+        mesh.y_up = up == Up::Y;
+    }
     Scene {
         source: source.to_owned(),
         format: opened.format,
-        up: mesh_up.unwrap_or(Up::y_or_z(y_up)),
+        up: mesh_up.unwrap_or(Up::of(&opened.graph)),
         mesh: opened.mesh,
         palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
         warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),

@@ -49,8 +49,7 @@ impl<'f> FarDrawing<'f> {
 
 impl Drawable for FarDrawing<'_> {
     fn bounds(&self) -> Bounds {
-        let (low, high) = self.file.bounds();
-        Bounds::of_box(low, high)
+        Bounds::of_mesh(&self.file.mesh_box())
     }
 
     fn up(&self) -> Up {

@@ -25,7 +25,7 @@ use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 pub use far::{FarDrawing, FarStyle, resident};
 pub use graph::{GraphDrawing, GraphStyle};
 pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
-pub use triangles::{TrianglesDrawing, TrianglesStyle, bounds_of_mesh};
+pub use triangles::{TrianglesDrawing, TrianglesStyle};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {

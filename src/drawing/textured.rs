@@ -81,8 +81,11 @@ impl<'f> TexturedDrawing<'f> {
 }
 
 impl Drawable for TexturedDrawing<'_> {
-    /// The box and the corners of all primitives: the camera is the one that the mesh's triangles get.
+    /// The mesh's; of a file that does not keep them all the corners of primitives.
     fn bounds(&self) -> Bounds {
+        if let Some(mesh) = self.file.mesh_box() {
+            return Bounds::of_mesh(&mesh);
+        }
         let (low, high) = self.file.bounds();
         let hull = self.file.primitives().iter().flat_map(Primitive::positions);
         Bounds {

@@ -1,13 +1,12 @@
 //! The triangles of a mesh as something that can be drawn: the reference picture of the other methods.
 
-use glam::DVec3;
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{DrawError, Drawable, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed};
 use crate::graph::Progress;
-use crate::mesh::Mesh;
 use crate::mesh::raster::{self, RasterOptions, Samples};
+use crate::mesh::{Mesh, mesh_box};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 
@@ -55,7 +54,7 @@ impl<'m> TrianglesDrawing<'m> {
 
 impl Drawable for TrianglesDrawing<'_> {
     fn bounds(&self) -> Bounds {
-        bounds_of_mesh(self.mesh)
+        Bounds::of_mesh(&mesh_box(self.mesh, self.up == Up::Y))
     }
 
     fn up(&self) -> Up {
@@ -86,18 +85,5 @@ impl Drawable for TrianglesDrawing<'_> {
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
         let details = || vec![("engine", json!("triangles"))];
         Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
-    }
-}
-
-/// A mesh's box and its vertices, for a fitted camera.
-#[must_use]
-pub fn bounds_of_mesh(mesh: &Mesh) -> Bounds {
-    let (low, high) = mesh.bounds();
-    let points = mesh.triangles().iter().flatten();
-    let hull = points.map(|&i| DVec3::from_array(mesh.positions()[i as usize].map(f64::from)));
-    Bounds {
-        low,
-        high,
-        hull: hull.collect(),
     }
 }

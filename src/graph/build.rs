@@ -118,6 +118,7 @@ impl Builder {
             origin_index: self.min.map(i64::from),
             world_origin: placement_world.0,
             voxel_size: placement_world.1,
+            mesh: None,
         };
         placement.check_world()?;
         if self.is_empty() {

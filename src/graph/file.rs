@@ -4,7 +4,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -170,8 +170,8 @@ pub(crate) struct Format {
     pub(crate) ending: &'static str,
     /// First eight bytes.
     pub(crate) magic: [u8; 8],
-    /// Version of the layout.
-    pub(crate) version: u32,
+    /// Versions of the layout that are read; the last is written.
+    pub(crate) versions: RangeInclusive<u32>,
     /// What a header should begin with.
     pub(crate) signature: &'static str,
     /// Advice for a file that is something else.
@@ -213,7 +213,7 @@ impl Format {
             header[offset..offset + bytes.len()].copy_from_slice(bytes);
         };
         put(0, &self.magic);
-        put(at::VERSION, &self.version.to_le_bytes());
+        put(at::VERSION, &self.versions.end().to_le_bytes());
         put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
         put(at::FILE_BYTES, &file_bytes.to_le_bytes());
         fields(&mut put);
@@ -245,12 +245,13 @@ impl Format {
             return Err(other(length, expected, DAMAGED));
         };
         let fields = Fields { header, path };
-        let version = fields.u32_at(at::VERSION);
+        let version = fields.version();
         let stored = fields.u64_at(at::CHECKSUM);
         let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
         // A sound header of another version is no damage.
-        if version != self.version && sound {
-            let expected = format!("version {}, not {version}", self.version);
+        if !self.versions.contains(&version) && sound {
+            let (oldest, newest) = (self.versions.start(), self.versions.end());
+            let expected = format!("version {oldest} to {newest}, not {version}");
             return Err(other(at::VERSION, expected, NEWER));
         }
         fields.ensure(sound, at::CHECKSUM, || {
@@ -276,16 +277,24 @@ pub(crate) struct Fields<'f> {
 
 /// Offsets are those of a format: within the header.
 impl Fields<'_> {
+    pub(crate) fn version(&self) -> u32 {
+        self.u32_at(at::VERSION)
+    }
+
+    pub(crate) fn bytes_at<const N: usize>(&self, offset: usize) -> [u8; N] {
+        std::array::from_fn(|i| self.header[offset + i])
+    }
+
     pub(crate) fn byte_at(&self, offset: usize) -> u8 {
         self.header[offset]
     }
 
     pub(crate) fn u32_at(&self, offset: usize) -> u32 {
-        u32::from_le_bytes(std::array::from_fn(|i| self.header[offset + i]))
+        u32::from_le_bytes(self.bytes_at(offset))
     }
 
     pub(crate) fn u64_at(&self, offset: usize) -> u64 {
-        u64::from_le_bytes(std::array::from_fn(|i| self.header[offset + i]))
+        u64::from_le_bytes(self.bytes_at(offset))
     }
 
     /// As many numbers of double precision as are wanted, one after the other.

@@ -9,6 +9,7 @@ pub(crate) mod file;
 pub mod linked;
 pub(crate) mod map;
 pub mod merge;
+mod mesh_box;
 mod morton;
 mod normal;
 mod normals;
@@ -27,6 +28,7 @@ pub use cells::Cell;
 pub use external::{ExternalBuilder, ExternalError, ExternalOptions, ExternalReport};
 pub use linked::LinkedGraph;
 pub use merge::{MergeBy, MergeReport, merge};
+pub use mesh_box::MeshBox;
 pub use opacity::{MOST_OPACITY, Opacity, sixteenths};
 pub use progress::{Progress, Silent};
 pub use store::Store;
@@ -45,6 +47,8 @@ pub struct Placement {
     pub world_origin: [f64; 3],
     /// World length of a finest voxel's side.
     pub voxel_size: f64,
+    /// Of voxels that were made of a mesh: what fitted cameras look at.
+    pub mesh: Option<MeshBox>,
 }
 
 impl Default for Placement {
@@ -53,6 +57,7 @@ impl Default for Placement {
             origin_index: [0; 3],
             world_origin: [0.0; 3],
             voxel_size: 1.0,
+            mesh: None,
         }
     }
 }

@@ -12,6 +12,20 @@ const STEPS: f64 = (1u64 << 52) as f64;
 /// Parts along the longest side of what is drawn, or less.
 pub(crate) const MOST_PARTS: f64 = (1u64 << 21) as f64;
 
+/// What single precision coordinates of a mesh are relative to: zero, unless it is so far from it that they would not
+/// hold its parts.
+pub(crate) fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
+    let (mut extent, mut farthest) = (0.0f64, 0.0f64);
+    for k in 0..3 {
+        extent = extent.max(high[k] - low[k]);
+        farthest = farthest.max(low[k].abs()).max(high[k].abs());
+    }
+    match farthest > 16.0 * extent {
+        true => [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0),
+        false => [0.0; 3],
+    }
+}
+
 /// Whether a box of the world can be looked at, and its parts of length `finest` told apart.
 pub(crate) fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
     let most = FARTHEST.min(finest * STEPS);

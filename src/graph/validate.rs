@@ -110,7 +110,10 @@ impl Graph {
             format!("an origin within 2^52, not {:?}", place.origin_index)
         })?;
         if place.can_be_seen(self.depth) {
-            return Ok(());
+            let is_seen = { place.mesh }.is_none_or(|mesh| mesh.can_be_seen(place.voxel_size));
+            return check(is_seen, "mesh", 0, || {
+                "a mesh's box that can be drawn, as long as a voxel or longer".to_owned()
+            });
         }
         let size = place.voxel_size;
         let is_size = place::can_be_seen([0.0; 3], [0.0; 3], size);

@@ -20,7 +20,7 @@ pub use builder::{BadIndex, MeshBuilder};
 pub use error::{MeshError, MeshFault, Place};
 pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, is_binary_stl, read};
 pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
-pub use surface::{Instances, Surface, Triangle, barycentric};
+pub use surface::{Instances, Surface, Triangle, barycentric, mesh_box};
 
 /// Triangles with materials, in the file's own coordinates.
 ///

@@ -4,6 +4,7 @@ use glam::{DAffine3, DVec3};
 
 use super::material::srgb_to_linear;
 use super::{Material, Mesh};
+use crate::graph::MeshBox;
 
 /// One triangle, ready to be drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +49,15 @@ pub trait Surface: Sync {
     fn texture(&self, _number: usize, _point: DVec3) -> Option<(DVec3, DVec3)> {
         None
     }
+}
+
+/// What fitted cameras look at, whatever is made of a surface.
+#[must_use]
+pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
+    let (low, high) = surface.bounds();
+    let span = (low.to_array(), high.to_array());
+    let corners = (0..surface.len()).flat_map(|number| surface.corners(number));
+    MeshBox::around(span, corners.map(|corner| corner.to_array()), y_up)
 }
 
 impl Surface for Mesh {

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::Camera;
-use crate::graph::Graph;
+use crate::graph::{Graph, MeshBox};
 
 /// Vertical field of view where none is given, degrees.
 pub const DEFAULT_FOV: f64 = 40.0;
@@ -30,6 +30,11 @@ impl Up {
     /// +Y or else +Z.
     pub(crate) fn y_or_z(is_y: bool) -> Self {
         if is_y { Self::Y } else { Self::Z }
+    }
+
+    /// The axis that is up in a graph: the mesh's that it was made of, else +Z.
+    pub(crate) fn of(graph: &Graph) -> Self {
+        Self::y_or_z(graph.placement.mesh.is_some_and(|mesh| mesh.y_up))
     }
 
     /// The direction that is up.
@@ -81,9 +86,28 @@ impl Bounds {
         Some((search.low, search.high))
     }
 
-    /// The box of a graph's voxels in world units; the unit cube for an empty graph.
+    /// What a camera is fitted to: the mesh that a graph was made of, else its voxels.
     #[must_use]
     pub fn of(graph: &Graph) -> Self {
+        match &graph.placement.mesh {
+            Some(mesh) => Self::of_mesh(mesh),
+            None => Self::of_voxels(graph),
+        }
+    }
+
+    /// A mesh's box, without what is cut off its corners.
+    #[must_use]
+    pub fn of_mesh(mesh: &MeshBox) -> Self {
+        Self {
+            low: mesh.low.into(),
+            high: mesh.high.into(),
+            hull: mesh.hull().map(DVec3::from_array).collect(),
+        }
+    }
+
+    /// The box of a graph's voxels in world units; the unit cube for an empty graph.
+    #[must_use]
+    pub fn of_voxels(graph: &Graph) -> Self {
         let (low, high) = Self::in_voxels(graph).unwrap_or(([0; 3], [1; 3]));
         let placement = &graph.placement;
         let world = |corner: [i64; 3]| {

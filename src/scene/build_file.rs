@@ -98,7 +98,7 @@ pub fn build_file_of(
             }
             let mut external = external;
             external.memory = external.memory.saturating_sub(ready.bytes());
-            builder = ExternalBuilder::new(external);
+            builder = ExternalBuilder::new(external).of_mesh(ready.mesh_box());
             placement = ready.placement();
             let (found, summary) = ready.voxels(&mut |v| builder.push(v), progress);
             (info, mesh) = (Some(found), Some(summary));

@@ -8,9 +8,9 @@ use glam::DVec3;
 
 use super::open_error::OpenError;
 use super::{FileKind, SceneError, SceneFile, SceneInfo};
-use crate::graph::{Graph, Progress, Voxel};
+use crate::graph::{Graph, MeshBox, Progress, Voxel};
 use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
-use crate::mesh::{self, LoadOptions, Mesh, MeshFormat};
+use crate::mesh::{self, LoadOptions, Mesh, MeshFormat, mesh_box};
 pub(super) use crate::mesh::{Beside, Nothing, SameFolder};
 
 /// Levels at which the voxels of many more levels are estimated.
@@ -26,6 +26,8 @@ pub struct MeshOptions {
     /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
     /// scene that is built in memory has room for them.
     pub opacities: bool,
+    /// Whether +Y is up, or else +Z, where the custom of the format is not meant: Y for all but STL.
+    pub y_up: Option<bool>,
 }
 
 impl Default for MeshOptions {
@@ -34,6 +36,7 @@ impl Default for MeshOptions {
             depth: DEFAULT_DEPTH,
             load: LoadOptions::default(),
             opacities: false,
+            y_up: None,
         }
     }
 }
@@ -59,8 +62,6 @@ pub struct MeshSummary {
     pub load_ms: f64,
     /// Time to find the voxels, without building the graph, milliseconds.
     pub voxelize_ms: f64,
-    /// Whether +Y is up, by the custom of the format: for all but STL.
-    pub y_up: bool,
 }
 
 /// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
@@ -114,6 +115,7 @@ fn read<R: Read + Seek>(
 pub(super) struct Ready {
     kind: FileKind,
     mesh: Mesh,
+    y_up: bool,
     grid: Grid,
     load_ms: f64,
 }
@@ -133,6 +135,7 @@ impl Ready {
         let grid = Grid::around(&mesh, options.depth)
             .map_err(|error| OpenError::Grid { source_name, error })?;
         Ok(Self {
+            y_up: options.y_up.unwrap_or(is_y_up(kind)),
             kind,
             mesh,
             grid,
@@ -165,6 +168,11 @@ impl Ready {
     /// World position and size of voxels, as the builders take them.
     pub(super) fn placement(&self) -> ([f64; 3], f64) {
         self.grid.placement()
+    }
+
+    /// What fitted cameras look at.
+    pub(super) fn mesh_box(&self) -> MeshBox {
+        mesh_box(&self.mesh, self.y_up)
     }
 
     /// Gives the nodes of the graph that was built of the voxels opacities.
@@ -213,7 +221,6 @@ impl Ready {
             touches: report.touches,
             load_ms: self.load_ms,
             voxelize_ms,
-            y_up: is_y_up(self.kind),
         };
         (info, summary)
     }

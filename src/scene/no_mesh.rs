@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::open_error::OpenError;
 use super::{SceneFile, SceneInfo};
-use crate::graph::{Graph, Progress, Voxel};
+use crate::graph::{Graph, MeshBox, Progress, Voxel};
 
 /// Stands in for the options of meshes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -16,10 +16,7 @@ pub struct MeshOptions {
 
 /// Stands in for what a mesh was; never made.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeshSummary {
-    /// Whether +Y is up.
-    pub y_up: bool,
-}
+pub enum MeshSummary {}
 
 /// Files beside a mesh.
 pub(super) trait Beside {}
@@ -62,6 +59,10 @@ impl Ready {
     }
 
     pub(super) fn placement(&self) -> ([f64; 3], f64) {
+        match *self {}
+    }
+
+    pub(super) fn mesh_box(&self) -> MeshBox {
         match *self {}
     }
 

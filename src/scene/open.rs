@@ -162,6 +162,7 @@ fn open_mesh(
     }
     let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
     let mut graph = gathered.finish(source, placement, progress)?;
+    graph.placement.mesh = Some(ready.mesh_box());
     if opacities {
         ready.add_opacities(&mut graph, progress);
     }

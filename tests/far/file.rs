@@ -94,14 +94,17 @@ fn fields_are_checked_behind_their_checksums() {
     let bytes = small();
     assert!(!is_refused(&with_checksums(bytes.clone())));
     let mut version = bytes.clone();
-    version[8] = 3;
+    version[8] = 4;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
-    assert!(error.to_string().contains("version 2, not 3"), "{error}");
+    assert!(
+        error.to_string().contains("version 2 to 3, not 4"),
+        "{error}"
+    );
     // Every byte of the header and of the root, but for those that may have any
     // value: the centre (48..72), the distance (72..80), the settings (80, 84),
-    // and of the root its box, origin and voxel, what was counted and the
-    // fit's error.
-    let header = (8..48).chain(86..91).chain(91..96).chain(104..120);
+    // what is cut off the box (104..112), and of the root its box, origin and
+    // voxel, what was counted and the fit's error.
+    let header = (8..48).chain(86..91).chain(91..96).chain(112..120);
     let root = (41..64).filter(|byte| !(41..43).contains(byte));
     for place in header.chain(root.map(|byte| 128 + byte)) {
         let mut damaged = bytes.clone();

@@ -31,9 +31,9 @@ fn a_place_that_cannot_be_drawn_is_the_files_fault() {
     let sheet = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\nf 2 4 3\n";
     fs::write(folder.path().join("sheet.obj"), sheet).unwrap();
     // Ending, bytes of the header, and where a place is in it.
-    let (voxel_size, origin) = (88, 64);
+    let (voxel_size, origin, mesh_low, mesh_high) = (88, 64, 448, 480);
     let formats: [(&str, usize, &[usize]); 3] = [
-        ("vxg", 512, &[voxel_size, origin]),
+        ("vxg", 512, &[voxel_size, origin, mesh_low, mesh_high]),
         ("far", 128, &[48, 56]),
         ("tvx", 128, &[32, 64]),
     ];

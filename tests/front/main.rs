@@ -8,6 +8,7 @@ mod knot;
 mod limits;
 mod manners;
 mod model;
+mod one_camera;
 mod pictures;
 mod printed;
 mod refusals;

@@ -99,6 +99,7 @@ fn depth_is_where_the_ray_enters() {
         origin_index: [-7, 100, 3],
         world_origin: [0.5, -2.0, 8.0],
         voxel_size: 0.25,
+        mesh: None,
     };
     let setup = setup(&placement, 3, 0);
     let mut frame = Frame::new(3, 3, false);

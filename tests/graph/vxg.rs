@@ -7,7 +7,8 @@ use std::path::Path;
 use proptest::prelude::*;
 use shiftvox::graph::vxg::{self, VxgError};
 use shiftvox::graph::{
-    BuildOptions, Builder, Graph, LinkedGraph, MergeBy, Opacity, Silent, Store, Voxel, merge,
+    BuildOptions, Builder, Graph, LinkedGraph, MergeBy, MeshBox, Opacity, Silent, Store, Voxel,
+    merge,
 };
 
 fn build(indices: &[[i32; 3]]) -> Graph {
@@ -46,7 +47,10 @@ fn small_graphs() -> Vec<Graph> {
         .collect::<Vec<_>>()
         .into();
     let cyclic = cyclic.build().unwrap();
-    vec![tree, dag, cyclic, build(&[[-3, 4, 5]]), airy]
+    let mut of_mesh = tree.clone();
+    let span = ([-1.0, 0.5, 1e6], [2.0, 0.75, 1e6 + 1.0]);
+    of_mesh.placement.mesh = Some(MeshBox::new(span, [0, 1, 2, 3, 4, 5, 6, 255], true));
+    vec![tree, dag, cyclic, build(&[[-3, 4, 5]]), airy, of_mesh]
 }
 
 fn parts(graph: &Graph) -> impl PartialEq + std::fmt::Debug + use<> {

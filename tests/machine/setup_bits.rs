@@ -50,6 +50,7 @@ fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, SetupOptions) {
         world_origin: [0; 3].map(|_| dice.of(&[0.0, 0.1, -3.7])),
         voxel_size: dice.of(&[1.0, 1.0, 0.037]),
         origin_index: [0; 3].map(|_| dice.of(&[0, 0, 5, -9])),
+        mesh: None,
     };
     let camera = Camera {
         eye,

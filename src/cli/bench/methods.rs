@@ -16,7 +16,7 @@ use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::{engines, report, scenes};
-use crate::drawing::{bounds_of_mesh, milliseconds_since};
+use crate::drawing::milliseconds_since;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
@@ -27,8 +27,8 @@ use crate::lab::methods::{
     self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
     TexturedMethod, TrianglesMethod,
 };
-use crate::mesh::{Mesh, Surface};
-use crate::project::{Coverage, SetupOptions};
+use crate::mesh::{Mesh, Surface, mesh_box};
+use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
 use crate::report::plot::Panel;
 use crate::textured::view::Detail;
@@ -289,7 +289,8 @@ fn measure(
     console: &Console,
 ) -> Result<MeshMethods, CliError> {
     let (mesh, up) = scenes::read_mesh(name, &args.scene, console.progress())?;
-    let camera = args.camera.camera(&bounds_of_mesh(&mesh), up, size, 0.0);
+    let bounds = Bounds::of_mesh(&mesh_box(&mesh, up == Up::Y));
+    let camera = args.camera.camera(&bounds, up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
     let all = methods(args, &mesh, &made, plan.style).map_err(|e| CliError::new(Kind::Run, e))?;
     let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();

@@ -25,8 +25,8 @@ pub use grid::Grid;
 use super::FarData;
 use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity, triangle_bytes};
-use crate::graph::{PackedNormal, Progress};
-use crate::mesh::{Surface, barycentric, linear_to_srgb};
+use crate::graph::{PackedNormal, Progress, place};
+use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
 use count::SurfaceSample;
 use rays::Occluders;
 use sample::Rays;
@@ -163,7 +163,9 @@ pub fn build<S: Surface + ?Sized>(
         .collect();
     progress.end();
     let triangles = leaf_triangles(surface, &order, centre);
-    assemble(built, triangles, centre, options)
+    let mut data = assemble(built, triangles, centre, options)?;
+    data.cuts = mesh_box(surface, data.y_up).cuts;
+    Ok(data)
 }
 
 fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(), BuildError> {
@@ -189,8 +191,7 @@ fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(),
     Ok(())
 }
 
-/// What coordinates are relative to: zero, unless the mesh is so far from it
-/// that single precision would not hold its parts.
+/// What coordinates are relative to.
 fn centre<S: Surface + ?Sized>(surface: &S) -> Result<DVec3, BuildError> {
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
@@ -198,11 +199,7 @@ fn centre<S: Surface + ?Sized>(surface: &S) -> Result<DVec3, BuildError> {
     if !(farthest < 1e30 && extent > 1e-30) {
         return Err(BuildError::Range);
     }
-    Ok(if farthest > 16.0 * extent {
-        (low + high) / 2.0
-    } else {
-        DVec3::ZERO
-    })
+    Ok(place::centre(low.to_array(), high.to_array()).into())
 }
 
 /// Rays of each node, in proportion to the voxels that its triangles touch.
@@ -347,6 +344,7 @@ fn assemble(
         leaf_triangles: options.leaf_triangles,
         grid: options.grid,
         y_up: true,
+        cuts: [0; 8],
         nodes,
         voxels,
         triangles,

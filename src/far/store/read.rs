@@ -11,10 +11,11 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
-use super::format::{FORMAT, Layout, at, layout};
+use super::format::{FORMAT, Layout, VERSION_WITHOUT_CUTS, at, layout};
 use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
+use crate::graph::MeshBox;
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::graph::map::release;
 use crate::graph::place::{MOST_PARTS, can_be_seen};
@@ -41,6 +42,7 @@ pub struct FarFile {
     leaf_triangles: u32,
     grid: u32,
     y_up: bool,
+    cuts: [u8; 8],
 }
 
 impl FarFile {
@@ -168,6 +170,7 @@ impl FarFile {
             leaf_triangles: header.leaf_triangles,
             grid: header.grid,
             y_up: header.y_up,
+            cuts: header.cuts,
             bytes,
         })
     }
@@ -238,6 +241,18 @@ impl FarFile {
         let root = &self.nodes[0];
         let world = |p: [f32; 3]| self.centre + DVec3::from_array(p.map(f64::from));
         (world(root.low), world(root.high))
+    }
+
+    /// What fitted cameras look at; in a file of an earlier program nothing is cut off the box.
+    #[must_use]
+    pub fn mesh_box(&self) -> MeshBox {
+        let (low, high) = self.bounds();
+        MeshBox {
+            low: low.to_array(),
+            high: high.to_array(),
+            cuts: self.cuts,
+            y_up: self.y_up,
+        }
     }
 
     /// Number of a node's first voxel, over all nodes.
@@ -391,6 +406,7 @@ struct Header {
     grid: u32,
     blends: [Blend; 2],
     y_up: bool,
+    cuts: [u8; 8],
     nodes_checksum: u64,
 }
 
@@ -421,6 +437,9 @@ impl Header {
         };
         let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
+        let cuts = header.bytes_at(at::CUTS);
+        let says_cuts = header.version() > VERSION_WITHOUT_CUTS;
+        header.ensure(says_cuts || cuts == [0; 8], at::CUTS, || "zeros")?;
         Ok(Self {
             places,
             triangles,
@@ -430,6 +449,7 @@ impl Header {
             grid,
             blends,
             y_up: header.byte_at(at::Y_UP) == 1,
+            cuts,
             nodes_checksum: header.u64_at(at::NODES_CHECKSUM),
         })
     }

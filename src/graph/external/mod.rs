@@ -30,7 +30,7 @@ use std::sync::Arc;
 
 use super::pushed::extent;
 use super::vxg::{self, VxgError};
-use super::{BuildError, BuildOptions, Placement, Progress, Voxel};
+use super::{BuildError, BuildOptions, MeshBox, Placement, Progress, Voxel};
 use buffer_sizes::BufferSizes;
 use finest::Finest;
 use gather::Gather;
@@ -95,6 +95,7 @@ pub struct ExternalBuilder {
     sizes: BufferSizes,
     scratch: Arc<Scratch>,
     gather: Gather,
+    mesh: Option<MeshBox>,
 }
 
 impl ExternalBuilder {
@@ -108,6 +109,16 @@ impl ExternalBuilder {
             options,
             sizes,
             scratch,
+            mesh: None,
+        }
+    }
+
+    /// Says which mesh the voxels are made of, for fitted cameras.
+    #[must_use]
+    pub fn of_mesh(self, mesh: MeshBox) -> Self {
+        Self {
+            mesh: Some(mesh),
+            ..self
         }
     }
 
@@ -147,6 +158,7 @@ impl ExternalBuilder {
             origin_index: self.gather.min.map(i64::from),
             world_origin: placement_world.0,
             voxel_size: placement_world.1,
+            mesh: self.mesh,
         };
         placement.check_world()?;
         let pushed = self.gather.pushed;
@@ -194,6 +206,7 @@ impl ExternalBuilder {
             sizes,
             scratch,
             gather,
+            mesh: _,
         } = self;
         let refused = |source| ExternalError::Temporary {
             folder: options.temporary.clone(),

@@ -33,12 +33,24 @@ pub(super) mod at {
     pub(in super::super) const VOXEL_SIZE: usize = 88;
     pub(in super::super) const LEVELS: usize = 96;
     pub(in super::super) const SECTION_COUNT: usize = 100;
+    /// Of voxels made of a mesh: which axis is up.
+    pub(in super::super) const MESH_UP: usize = 104;
     pub(in super::super) const SECTIONS: usize = 128;
     pub(in super::super) const LEVEL_START: usize = 288;
     /// Entry of the sixth section, beyond the level table.
     pub(in super::super) const OPACITY_SECTION: usize = 416;
+    /// Its box: lowest and highest corner, and what is cut off the corners.
+    pub(in super::super) const MESH_LOW: usize = 448;
+    pub(in super::super) const MESH_HIGH: usize = 472;
+    pub(in super::super) const MESH_CUTS: usize = 496;
     pub(in super::super) const CHECKSUM: usize = 504;
 }
+
+/// What byte [`at::MESH_UP`] says: voxels that were not made of a mesh, or in a file of an earlier program; of a mesh
+/// with +Z up; with +Y up.
+pub(super) const NO_MESH: u8 = 0;
+pub(super) const MESH_Z_UP: u8 = 1;
+pub(super) const MESH_Y_UP: u8 = 2;
 
 /// Bytes of an entry of the section table.
 pub(super) const SECTION_ENTRY_BYTES: usize = 32;

@@ -8,12 +8,12 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::error::{DAMAGED, NEWER, NOT_OURS, VxgError};
 use super::format::{
-    HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, MOST_SECTIONS, SECTIONS, Section, VERSION,
-    VERSION_WITH_OPACITY, at, entry_at, layout,
+    HEADER_BYTES, KINDS, MAGIC, MAX_LEVEL_STARTS, MESH_Y_UP, MOST_SECTIONS, NO_MESH, SECTIONS,
+    Section, VERSION, VERSION_WITH_OPACITY, at, entry_at, layout,
 };
 use crate::graph::file::{self, Refused};
 use crate::graph::map::{Access, advise};
-use crate::graph::{Graph, Invalid, Opacity, PackedNormal, Placement, Store};
+use crate::graph::{Graph, Invalid, MeshBox, Opacity, PackedNormal, Placement, Store};
 
 /// Whether a file that begins with these bytes is a `.vxg` file (of any version).
 #[must_use]
@@ -209,6 +209,16 @@ impl Header {
             format!("at most {MAX_LEVEL_STARTS} level entries, not {levels}")
         })?;
         let eights = |from: usize| [0, 8, 16].map(|skip| field::<8>(header, from + skip));
+        let [up] = field(header, at::MESH_UP);
+        report.check(up <= MESH_Y_UP, at::MESH_UP, DAMAGED, || {
+            format!("0 to {MESH_Y_UP}, not {up}")
+        })?;
+        let mesh = (up != NO_MESH).then(|| MeshBox {
+            low: eights(at::MESH_LOW).map(f64::from_le_bytes),
+            high: eights(at::MESH_HIGH).map(f64::from_le_bytes),
+            cuts: field(header, at::MESH_CUTS),
+            y_up: up == MESH_Y_UP,
+        });
         Ok(Self {
             depth: u32_at(header, at::DEPTH),
             root: u32_at(header, at::ROOT),
@@ -217,6 +227,7 @@ impl Header {
                 origin_index: eights(at::ORIGIN_INDEX).map(i64::from_le_bytes),
                 world_origin: eights(at::WORLD_ORIGIN).map(f64::from_le_bytes),
                 voxel_size: f64::from_le_bytes(field(header, at::VOXEL_SIZE)),
+                mesh,
             },
             level_start: (0..levels)
                 .map(|i| u32_at(header, at::LEVEL_START + 4 * i))
@@ -324,6 +335,7 @@ impl Header {
             (None, "voxels") => ("header", at::VOXELS as u64),
             (None, "level_start") => ("header", (at::LEVEL_START + 4 * invalid.index) as u64),
             (None, "world_origin") => ("header", at::WORLD_ORIGIN as u64),
+            (None, "mesh") => ("header", at::MESH_LOW as u64),
             (None, "voxel_size") => ("header", at::VOXEL_SIZE as u64),
             (None, _) => ("header", at::ORIGIN_INDEX as u64),
         };

@@ -9,8 +9,8 @@ use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::error::VxgError;
 use super::format::{
-    HEADER_BYTES, KINDS, MAGIC, SECTIONS, Section, VERSION, VERSION_WITH_OPACITY, at, entry_at,
-    layout,
+    HEADER_BYTES, KINDS, MAGIC, MESH_Y_UP, MESH_Z_UP, SECTIONS, Section, VERSION,
+    VERSION_WITH_OPACITY, at, entry_at, layout,
 };
 use crate::graph::{Graph, PackedNormal};
 use crate::whole::{self, WholeError};
@@ -205,6 +205,17 @@ fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTE
     }
     for (i, start) in graph.level_start.iter().enumerate() {
         put(at::LEVEL_START + 4 * i, &start.to_le_bytes());
+    }
+    if let Some(mesh) = &graph.placement.mesh {
+        put(
+            at::MESH_UP,
+            &[[MESH_Z_UP, MESH_Y_UP][usize::from(mesh.y_up)]],
+        );
+        for axis in 0..3 {
+            put(at::MESH_LOW + 8 * axis, &mesh.low[axis].to_le_bytes());
+            put(at::MESH_HIGH + 8 * axis, &mesh.high[axis].to_le_bytes());
+        }
+        put(at::MESH_CUTS, &mesh.cuts);
     }
     let checksum = xxh3_64(&header[..at::CHECKSUM]);
     header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());

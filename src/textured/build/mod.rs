@@ -15,7 +15,7 @@ use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
 use super::{CellGrid, Element, GridData, TexturedData};
 use crate::graph::Progress;
-use crate::mesh::Surface;
+use crate::mesh::{Surface, mesh_box};
 use project::{Column, Projected, project};
 use voxels::{Filled, cell_of, depths, fill};
 
@@ -115,6 +115,7 @@ pub fn build<S: Surface + ?Sized>(
         low,
         high,
         y_up: false,
+        cuts: mesh_box(surface, false).cuts,
         primitives,
         grids,
     })
