@@ -55,6 +55,13 @@ impl Counted {
         found.map_or(0, |&(_, count)| count)
     }
 
+    /// Samples that another picture shows otherwise.
+    #[must_use]
+    pub fn differing(&self, other: &Frame) -> u64 {
+        let pairs = self.frame.voxel.iter().zip(&other.voxel);
+        pairs.filter(|(a, b)| a != b).count() as u64
+    }
+
     /// Operations a record.
     #[must_use]
     pub fn operations_per_record(&self) -> f64 {
