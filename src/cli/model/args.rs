@@ -6,6 +6,7 @@ use clap::Args;
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
+use super::explore::ExploreArgs;
 use crate::bounded;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};
@@ -27,6 +28,8 @@ pub(in crate::cli) struct ModelArgs {
     pub(super) hardware: HardwareArgs,
     #[command(flatten)]
     pub(super) tables: TableArgs,
+    #[command(flatten)]
+    pub(super) explore: ExploreArgs,
     #[command(flatten)]
     pub(super) files: FileArgs,
     #[command(flatten)]
@@ -141,36 +144,46 @@ fn bits_scan(text: &str) -> Result<Scan, String> {
 }
 
 /// Reads a file that the user names.
-fn read(path: &Path) -> Result<String, CliError> {
+pub(super) fn read(path: &Path) -> Result<String, CliError> {
     bounded::read_settings(path)
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
+}
+
+/// The description of a hardware by its name: one that ships, or a file, seen from a folder.
+fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
+    if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
+        return Ok((*text).to_owned());
+    }
+    let path = folder.join(name);
+    if !path.exists() {
+        let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+        return Err(CliError::new(
+            Kind::Input,
+            format!("no hardware and no file is called {name}"),
+        )
+        .advise(format!(
+            "take one of {}, or print one with --print-hw and change it",
+            names.join(", ")
+        )));
+    }
+    read(&path)
+}
+
+/// The hardware of a name: see [`text_named`].
+pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
+    Hardware::from_toml(&text_named(name, folder)?)
+        .map_err(|error| CliError::new(Kind::Input, error).at(name))
 }
 
 impl HardwareArgs {
     /// Its description as TOML: a shipped one with its comments, or the user's.
     pub(super) fn text(&self) -> Result<String, CliError> {
-        if let Some((_, text)) = PRESETS.iter().find(|(name, _)| *name == self.hw) {
-            return Ok((*text).to_owned());
-        }
-        let path = PathBuf::from(&self.hw);
-        if !path.exists() {
-            let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-            return Err(CliError::new(
-                Kind::Input,
-                format!("no hardware and no file is called {}", self.hw),
-            )
-            .advise(format!(
-                "take one of {}, or print one with --print-hw and change it",
-                names.join(", ")
-            )));
-        }
-        read(&path)
+        text_named(&self.hw, Path::new(""))
     }
 
     /// The hardware.
     pub(super) fn hardware(&self) -> Result<Hardware, CliError> {
-        Hardware::from_toml(&self.text()?)
-            .map_err(|error| CliError::new(Kind::Input, error).at(self.hw.clone()))
+        hardware_named(&self.hw, Path::new(""))
     }
 
     /// The cost tables and choices.

@@ -71,10 +71,7 @@ pub(super) fn find(
         size,
         console,
     )?;
-    let options = SetupOptions {
-        bits: args.rules.bits.unwrap_or(BITS),
-        ..args.rules.options(0)
-    };
+    let options = setup_options(args);
     let overflow = args.rules.overflow();
     let setup = subject.setup(size, &options)?;
     let graph = &subject.graph;
@@ -243,6 +240,14 @@ fn sides_to(most: u32) -> Vec<u32> {
 
 /// Width of a word where nothing is said: that for which the shipped hardware is built.
 const BITS: u32 = 32;
+
+/// By which rules a frame is drawn, in which words.
+pub(super) fn setup_options(args: &ModelArgs) -> SetupOptions {
+    SetupOptions {
+        bits: args.rules.bits.unwrap_or(BITS),
+        ..args.rules.options(0)
+    }
+}
 
 /// Terrains and sponges of growing depth, in one picture size.
 const OBJECTS: [&str; 9] = [

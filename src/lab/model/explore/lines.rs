@@ -1,7 +1,7 @@
 //! Results, one a line of JSON: first what was asked, then points. The lines of several runs may stand one
 //! after the other in one file, as `cat` puts them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -73,7 +73,7 @@ pub enum LinesError {
         why: String,
     },
     /// The results of something else.
-    #[error("line {line}: these are results of another {what}: {there}, not {here}")]
+    #[error("line {line}: these are other results: their `{what}` is {there}, not {here}")]
     Other {
         /// The line's number, from 1.
         line: usize,
@@ -86,42 +86,68 @@ pub enum LinesError {
     },
 }
 
-/// The points that whole lines hold, and the bytes of those lines: a last line without an end is none. `asked`: what
-/// the run is of, which the first line must say, and every other line of its kind.
+/// What lines hold.
+#[derive(Debug, Clone, Default)]
+pub struct Recorded {
+    /// The points, each once.
+    pub points: BTreeMap<(String, usize), PointLine>,
+    /// Scenes whose headers are there.
+    pub scenes: BTreeSet<String>,
+    /// Bytes of whole lines: what follows was not written to its end.
+    pub bytes: usize,
+}
+
+/// Reads lines. `asked`: the headers of what is explored, one a scene. A last line without its end is none.
 ///
 /// # Errors
 /// When a line is none, or of another space, scene, size or version.
-pub fn read(text: &[u8], asked: &Value) -> Result<(Vec<PointLine>, usize), LinesError> {
-    let whole = text.iter().rposition(|&byte| byte == b'\n');
-    let whole = whole.map_or(0, |end| end + 1);
-    let mut points = Vec::new();
-    let lines = text[..whole].split_inclusive(|&byte| byte == b'\n');
+pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
+    let end = text.iter().rposition(|&byte| byte == b'\n');
+    let mut recorded = Recorded {
+        bytes: end.map_or(0, |end| end + 1),
+        ..Recorded::default()
+    };
+    let lines = text[..recorded.bytes].split_inclusive(|&byte| byte == b'\n');
     for (at, line) in lines.enumerate() {
-        let line_of = |why: String| LinesError::Line { line: at + 1, why };
-        let no_result = |error: serde_json::Error| line_of(format!("this is no result: {error}"));
+        let wrong = |why: &str| LinesError::Line {
+            line: at + 1,
+            why: why.to_owned(),
+        };
+        let no_result = |error: serde_json::Error| wrong(&format!("this is no result: {error}"));
         let mut value: Value = serde_json::from_slice(line).map_err(no_result)?;
-        let kind = value.get("kind").and_then(Value::as_str).unwrap_or_default();
-        match kind {
-            "space" => compare(&value, asked, at + 1)?,
-            _ if at == 0 => {
-                return Err(line_of("results begin with what they are of".to_owned()));
+        match value["kind"].as_str() {
+            Some("space") => {
+                compare(&value, asked, at + 1)?;
+                recorded.scenes.extend(name(&value["scene"]));
             }
-            "front" => {}
-            "point" => {
+            Some("front") => {}
+            Some("point") => {
                 if let Value::Object(fields) = &mut value {
                     fields.remove("kind");
                 }
-                points.push(serde_json::from_value(value).map_err(no_result)?);
+                let line: PointLine = serde_json::from_value(value).map_err(no_result)?;
+                if !recorded.scenes.contains(&line.scene) {
+                    return Err(wrong("what this point is of does not stand above it"));
+                }
+                let key = (line.scene.clone(), line.point);
+                recorded.points.insert(key, line);
             }
-            _ => return Err(line_of("this is no result".to_owned())),
+            _ => return Err(wrong("this is no result")),
         }
     }
-    Ok((points, whole))
+    Ok(recorded)
 }
 
-fn compare(found: &Value, asked: &Value, line: usize) -> Result<(), LinesError> {
-    let fields = asked.as_object().into_iter().flatten();
-    for (what, here) in fields {
+fn name(scene: &Value) -> Option<String> {
+    scene["name"].as_str().map(str::to_owned)
+}
+
+/// Whether a header is that of one of the scenes that are asked for.
+fn compare(found: &Value, asked: &[Value], line: usize) -> Result<(), LinesError> {
+    let scene = |of: &Value| name(&of["scene"]);
+    let like = asked.iter().find(|of| scene(of) == scene(found));
+    let asked = like.or(asked.first()).and_then(Value::as_object);
+    for (what, here) in asked.into_iter().flatten() {
         let there = &found[what];
         if there != here {
             return Err(LinesError::Other {

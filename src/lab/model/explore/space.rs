@@ -329,7 +329,10 @@ fn values_of(key: &str, range: &Value) -> Result<Vec<Value>, SpaceError> {
         return Err(wrong(key, "it has no values"));
     }
     for (at, value) in values.iter().enumerate() {
-        if matches!(value, Value::Array(_) | Value::Table(_) | Value::Datetime(_)) {
+        if matches!(
+            value,
+            Value::Array(_) | Value::Table(_) | Value::Datetime(_)
+        ) {
             return Err(wrong(key, "its values must be numbers, words or booleans"));
         }
         if values[..at].contains(value) {
