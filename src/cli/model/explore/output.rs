@@ -79,12 +79,14 @@ fn unless_none(count: usize, what: &str) -> String {
 fn table(of: &Explorations, args: &ModelArgs) -> Table {
     let mut table = Table::new(
         format!(
-            "{}, {} x {}: {} of {} hardwares that no other beats in time, area, energy and wrong samples{}{}{}",
+            "{}, {} x {}: of {} hardwares {} that no other beats in time, area, energy and wrong samples; of those, {} \
+             beside which none is better by a tenth in something and nowhere worse by a tenth{}{}{}",
             of.scene,
             args.size.width,
             args.size.height,
-            of.front.len(),
             of.points.len(),
+            of.front.len(),
+            of.front.iter().filter(|point| point.stands_out).count(),
             unless_none(of.all - of.points.len(), "of the space are not measured"),
             unless_none(refused(of), "cannot draw the frame"),
             unless_none(too_slow(of), "are too slow for their clock"),
@@ -100,7 +102,7 @@ fn table(of: &Explorations, args: &ModelArgs) -> Table {
             "what_others_have_less_of",
         ],
     );
-    for point in &of.front {
+    for point in of.front.iter().filter(|point| point.stands_out) {
         let figures = point.figures();
         table.rows.push(vec![
             Cell::from(point.line.point as u64),
@@ -219,10 +221,13 @@ fn panel(of: &Explorations) -> Panel {
         })
     };
     let all = of.points.iter().filter_map(|line| place(line, None));
-    let numbered = |point: &FrontPoint| place(&point.line, Some(point.line.point.to_string()));
+    let numbered = |point: &FrontPoint| {
+        let number = point.stands_out.then(|| point.line.point.to_string());
+        place(&point.line, number)
+    };
     Panel::Chart(Chart {
         title: format!(
-            "{}: hardwares that no other beats (labels: points)",
+            "{}: hardwares that no other beats (with numbers: clearly)",
             of.scene
         ),
         x: axis("time of the frame, ms"),

@@ -16,7 +16,8 @@ pub(super) fn html(found: &[Explorations], tables: &[Table], command: &str) -> S
     page.lines(command);
     page.text(
         "Each dot is a hardware. Grey ones are beaten by another in time, area, energy and wrong samples together; blue \
-         ones are not, and orange ones are not either but have wrong samples. Put the pointer on a dot: it is marked in \
+         ones are not, and orange ones are not either but have wrong samples. Large are those beside which none is better \
+         by a tenth in something and nowhere worse by a tenth. Put the pointer on a dot: it is marked in \
          all three plots, and the line below says what it is and what it gives up.",
     );
     for (place, (of, table)) in found.iter().zip(tables).enumerate() {
@@ -114,7 +115,8 @@ fn plots(of: &Explorations, place: usize) -> String {
                 _ => "#d55e00",
             };
             let number = point.line.point;
-            let kind = format!(r#"class="s{place}p{number}" r="5" fill="{color}""#);
+            let radius = if point.stands_out { 6 } else { 3 };
+            let kind = format!(r#"class="s{place}p{number}" r="{radius}" fill="{color}""#);
             dot(&point.line, &kind);
         }
     }

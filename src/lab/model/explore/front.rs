@@ -74,14 +74,20 @@ pub struct Exchange {
     pub price: Vec<Change>,
 }
 
+/// So many times as much is worth a choice.
+pub const WORTH: f64 = 1.1;
+
 /// A point of the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FrontPoint {
     /// The point.
     #[serde(flatten)]
     pub line: PointLine,
-    /// For each figure that another point of the front has less of, the best exchange: the one whose
-    /// gain is largest beside its highest price.
+    /// Whether it is worth a choice: there is no other such point that is clearly better in
+    /// something, and nowhere clearly worse; clearly: by more than [`WORTH`].
+    pub stands_out: bool,
+    /// For each figure that another point of the front has clearly less of, the best exchange: the one whose
+    /// gain is largest beside its highest price. Among the points that stand out.
     pub gives_up: Vec<Exchange>,
 }
 
@@ -115,14 +121,35 @@ pub fn front(points: &[PointLine]) -> Vec<FrontPoint> {
     let beaten = dominated(&standings);
     let unbeaten = able.into_iter().zip(beaten).filter(|(_, beaten)| !beaten);
     let kept: Vec<_> = unbeaten.map(|(point, _)| point).collect();
+    let standing_out = standing_out(&kept);
     let with_exchanges = |&(line, figures): &(&PointLine, &PointFigures)| FrontPoint {
         line: line.clone(),
+        stands_out: standing_out.iter().any(|(of, _)| of.point == line.point),
         gives_up: Objective::ALL
             .into_iter()
-            .filter_map(|objective| best_exchange(objective, figures, &kept))
+            .filter_map(|objective| best_exchange(objective, figures, &standing_out))
             .collect(),
     };
     kept.iter().map(with_exchanges).collect()
+}
+
+/// The points that are worth a choice: the slowest goes first where another is left in its stead.
+fn standing_out<'a>(
+    front: &[(&'a PointLine, &'a PointFigures)],
+) -> Vec<(&'a PointLine, &'a PointFigures)> {
+    let mut left = front.to_vec();
+    for (line, own) in front.iter().rev() {
+        let stands_for_it = |(other, figures): &(&PointLine, &PointFigures)| {
+            let ratios = Objective::ALL.map(|objective| objective.ratio(own, figures));
+            other.point != line.point
+                && ratios.iter().all(|&ratio| ratio <= WORTH)
+                && ratios.iter().any(|&ratio| ratio < 1.0 / WORTH)
+        };
+        if left.iter().any(stands_for_it) {
+            left.retain(|(other, _)| other.point != line.point);
+        }
+    }
+    left
 }
 
 fn compare(a: &[f64; 4], b: &[f64; 4]) -> std::cmp::Ordering {
@@ -138,7 +165,7 @@ fn best_exchange(
 ) -> Option<Exchange> {
     let exchange = |&(line, other): &(&PointLine, &PointFigures)| {
         let ratio = objective.ratio(own, other);
-        if objective.of(other) >= objective.of(own) {
+        if ratio >= 1.0 / WORTH {
             return None;
         }
         let changes = Objective::ALL.map(|objective| Change {
@@ -167,7 +194,13 @@ impl std::fmt::Display for Change {
 
 impl std::fmt::Display for Exchange {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let price: Vec<String> = self.price.iter().map(Change::to_string).collect();
-        write!(f, "{} for {}: #{}", self.gain, price.join(", "), self.to)
+        // What is hardly more is no price.
+        let price = self.price.iter().filter(|change| change.ratio >= 1.005);
+        let price: Vec<String> = price.map(Change::to_string).collect();
+        let price = match price.as_slice() {
+            [] => "hardly anything".to_owned(),
+            price => price.join(", "),
+        };
+        write!(f, "{} for {price}: #{}", self.gain, self.to)
     }
 }

@@ -6,8 +6,9 @@
 //!
 //! What does not depend on the whole point is computed once for all points that have it in common:
 //! the exact picture; what the machine counts, by width and organisation; the rays, by width, node
-//! format and lines, for caches of all sizes at once; cycles, by all but name and clock. The
-//! figures are those of `shiftvox model` for the same hardware.
+//! format and lines, for caches of all sizes at once; cycles, by all but name and clock. Where parents lie on
+//! the stack, a record's turn does the same on every hardware: those turns are recorded once, and only
+//! the cycles are simulated anew. The figures are those of `shiftvox model` for the same hardware.
 
 pub mod front;
 pub mod lines;
@@ -17,7 +18,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use hwmodel::Overflow;
-use hwmodel::cycles::{Cache, Hardware, NoObserver};
+use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +32,7 @@ use super::{ModelError, rules};
 use crate::frame::Frame;
 use crate::graph::{Graph, Progress};
 use crate::lab::float_rays::RayOrder;
-use crate::machine::{SimulateError, Simulated};
+use crate::machine::SimulateError;
 use crate::project::{Camera, FrameSetup, SetupOptions};
 use space::Point;
 
@@ -112,6 +113,9 @@ struct Shared<'a> {
     setups: BTreeMap<Option<u32>, OrReason<FrameSetup>>,
     /// What the machine counts, by [`machine_key`].
     counted: BTreeMap<String, OrReason<Counted>>,
+    /// Turns that are the same on every hardware, and the picture's samples that are not the
+    /// serial machine's, by [`machine_key`].
+    turns: BTreeMap<String, (Recording, u64)>,
     /// By [`ray_key`]: sizes of the node cache, and the rays of every order.
     rays: BTreeMap<String, (Vec<u32>, Vec<RayRun>)>,
     ray_hardware: RayHardware,
@@ -205,6 +209,7 @@ impl<'a> Shared<'a> {
             exact: frame::reference(&of.graph.view(), &true_setup)?,
             setups: BTreeMap::new(),
             counted: BTreeMap::new(),
+            turns: BTreeMap::new(),
             rays: BTreeMap::new(),
             ray_hardware: RayHardware::shipped(),
         };
@@ -231,14 +236,25 @@ impl<'a> Shared<'a> {
             }
         }
         let count = |(key, point): (String, &Point)| {
-            let counted = shared.setup(point).and_then(|setup| {
-                frame::count(of.graph, setup, &point.hardware, of.overflow)
-                    .map_err(|error| error.to_string())
-            });
-            (key, counted)
+            let hardware = &point.hardware;
+            let draw = || -> Result<_, String> {
+                let setup = shared.setup(point)?;
+                let counted = frame::count(of.graph, setup, hardware, of.overflow)
+                    .map_err(|error| error.to_string())?;
+                let view = of.graph.view();
+                // What fails here fails in the simulation too, and is told there.
+                let turns = frame::record_turns(&view, setup, hardware.organisation, of.overflow);
+                let turns = turns.ok().flatten();
+                let turns = turns.map(|(frame, turns)| (turns, counted.differing(&frame)));
+                Ok((counted, turns))
+            };
+            match draw() {
+                Ok((counted, turns)) => (key, Ok(counted), turns),
+                Err(reason) => (key, Err(reason), None),
+            }
         };
         let machines: Vec<_> = machines.into_iter().collect();
-        let counted: Vec<_> = machines.into_par_iter().map(count).collect();
+        let drawn: Vec<_> = machines.into_par_iter().map(count).collect();
         let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
         let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
             let Ok(setup) = shared.setup(point) else {
@@ -256,7 +272,10 @@ impl<'a> Shared<'a> {
             .into_par_iter()
             .map(cast)
             .collect::<Result<_, ModelError>>()?;
-        shared.counted = counted.into_iter().collect();
+        for (key, counted, turns) in drawn {
+            shared.turns.extend(turns.map(|turns| (key.clone(), turns)));
+            shared.counted.insert(key, counted);
+        }
         shared.rays = rays.into_iter().flatten().collect();
         progress.end();
         Ok(shared)
@@ -281,15 +300,22 @@ impl<'a> Shared<'a> {
     }
 
     /// A frame on a point's hardware, and the samples that it shows otherwise than the serial machine's.
-    fn simulate(&self, point: &Point) -> Result<OrReason<(Simulated, u64)>, ModelError> {
+    fn simulate(&self, point: &Point) -> Result<OrReason<(CycleReport, u64)>, ModelError> {
         let (setup, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(Err(reason)),
         };
         let (hardware, overflow) = (&point.hardware, self.of.overflow);
         let view = self.of.graph.view();
-        match frame::simulate(&view, setup, hardware, overflow, &mut NoObserver) {
-            Ok((frame, simulated)) => Ok(Ok((simulated, counted.differing(&frame)))),
+        let report = match self.turns.get(&machine_key(point)) {
+            Some((turns, differing)) => {
+                frame::replay(turns, &view, setup, hardware).map(|cycles| (cycles, *differing))
+            }
+            None => frame::simulate(&view, setup, hardware, overflow, &mut NoObserver)
+                .map(|(frame, simulated)| (simulated.cycles, counted.differing(&frame))),
+        };
+        match report {
+            Ok(report) => Ok(Ok(report)),
             Err(ModelError::Simulate(
                 error @ (SimulateError::Engine(_) | SimulateError::StackOverflow { .. }),
             )) => Ok(Err(error.to_string())),
@@ -300,14 +326,13 @@ impl<'a> Shared<'a> {
     fn price(
         &self,
         point: &Point,
-        (simulated, differing_samples): &(Simulated, u64),
+        (cycles, differing_samples): &(CycleReport, u64),
     ) -> Result<PointOutcome, ModelError> {
         let (setup, counted) = match self.drawn(point) {
             Ok(drawn) => drawn,
             Err(reason) => return Ok(PointOutcome::Refused { reason }),
         };
         let (hardware, prices) = (&point.hardware, self.of.prices);
-        let cycles = &simulated.cycles;
         let light = LightDesign::price(self.of.graph, setup, counted, cycles, hardware, prices)?;
         let Some((sizes, runs)) = self.rays.get(&ray_key(point)) else {
             unreachable!("every point that is drawn has rays beside it");
