@@ -6,6 +6,7 @@
 //! watched for the places that it shifts by.
 
 use std::collections::{BTreeMap, HashMap};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::panic::Location;
 
 use serde::{Deserialize, Serialize};
@@ -98,12 +99,41 @@ struct Seen {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ShiftProbe {
-    seen: HashMap<(usize, u8, u32, u32), (Place, Seen)>,
+    seen: HashMap<(usize, u8, u32, u32), (Place, Seen), BuildHasherDefault<SiteHasher>>,
     /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
 }
 
 type Place = &'static Location<'static>;
+
+/// A hash of a few numbers that nobody chooses to collide: asked for at every shift of a frame.
+#[derive(Debug, Clone, Copy, Default)]
+struct SiteHasher(u64);
+
+impl Hasher for SiteHasher {
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.write_u8(byte);
+        }
+    }
+
+    fn write_u8(&mut self, number: u8) {
+        self.write_u32(u32::from(number));
+    }
+
+    fn write_u32(&mut self, number: u32) {
+        self.write_usize(number as usize);
+    }
+
+    fn write_usize(&mut self, number: usize) {
+        // An odd factor whose bits look random: 2^64 over the golden ratio.
+        self.0 = (self.0.rotate_left(5) ^ number as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0.rotate_left(26)
+    }
+}
 
 impl ShiftProbe {
     /// A probe that has seen nothing.

@@ -4,9 +4,9 @@
 //! files may hold anything; what could move a terminal's cursor or change its colours is shown escaped.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
 use std::io::{self, IsTerminal, Write};
-use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
@@ -23,7 +23,9 @@ pub(super) struct Console {
     pub(super) json: bool,
     progress: Box<dyn Progress>,
     /// The document that waits for the end of the run.
-    held: RefCell<Option<Value>>,
+    held: Mutex<Option<Value>>,
+    /// Whether documents are printed a line each.
+    in_lines: AtomicBool,
 }
 
 impl Console {
@@ -38,7 +40,8 @@ impl Console {
             verbose,
             json,
             progress,
-            held: RefCell::default(),
+            held: Mutex::default(),
+            in_lines: AtomicBool::new(false),
         }
     }
 
@@ -52,21 +55,40 @@ impl Console {
         print(&harmless(text.as_ref()))
     }
 
+    /// Prints a line of JSON at once, where results are JSON: of what comes bit by bit.
+    pub(super) fn line(&self, text: &str) -> Result<(), CliError> {
+        if !self.json {
+            return Ok(());
+        }
+        self.in_lines.store(true, Ordering::Relaxed);
+        print(&json_text(text))
+    }
+
     /// Prints a JSON document: at the next one, or at the end of the run.
     pub(super) fn document(&self, value: &Value) -> Result<(), CliError> {
-        match self.held.replace(Some(value.clone())) {
+        let before = self.held().replace(value.clone());
+        match before {
             Some(before) => print(&as_json(&before)),
             None => Ok(()),
         }
     }
 
+    fn held(&self) -> MutexGuard<'_, Option<Value>> {
+        // A document, or none, also after a panic.
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always is one.
     pub(super) fn end(&self, result: Result<(), CliError>) -> Result<(), CliError> {
-        let held = self.held.take();
+        let held = self.held().take();
         let printed = match (&result, held) {
             (Err(error), _) if error.kind == Kind::Pipe => Ok(()),
             (Err(error), held) if self.json || held.is_some() => {
-                print(&as_json(&document::failed(held, error)))
+                let document = document::failed(held, error);
+                match self.in_lines.load(Ordering::Relaxed) {
+                    true => print(&json_text(&document.to_string())),
+                    false => print(&as_json(&document)),
+                }
             }
             (_, Some(held)) => print(&as_json(&held)),
             (_, None) => Ok(()),
@@ -127,16 +149,19 @@ fn harmless(text: &str) -> Cow<'_, str> {
 
 /// A document, with the same escaped as JSON has it.
 pub(super) fn as_json(document: &Value) -> String {
-    let text = format!("{document:#}");
+    json_text(&format!("{document:#}")).into_owned()
+}
+
+/// The text of a document, with the same escaped.
+fn json_text(text: &str) -> Cow<'_, str> {
     // Those below 32 are escaped already, or lines' ends between values.
-    let shown = escaped(&text, |letter| match names::byte_of(letter) {
+    escaped(text, |letter| match names::byte_of(letter) {
         Some(byte) => Some(format!("\\\\x{byte:02x}")),
         None if letter.is_control() && letter != '\n' => {
             Some(format!("\\u{:04x}", u32::from(letter)))
         }
         None => None,
-    });
-    shown.into_owned()
+    })
 }
 
 /// A text with some letters written in another way.
@@ -163,10 +188,7 @@ struct Bars {
 impl Bars {
     fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
         // A bar is no reason to fail: whoever panicked left it usable.
-        act(&mut self
-            .bar
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner));
+        act(&mut self.bar.lock().unwrap_or_else(PoisonError::into_inner));
     }
 }
 

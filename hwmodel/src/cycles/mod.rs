@@ -1,6 +1,6 @@
 //! How many cycles a hardware takes, and what for.
 //!
-//! Nothing is recorded and replayed: [`simulate`] has a [`Workload`] do one
+//! Nothing is recorded and replayed (but see [`Recording`]): [`simulate`] has a [`Workload`] do one
 //! record's turn at a time, in the order of simulated time, watches through a
 //! probe ([`TurnLog`]) what it does, and lays that out in cycles. So a record
 //! that is worked on early finds less drawn before it than serially, as it
@@ -94,6 +94,7 @@
 mod hardware;
 mod memories;
 mod observe;
+mod recording;
 mod report;
 mod scaling;
 mod simulate;
@@ -107,6 +108,7 @@ pub use hardware::{
     Organisation, OuterMemory, PRESETS, Pixels, Stack, StackHolds, StackOverflow, Unit,
 };
 pub use observe::{NoObserver, Observer, Progress, START, VisitSpan};
+pub use recording::{Recording, Replay, Tape, TurnProbe};
 pub use report::{
     Bottleneck, Bound, CacheReport, Cause, ContextReport, CycleReport, REPORT_VERSION, StackReport,
     StageReport, Stalls,

@@ -5,9 +5,9 @@ use super::memories::Latencies;
 use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = Stage::ALL.len();
-const CLASSES: usize = OpClass::ALL.len();
+pub(super) const CLASSES: usize = OpClass::ALL.len();
 /// Widths of operations that are counted apart; wider ones count as this less one.
-const WIDTHS: usize = 128;
+pub(super) const WIDTHS: usize = 128;
 
 /// What is simulated: something that works on records, one turn each. What
 /// a turn costs is known only after it has been executed.

@@ -79,6 +79,19 @@ pub(in crate::cli) fn write(
     args: &ExportArgs,
     console: &Console,
 ) -> Result<(), CliError> {
+    write_files(results, args, console)?;
+    if console.json {
+        return console.document(&results.document);
+    }
+    print(&results.tables, console)
+}
+
+/// Writes the files.
+pub(in crate::cli) fn write_files(
+    results: &Results,
+    args: &ExportArgs,
+    console: &Console,
+) -> Result<(), CliError> {
     let file = |path: &Option<PathBuf>, text: &dyn Fn() -> Result<String, CliError>| {
         let Some(path) = path else { return Ok(()) };
         whole::write(path, text()?.as_bytes(), args.force)?;
@@ -95,11 +108,7 @@ pub(in crate::cli) fn write(
         let tables: Vec<String> = tables.collect();
         Ok(format!("{}\n{}", results.preface, tables.join("\n")))
     })?;
-    file(&args.export_svg, &|| Ok(plot::svg(&results.panels)?))?;
-    if console.json {
-        return console.document(&results.document);
-    }
-    print(&results.tables, console)
+    file(&args.export_svg, &|| Ok(plot::svg(&results.panels)?))
 }
 
 /// The same where plots were written before, one file a scene.

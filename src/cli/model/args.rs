@@ -6,6 +6,7 @@ use clap::Args;
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
+use super::explore::ExploreArgs;
 use crate::bounded;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};
@@ -27,6 +28,8 @@ pub(in crate::cli) struct ModelArgs {
     pub(super) hardware: HardwareArgs,
     #[command(flatten)]
     pub(super) tables: TableArgs,
+    #[command(flatten)]
+    pub(super) explore: ExploreArgs,
     #[command(flatten)]
     pub(super) files: FileArgs,
     #[command(flatten)]
@@ -142,9 +145,35 @@ fn bits_scan(text: &str) -> Result<Scan, String> {
 }
 
 /// Reads a file that the user names.
-fn read(path: &Path) -> Result<String, CliError> {
+pub(super) fn read(path: &Path) -> Result<String, CliError> {
     bounded::read_settings(path)
         .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
+}
+
+/// The description of a hardware by its name: one that ships, or a file, seen from a folder.
+fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
+    if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
+        return Ok((*text).to_owned());
+    }
+    let path = folder.join(name);
+    if !path.exists() {
+        let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+        return Err(CliError::new(
+            Kind::Input,
+            format!("no hardware and no file is called {name}"),
+        )
+        .advise(format!(
+            "take one of {}, or print one with --print-hw and change it",
+            names.join(", ")
+        )));
+    }
+    read(&path)
+}
+
+/// The hardware of a name: see [`text_named`].
+pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
+    Hardware::from_toml(&text_named(name, folder)?)
+        .map_err(|error| CliError::new(Kind::Input, error).at(name))
 }
 
 impl ModelArgs {
@@ -162,29 +191,12 @@ impl ModelArgs {
 
     /// The hardware's description as TOML: a shipped one with its comments, or the user's.
     pub(super) fn hardware_text(&self) -> Result<String, CliError> {
-        let name = self.hardware_name();
-        if let Some((_, text)) = PRESETS.iter().find(|(preset, _)| *preset == name) {
-            return Ok((*text).to_owned());
-        }
-        let path = PathBuf::from(name);
-        if !path.exists() {
-            let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
-            return Err(CliError::new(
-                Kind::Input,
-                format!("no hardware and no file is called {name}"),
-            )
-            .advise(format!(
-                "take one of {}, or print one with --print-hw and change it",
-                names.join(", ")
-            )));
-        }
-        read(&path)
+        text_named(self.hardware_name(), Path::new(""))
     }
 
     /// The hardware.
     pub(super) fn hardware(&self) -> Result<Hardware, CliError> {
-        Hardware::from_toml(&self.hardware_text()?)
-            .map_err(|error| CliError::new(Kind::Input, error).at(self.hardware_name()))
+        hardware_named(self.hardware_name(), Path::new(""))
     }
 }
 

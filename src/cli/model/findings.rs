@@ -13,12 +13,13 @@ use crate::cli::experiment::subjects;
 use crate::lab::bench::Subject;
 use crate::lab::float_rays::RayOrder;
 use crate::lab::model::ModelError;
-use crate::lab::model::area::{self, DesignArea, LightFrame};
+use crate::lab::model::area::DesignArea;
 use crate::lab::model::caches::{self, CacheRow, Drawn};
 use crate::lab::model::claims::{self, Claim};
-use crate::lab::model::clock::{self, ClockCheck};
+use crate::lab::model::clock::ClockCheck;
 use crate::lab::model::compare::{self, ComparedLine, Design};
-use crate::lab::model::cost::{self, FrameCost, Prices};
+use crate::lab::model::cost::{FrameCost, Prices};
+use crate::lab::model::design::LightDesign;
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
 use crate::lab::model::ray_caster::{self, RayCasterReport};
@@ -70,10 +71,7 @@ pub(super) fn find(
         size,
         console,
     )?;
-    let options = SetupOptions {
-        bits: args.rules.bits.unwrap_or(BITS),
-        ..args.rules.options(0)
-    };
+    let options = setup_options(args);
     let overflow = args.rules.overflow();
     let setup = subject.setup(size, &options)?;
     let graph = &subject.graph;
@@ -91,11 +89,7 @@ pub(super) fn find(
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
     )?;
-    let serial = counted.frame.voxel.iter();
-    let differing = serial
-        .zip(&hardware_frame.voxel)
-        .filter(|(a, b)| a != b)
-        .count() as u64;
+    let differing = counted.differing(&hardware_frame);
 
     progress.begin("the exact picture and the ray caster", 0);
     let true_setup = rules::true_setup(graph, &camera, &options)?;
@@ -105,25 +99,19 @@ pub(super) fn find(
     let wrong = frame::error(&counted.frame, &exact);
     progress.end();
 
-    let widths = frame::widths(&setup, graph, &hardware);
-    let cost = cost::frame_cost(
+    let LightDesign {
+        widths,
+        cost,
+        area,
+        clock,
+    } = LightDesign::price(
+        graph,
+        &setup,
         &counted,
         &simulated.cycles,
-        &widths,
-        &setup,
         &hardware,
         prices,
-    )
-    .map_err(ModelError::from)?;
-    let used = LightFrame {
-        counter: &counted.counter,
-        shifts: &counted.shifts,
-        cycles: &simulated.cycles,
-        setup: &setup,
-        record_bits: counted.record_bits(),
-    };
-    let area = area::light(used, &hardware, prices).map_err(ModelError::from)?;
-    let clock = clock::check(&counted.counter, &hardware, prices).map_err(ModelError::from)?;
+    )?;
     let light = Design {
         cost: &cost,
         area: &area,
@@ -252,6 +240,14 @@ fn sides_to(most: u32) -> Vec<u32> {
 
 /// Width of a word where nothing is said: that for which the shipped hardware is built.
 const BITS: u32 = 32;
+
+/// By which rules a frame is drawn, in which words.
+pub(super) fn setup_options(args: &ModelArgs) -> SetupOptions {
+    SetupOptions {
+        bits: args.rules.bits.unwrap_or(BITS),
+        ..args.rules.options(0)
+    }
+}
 
 /// Terrains and sponges of growing depth, in one picture size.
 const OBJECTS: [&str; 9] = [

@@ -1,6 +1,7 @@
 //! `model`: what a frame costs on the light hardware.
 
 mod args;
+mod explore;
 mod findings;
 mod output;
 mod page;
@@ -19,6 +20,9 @@ pub(super) fn run(
     from_config: Vec<String>,
     console: &Console,
 ) -> Result<(), CliError> {
+    if let Some(space) = &args.explore.explore {
+        return explore::run(space, args, from_config, console);
+    }
     if args.hardware.print_hw {
         return console.data(args.hardware_text()?.trim_end());
     }

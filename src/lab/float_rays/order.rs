@@ -1,9 +1,9 @@
 //! The order in which rays are cast: what a cache finds depends on it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An order of a picture's rays.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum RayOrder {

@@ -3,7 +3,7 @@
 use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
-use hwmodel::cycles::{Hardware, Observer, Organisation};
+use hwmodel::cycles::{self, CycleReport, Hardware, NoObserver, Observer, Organisation, Recording};
 use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
@@ -11,7 +11,7 @@ use super::ModelError;
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
 use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
-use crate::machine::{Machine, MachineOptions, Simulated};
+use crate::machine::{Machine, MachineOptions, SimulateError, Simulated};
 use crate::measure::CoverageError;
 use crate::picture::{Shading, lights};
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -53,6 +53,13 @@ impl Counted {
     pub fn stat(&self, name: &str) -> u64 {
         let found = self.stats.iter().find(|(n, _)| *n == name);
         found.map_or(0, |&(_, count)| count)
+    }
+
+    /// Samples that another picture shows otherwise.
+    #[must_use]
+    pub fn differing(&self, other: &Frame) -> u64 {
+        let pairs = self.frame.voxel.iter().zip(&other.voxel);
+        pairs.filter(|(a, b)| a != b).count() as u64
     }
 
     /// Operations a record.
@@ -163,11 +170,57 @@ pub fn simulate<O: Observer>(
     observer: &mut O,
 ) -> Result<(Frame, Simulated), ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
-    let mut hardware = hardware.clone();
-    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
+    let hardware = with_records(graph, setup, hardware);
     let mut machine = machine(overflow, hardware.organisation);
     let simulated = machine.simulate(graph, setup, &mut frame, &hardware, observer)?;
     Ok((frame, simulated))
+}
+
+/// A hardware, with the bits of a frame's records.
+fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) -> Hardware {
+    let mut hardware = hardware.clone();
+    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
+    hardware
+}
+
+/// Most bytes of a frame's recorded turns.
+const MOST_RECORDED: usize = 1 << 28;
+
+/// Records a frame's turns where they do not depend on the hardware, but for its organisation, and are not
+/// too many. With them, the picture.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn record_turns(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    organisation: Organisation,
+    overflow: Overflow,
+) -> Result<Option<(Frame, Recording)>, ModelError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    // One that lets every frame through.
+    let mut hardware = Hardware::preset("tiny")?;
+    hardware.organisation = organisation;
+    let mut machine = machine(overflow, organisation);
+    let turns = machine.record_turns(graph, setup, &mut frame, &hardware, MOST_RECORDED)?;
+    Ok(turns.map(|turns| (frame, turns)))
+}
+
+/// What [`simulate`] says of the cycles of a frame whose turns are recorded.
+///
+/// # Errors
+/// When a stack is full that does not spill.
+pub fn replay(
+    turns: &Recording,
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+) -> Result<CycleReport, ModelError> {
+    let hardware = with_records(graph, setup, hardware);
+    hardware.check()?;
+    let mut workload = turns.replay(&hardware);
+    let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
+    Ok(report.map_err(SimulateError::from)?)
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.

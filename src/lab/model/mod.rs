@@ -3,9 +3,10 @@
 //!
 //! [`frame`] draws a frame and has everything counted; [`ray_caster`] does the same
 //! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
-//! units with the clock; [`rules`],
+//! units with the clock, [`design`] does all of that; [`rules`],
 //! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
+//! formats, over sizes of the node cache, and over pictures and objects; [`mod@explore`] over many
+//! hardwares; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
 pub mod area;
@@ -14,6 +15,8 @@ pub mod claims;
 pub mod clock;
 pub mod compare;
 pub mod cost;
+pub mod design;
+pub mod explore;
 pub mod frame;
 pub mod growth;
 pub mod heat;

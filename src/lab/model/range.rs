@@ -1,10 +1,10 @@
 //! Figures with a low and a high end, and when one is less than another.
 
 use hwmodel::cost::Breakdown;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A figure and the ends of its range.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Range {
     /// The figure: the middle of its parts' ranges.
     pub value: f64,

@@ -207,14 +207,36 @@ pub fn measure(
     order: Option<RayOrder>,
     exact: &Frame,
 ) -> Result<RayCasterReport, ModelError> {
-    let rays = RayHardware::shipped();
     let tried = order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
+    let sizes = [hardware.node_cache.bytes];
+    let runs = tried
+        .into_iter()
+        .map(|order| cast(graph, setup, hardware, &sizes, order, exact));
+    let runs = runs.collect::<Result<Vec<_>, _>>()?;
+    Ok(cheapest(
+        &runs,
+        0,
+        hardware,
+        &RayHardware::shipped(),
+        prices,
+    )?)
+}
+
+/// Of runs in several orders, the one of least energy, priced as [`price`] does. There must be one.
+///
+/// # Errors
+/// When the cost tables lack a figure.
+pub fn cheapest(
+    runs: &[RayRun],
+    at: usize,
+    hardware: &Hardware,
+    rays: &RayHardware,
+    prices: &Prices,
+) -> Result<RayCasterReport, CostError> {
     let mut best: Option<RayCasterReport> = None;
     let mut orders = Vec::new();
-    for order in tried {
-        let sizes = [hardware.node_cache.bytes];
-        let run = cast(graph, setup, hardware, &sizes, order, exact)?;
-        let report = price(&run, 0, hardware, &rays, prices)?;
+    for run in runs {
+        let report = price(run, at, hardware, rays, prices)?;
         orders.extend(report.orders.iter().copied());
         let energy = |report: &RayCasterReport| report.cost.total().0;
         if best

@@ -86,7 +86,7 @@ const BUILT_FOR_BITS: u32 = 32;
 
 /// A hardware whose units for words are as much wider or narrower as words of
 /// `bits` bits are than those that it is built for.
-fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
+pub(super) fn with_width(hardware: &Hardware, bits: u32) -> Hardware {
     let mut hardware = hardware.clone();
     let stages = hardware.stages.values_mut();
     for units in stages.chain([&mut hardware.units]) {

@@ -7,7 +7,8 @@
 
 use hwmodel::Trap;
 use hwmodel::cycles::{
-    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, StackHolds, TurnLog,
+    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, Recording, StackHolds,
+    Tape, TurnLog, TurnProbe,
 };
 use serde::Serialize;
 
@@ -102,25 +103,64 @@ impl Machine {
         hardware: &Hardware,
         observer: &mut O,
     ) -> Result<Simulated, SimulateError> {
-        match setup.options.cage {
-            CageKind::Corners => {
-                self.simulate_as::<Corners, O>(graph, setup, frame, hardware, observer)
-            }
-            CageKind::Frame => {
-                self.simulate_as::<CornerAndEdges, O>(graph, setup, frame, hardware, observer)
-            }
-        }
+        hardware.check()?;
+        let log = TurnLog::new(hardware);
+        let ended = self.simulate_with(graph, setup, frame, hardware, observer, log);
+        ended.map(|(simulated, _)| simulated)
     }
 
-    fn simulate_as<L: CageCoordinate, O: Observer>(
+    /// Draws a frame and records its turns, which are the same on every hardware of the organisation where
+    /// parents lie on the stack: all that share a part of the picture come one after the other, and tiles
+    /// share nothing. No recording: it would take more than `most_bytes`, or children lie on the stack.
+    ///
+    /// # Errors
+    /// As [`Self::simulate`].
+    pub fn record_turns(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        hardware: &Hardware,
+        most_bytes: usize,
+    ) -> Result<Option<Recording>, SimulateError> {
+        if hardware.organisation.stack == StackHolds::Children {
+            return Ok(None);
+        }
+        hardware.check()?;
+        let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
+        let mut observer = cycles::NoObserver;
+        let (_, (_, tape)) =
+            self.simulate_with(graph, setup, frame, hardware, &mut observer, probes)?;
+        Ok(tape.finish())
+    }
+
+    fn simulate_with<P: TurnProbe, O: Observer>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
         hardware: &Hardware,
         observer: &mut O,
-    ) -> Result<Simulated, SimulateError> {
-        hardware.check()?;
+        log: P,
+    ) -> Result<(Simulated, P), SimulateError> {
+        match setup.options.cage {
+            CageKind::Corners => {
+                self.simulate_as::<P, Corners, O>(graph, setup, frame, hardware, observer, log)
+            }
+            CageKind::Frame => self
+                .simulate_as::<P, CornerAndEdges, O>(graph, setup, frame, hardware, observer, log),
+        }
+    }
+
+    fn simulate_as<P: TurnProbe, L: CageCoordinate, O: Observer>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        hardware: &Hardware,
+        observer: &mut O,
+        log: P,
+    ) -> Result<(Simulated, P), SimulateError> {
         let options = MachineOptions {
             organisation: hardware.organisation,
             ..self.options
@@ -130,7 +170,6 @@ impl Machine {
             pushed: Vec::new(),
         };
         let canvas = (self.emptied(setup, frame), &mut *frame);
-        let log = TurnLog::new(hardware);
         let mut steps = Steps {
             state: State::<_, L, _>::new(options, graph, setup, canvas, log, watch),
             waiting: Vec::new(),
@@ -140,12 +179,12 @@ impl Machine {
             shown: 0,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
-        let (mut counts, _, watch) = steps.state.finish();
+        let (mut counts, log, watch) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
         if let (Some(heat), Some(shares)) = (watch.heat, &mut frame.records) {
             heat.write_shares(frame.width, shares);
         }
-        Ok(Simulated { cycles, counts })
+        Ok((Simulated { cycles, counts }, log))
     }
 }
 
@@ -177,8 +216,8 @@ enum Work<L: CageCoordinate> {
 }
 
 /// The machine, and the work that waits for its turn.
-struct Steps<'a, L: CageCoordinate> {
-    state: State<'a, TurnLog, L, Ranks>,
+struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
+    state: State<'a, P, L, Ranks>,
     /// Work by the scheduler's number of it, with the tile that it belongs to.
     waiting: Vec<(Work<L>, usize)>,
     /// Numbers of work that are not in use.
@@ -193,7 +232,7 @@ struct Steps<'a, L: CageCoordinate> {
 const FIRST_PLACE: u8 = 0;
 const LAST_PLACE: u8 = 7;
 
-impl<L: CageCoordinate> Steps<'_, L> {
+impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     /// Gives work to the scheduler.
     fn hand_over(&mut self, work: Work<L>, place: u8, children: &mut Vec<Child>) {
         let quad = match &work {
@@ -295,11 +334,12 @@ impl<L: CageCoordinate> Steps<'_, L> {
     }
 }
 
-impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
+impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
     type Error = Trap;
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
         self.begin_tiles(QuadNode::ROOT, children);
+        self.state.dp.probe_mut().ended(None, children);
         self.trap()
     }
 
@@ -316,10 +356,11 @@ impl<L: CageCoordinate> cycles::Workload for Steps<'_, L> {
             }
             Work::Parent(parent) => self.parent_turn(parent, children),
         }
+        self.state.dp.probe_mut().ended(Some(item), children);
         self.trap()
     }
 
     fn log(&mut self) -> &mut TurnLog {
-        self.state.dp.probe_mut()
+        self.state.dp.probe_mut().turn_log()
     }
 }

@@ -1,0 +1,162 @@
+//! Results, one a line of JSON: first what was asked, then points. The lines of several runs may stand one
+//! after the other in one file, as `cat` puts them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::space::Point;
+use super::{PointFigures, PointOutcome};
+
+/// A point of a scene, measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PointLine {
+    /// The scene's name.
+    pub scene: String,
+    /// The point's number.
+    pub point: usize,
+    /// What it is made of.
+    pub values: BTreeMap<String, Value>,
+    /// What it came to.
+    #[serde(flatten)]
+    pub outcome: PointOutcome,
+}
+
+impl PointLine {
+    /// A point's line.
+    #[must_use]
+    pub fn new(scene: &str, point: &Point, outcome: PointOutcome) -> Self {
+        let values = point.values.iter();
+        Self {
+            scene: scene.to_owned(),
+            point: point.number,
+            values: values
+                .map(|(key, value)| (key.clone(), serde_json::json!(value)))
+                .collect(),
+            outcome,
+        }
+    }
+
+    /// Its figures, if the frame was drawn.
+    #[must_use]
+    pub fn figures(&self) -> Option<&PointFigures> {
+        match &self.outcome {
+            PointOutcome::Drawn(figures) => Some(figures),
+            PointOutcome::Refused { .. } => None,
+        }
+    }
+
+    /// The line, without its end.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        kind_first("point", &serde_json::json!(self))
+    }
+}
+
+/// A line that is of a kind, named in its first field.
+#[must_use]
+pub fn kind_first(kind: &str, fields: &Value) -> String {
+    let fields = fields.to_string();
+    format!(r#"{{"kind":"{kind}",{}"#, &fields[1..])
+}
+
+/// Why lines cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LinesError {
+    /// Not a line that a run writes.
+    #[error("line {line}: {why}")]
+    Line {
+        /// Its number, from 1.
+        line: usize,
+        /// What is wrong.
+        why: String,
+    },
+    /// The results of something else.
+    #[error("line {line}: these are other results: their `{what}` is {there}, not {here}")]
+    Other {
+        /// The line's number, from 1.
+        line: usize,
+        /// What differs.
+        what: String,
+        /// What the file has.
+        there: String,
+        /// What is asked for.
+        here: String,
+    },
+}
+
+/// What lines hold.
+#[derive(Debug, Clone, Default)]
+pub struct Recorded {
+    /// The points, each once.
+    pub points: BTreeMap<(String, usize), PointLine>,
+    /// Scenes whose headers are there.
+    pub scenes: BTreeSet<String>,
+    /// Bytes of whole lines: what follows was not written to its end.
+    pub bytes: usize,
+}
+
+/// Reads lines. `asked`: the headers of what is explored, one a scene. A last line without its end is none.
+///
+/// # Errors
+/// When a line is none, or of another space, scene, size or version.
+pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
+    let end = text.iter().rposition(|&byte| byte == b'\n');
+    let mut recorded = Recorded {
+        bytes: end.map_or(0, |end| end + 1),
+        ..Recorded::default()
+    };
+    let lines = text[..recorded.bytes].split_inclusive(|&byte| byte == b'\n');
+    for (at, line) in lines.enumerate() {
+        let wrong = |why: &str| LinesError::Line {
+            line: at + 1,
+            why: why.to_owned(),
+        };
+        let no_result = |error: serde_json::Error| wrong(&format!("this is no result: {error}"));
+        let mut value: Value = serde_json::from_slice(line).map_err(no_result)?;
+        match value["kind"].as_str() {
+            Some("space") => {
+                compare(&value, asked, at + 1)?;
+                recorded.scenes.extend(name(&value["scene"]));
+            }
+            Some("front") => {}
+            Some("point") => {
+                if let Value::Object(fields) = &mut value {
+                    fields.remove("kind");
+                }
+                let line: PointLine = serde_json::from_value(value).map_err(no_result)?;
+                if !recorded.scenes.contains(&line.scene) {
+                    return Err(wrong("what this point is of does not stand above it"));
+                }
+                let key = (line.scene.clone(), line.point);
+                recorded.points.insert(key, line);
+            }
+            _ => return Err(wrong("this is no result")),
+        }
+    }
+    Ok(recorded)
+}
+
+fn name(scene: &Value) -> Option<String> {
+    scene["name"].as_str().map(str::to_owned)
+}
+
+/// Whether a header is that of one of the scenes that are asked for.
+fn compare(found: &Value, asked: &[Value], line: usize) -> Result<(), LinesError> {
+    let scene = |of: &Value| name(&of["scene"]);
+    let like = asked.iter().find(|of| scene(of) == scene(found));
+    let asked = like.or(asked.first()).and_then(Value::as_object);
+    for (what, here) in asked.into_iter().flatten() {
+        let there = &found[what];
+        if there != here {
+            return Err(LinesError::Other {
+                line,
+                what: what.clone(),
+                there: there.to_string(),
+                here: here.to_string(),
+            });
+        }
+    }
+    Ok(())
+}
