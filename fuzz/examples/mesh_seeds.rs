@@ -3,7 +3,8 @@
 //! Each is built and stored by the program of a few triangles, and is at most
 //! 4 kB long, behind a byte that says what the target does with it.
 
-#[path = "../fuzz_targets/sealed.rs"]
+#[allow(dead_code)]
+#[path = "../../tests/sealed/seal.rs"]
 mod sealed;
 
 use std::error::Error;

@@ -3,6 +3,8 @@
 
 #![no_main]
 
+#[allow(dead_code)]
+#[path = "../../tests/sealed/seal.rs"]
 mod sealed;
 
 use libfuzzer_sys::fuzz_target;

@@ -67,7 +67,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The box of a graph's voxels in object coordinates, finest voxels; `None` for an empty graph.
+    /// The box of a graph's voxels in object coordinates, finest voxels; `None` where there are none.
     ///
     /// Exact but for graphs with millions of nodes on their outside, whose box
     /// may then be too large by a few voxels.
@@ -83,7 +83,8 @@ impl Bounds {
             visits: 0,
         };
         search.visit(graph.root, 0, [0; 3]);
-        Some((search.low, search.high))
+        // In a damaged file that was not verified, no list of children may lead anywhere.
+        (search.low[0] < search.high[0]).then_some((search.low, search.high))
     }
 
     /// What a camera is fitted to: the mesh that a graph was made of, else its voxels.
@@ -105,10 +106,12 @@ impl Bounds {
         }
     }
 
-    /// The box of a graph's voxels in world units; the unit cube for an empty graph.
+    /// The box of a graph's voxels in world units; the unit cube where there are none.
     #[must_use]
     pub fn of_voxels(graph: &Graph) -> Self {
-        let (low, high) = Self::in_voxels(graph).unwrap_or(([0; 3], [1; 3]));
+        let Some((low, high)) = Self::in_voxels(graph) else {
+            return Self::of_box(DVec3::ZERO, DVec3::ONE);
+        };
         let placement = &graph.placement;
         let world = |corner: [i64; 3]| {
             let index = |k: usize| (corner[k] + placement.origin_index[k]) as f64;

@@ -1,13 +1,15 @@
-//! Files of sections behind checksums, `.far` and `.tvx`, put right after any damage: length, zeros between
-//! sections, checksums. What is then wrong is wrong in the fields. Follows `spec/far.md` and `spec/textured.md`
-//! and shares no code with the program.
+//! Files of sections behind checksums, `.vxg`, `.far` and `.tvx`, put right after any damage: length, zeros between
+//! sections, checksums. What is then wrong is wrong in the fields. Follows `spec/graph.md`, `spec/far.md` and
+//! `spec/textured.md`, and shares no code with the program. The fuzz targets have it too.
 
 use std::ops::Range;
 
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Bytes of both formats' headers, and of a node of a `.far` file.
-pub const RECORD: usize = 128;
+/// Bytes of the headers of `.far` and `.tvx`, and of a node of a `.far` file.
+const RECORD: usize = 128;
+/// Bytes of the header of `.vxg`.
+const VXG_HEADER: usize = 512;
 /// Bytes of what a `.tvx` file says of a grid.
 const GRID: usize = 80;
 /// Longer files are not made.
@@ -30,13 +32,13 @@ fn section(end: &mut u64, count: u64, item: u64) -> Range<u64> {
 }
 
 /// Gives the file the length that its sections have and zeros between them; nothing of a file that would be too long.
-fn lay_out(bytes: &mut Vec<u8>, sections: &[Range<u64>]) -> Option<()> {
+fn lay_out(bytes: &mut Vec<u8>, header: usize, sections: &[Range<u64>]) -> Option<()> {
     let end = sections.last()?.end;
     if end > LONGEST {
         return None;
     }
     bytes.resize(end as usize, 0);
-    let mut before = RECORD;
+    let mut before = header;
     for section in sections {
         bytes[before..section.start as usize].fill(0);
         before = section.end as usize;
@@ -54,13 +56,44 @@ fn sum(bytes: &[u8], of: Range<usize>, at: usize) -> Option<(usize, u64)> {
     Some((at, xxh3_64(bytes.get(of)?)))
 }
 
-fn seal_header(bytes: &mut [u8]) {
-    let sum = xxh3_64(&bytes[..120]);
-    put(bytes, 120, sum);
+fn seal_header(bytes: &mut [u8], header: usize) {
+    let sum = xxh3_64(&bytes[..header - 8]);
+    put(bytes, header - 8, sum);
+}
+
+/// A `.vxg` file put right; nothing where its header says too much. With `place` sections follow each other.
+pub(crate) fn vxg(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
+    if bytes.len() < VXG_HEADER {
+        return None;
+    }
+    let count = if number(&bytes, 8, 4) == 2 { 6 } else { 5 };
+    let entries = [128, 160, 192, 224, 256, 416];
+    let entries = &entries[..count];
+    if place {
+        let mut end = VXG_HEADER as u64;
+        let lengths = entries.iter().map(|&entry| number(&bytes, entry + 16, 8));
+        let sections: Vec<_> = lengths.map(|length| section(&mut end, length, 1)).collect();
+        lay_out(&mut bytes, VXG_HEADER, &sections)?;
+        for (&entry, section) in entries.iter().zip(&sections) {
+            put(&mut bytes, entry + 8, section.start);
+        }
+    }
+    let length = bytes.len() as u64;
+    put(&mut bytes, 16, length);
+    for &entry in entries {
+        let [begin, length] = [8, 16].map(|at| number(&bytes, entry + at, 8));
+        let own = begin as usize..begin.saturating_add(length) as usize;
+        // What is beyond the file has no checksum.
+        if let Some((at, sum)) = sum(&bytes, own, entry + 24) {
+            put(&mut bytes, at, sum);
+        }
+    }
+    seal_header(&mut bytes, VXG_HEADER);
+    Some(bytes)
 }
 
 /// A `.far` file put right; nothing where its header says too much. With `place` nodes' voxels follow each other.
-pub fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
+pub(crate) fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     if bytes.len() < 2 * RECORD {
         return None;
     }
@@ -69,7 +102,11 @@ pub fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     let nodes = section(&mut end, nodes, RECORD as u64);
     let voxels = section(&mut end, voxels, 1);
     let triangles = section(&mut end, triangles, 52);
-    lay_out(&mut bytes, &[nodes.clone(), voxels.clone(), triangles.clone()])?;
+    lay_out(
+        &mut bytes,
+        RECORD,
+        &[nodes.clone(), voxels.clone(), triangles.clone()],
+    )?;
     let mut next = 0;
     for node in slot(&nodes).step_by(RECORD) {
         let mut length = 0;
@@ -94,12 +131,12 @@ pub fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     }
     let (at, sum) = sum(&bytes, slot(&nodes), 96)?;
     put(&mut bytes, at, sum);
-    seal_header(&mut bytes);
+    seal_header(&mut bytes, RECORD);
     Some(bytes)
 }
 
 /// A `.tvx` file put right; nothing where its header says too much. With `fit` its box is the one around its primitives.
-pub fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
+pub(crate) fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
     if bytes.len() < RECORD {
         return None;
     }
@@ -119,7 +156,7 @@ pub fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
             sections.push(section(&mut end, number(&bytes, entry + at, 8), item));
         }
     }
-    lay_out(&mut bytes, &sections)?;
+    lay_out(&mut bytes, RECORD, &sections)?;
     for (grid, entry) in slot(&entries).step_by(GRID).enumerate() {
         for part in 0..3 {
             let own = slot(&sections[2 + 3 * grid + part]);
@@ -131,8 +168,11 @@ pub fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
         for k in 0..3 {
             let of_corner = |at: usize| f64::from(f32::from_bits(number(&bytes, at, 4) as u32));
             let corners = slot(&primitives).step_by(52);
-            let values = corners.flat_map(|p| [0, 12, 24].map(|corner| of_corner(p + corner + 4 * k)));
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+            let values =
+                corners.flat_map(|p| [0, 12, 24].map(|corner| of_corner(p + corner + 4 * k)));
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+                (l.min(v), h.max(v))
+            });
             put(&mut bytes, 32 + 8 * k, low.to_bits());
             put(&mut bytes, 56 + 8 * k, high.to_bits());
         }
@@ -141,6 +181,6 @@ pub fn tvx(mut bytes: Vec<u8>, fit: bool) -> Option<Vec<u8>> {
         let (at, sum) = sum(&bytes, slot(of), at)?;
         put(&mut bytes, at, sum);
     }
-    seal_header(&mut bytes);
+    seal_header(&mut bytes, RECORD);
     Some(bytes)
 }
