@@ -127,7 +127,7 @@ fn opacities_of(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(cases(30))]
 
     #[test]
     fn each_sample_is_what_its_ray_takes(

@@ -2,7 +2,7 @@
 //! node and voxel, whatever the graph, the camera, the level of detail, the
 //! samples a pixel, the threads and the instruction set.
 //!
-//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 20 million.
+//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 8 million.
 
 use glam::DVec3;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
@@ -17,7 +17,7 @@ use crate::scene_table::SCENES;
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
 /// Samples that are compared unless the environment sets another number.
-const SAMPLES: u64 = 20_000_000;
+const SAMPLES: u64 = 8_000_000;
 
 /// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or
 /// in its middle, looking along an axis or at a corner.

@@ -34,7 +34,7 @@ const SIZES: [(u32, u32, u32); 7] = [
 const SMALL: (u32, u32, u32) = (43, 39, 0);
 
 /// Cameras at each place, unless `SHIFTVOX_ROUNDS` asks for more.
-const ROUNDS: u32 = 5;
+const ROUNDS: u32 = 3;
 
 /// Most records of a frame under the rules that subdivide solids.
 const MOST_RECORDS: u64 = 200_000;
