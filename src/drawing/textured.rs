@@ -81,7 +81,8 @@ impl<'f> TexturedDrawing<'f> {
 }
 
 impl Drawable for TexturedDrawing<'_> {
-    /// The box and the corners of all primitives: the camera is the one that the mesh's triangles get.
+    /// The box and the corners of all primitives: the camera is the one that the mesh's triangles
+    /// get.
     fn bounds(&self) -> Bounds {
         let (low, high) = self.file.bounds();
         let hull = self.file.primitives().iter().flat_map(Primitive::positions);

@@ -107,7 +107,8 @@ fn fast_equals_the_oracle_at_every_sample() {
         let differ = truth.voxel.iter().zip(&frame.voxel).position(differing);
         assert!(
             differ.is_none() && truth.node == frame.node,
-            "{camera:?} of {graph_depth} levels, {options:?}, lod {}, aa {}: sample {differ:?}: {:?}, truth {:?}",
+            "{camera:?} of {graph_depth} levels, {options:?}, lod {}, aa {}: sample {differ:?}: \
+             {:?}, truth {:?}",
             setup.options.lod_px,
             setup.options.aa_log2,
             differ.map(|at| frame.voxel[at]),
@@ -119,7 +120,8 @@ fn fast_equals_the_oracle_at_every_sample() {
         exact += stat("samples_decided_exactly");
     }
     println!(
-        "{compared} samples, {drawn} drawn, {exact} decisions by the exact rule; {left_over} frames left to the machine"
+        "{compared} samples, {drawn} drawn, {exact} decisions by the exact rule; {left_over} \
+         frames left to the machine"
     );
     assert!(drawn > compared / 10, "frames that show nothing");
     assert!(exact > 0, "ties were never met");
@@ -171,8 +173,8 @@ fn a_ray_along_the_line_between_four_parts() {
     }
 }
 
-/// An eye just before the nearest corner of a brick, in views of nearly 180 degrees: a window in `f32` lost
-/// samples there.
+/// An eye just before the nearest corner of a brick, in views of nearly 180 degrees: a window in
+/// `f32` lost samples there.
 #[test]
 fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
     let graph = graph_of_spec("gen:checker,depth=2");

@@ -1,6 +1,7 @@
-//! However the record loop's data is organised (children or parents on the stack, leaves known from their parents, the
-//! picture by tiles), every frame is the same to the bit, drawn serially or on simulated hardware. Tiles are for the
-//! rules that draw outlines: where a box or a centre claims a sample, it may be one beside the tile.
+//! However the record loop's data is organised (children or parents on the stack, leaves known from
+//! their parents, the picture by tiles), every frame is the same to the bit, drawn serially or on
+//! simulated hardware. Tiles are for the rules that draw outlines: where a box or a centre claims a
+//! sample, it may be one beside the tile.
 
 use hwmodel::count::Counter;
 use hwmodel::cycles::{

@@ -632,7 +632,8 @@ const COVERAGES: [Coverage; 4] = [
 const CAGES: [CageKind; 2] = [CageKind::Corners, CageKind::Frame];
 const TOLERANCES: [f64; 3] = [0.0, 0.125, f64::INFINITY];
 
-/// Every row of every block, for every scene, rule, cage and tolerance, in words of 24 and of 32 bits.
+/// Every row of every block, for every scene, rule, cage and tolerance, in words of 24 and of 32
+/// bits.
 #[test]
 fn rows_are_what_the_blocks_give() {
     let mut sums: BTreeMap<String, usize> = BTreeMap::new();

@@ -203,7 +203,8 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
     )
 }
 
-/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the same.
+/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the
+/// same.
 pub fn up_of(forward: DVec3) -> DVec3 {
     if forward.normalize_or_zero().z.abs() > 0.9 {
         DVec3::Y
