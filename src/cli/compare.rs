@@ -24,9 +24,9 @@ pub struct CompareArgs {
     /// Reference: of the same kind and size
     #[arg(value_name = "B")]
     b: PathBuf,
-    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the number of
-    /// differing pixels, or NAME=VALUE with a name of the report (psnr_* and ssim: at least; all others: at
-    /// most); repeatable
+    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the
+    /// number of differing pixels, or NAME=VALUE with a name of the report (psnr_* and ssim: at
+    /// least; all others: at most); repeatable
     #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
     threshold: Vec<Threshold>,
     /// Picture of the differences, four times as bright

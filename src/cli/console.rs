@@ -1,7 +1,8 @@
 //! What is said, and where: data on stdout, notes and progress on stderr.
 //!
-//! A JSON document is held back until it is known how the run ends: where it fails, the document says so. Names of
-//! files may hold anything; what could move a terminal's cursor or change its colours is shown escaped.
+//! A JSON document is held back until it is known how the run ends: where it fails, the document
+//! says so. Names of files may hold anything; what could move a terminal's cursor or change its
+//! colours is shown escaped.
 
 use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
@@ -78,7 +79,8 @@ impl Console {
         self.held.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always is one.
+    /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always
+    /// is one.
     pub(super) fn end(&self, result: Result<(), CliError>) -> Result<(), CliError> {
         let held = self.held().take();
         let printed = match (&result, held) {
@@ -134,8 +136,8 @@ fn say(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
 }
 
-/// A text with what could do harm to a terminal escaped: control characters but lines' ends and tabs, and bytes of
-/// names that are not UTF-8.
+/// A text with what could do harm to a terminal escaped: control characters but lines' ends and
+/// tabs, and bytes of names that are not UTF-8.
 fn harmless(text: &str) -> Cow<'_, str> {
     let is_plain = |letter| letter == '\n' || letter == '\t';
     escaped(text, |letter| match names::byte_of(letter) {
@@ -173,7 +175,8 @@ fn escaped(text: &str, other_way: impl Fn(char) -> Option<String>) -> Cow<'_, st
     text.chars().map(shown).collect()
 }
 
-/// Whether stderr is a terminal that bars can be drawn on: one that has a name, and can go back in its line.
+/// Whether stderr is a terminal that bars can be drawn on: one that has a name, and can go back in
+/// its line.
 fn is_drawn_on() -> bool {
     let has_name = |name: std::ffi::OsString| !name.is_empty() && name != "dumb";
     io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)

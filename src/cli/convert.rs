@@ -35,14 +35,15 @@ pub struct ConvertArgs {
     /// Folder of the temporary files of --memory, about 22 bytes a voxel; else beside OUT
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
-    /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each that is seen]
+    /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each
+    /// that is seen]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     rays: Option<u64>,
     /// Of .far: nodes with fewer triangles are leaves [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]
     leaf_triangles: Option<u32>,
-    /// Of .far: voxels along a node's longest side [default: 64]. Of .tvx: cells along each axis, an
-    /// even number, or several such as 4,8,16,32: a file with a grid of each [default: 16]
+    /// Of .far: voxels along a node's longest side [default: 64]. Of .tvx: cells along each axis,
+    /// an even number, or several such as 4,8,16,32: a file with a grid of each [default: 16]
     #[arg(long, value_name = "N", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(2..=255))]
     grid: Vec<u32>,
@@ -152,7 +153,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     if let Some(memory) = args.memory {
         if args.scene.opacities {
             return Err(CliError::usage(
-                "--opacities are found in memory: leave --memory out, or ask for fewer levels with --depth",
+                "--opacities are found in memory: leave --memory out, or ask for fewer levels with \
+                 --depth",
             ));
         }
         return build_outside_memory(args, memory, console);

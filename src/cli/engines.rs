@@ -179,7 +179,8 @@ const FAST_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "off-screen nodes looked into",
-        about: "nodes beside the picture, or that hold no sample, go on down; the picture must be the same",
+        about: "nodes beside the picture, or that hold no sample, go on down; the picture must be \
+         the same",
         adjust: |_| {},
         make: |threads| {
             let switches = Switches {
@@ -218,7 +219,8 @@ const FAST_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "whole blocks off",
-        about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles first; the picture must be the same",
+        about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles \
+         first; the picture must be the same",
         adjust: |_| {},
         make: |threads| {
             let switches = Switches {
@@ -231,7 +233,8 @@ const FAST_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "absent children looked at",
-        about: "above bricks all eight children have their windows looked at, whether they exist or not; the picture must be the same",
+        about: "above bricks all eight children have their windows looked at, whether they exist \
+         or not; the picture must be the same",
         adjust: |_| {},
         make: |threads| {
             let switches = Switches {
@@ -244,21 +247,24 @@ const FAST_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "level of detail off",
-        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
+        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
+         exact one",
         adjust: |options| options.lod_px = 0.0,
         make: FAST.make,
         frames: Frames::Drawn,
     },
     Variant {
         name: "unchanged frame kept",
-        about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are written. All other rows draw every frame",
+        about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are \
+         written. All other rows draw every frame",
         adjust: |_| {},
         make: FAST.make,
         frames: Frames::Kept,
     },
     Variant {
         name: "attributes of all read",
-        about: "colour and normal also of each node that the paper's walk fetches, in its order, not of those seen alone; the picture must be the same",
+        about: "colour and normal also of each node that the paper's walk fetches, in its order, \
+         not of those seen alone; the picture must be the same",
         adjust: |_| {},
         make: FAST.make,
         frames: Frames::WithAttributesOf(fetched),
@@ -268,7 +274,8 @@ const FAST_VARIANTS: &[Variant] = &[
 const MACHINE_VARIANTS: &[Variant] = &[
     Variant {
         name: "occlusion order off",
-        about: "children in the order 0 to 7 for every eye: the picture is WRONG, far voxels hide near ones",
+        about: "children in the order 0 to 7 for every eye: the picture is WRONG, far voxels hide \
+         near ones",
         adjust: |_| {},
         make: |_| {
             Box::new(Machine::new(MachineOptions {
@@ -292,7 +299,8 @@ const MACHINE_VARIANTS: &[Variant] = &[
     },
     Variant {
         name: "level of detail off",
-        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the exact one",
+        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
+         exact one",
         adjust: |options| options.lod_px = 0.0,
         make: MACHINE.make,
         frames: Frames::Drawn,

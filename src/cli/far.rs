@@ -65,10 +65,12 @@ pub(super) fn convert(
     Ok(())
 }
 
-/// Bytes a triangle that a build takes at the least, in memory; measured are 283 (`docs/far-voxels.md`).
+/// Bytes a triangle that a build takes at the least, in memory; measured are 283
+/// (`docs/far-voxels.md`).
 const LEAST_BYTES: u64 = 200;
 
-/// Refuses what cannot be numbered or does not fit the memory that is free, before copies are placed.
+/// Refuses what cannot be numbered or does not fit the memory that is free, before copies are
+/// placed.
 fn check_room(triangles: u64) -> Result<(), CliError> {
     if u32::try_from(triangles).is_err() {
         return Err(BuildError::TooMany(format!("{triangles} triangles")).into());
@@ -79,8 +81,8 @@ fn check_room(triangles: u64) -> Result<(), CliError> {
         Some(free) if needed > free => Err(CliError::new(
             Kind::Limit,
             format!(
-                "{triangles} triangles take at least {needed} bytes of memory while far voxels are built of them, \
-                 and {free} are free"
+                "{triangles} triangles take at least {needed} bytes of memory while far voxels are \
+                 built of them, and {free} are free"
             ),
         )
         .advise("ask for fewer --instances, or leave out a part of the mesh")),

@@ -1,8 +1,8 @@
 //! Refused memory (SIGABRT) and a mapped file cut short (SIGBUS).
 //!
-//! Both arrive as signals in a thread that cannot continue. The handler wakes a waiting thread, which reports the
-//! error, removes unfinished files and exits with the usual code. If that thread does not act within five seconds, the
-//! handler exits itself.
+//! Both arrive as signals in a thread that cannot continue. The handler wakes a waiting thread,
+//! which reports the error, removes unfinished files and exits with the usual code. If that thread
+//! does not act within five seconds, the handler exits itself.
 
 /// Installs the handlers. `json`: whether the error is also printed as a JSON document.
 #[cfg(unix)]
@@ -45,8 +45,8 @@ mod handlers {
             .spawn(wait)?;
         WAKE.store(writer.into_raw_fd(), Ordering::Relaxed);
         for signal in [SIGABRT, SIGBUS] {
-            // SAFETY: a `sigaction` of zeros is one without flags and with an empty mask, and the handler makes only
-            // calls that POSIX allows in handlers.
+            // SAFETY: a `sigaction` of zeros is one without flags and with an empty mask, and the
+            // handler makes only calls that POSIX allows in handlers.
             unsafe {
                 let mut action: libc::sigaction = std::mem::zeroed();
                 action.sa_sigaction = handler as *const () as libc::sighandler_t;
@@ -59,7 +59,8 @@ mod handlers {
     /// Wakes the thread that waits and lets it end the program.
     extern "C" fn handler(signal: c_int) {
         let byte = signal as u8;
-        // SAFETY: `write`, `poll` and `_exit` may be called in handlers; one byte is written from one that lives.
+        // SAFETY: `write`, `poll` and `_exit` may be called in handlers; one byte is written from
+        // one that lives.
         unsafe {
             libc::write(WAKE.load(Ordering::Relaxed), (&raw const byte).cast(), 1);
             libc::poll(std::ptr::null_mut(), 0, PATIENCE_MS);
@@ -82,8 +83,10 @@ mod handlers {
             )
             .advise("see that nothing else writes to it, and begin again"),
             // The standard library has said how much was refused.
-            _ => CliError::new(kind(signal), "the system refuses memory that is needed")
-                .advise("ask for a smaller picture or a scene of fewer levels, or give the program more memory"),
+            _ => CliError::new(kind(signal), "the system refuses memory that is needed").advise(
+                "ask for a smaller picture or a scene of fewer levels, or give the program \
+                 more memory",
+            ),
         };
         console::report_error(&error);
         remove_unfinished(|| {

@@ -98,8 +98,8 @@ struct Facts {
     high: [i64; 3],
     levels: Vec<(u64, u128)>,
     bytes: u64,
-    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape; none where there is too
-    /// little memory to find out.
+    /// Nodes for each one left when equal subtrees are merged: with attributes, by shape; none
+    /// where there is too little memory to find out.
     gains: Option<[f64; 2]>,
     colors: usize,
     camera_line: String,
@@ -225,7 +225,8 @@ fn description(scene: &Scene, several: bool) -> String {
     let mesh = scene.mesh.as_ref().map(|mesh| {
         let (low, high) = mesh.bounds;
         format!(
-            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, voxelised in {:.1} ms",
+            "{} triangles, {} positions, {} materials, {low} to {high}\n{:<9} read in {:.1} ms, \
+             voxelised in {:.1} ms",
             grouped(mesh.triangles),
             grouped(mesh.positions),
             grouped(mesh.materials),

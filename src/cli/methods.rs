@@ -1,7 +1,7 @@
 //! The registry of drawing methods, the only one of the command line.
 //!
-//! It opens a scene once, finds the method that draws it, refuses flags that this method does not follow, and hands the
-//! scene on as one [`Drawable`].
+//! It opens a scene once, finds the method that draws it, refuses flags that this method does not
+//! follow, and hands the scene on as one [`Drawable`].
 
 use std::path::Path;
 use std::time::Instant;
@@ -86,7 +86,8 @@ enum Content {
     Textured(TexturedFile),
 }
 
-/// Opens a scene for the engine that the flags name, or else for the one that draws its kind of file.
+/// Opens a scene for the engine that the flags name, or else for the one that draws its kind of
+/// file.
 ///
 /// # Errors
 /// A bad scene, or flags that do not go with it.
@@ -174,7 +175,8 @@ impl FileMethod {
 }
 
 impl Opened {
-    /// Whether all of the file was checked; methods of meshes check what they read when they read it.
+    /// Whether all of the file was checked; methods of meshes check what they read when they read
+    /// it.
     pub(super) fn is_verified(&self) -> bool {
         match &self.content {
             Content::Graph(scene) => scene.is_verified,

@@ -1,6 +1,7 @@
 //! The command line: one file per command, and what commands share.
 //!
-//! stdout is data, stderr everything else. Nothing here computes. Imports go one way; the order is in `ARCHITECTURE.md`.
+//! stdout is data, stderr everything else. Nothing here computes. Imports go one way; the order is
+//! in `ARCHITECTURE.md`.
 
 pub mod args;
 mod bench;
@@ -44,8 +45,8 @@ use error::{CliError, Kind};
 
 /// Draws voxel files and meshes, the same to the bit on every computer.
 ///
-/// With no command it draws the bundled scene, writes it to out/demo.png (replacing an older one) and says
-/// what that took. Scenes are .vox, .ply, .npy and .vxg files, recognised by
+/// With no command it draws the bundled scene, writes it to out/demo.png (replacing an older one)
+/// and says what that took. Scenes are .vox, .ply, .npy and .vxg files, recognised by
 /// their content, or generators such as gen:terrain,depth=10,seed=1, or meshes (.obj,
 /// .ply with faces, .stl, .gltf, .glb), which are voxelised at --depth.
 ///
@@ -102,20 +103,20 @@ enum Command {
     Compare(compare::CompareArgs),
     /// Model the light hardware: operations, cycles, memory, area, energy
     ///
-    /// Draws one frame on the machine, counts what it executes, runs it cycle by cycle on a hardware
-    /// described in TOML, and prices it by tables whose every figure names its source.
+    /// Draws one frame on the machine, counts what it executes, runs it cycle by cycle on a
+    /// hardware described in TOML, and prices it by tables whose every figure names its source.
     Model(Box<model::ModelArgs>),
     /// Run an experiment
     Bench(bench::BenchArgs),
     /// Sweep word formats, cameras, scenes and rules for what must never happen
     ///
-    /// Every frame is held against the exact ray caster, the specification and bounds on its vertices' error.
-    /// What fails is shrunk to one command line; exit code 3.
+    /// Every frame is held against the exact ray caster, the specification and bounds on its
+    /// vertices' error. What fails is shrunk to one command line; exit code 3.
     Stress(Box<stress::StressArgs>),
     /// The image-order paper's Table I, claims and figures, beside its numbers
     ///
-    /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is drawn again
-    /// and compared: exit code 3 if a picture's hash or a count differs.
+    /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is
+    /// drawn again and compared: exit code 3 if a picture's hash or a count differs.
     Reproduce(reproduce::ReproduceArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),

@@ -1,8 +1,9 @@
 //! Names of scenes: any bytes, as file systems have them, in a `String`.
 //!
-//! A scene's name is a generator's specification or a path. A byte of a path that is no part of UTF-8 becomes one of
-//! the last 256 code points, which are for private use and mean nothing to anyone; what a name has of these already is
-//! written byte by byte in the same way, so that every name comes back as it was. The terminal is shown `\xff`.
+//! A scene's name is a generator's specification or a path. A byte of a path that is no part of
+//! UTF-8 becomes one of the last 256 code points, which are for private use and mean nothing to
+//! anyone; what a name has of these already is written byte by byte in the same way, so that every
+//! name comes back as it was. The terminal is shown `\xff`.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};

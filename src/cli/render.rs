@@ -31,7 +31,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(1..))]
     pub repeat: u32,
-    /// Of .far files: keep at most this much of the nodes' data in memory: 512M, 2G [default: as the system decides]
+    /// Of .far files: keep at most this much of the nodes' data in memory: 512M, 2G [default: as
+    /// the system decides]
     #[arg(long, value_name = "SIZE")]
     pub memory: Option<DataBudget>,
     /// Print the picture's hash

@@ -25,7 +25,8 @@ pub(super) struct ReproduceArgs {
     /// Side of the pictures in which objects are compared, pixels [default: 512]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
     object_side: Option<u32>,
-    /// Scenes of one kind and growing detail, smallest first [default: gen:terrain of depth 6 to 10]
+    /// Scenes of one kind and growing detail, smallest first [default: gen:terrain of depth 6 to
+    /// 10]
     #[arg(long, value_name = "SCENE", value_delimiter = ';')]
     growing: Vec<String>,
     /// Frames of each contender that count [default: 5]

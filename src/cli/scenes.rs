@@ -81,7 +81,8 @@ pub(super) enum Verify {
     All,
 }
 
-/// [`open`], of what was found already, at `started`. Commands that read all of a scene verify all of it.
+/// [`open`], of what was found already, at `started`. Commands that read all of a scene verify all
+/// of it.
 ///
 /// # Errors
 /// As [`open`].
@@ -104,8 +105,8 @@ pub(super) fn open_source(
     let scene = ready(opened, name, args.mesh_up, started);
     if !scene.is_verified {
         console.note(format!(
-            "{name}: not verified: a file of this size is checked by `shiftvox info` and `convert`, \
-             which read all of it"
+            "{name}: not verified: a file of this size is checked by `shiftvox info` and \
+             `convert`, which read all of it"
         ));
     }
     for warning in &scene.warnings {

@@ -1,11 +1,12 @@
 //! Signals that stop the program: Ctrl-C, `kill`, a closed terminal.
 //!
-//! Files that are not whole yet are removed; then the program ends by the signal, as if it had not been
-//! caught, so that shells and scripts see why (130 for Ctrl-C). Without signals (not Unix), or where it is
-//! killed, a temporary file is left, which the next run that writes to its folder removes ([`crate::whole`]).
+//! Files that are not whole yet are removed; then the program ends by the signal, as if it had not
+//! been caught, so that shells and scripts see why (130 for Ctrl-C). Without signals (not Unix), or
+//! where it is killed, a temporary file is left, which the next run that writes to its folder
+//! removes ([`crate::whole`]).
 
-/// Installs the handlers. A signal that the program was started to ignore, as shells and `nohup` do for work in the
-/// background, stays ignored.
+/// Installs the handlers. A signal that the program was started to ignore, as shells and `nohup` do
+/// for work in the background, stays ignored.
 #[cfg(unix)]
 pub(super) fn tidy_up_when_stopped() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -40,7 +41,8 @@ pub(super) fn tidy_up_when_stopped() {
 #[cfg(not(unix))]
 pub(super) fn tidy_up_when_stopped() {}
 
-/// The signals that this process was started to ignore, a bit each, from signal 1 on. Only Linux says.
+/// The signals that this process was started to ignore, a bit each, from signal 1 on. Only Linux
+/// says.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

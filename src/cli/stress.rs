@@ -33,7 +33,8 @@ pub(super) struct StressArgs {
     #[arg(long, value_name = "LIST", value_delimiter = ',',
           value_parser = clap::value_parser!(u32).range(1..=2048))]
     size: Vec<u32>,
-    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of 56
+    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of
+    /// 56
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     rules: Option<u32>,
     /// Viewpoints that the seed chooses, beside the thirteen standard ones
@@ -203,7 +204,8 @@ fn description(case: &Case, outcome: &Outcome) -> String {
     let mut lines = vec![case.to_string()];
     lines.push(match &outcome.end {
         End::Drawn => format!(
-            "drawn with {} records; {} samples covered by the oracle, {} extra, {} missing, {} of another voxel",
+            "drawn with {} records; {} samples covered by the oracle, {} extra, {} missing, {} of \
+             another voxel",
             report::grouped(outcome.records),
             outcome.coverage.covered,
             outcome.coverage.extra,
@@ -212,7 +214,10 @@ fn description(case: &Case, outcome: &Outcome) -> String {
         ),
         End::Trapped(trap) => format!("trapped: {trap}"),
         End::Refused(reason) => format!("refused: {reason}"),
-        End::CutOff => format!("given up after {} records", report::grouped(outcome.records)),
+        End::CutOff => format!(
+            "given up after {} records",
+            report::grouped(outcome.records)
+        ),
     });
     if outcome.inside > 0 {
         lines.push(format!(

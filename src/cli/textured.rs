@@ -123,7 +123,8 @@ fn element_name(element: Element) -> &'static str {
 fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     let (low, high) = file.bounds();
     let mut parts = vec![format!(
-        "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles {}\nbytes     {}",
+        "scene     {name}\nformat    textured voxels (.tvx)\nbox       {low} to {high}\ntriangles \
+         {}\nbytes     {}",
         grouped(file.primitives().len() as u64),
         grouped(file.len())
     )];
@@ -155,7 +156,8 @@ fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
         let grid = file.grid(number);
         let [projected, afresh] = grid.projected();
         parts.push(format!(
-            "grid {}: {} texels projected, slice by slice; {} had each volume been projected afresh",
+            "grid {}: {} texels projected, slice by slice; {} had each volume been projected \
+             afresh",
             grid.cell_grid().cells(),
             grouped(projected),
             grouped(afresh)

@@ -115,8 +115,8 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
-    /// Times of drawing a frame so often with an engine for that alone, as experiments time a frame:
-    /// clear, traverse, colours written. Milliseconds.
+    /// Times of drawing a frame so often with an engine for that alone, as experiments time a
+    /// frame: clear, traverse, colours written. Milliseconds.
     fn measure(&self, setup: &FrameSetup, runs: u32) -> Result<Vec<f64>, DrawError> {
         let mut engine = (self.engine)();
         let mut colors = Colors::new(setup.width, setup.height);
@@ -167,8 +167,8 @@ impl Drawable for GraphDrawing<'_> {
         self.up
     }
 
-    /// Draws the graph, unless it was drawn like this the last time, and makes the colours. With several
-    /// runs the times are those of so many frames drawn for that alone.
+    /// Draws the graph, unless it was drawn like this the last time, and makes the colours. With
+    /// several runs the times are those of so many frames drawn for that alone.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         let setup = self.setup(camera)?;
         let measured = match runs {

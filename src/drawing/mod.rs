@@ -1,7 +1,9 @@
-//! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels, triangles.
+//! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels,
+//! triangles.
 //!
 //! A [`Drawable`] is data, an engine and its options. It draws a picture from a camera, and what it
-//! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and counters.
+//! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and
+//! counters.
 
 mod far;
 mod graph;
@@ -35,7 +37,8 @@ pub trait Drawable {
     /// Which axis is up, by the file's own account.
     fn up(&self) -> Up;
 
-    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the work.
+    /// Draws a frame `runs` times (0 counts as 1) and keeps the last. Every run does all of the
+    /// work.
     ///
     /// # Errors
     /// See [`DrawError`]; nothing is shown then.
@@ -137,8 +140,8 @@ pub enum DrawError {
     Samples(#[from] SamplesError),
 }
 
-/// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours for each pixel.
-/// `aa_log2`: samples per pixel and axis, as a power of two.
+/// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours
+/// for each pixel. `aa_log2`: samples per pixel and axis, as a power of two.
 fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let samples = count_samples(camera.width, camera.height, aa_log2)?;
@@ -153,7 +156,8 @@ const PIXEL_BYTES: u64 = 3;
 /// Least bytes of a sample of the methods of meshes: colour, depth, and what is seen.
 const MESH_SAMPLE_BYTES: u64 = 8;
 
-/// Does something `runs` times, once at the least: the last result, and how long each run took, milliseconds.
+/// Does something `runs` times, once at the least: the last result, and how long each run took,
+/// milliseconds.
 fn timed<T>(
     runs: u32,
     mut run: impl FnMut() -> Result<T, DrawError>,

@@ -1,4 +1,5 @@
-//! The triangles of a mesh as something that can be drawn: the reference picture of the other methods.
+//! The triangles of a mesh as something that can be drawn: the reference picture of the other
+//! methods.
 
 use serde_json::json;
 

@@ -342,7 +342,8 @@ impl Node {
         lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
     }
 
-    /// Lowest and highest corner of its grid, or of a leaf's triangles, relative to the file's centre.
+    /// Lowest and highest corner of its grid, or of a leaf's triangles, relative to the file's
+    /// centre.
     #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));

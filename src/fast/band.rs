@@ -1,4 +1,5 @@
-//! A band of the picture while it is drawn: what the steps of the traversal share and pass on to each other.
+//! A band of the picture while it is drawn: what the steps of the traversal share and pass on to
+//! each other.
 
 use super::canvas::{Fill, Pixels};
 use super::constants::Constants;
@@ -23,7 +24,8 @@ pub(super) struct Band<'b, I> {
     pub(super) counters: Counters,
     /// Whether voxels are blended.
     pub(super) blends: bool,
-    /// By sample of a square: how many entries of the picture it lies behind the square's first sample.
+    /// By sample of a square: how many entries of the picture it lies behind the square's first
+    /// sample.
     pub(super) sample_offsets: [u32; 64],
     /// By sample of the current square: the parts that its line may meet.
     pub(super) candidates: Candidates,
@@ -87,8 +89,8 @@ pub(super) struct Hit {
     pub(super) part: u8,
 }
 
-/// Steps of the traversal, each compiled as a whole for an instruction set: what is inlined into a step uses that
-/// set.
+/// Steps of the traversal, each compiled as a whole for an instruction set: what is inlined into a
+/// step uses that set.
 /// Declared here, below the steps that call each other through it; `compiled.rs` defines them.
 pub(super) trait Compiled: Isa {
     /// Visits the children of a record, nearest first.

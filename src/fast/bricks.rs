@@ -176,8 +176,8 @@ fn draw_samples<I: Isa, const DEEP: bool>(
     drawn
 }
 
-/// The first part that each sample's line may meet: samples that meet it, whose hits come first, and samples that
-/// may meet others. Without a branch: what a line meets cannot be predicted.
+/// The first part that each sample's line may meet: samples that meet it, whose hits come first,
+/// and samples that may meet others. Without a branch: what a line meets cannot be predicted.
 #[inline(always)]
 fn meet_first<I: Isa>(band: &mut Band<'_, I>, lines: &Lines<I>, any: u64, pair: u32) -> (u64, u64) {
     let isa = band.isa;
@@ -236,8 +236,8 @@ impl Hit {
     }
 }
 
-/// Shows what was found. Memory was asked for before, for all samples, so that waiting for one does not
-/// hold up the next.
+/// Shows what was found. Memory was asked for before, for all samples, so that waiting for one does
+/// not hold up the next.
 #[inline(always)]
 fn show_hits<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,

@@ -1,7 +1,7 @@
 //! The picture in the making: which samples are drawn, and what they show.
 //!
-//! One bit a sample, set while it is open, in words of 8 x 8 samples (tiles), and one bit a tile, in
-//! words of 8 x 8 tiles (blocks). So a few words decide whether anything can still
+//! One bit a sample, set while it is open, in words of 8 x 8 samples (tiles), and one bit a tile,
+//! in words of 8 x 8 tiles (blocks). So a few words decide whether anything can still
 //! be drawn in a window. What lies outside the picture counts as drawn from the start,
 //! as in the image quadtree. A square is at most as large as a tile and may lie anywhere.
 
@@ -20,7 +20,8 @@ pub(super) struct Fill<'p> {
     grid: TileGrid,
     /// Index of the band's first tile in the whole picture.
     first_tile: usize,
-    /// Row of the band's first blocks in the whole picture; of these the band may have the lower tiles alone.
+    /// Row of the band's first blocks in the whole picture; of these the band may have the lower
+    /// tiles alone.
     first_block_row: i32,
     part: FillPart<'p>,
     /// Samples not drawn yet.
@@ -51,7 +52,8 @@ impl FillMemory {
         let beyond = grid.tiles_across + 2;
         self.tiles
             .resize(grid.tiles_down * grid.tiles_across + beyond, 0);
-        // Bands that share a row of blocks each have a row of their own; there may be a band for each row of tiles.
+        // Bands that share a row of blocks each have a row of their own; there may be a band for
+        // each row of tiles.
         let block_rows = grid.tiles_down.div_ceil(TILES_PER_BLOCK) + grid.tiles_down;
         self.blocks.resize(block_rows * grid.blocks_across, 0);
     }

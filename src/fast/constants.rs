@@ -28,7 +28,8 @@ const TINY_SAMPLES: f64 = 1.0 / 8.0;
 /// What nodes of one octree level have in common.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
-    /// The children's centres relative to their parent's: by coordinate of the clip vector, then by octant.
+    /// The children's centres relative to their parent's: by coordinate of the clip vector, then by
+    /// octant.
     pub(super) child: [[f64; 8]; 3],
     /// The vertices relative to the centre, in the same way.
     pub(super) vertices: [[f64; 8]; 3],
@@ -96,8 +97,9 @@ pub(super) struct Constants {
     pub(super) centre: [f64; 3],
     /// Samples a side of the image root.
     pub(super) root_samples: f64,
-    /// Clip vectors of a finest voxel's edges, X and Y in samples: `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`,
-    /// so that the quotient is 0 at the centre of the first sample.
+    /// Clip vectors of a finest voxel's edges, X and Y in samples:
+    /// `(R e_X - e_W / 2, R e_Y - e_W / 2, e_W)`, so that the quotient is 0 at the centre of the
+    /// first sample.
     pub(super) edge: [[f64; 3]; 3],
     /// The direction of a sample's ray in the object, along each axis, as a
     /// linear function of column and row: `[along x, along y, at sample 0]`.
@@ -188,8 +190,8 @@ impl Constants {
         })
     }
 
-    /// Rows of samples that the object's box covers, about; all of a picture of this height where the box
-    /// reaches behind the eye. Work is shared out by them, nothing is left out.
+    /// Rows of samples that the object's box covers, about; all of a picture of this height where
+    /// the box reaches behind the eye. Work is shared out by them, nothing is left out.
     pub(super) fn rows(&self, height: u32) -> std::ops::Range<usize> {
         let vertices = &self.levels[0].vertices;
         let mut rows = [f64::INFINITY, f64::NEG_INFINITY];

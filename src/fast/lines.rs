@@ -20,7 +20,8 @@ use super::lanes::{Four, Isa};
 use super::projection::Projection;
 use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
 
-/// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over 2^-20.
+/// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over
+/// 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Parts' centres are at most this many sides of a part from the node's.
 const FARTHEST: f32 = 8.0;
@@ -262,7 +263,8 @@ impl<I: Isa> Lines<I> {
         line.moment.fma(unit, isa.splat(MIDDLE)).cells()
     }
 
-    /// Whether a line certainly meets the part of side 1 whose centre lies at an offset, and whether it may.
+    /// Whether a line certainly meets the part of side 1 whose centre lies at an offset, and
+    /// whether it may.
     #[inline(always)]
     pub(super) fn are_inside(&self, isa: I, line: &Line<I>, offset: &Offset) -> [bool; 2] {
         let from_centre = line.moment.sub(line.shift(isa, offset));

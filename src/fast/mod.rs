@@ -1,9 +1,9 @@
 //! The fast engine: the exact picture, as fast as the processor goes.
 //!
-//! Under `exact` the picture is defined without reference to an algorithm (`SPEC.md`): each sample shows the first
-//! voxel on its ray. So this engine may work sample by sample, where the machine works record by record, and in
-//! approximate numbers: arithmetic with a bounded error decides nearly all samples, the exact rule those in doubt
-//! (`spec/fast.md`).
+//! Under `exact` the picture is defined without reference to an algorithm (`SPEC.md`): each sample
+//! shows the first voxel on its ray. So this engine may work sample by sample, where the machine
+//! works record by record, and in approximate numbers: arithmetic with a bounded error decides
+//! nearly all samples, the exact rule those in doubt (`spec/fast.md`).
 //!
 //! ```text
 //! for each band of the picture, from the whole object down (traversal):
@@ -14,8 +14,8 @@
 //!     large or near ones:     by exact planes (planes, exact)
 //! ```
 //!
-//! Frames that it does not draw ([`Declined`]: other rules, positions too large, records asked for) go to the engine
-//! that it is made with.
+//! Frames that it does not draw ([`Declined`]: other rules, positions too large, records asked for)
+//! go to the engine that it is made with.
 
 mod alpha;
 mod band;
@@ -122,7 +122,8 @@ impl Fast {
         }
     }
 
-    /// Why the last frame was handed to the fallback, which is many times slower; `None`: it was not.
+    /// Why the last frame was handed to the fallback, which is many times slower; `None`: it was
+    /// not.
     #[must_use]
     pub fn declined(&self) -> Option<Declined> {
         self.declined
@@ -307,7 +308,8 @@ struct BandBuffers<'p> {
     pixels: Pixels<'p>,
 }
 
-/// Rows of tiles that the first of several bands has, of `rows` from `top` on; all: there is one band.
+/// Rows of tiles that the first of several bands has, of `rows` from `top` on; all: there is one
+/// band.
 ///
 /// Nodes that lie across two bands are visited in both, so there are few bands; several to a
 /// thread, large ones first, so that threads end together. What counts is the rows that the object
@@ -360,8 +362,8 @@ impl BandBuffers<'_> {
     }
 }
 
-/// Draws the first band, while other threads draw the rest in the same way. `object`: rows of tiles that the
-/// object covers.
+/// Draws the first band, while other threads draw the rest in the same way. `object`: rows of tiles
+/// that the object covers.
 fn run_bands<I: Compiled>(
     job: &Job<'_>,
     buffers: BandBuffers<'_>,

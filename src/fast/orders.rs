@@ -72,8 +72,8 @@ pub(super) static SLABS: [[u64; 4]; 3] = {
     table
 };
 
-/// By axis and by which of its four slabs are filled: the middle of those from the first to the last,
-/// from the node's centre, and half their extent, in sides of a slab; in the axis' lane.
+/// By axis and by which of its four slabs are filled: the middle of those from the first to the
+/// last, from the node's centre, and half their extent, in sides of a slab; in the axis' lane.
 pub(super) static EXTENTS: [[[[f32; 4]; 2]; 16]; 3] = {
     let mut table = [[[[0.0; 4]; 2]; 16]; 3];
     let mut slabs = 1u32;

@@ -161,7 +161,8 @@ impl Parts {
         }
     }
 
-    /// Asks the memory for the masks below the parts, once what [`Parts::prefetch_below`] asked for has come.
+    /// Asks the memory for the masks below the parts, once what [`Parts::prefetch_below`] asked for
+    /// has come.
     #[inline(always)]
     pub(super) fn prefetch_masks<I: Isa>(&self, isa: I, graph: &GraphView<'_>) {
         let part = graph.first.get(self.first as usize).copied().unwrap_or(0);

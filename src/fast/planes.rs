@@ -1,4 +1,5 @@
-//! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of samples at a time.
+//! Large and near solids, by the exact planes of their silhouettes: whole blocks and tiles of
+//! samples at a time.
 
 use super::band::Band;
 use super::exact::{Cover, Outline};

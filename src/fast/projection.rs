@@ -1,4 +1,5 @@
-//! A node projected to the picture: its centre, the slopes of its moments, and the window about its parts.
+//! A node projected to the picture: its centre, the slopes of its moments, and the window about its
+//! parts.
 
 use super::constants::{Constants, Level};
 use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
@@ -7,8 +8,8 @@ use super::window::Window;
 /// Rounding of [`Projection::window`], of what the window is made of: `spec/fast.md`, section 5.
 const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 
-/// Half a node's depth over its centre's, from which on [`Projection::window`] leaves windows as they are: rounding
-/// counts the more the nearer that is to 1.
+/// Half a node's depth over its centre's, from which on [`Projection::window`] leaves windows as
+/// they are: rounding counts the more the nearer that is to 1.
 const NEAR: f32 = 0.25;
 
 /// A node's centre in the picture, and the slopes of its moments (`spec/fast.md`, section 2).
@@ -23,8 +24,8 @@ pub(super) struct Projection<I: Isa> {
 }
 
 impl<I: Isa> Projection<I> {
-    /// The projection of a node of a level, the clip vector of its centre given. A node is `across` parts wide; the
-    /// unit of its slopes is the side of a part.
+    /// The projection of a node of a level, the clip vector of its centre given. A node is `across`
+    /// parts wide; the unit of its slopes is the side of a part.
     #[inline(always)]
     pub(super) fn new(
         isa: I,
@@ -44,11 +45,12 @@ impl<I: Isa> Projection<I> {
         }
     }
 
-    /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the node as given to
-    /// [`Projection::new`]; it lies before the eye. All of the window where the eye is near ([`NEAR`]).
+    /// What of a window the box around some of a node's 64 parts covers, or a little more. Of the
+    /// node as given to [`Projection::new`]; it lies before the eye. All of the window where the
+    /// eye is near ([`NEAR`]).
     ///
-    /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant, over its depth,
-    /// which is at most half a node's from the centre's.
+    /// What lies `t` parts from the node's centre is seen `t . step` from it, times a constant,
+    /// over its depth, which is at most half a node's from the centre's.
     #[inline(always)]
     pub(super) fn window(
         &self,

@@ -114,8 +114,8 @@ impl Strips {
         strips
     }
 
-    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then adds up, upwards
-    /// the parts that have begun and downwards those that have not ended.
+    /// Makes the tables of an axis for a share and a margin: notes where strips begin and end, then
+    /// adds up, upwards the parts that have begun and downwards those that have not ended.
     fn fill(&mut self, at: usize, axis: usize, share: f32, margin: f32) {
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);

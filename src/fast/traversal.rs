@@ -8,7 +8,8 @@
 //!         visit(child)
 //! ```
 //!
-//! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too narrow.
+//! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too
+//! narrow.
 
 use super::band::{Band, Brick, Compiled, Record, voxel_at};
 use super::constants::{Constants, Level};
@@ -96,7 +97,8 @@ fn visit<I: Compiled>(band: &mut Band<'_, I>, record: &Record, window: &Window) 
     isa.visit_children(band, record);
 }
 
-/// Whether all solids below a node, by the graph's depth or by level of detail, are four levels below it.
+/// Whether all solids below a node, by the graph's depth or by level of detail, are four levels
+/// below it.
 #[inline(always)]
 fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
     let ends = record.level as usize + 4;
@@ -109,7 +111,8 @@ fn is_deep(constants: &Constants, record: &Record, least_depth: f64) -> bool {
         && (ends == constants.depth as usize || least_depth >= constants.levels[ends].lod_depth)
 }
 
-/// The children of a node that level of detail draws as solids although they may have children: one bit each.
+/// The children of a node that level of detail draws as solids although they may have children: one
+/// bit each.
 #[inline(always)]
 fn detail(constants: &Constants, record: &Record) -> u8 {
     let (own, below) = (
@@ -197,7 +200,8 @@ pub(super) fn visit_children<I: Compiled>(band: &mut Band<'_, I>, record: &Recor
     }
 }
 
-/// Tests the windows of children that do not exist, as for those that do: measures what skipping them saves.
+/// Tests the windows of children that do not exist, as for those that do: measures what skipping
+/// them saves.
 #[inline(never)]
 fn count_absent<I: Compiled>(band: &mut Band<'_, I>, windows: &Windows, absent: u8) {
     let held = absent & windows.held & !windows.near;
@@ -208,8 +212,9 @@ fn count_absent<I: Compiled>(band: &mut Band<'_, I>, windows: &Windows, absent: 
     }
 }
 
-/// Whether a box that is partly behind the eye lies beside the picture: all eight vertices are beyond one edge of
-/// the image root. The numbers are exact, and the test is linear: what holds for the vertices holds for every point.
+/// Whether a box that is partly behind the eye lies beside the picture: all eight vertices are
+/// beyond one edge of the image root. The numbers are exact, and the test is linear: what holds for
+/// the vertices holds for every point.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {

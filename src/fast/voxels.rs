@@ -80,7 +80,8 @@ fn draw_samples<I: Isa>(
     if wanted == 0 {
         return 0;
     }
-    // Only a strip's width changes within a square, from which the tables' error is four times as large.
+    // Only a strip's width changes within a square, from which the tables' error is four times as
+    // large.
     let error = (0.25 * lines.error + lines.rounding) * UNIT + ROUNDING;
     let most = ((0.5 * UNIT + error) as i16).saturating_add(1);
     let sure = if lines.has_blind {

@@ -1,4 +1,5 @@
-//! What is done with a record by itself: it is changed to screen space, drawn or dropped, or left to its children.
+//! What is done with a record by itself: it is changed to screen space, drawn or dropped, or left
+//! to its children.
 
 use hwmodel::{Memory, Probe, Short, Stage};
 

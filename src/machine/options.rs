@@ -16,8 +16,9 @@ pub struct MachineOptions {
     /// Children by octant, nearest first, for octant 000; only tests use
     /// another array than [`OCCLUSION_ORDER`].
     pub order: [u8; 8],
-    /// What the stack holds, what is read for a leaf, and whether the picture is drawn by tiles. Without the
-    /// organisation of the image-order paper, only a frame's records and accesses change, not its picture.
+    /// What the stack holds, what is read for a leaf, and whether the picture is drawn by tiles.
+    /// Without the organisation of the image-order paper, only a frame's records and accesses
+    /// change, not its picture.
     pub organisation: Organisation,
 }
 

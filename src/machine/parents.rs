@@ -11,14 +11,14 @@
 //!     when none is left: take the current record from the stack; end when that is empty
 //! ```
 //!
-//! The image-order paper's loop stores each child that can be seen, with its vertices, and reads it back. Here
-//! only what is subdivided is stored, and that only while it has children left, so the stack is never deeper
-//! than the octree, and a drawn voxel is never on it. A child is fitted when its turn comes, so it finds more of
-//! the picture drawn. The vertices of a parent's children are kept in registers, and made again when the
-//! parent comes back from the stack.
+//! The image-order paper's loop stores each child that can be seen, with its vertices, and reads it
+//! back. Here only what is subdivided is stored, and that only while it has children left, so the
+//! stack is never deeper than the octree, and a drawn voxel is never on it. A child is fitted when
+//! its turn comes, so it finds more of the picture drawn. The vertices of a parent's children are
+//! kept in registers, and made again when the parent comes back from the stack.
 //!
-//! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile full
-//! from the start. Only the fill vectors above the tiles differ from one tile to the next.
+//! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile
+//! full from the start. Only the fill vectors above the tiles differ from one tile to the next.
 
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Memory, Probe, Stage, Word};
@@ -73,7 +73,8 @@ impl<L: CageCoordinate> Parent<L> {
 }
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was enough.
+    /// Draws the object tile by tile, in at most `most_records` records. Returns whether that was
+    /// enough.
     ///
     /// # Errors
     /// When a word overflows under the trap policy.
@@ -150,8 +151,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         parent.expanded = None;
     }
 
-    /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if it must be
-    /// subdivided. `address`: the parent's on the stack, if it was there.
+    /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if
+    /// it must be subdivided. `address`: the parent's on the stack, if it was there.
     pub(super) fn parent_turn(
         &mut self,
         parent: &mut Parent<L>,
@@ -233,7 +234,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 #[derive(Debug, Clone)]
 pub(super) struct TileView {
     tile: QuadNode,
-    /// Vectors of the nodes above the tile, from the root on, while they are not in use; then those of the others.
+    /// Vectors of the nodes above the tile, from the root on, while they are not in use; then those
+    /// of the others.
     above: Vec<u8>,
 }
 

@@ -1,6 +1,6 @@
 //! The record: what the machine keeps of a cube on its stack (image-order paper, 2.4).
-//! Data only; the steps that work on it are in `push.rs`, `undrawn.rs`, `verdict.rs`, `decide.rs`, `children.rs`,
-//! `record_loop.rs` and `parents.rs`.
+//! Data only; the steps that work on it are in `push.rs`, `undrawn.rs`, `verdict.rs`, `decide.rs`,
+//! `children.rs`, `record_loop.rs` and `parents.rs`.
 
 use hwmodel::{WideWord, Word};
 

@@ -1,5 +1,5 @@
-//! The state of the record loop. What is done with it is in `push.rs`, `undrawn.rs`, `verdict.rs`, `decide.rs`,
-//! `children.rs`, `record_loop.rs` and `parents.rs`.
+//! The state of the record loop. What is done with it is in `push.rs`, `undrawn.rs`, `verdict.rs`,
+//! `decide.rs`, `children.rs`, `record_loop.rs` and `parents.rs`.
 
 use hwmodel::{Datapath, Probe, Stage};
 

@@ -46,8 +46,8 @@ impl CageKind {
 pub enum Coverage {
     /// Every sample that its box overlaps (the image-order paper).
     ///
-    /// Nodes are subdivided until their box lies within one sample, or they can be divided no further. Covers more
-    /// than there is.
+    /// Nodes are subdivided until their box lies within one sample, or they can be divided no
+    /// further. Covers more than there is.
     Any,
     /// The sample that holds its centre.
     ///
@@ -60,7 +60,8 @@ pub enum Coverage {
     #[cfg_attr(
         feature = "cli",
         value(
-            help = "As exact, each voxel with its six opacities (--opacities), blended front to back"
+            help = "As exact, each voxel with its six opacities (--opacities), blended front to \
+             back"
         )
     )]
     Alpha,
@@ -99,9 +100,9 @@ impl Coverage {
         }
     }
 
-    /// The size, pixels, up to which nodes are drawn as one voxel, where none is given. A pixel is the
-    /// paper's, and right for opacities, which are means; of outlines those of half a pixel are the largest
-    /// that cost no accuracy to speak of (`docs/error.md`).
+    /// The size, pixels, up to which nodes are drawn as one voxel, where none is given. A pixel is
+    /// the paper's, and right for opacities, which are means; of outlines those of half a pixel are
+    /// the largest that cost no accuracy to speak of (`docs/error.md`).
     #[inline]
     #[must_use]
     pub const fn default_lod(self) -> f64 {
@@ -155,7 +156,8 @@ impl SetupOptions {
         }
     }
 
-    /// The image-order paper's settings: eight corners a record, screen space at once, [`Coverage::Any`].
+    /// The image-order paper's settings: eight corners a record, screen space at once,
+    /// [`Coverage::Any`].
     #[must_use]
     pub fn paper() -> Self {
         Self {

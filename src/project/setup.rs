@@ -60,8 +60,9 @@ pub enum SetupError {
     },
     /// A tolerance of a rule that has none.
     #[error(
-        "a tolerance of {0} samples does not go with exact or alpha coverage, whose picture is defined \
-         at every sample and approximates nothing: leave it at 0, or take the rule any or center"
+        "a tolerance of {0} samples does not go with exact or alpha coverage, whose picture is \
+         defined at every sample and approximates nothing: leave it at 0, or take the rule any or \
+         center"
     )]
     Tolerance(f64),
     /// A setting outside its range.

@@ -1,12 +1,12 @@
 //! Files appear whole or not at all, also when the program is stopped.
 //!
-//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and renamed. Files that
-//! belong together are renamed when the last of them is written. A file that is replaced keeps its permissions, and a
-//! link to a file stays a link.
+//! A file is written under a temporary name beside its place, `.shiftvox-NAME-??????.tmp`, and
+//! renamed. Files that belong together are renamed when the last of them is written. A file that is
+//! replaced keeps its permissions, and a link to a file stays a link.
 //!
-//! A signal handler must call [`remove_unfinished`] before it ends the program. What a killed or crashed process left
-//! behind is removed by the next one that writes to the folder: such a file is recognised by its name and by its lock,
-//! which ends with the process that held it.
+//! A signal handler must call [`remove_unfinished`] before it ends the program. What a killed or
+//! crashed process left behind is removed by the next one that writes to the folder: such a file is
+//! recognised by its name and by its lock, which ends with the process that held it.
 
 mod error;
 mod temporary;
@@ -25,8 +25,9 @@ use temporary::{in_progress, temporary, tidy};
 /// Whether a file may be written: to ask before long work.
 ///
 /// # Errors
-/// [`WholeError::Exists`] where something is there already and may not be overwritten, [`WholeError::NoFolder`]
-/// where there is no place for it, [`WholeError::Io`] where a folder or a device is in its place.
+/// [`WholeError::Exists`] where something is there already and may not be overwritten,
+/// [`WholeError::NoFolder`] where there is no place for it, [`WholeError::Io`] where a folder or a
+/// device is in its place.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     if !overwrite && fs::symlink_metadata(path).is_ok() {
         return Err(WholeError::Exists(path.to_owned()));
@@ -137,7 +138,8 @@ pub fn prepare(
     })
 }
 
-/// Gives files their names: all of them, or none where one of them cannot have its name and nothing stood there before.
+/// Gives files their names: all of them, or none where one of them cannot have its name and nothing
+/// stood there before.
 ///
 /// # Errors
 /// See [`WholeError`].
@@ -184,8 +186,8 @@ pub fn keep(files: Vec<Prepared>) -> Result<(), WholeError> {
 
 /// Writes a file under a temporary name beside its place and renames it.
 ///
-/// With `overwrite` an older file is replaced in one step; without, an existing file is an error, also when it
-/// appears while this one is written.
+/// With `overwrite` an older file is replaced in one step; without, an existing file is an error,
+/// also when it appears while this one is written.
 ///
 /// # Errors
 /// See [`WholeError`].

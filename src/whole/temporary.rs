@@ -1,5 +1,5 @@
-//! Temporary files and folders: listed while they are written, so that a signal handler can remove them, and locked,
-//! so that other processes know which of them were left behind.
+//! Temporary files and folders: listed while they are written, so that a signal handler can remove
+//! them, and locked, so that other processes know which of them were left behind.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -34,8 +34,8 @@ pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
     IN_PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes all that this process has begun to write, then calls `end`, during which no file gets its name:
-/// for signal handlers.
+/// Removes all that this process has begun to write, then calls `end`, during which no file gets
+/// its name: for signal handlers.
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
@@ -72,8 +72,8 @@ impl InProgress {
     }
 }
 
-/// Makes a temporary folder in another, for files that are renamed together. It is removed with its contents when it is
-/// dropped; if the process is killed, by the next one that writes there.
+/// Makes a temporary folder in another, for files that are renamed together. It is removed with its
+/// contents when it is dropped; if the process is killed, by the next one that writes there.
 ///
 /// # Errors
 /// What the system says.
@@ -93,7 +93,8 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeErr
             };
             return Ok((folder, lock));
         }
-        // Another process took it for one that was left behind, and removed it before it was locked.
+        // Another process took it for one that was left behind, and removed it before it was
+        // locked.
     }
 }
 
@@ -127,11 +128,13 @@ pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile
         if !is_locked || file.path().exists() {
             return Ok((file, guard));
         }
-        // Another process took it for one that was left behind, and removed it before it was locked.
+        // Another process took it for one that was left behind, and removed it before it was
+        // locked.
     }
 }
 
-/// Removes what processes that have ended left in a folder, the first time that this one writes to it.
+/// Removes what processes that have ended left in a folder, the first time that this one writes to
+/// it.
 pub(super) fn tidy(folder: &Path) {
     {
         let mut list = in_progress();

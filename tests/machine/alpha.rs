@@ -127,7 +127,7 @@ fn opacities_of(mut graph: Graph, opacities: &[[u8; 3]]) -> Graph {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(cases(30))]
 
     #[test]
     fn each_sample_is_what_its_ray_takes(
@@ -269,7 +269,8 @@ fn what_blending_costs() {
         assert_eq!(solids, 1, "{size}: {stats:?}");
         assert!(blended > 0);
         let count = |class| counter.ops_at(Stage::Blend, class);
-        // What the sides count for, made once for the voxel: the way, its shares, their squares, a root, three quotients.
+        // What the sides count for, made once for the voxel: the way, its shares, their squares, a
+        // root, three quotients.
         let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
         let sub = 3 + 3 + 2;
         let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;

@@ -7,7 +7,7 @@ use shiftvox::lab::bounds::{Bounds, Cube, Space, Widths, worst_host_px};
 use shiftvox::lab::stress::{Case, Check, Hold, StressScene, run_case};
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
 
-use crate::common::{any_camera, tolerance_of};
+use crate::common::{any_camera, cases, tolerance_of};
 
 fn any_options() -> impl Strategy<Value = SetupOptions> {
     (
@@ -38,7 +38,7 @@ fn any_options() -> impl Strategy<Value = SetupOptions> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(cases(75))]
 
     /// On any frame: vertices as specified, and within their bounds.
     #[test]

@@ -2,7 +2,7 @@
 //! node and voxel, whatever the graph, the camera, the level of detail, the
 //! samples a pixel, the threads and the instruction set.
 //!
-//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 20 million.
+//! `SHIFTVOX_SAMPLES=100000000` compares that many samples instead of 8 million.
 
 use glam::DVec3;
 use shiftvox::fast::{Fast, FastOptions, Instructions};
@@ -17,7 +17,7 @@ use crate::scene_table::SCENES;
 use crate::scenes::{Dice, any_voxel, cube, graph_of_spec};
 
 /// Samples that are compared unless the environment sets another number.
-const SAMPLES: u64 = 20_000_000;
+const SAMPLES: u64 = 8_000_000;
 
 /// A camera: anywhere, or where ties abound: on a voxel's corner, edge, face or
 /// in its middle, looking along an axis or at a corner.
@@ -107,7 +107,8 @@ fn fast_equals_the_oracle_at_every_sample() {
         let differ = truth.voxel.iter().zip(&frame.voxel).position(differing);
         assert!(
             differ.is_none() && truth.node == frame.node,
-            "{camera:?} of {graph_depth} levels, {options:?}, lod {}, aa {}: sample {differ:?}: {:?}, truth {:?}",
+            "{camera:?} of {graph_depth} levels, {options:?}, lod {}, aa {}: sample {differ:?}: \
+             {:?}, truth {:?}",
             setup.options.lod_px,
             setup.options.aa_log2,
             differ.map(|at| frame.voxel[at]),
@@ -119,7 +120,8 @@ fn fast_equals_the_oracle_at_every_sample() {
         exact += stat("samples_decided_exactly");
     }
     println!(
-        "{compared} samples, {drawn} drawn, {exact} decisions by the exact rule; {left_over} frames left to the machine"
+        "{compared} samples, {drawn} drawn, {exact} decisions by the exact rule; {left_over} \
+         frames left to the machine"
     );
     assert!(drawn > compared / 10, "frames that show nothing");
     assert!(exact > 0, "ties were never met");
@@ -171,8 +173,8 @@ fn a_ray_along_the_line_between_four_parts() {
     }
 }
 
-/// An eye just before the nearest corner of a brick, in views of nearly 180 degrees: a window in `f32` lost
-/// samples there.
+/// An eye just before the nearest corner of a brick, in views of nearly 180 degrees: a window in
+/// `f32` lost samples there.
 #[test]
 fn bricks_at_the_eye_in_views_of_nearly_180_degrees() {
     let graph = graph_of_spec("gen:checker,depth=2");

@@ -264,8 +264,8 @@ fn fit_tests(turn: &Turn) -> u64 {
         .count() as u64
 }
 
-/// What a cage coordinate costs: halvings and additions of the vertex pool, numbers that are held, minima, maxima and
-/// additions of a span.
+/// What a cage coordinate costs: halvings and additions of the vertex pool, numbers that are held,
+/// minima, maxima and additions of a span.
 const CAGES: [(CageKind, [u64; 5]); 2] = [
     (CageKind::Corners, [19, 0, 8, 7 + 7, 0]),
     (CageKind::Frame, [3, 7, 4, 3 + 3, 6]),

@@ -142,7 +142,7 @@ fn agree(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(cases(12))]
 
     #[test]
     fn cycles_same_picture_on_random_graphs(
@@ -192,7 +192,7 @@ fn cycles_classes_are_independent_by_geometry() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(cases(24))]
 
     /// The image-order paper's claim on hardware that does its best to break it: many
     /// contexts, and misses so slow that classmates overtake one another.

@@ -1,6 +1,7 @@
-//! Every scene of the table, and every voxel file beside the repository, drawn by every engine under every rule:
-//! the machine with both cages, the fast engine with each instruction set on one thread and on two, the oracle in
-//! pools of several sizes. Cameras are outside, inside, in solids, and where ties abound.
+//! Every scene of the table, and every voxel file beside the repository, drawn by every engine
+//! under every rule: the machine with both cages, the fast engine with each instruction set on one
+//! thread and on two, the oracle in pools of several sizes. Cameras are outside, inside, in solids,
+//! and where ties abound.
 //!
 //! `SHIFTVOX_ROUNDS` asks for another number of cameras at each place.
 
@@ -34,7 +35,7 @@ const SIZES: [(u32, u32, u32); 7] = [
 const SMALL: (u32, u32, u32) = (43, 39, 0);
 
 /// Cameras at each place, unless `SHIFTVOX_ROUNDS` asks for more.
-const ROUNDS: u32 = 5;
+const ROUNDS: u32 = 3;
 
 /// Most records of a frame under the rules that subdivide solids.
 const MOST_RECORDS: u64 = 200_000;
@@ -126,7 +127,8 @@ fn difference(frame: &Frame, right: &Frame) -> Option<String> {
     Some(match samples.first() {
         None => "the frames differ in size or buffers".to_owned(),
         Some(&at) => format!(
-            "{} samples differ, {extra} extra, {missing} missing; the first, ({}, {}), shows {:?}, not {:?}",
+            "{} samples differ, {extra} extra, {missing} missing; the first, ({}, {}), shows {:?}, \
+             not {:?}",
             samples.len(),
             at as u32 % right.width,
             at as u32 / right.width,
@@ -175,7 +177,8 @@ impl<'s> Comparison<'s> {
         }
     }
 
-    /// Every leaf: machine and fast engine show what the oracle shows. `is_first`: in pools of all sizes.
+    /// Every leaf: machine and fast engine show what the oracle shows. `is_first`: in pools of all
+    /// sizes.
     fn compare_leaves(&mut self, camera: &Camera, aa_log2: u32, is_first: bool) {
         let options = SetupOptions {
             aa_log2,
@@ -211,7 +214,8 @@ impl<'s> Comparison<'s> {
         self.drawn += right.drawn() as u64;
     }
 
-    /// A rule: the fast engine draws what the machine draws, and what the oracle draws, if that draws the rule.
+    /// A rule: the fast engine draws what the machine draws, and what the oracle draws, if that
+    /// draws the rule.
     fn compare_rule(&mut self, number: usize, camera: &Camera, aa_log2: u32) {
         let options = SetupOptions {
             aa_log2,

@@ -71,7 +71,7 @@ fn any_lod() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(cases(150))]
 
     #[test]
     fn random_octrees(
@@ -109,7 +109,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases(80))]
 
     /// Level of detail covers what the true picture covers, and more only
     /// within its size of it.

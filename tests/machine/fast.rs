@@ -169,7 +169,7 @@ fn agree(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(160))]
+    #![proptest_config(cases(50))]
 
     #[test]
     fn equal_on_random_graphs(
@@ -221,7 +221,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(cases(20))]
 
     #[test]
     fn equal_on_the_scenes_of_the_table(

@@ -152,7 +152,7 @@ fn entry(eye: [f64; 3], towards: [f64; 3], (low, side): ([f64; 3], f64)) -> Opti
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(cases(150))]
 
     #[test]
     fn rays_through_random_graphs_meet_leaves_in_order(

@@ -49,7 +49,7 @@ fn oracle(graph: &Graph, setup: &FrameSetup) -> Frame {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(cases(50))]
 
     /// In clip space, `corners` and `frame` are the same to the bit.
     #[test]

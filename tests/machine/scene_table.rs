@@ -1,7 +1,7 @@
 //! The scenes that every engine must draw alike, listed once.
 //!
-//! Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic, 30 levels deep, a million
-//! voxels from the origin, and voxel files.
+//! Graphs of all kinds: small voxels and large leaves, thin and solid, shared and cyclic, 30 levels
+//! deep, a million voxels from the origin, and voxel files.
 
 use std::path::Path;
 use std::sync::OnceLock;

@@ -82,7 +82,8 @@ fn integers(setup: &FrameSetup) -> String {
 
 /// Frames that the recorded hash is of.
 const RECORDED_FRAMES: u32 = 20_000;
-/// FNV-1a of what `FrameSetup::new` made of them (recorded at commit 8284428): all integers of all frames, or why there is none.
+/// FNV-1a of what `FrameSetup::new` made of them (recorded at commit 8284428): all integers of all
+/// frames, or why there is none.
 const RECORDED_HASH: u64 = 0xe136_c7d9_7fb5_f1e1;
 
 #[test]

@@ -124,7 +124,7 @@ fn settings() -> [SetupOptions; 3] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(cases(32))]
 
     #[test]
     fn a_viewer_shows_what_a_new_engine_draws(

@@ -78,8 +78,9 @@ pub struct RuleArgs {
     /// As the image-order paper has it: --cage corners --tolerance inf --coverage any
     #[arg(long)]
     pub paper: bool,
-    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with exact,
-    /// else 1]. Of --engine far and --erosion auto: the largest voxel or texel, above 0 [default: 1]
+    /// Nodes of at most this many pixels are drawn as one voxel; 0: only leaves [default: 0.5 with
+    /// exact, else 1]. Of --engine far and --erosion auto: the largest voxel or texel, above 0
+    /// [default: 1]
     #[arg(long, value_name = "PX")]
     pub lod: Option<f64>,
     /// Width of a machine word in bits, 16 to 64 [default: 64; of `model`: 32]
@@ -109,8 +110,8 @@ pub struct EngineArgs {
     /// What --engine far uses opacities for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     pub far_opacity: Option<Opacity>,
-    /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all grids,
-    /// whose texels are no larger than a pixel [default: auto]
+    /// How often --engine textured erodes its voxels, or auto: the level of fewest faces, of all
+    /// grids, whose texels are no larger than a pixel [default: auto]
     #[arg(long, value_name = "K|auto")]
     pub erosion: Option<Erosion>,
     /// The grid of --erosion K, by its number of cells [default: the coarsest whose texels are no

@@ -19,10 +19,12 @@ pub struct SceneArgs {
     #[arg(long, value_name = "N",
           value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_DEPTH)))]
     pub depth: Option<u32>,
-    /// Give the voxels of a mesh six opacities, for --coverage alpha; of a mesh that is drawn with that they are found anyway
+    /// Give the voxels of a mesh six opacities, for --coverage alpha; of a mesh that is drawn with
+    /// that they are found anyway
     #[arg(long)]
     pub opacities: bool,
-    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else z]
+    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else
+    /// z]
     #[arg(long, value_enum)]
     pub mesh_up: Option<Up>,
     /// How the colours of an .obj mesh's .mtl are meant; the format does not say

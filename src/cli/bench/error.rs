@@ -261,13 +261,14 @@ fn page(scenes: &[SceneErrors], preface: &str) -> Result<Page, CliError> {
     let mut page = Page::new("Run time against error");
     page.lines(preface.trim());
     page.text(
-        "Times are of one thread, and only as good as the machine was idle; operations are those of the machine \
-         with the same settings, and the same in every run. Extra and missing are samples against \
-         exact rays through the same points; elsewhere: samples that show a voxel which neither is nor holds \
-         the right one; coarser: a voxel that holds it, by level of detail. The reference has many exact rays \
-         a pixel, so one sample a pixel cannot come near it, however exact. Bias: area covered too much, \
-         thin: on pixels of things thinner than a pixel. A mesh's reference has 256 samples of its triangles a pixel. Beaten by: a method with no more operations, no more \
-         wrong coverage and no greater error, and less of one.",
+        "Times are of one thread, and only as good as the machine was idle; operations are those \
+         of the machine with the same settings, and the same in every run. Extra and missing are \
+         samples against exact rays through the same points; elsewhere: samples that show a voxel \
+         which neither is nor holds the right one; coarser: a voxel that holds it, by level of \
+         detail. The reference has many exact rays a pixel, so one sample a pixel cannot come near \
+         it, however exact. Bias: area covered too much, thin: on pixels of things thinner than a \
+         pixel. A mesh's reference has 256 samples of its triangles a pixel. Beaten by: a method \
+         with no more operations, no more wrong coverage and no greater error, and less of one.",
     );
     for scene in scenes {
         page.chapter(&format!("{}, {} voxels", scene.scene, scene.voxels));

@@ -178,9 +178,10 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
     let page = || {
         let mut page = Page::new("Flicker and pop");
         page.text(
-            "Flicker: root of the mean square, over pixels, channels and frames, of what changes from frame to \
-             frame other than in the reference. Pop: the same camera, drawn with what level of detail takes \
-             for solids now and a frame ago; it has a plot where there is any. Both in linear light, thousandths of white.",
+            "Flicker: root of the mean square, over pixels, channels and frames, of what changes \
+             from frame to frame other than in the reference. Pop: the same camera, drawn with \
+             what level of detail takes for solids now and a frame ago; it has a plot where there \
+             is any. Both in linear light, thousandths of white.",
         );
         for (films, (scene, panels)) in by_scene.iter().zip(&panels) {
             page.chapter(scene);

@@ -390,15 +390,17 @@ fn page(
     let mut page = Page::new("All methods on meshes");
     page.lines(preface.trim());
     page.text(
-        "Triangles with 1, 4 and 16 samples a pixel; the image-order engine on the voxelised mesh by its rules \
-         center and exact, and exact with 16 samples; far voxels opaque, with one opacity and with six; textured \
-         voxels, level of detail chosen by texels of a pixel or given. Each distance is twice the one before, and \
-         the picture half as large, so that the mesh always fills it. ms: processor time of one thread; a frame of \
-         voxels is clear, traverse, colours without light, that of other methods has the light in it. Error: \
-         against the triangles with 256 samples; bias: area covered too much; wrong share: too much and too \
-         little together. Flicker: over a film whose camera moves an eighth of a pixel a frame; pop: what changes \
-         by level of detail alone. Work is what a method counts first, comparable within its family. The machine \
-         is a shared one: times say which is faster where they are far apart.",
+        "Triangles with 1, 4 and 16 samples a pixel; the image-order engine on the voxelised mesh \
+         by its rules center and exact, and exact with 16 samples; far voxels opaque, with one \
+         opacity and with six; textured voxels, level of detail chosen by texels of a pixel or \
+         given. Each distance is twice the one before, and the picture half as large, so that the \
+         mesh always fills it. ms: processor time of one thread; a frame of voxels is clear, \
+         traverse, colours without light, that of other methods has the light in it. Error: \
+         against the triangles with 256 samples; bias: area covered too much; wrong share: too \
+         much and too little together. Flicker: over a film whose camera moves an eighth of a \
+         pixel a frame; pop: what changes by level of detail alone. Work is what a method counts \
+         first, comparable within its family. The machine is a shared one: times say which is \
+         faster where they are far apart.",
     );
     for (mesh, (_, panels)) in meshes.iter().zip(panels) {
         page.chapter(&format!("{}, {} triangles", mesh.mesh, mesh.triangles));

@@ -22,7 +22,8 @@ pub(super) struct ScalingArgs {
     /// [default: gen:terrain,depth=10 gen:menger,depth=5 bundled]
     #[arg(value_name = "SCENE", value_parser = crate::cli::names::parser())]
     scenes: Vec<String>,
-    /// Most voxels of a scene that grows; a terrain takes about 10 bytes a voxel, and 28 while it is made
+    /// Most voxels of a scene that grows; a terrain takes about 10 bytes a voxel, and 28 while it
+    /// is made
     #[arg(long, value_name = "N", default_value = "1e7", value_parser = voxel_count)]
     max_voxels: u64,
     #[command(flatten)]
@@ -140,7 +141,8 @@ pub(super) fn run(
     export::write(&results, &args.export, console)
 }
 
-/// Sizes of the growing picture: those of `--scan`, else doubling up to `--size`, else up to the most.
+/// Sizes of the growing picture: those of `--scan`, else doubling up to `--size`, else up to the
+/// most.
 fn picture_sizes(args: &MeasureArgs) -> Vec<(u32, u32)> {
     if let Some(scan) = &args.scan {
         return squares(scan);

@@ -46,7 +46,8 @@ pub(super) struct WalkArgs {
     /// Draw hidden nodes too
     #[arg(long)]
     no_culling: bool,
-    /// Keep at most this much of the nodes' data in memory: 512M, 2G [default: as the system decides]
+    /// Keep at most this much of the nodes' data in memory: 512M, 2G [default: as the system
+    /// decides]
     #[arg(long, value_name = "SIZE")]
     memory: Option<DataBudget>,
     #[command(flatten)]

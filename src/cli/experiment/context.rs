@@ -77,9 +77,9 @@ impl Context {
             .load
             .map_or_else(String::new, |load| format!(", load {load} before"));
         format!(
-            "`{}`\n\nshiftvox {}, {processor}, {} hardware threads, {} {}{load}. Warm-up {}, runs {}, \
-             interleaved; times in ms: median, least, median absolute deviation; processor time of the \
-             drawing thread where there is one thread.\n",
+            "`{}`\n\nshiftvox {}, {processor}, {} hardware threads, {} {}{load}. Warm-up {}, runs \
+             {}, interleaved; times in ms: median, least, median absolute deviation; processor \
+             time of the drawing thread where there is one thread.\n",
             self.command,
             env!("CARGO_PKG_VERSION"),
             self.threads,

@@ -1,4 +1,5 @@
-//! What experiments share: their scenes, the machine that they run on, and the files of their results.
+//! What experiments share: their scenes, the machine that they run on, and the files of their
+//! results.
 
 pub(in crate::cli) mod context;
 pub(in crate::cli) mod export;

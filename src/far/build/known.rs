@@ -197,7 +197,8 @@ fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
 
 #[test]
 fn what_a_window_shows_is_found_from_what_is_beside_it() {
-    // A picture on the wall of a closed room, in one layer of voxels; the wall opposite has a window.
+    // A picture on the wall of a closed room, in one layer of voxels; the wall opposite has a
+    // window.
     let picture = (DVec3::new(2.1, 2.1, 1.4), DVec3::new(13.9, 13.9, 1.6));
     let wall = |low: [f64; 3], high: [f64; 3]| (DVec3::from_array(low), DVec3::from_array(high));
     let room = [

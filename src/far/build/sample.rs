@@ -134,7 +134,8 @@ impl Target<'_> {
         rays.shots
     }
 
-    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no more are found.
+    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no
+    /// more are found.
     fn follow(&self, touched: &[Touched], rays: &mut VisibilityRays<'_>) {
         while let Some((number, direction)) = rays.fresh.pop_front() {
             for neighbour in self.grid.neighbours(number as usize) {

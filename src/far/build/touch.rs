@@ -1,8 +1,8 @@
 //! Which voxels triangles touch, and points of them in each voxel.
 //!
 //! A triangle is cut to the voxel's cube. If an area is left, the voxel is
-//! touched, and the points of that area are what visibility rays are aimed at. Of all that is in a voxel a few points are
-//! kept, drawn by lot in proportion to area, in one pass over the triangles.
+//! touched, and the points of that area are what visibility rays are aimed at. Of all that is in a
+//! voxel a few points are kept, drawn by lot in proportion to area, in one pass over the triangles.
 
 use glam::{DVec3, IVec3};
 

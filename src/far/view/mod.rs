@@ -44,7 +44,8 @@ pub struct ViewOptions {
     pub background: Option<[u8; 3]>,
     /// Whether hidden nodes are left out. Never changes the picture.
     pub culling: bool,
-    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the picture.
+    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the
+    /// picture.
     pub late: usize,
 }
 

@@ -3,8 +3,9 @@
 //! A branch that was visible in the last frame is walked without a test, and
 //! its nodes are drawn first. Any other branch's box is tested against what is
 //! drawn by then; if it is hidden, nothing below it is visited. Results come
-//! late, as on a GPU: a batch is tested against the picture of some batches before. What is left out is behind what is drawn, in every pixel, so
-//! neither memory nor lateness can change the picture.
+//! late, as on a GPU: a batch is tested against the picture of some batches before. What is left
+//! out is behind what is drawn, in every pixel, so neither memory nor lateness can change the
+//! picture.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

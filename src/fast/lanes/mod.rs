@@ -110,8 +110,8 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     ) -> Windows;
 
     /// By open sample of a square, which of the `wanted` parts the tables name, in
-    /// `candidates`; returns the open samples that have any, eight bits a row. `cells`: the three functions'
-    /// values in cells at the first sample, and what a column and a row add.
+    /// `candidates`; returns the open samples that have any, eight bits a row. `cells`: the three
+    /// functions' values in cells at the first sample, and what a column and a row add.
     fn parts_of_samples(
         self,
         tables: [&Row; 3],
@@ -129,8 +129,8 @@ pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
     /// The samples at which distances are below a limit, eight bits a row.
     fn below(self, distances: &Self::Distances, limit: i16) -> u64;
 
-    /// The middle and half the extent, along each axis, of the box around parts of a node: from its centre, in
-    /// sides of a part.
+    /// The middle and half the extent, along each axis, of the box around parts of a node: from its
+    /// centre, in sides of a part.
     fn extent(self, parts: u64) -> [Self::Four; 2];
 
     /// What a step of a column, and of a row, adds to moments about what lies at `centre`

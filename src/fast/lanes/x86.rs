@@ -442,8 +442,8 @@ impl Isa for Avx2 {
 
     #[inline(always)]
     fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
-        // SAFETY: as above; what is stored to are eight entries from the beginning of a row on, which the slice
-        // has: `end` and the check in the loop.
+        // SAFETY: as above; what is stored to are eight entries from the beginning of a row on,
+        // which the slice has: `end` and the check in the loop.
         unsafe {
             let value_lanes = _mm256_set1_epi32(value as i32);
             let bits = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);

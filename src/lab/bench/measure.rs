@@ -100,7 +100,8 @@ impl Timing {
         format!("{}x{}", self.width, self.height)
     }
 
-    /// The median that disturbs least: processor time where there is one, else wall time; milliseconds.
+    /// The median that disturbs least: processor time where there is one, else wall time;
+    /// milliseconds.
     #[must_use]
     pub fn best_median_ms(&self) -> f64 {
         self.thread.unwrap_or(self.wall).median_ms

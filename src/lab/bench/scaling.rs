@@ -77,7 +77,8 @@ pub struct Growth {
 }
 
 impl Growth {
-    /// The series of some times, one for each engine and thread count, in the order in which they come.
+    /// The series of some times, one for each engine and thread count, in the order in which they
+    /// come.
     #[must_use]
     pub fn collect(growing: Growing, series: &str, timings: Vec<Timing>) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();

@@ -41,7 +41,8 @@ const MOST_IN_TURN: usize = 64;
 /// What one method's picture of a scene came to.
 #[derive(Debug, Clone, Serialize)]
 pub struct Outcome {
-    /// What samples see against exact rays through the same points, if the method has samples of voxels.
+    /// What samples see against exact rays through the same points, if the method has samples of
+    /// voxels.
     pub samples: Option<SampleError>,
     /// Depths at pixels, against exact rays, finest voxels.
     pub depth_voxels: Option<Spread>,
@@ -428,7 +429,8 @@ pub(in crate::lab) fn race(
             }
             let elapsed = pool.install(|| {
                 let clock = Clock::start();
-                // It drew this frame before, so it does not fail now; if it did, there were no time.
+                // It drew this frame before, so it does not fail now; if it did, there were no
+                // time.
                 let drawn = black_box(method.draw());
                 let elapsed = clock.elapsed();
                 drawn.map(|()| elapsed)

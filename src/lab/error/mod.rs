@@ -1,8 +1,8 @@
 //! Run time against error.
 //!
 //! A [`DrawingMethod`] draws; a [`Reference`] is what it should have drawn, made of
-//! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene, error and time;
-//! [`beaten_by`] and the plots show which of them are worth having.
+//! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene,
+//! error and time; [`beaten_by`] and the plots show which of them are worth having.
 
 mod cut;
 mod measure;

@@ -90,8 +90,8 @@ impl Arithmetic for Counting<'_> {
 }
 
 /// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
-/// `leaf_masks`: whether nodes say which of their children are leaves, so that these need not be read.
-/// `reads` is called for every node and attribute that is read, in order.
+/// `leaf_masks`: whether nodes say which of their children are leaves, so that these need not be
+/// read. `reads` is called for every node and attribute that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,

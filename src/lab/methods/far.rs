@@ -8,7 +8,8 @@ use crate::mesh::raster::RasterCamera;
 use crate::picture::Picture;
 use crate::project::Camera;
 
-/// What a far voxel method is. By default: the usual file, six opacities, voxels of at most a pixel.
+/// What a far voxel method is. By default: the usual file, six opacities, voxels of at most a
+/// pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FarSettings {
     /// What is unlike other files of the scene, such as `plain cosines`; empty for the usual one.

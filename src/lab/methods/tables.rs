@@ -43,8 +43,8 @@ pub fn table(mesh: &MeshMethods, distance: &Distance) -> Table {
     let floor = &distance.noise_floor;
     let mut table = Table::new(
         format!(
-            "{}, {} triangles, {width} x {height} pixels; rms, flicker, pop in thousandths of white; \
-             noise floor: rms {:.2}, FLIP {:.4}",
+            "{}, {} triangles, {width} x {height} pixels; rms, flicker, pop in thousandths of \
+             white; noise floor: rms {:.2}, FLIP {:.4}",
             mesh.mesh,
             mesh.triangles,
             1e3 * floor.rms_linear,

@@ -1,8 +1,8 @@
-//! The image-order paper's results in one go: Table I, the claim that time does not depend on the object, and the
-//! claim about occlusion order.
+//! The image-order paper's results in one go: Table I, the claim that time does not depend on the
+//! object, and the claim about occlusion order.
 //!
-//! What does not depend on the computer (hashes of pictures, records, operations) is one list, [`Evidence`]; times
-//! are another. The image-order paper's results and ours: `spec/lab.md`.
+//! What does not depend on the computer (hashes of pictures, records, operations) is one list,
+//! [`Evidence`]; times are another. The image-order paper's results and ours: `spec/lab.md`.
 
 #[cfg(feature = "cli")]
 pub mod tables;

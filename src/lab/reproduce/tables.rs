@@ -46,7 +46,8 @@ pub fn table_one(times: &[Timed], evidence: &[Evidence]) -> Table {
     let columns = "engine size paper_ms median_ms min_ms paper_over_ours records operations \
         exponent_from_row_above";
     let mut table = Table::of(
-        "Table I: a frame's time by the picture's size (processor time of one thread; the operations are the machine's)",
+        "Table I: a frame's time by the picture's size (processor time of one thread; the \
+         operations are the machine's)",
         columns,
     );
     for name in names(times) {

@@ -125,8 +125,8 @@ impl FromStr for Case {
                 }
                 _ => {
                     return Err(format!(
-                        "a case has no `{key}`: it has scene, eye, target, up, fov, size, shift, bits, \
-                         frac, cage, tolerance, coverage and lod"
+                        "a case has no `{key}`: it has scene, eye, target, up, fov, size, shift, \
+                         bits, frac, cage, tolerance, coverage and lod"
                     ));
                 }
             }
@@ -194,7 +194,8 @@ impl Case {
         let lowest = DVec3::from_array(graph.placement.origin_index.map(|c| c as f64));
         let (camera, options) = (&self.camera, &self.options);
         let mut line = format!(
-            "shiftvox render {spec} --engine machine --eye {} --target {} --up {} --fov {} --size {}x{} --bits {}",
+            "shiftvox render {spec} --engine machine --eye {} --target {} --up {} --fov {} --size \
+             {}x{} --bits {}",
             Vector(camera.eye + lowest),
             Vector(camera.target + lowest),
             Vector(camera.up),

@@ -306,7 +306,8 @@ impl CheckedFrame<'_> {
         }
     }
 
-    /// A sample whose voxel hides what is shown: under `exact` any, else in the middle of a voxel, where no seam is.
+    /// A sample whose voxel hides what is shown: under `exact` any, else in the middle of a voxel,
+    /// where no seam is.
     fn check_order(&self, outcome: &mut Outcome) {
         if !self.tolerance().is_finite() {
             return;

@@ -75,7 +75,8 @@ impl Check {
             }
             Self::Missing => "exact: no sample that is covered without level of detail is missing",
             Self::Holes => {
-                "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no record met the level bound"
+                "a closed surface has no holes: under exact, and at tolerance 0 to 1/64 where no \
+                 record met the level bound"
             }
             Self::Order => "nothing is seen that the oracle's voxel hides",
             Self::Place => {

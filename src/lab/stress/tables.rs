@@ -164,7 +164,8 @@ fn vertices(findings: &Findings) -> Table {
     let columns = "held_in bits vertices worst_seen_px its_bound_px seen_over_bound \
         nearest_to_a_bound";
     let mut table = Table::of(
-        "Vertex error: worst seen in the picture beside its bound; greatest quotient of error and bound anywhere",
+        "Vertex error: worst seen in the picture beside its bound; greatest quotient of error and \
+         bound anywhere",
         columns,
     );
     for (place, hold) in Hold::ALL.iter().enumerate() {
@@ -226,13 +227,14 @@ pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
         columns: columns.clone(),
         rows: scenes
             .map(|(scene, name)| {
-                let tile = |&bits: &u32| {
-                    outcome(&added(findings, |k| (k.scene, k.bits) == (scene, bits)))
-                };
+                let tile =
+                    |&bits: &u32| outcome(&added(findings, |k| (k.scene, k.bits) == (scene, bits)));
                 (name.to_string(), plan.bits.iter().map(tile).collect())
             })
             .collect(),
-        legend: "share of frames with a picture; the others were refused or trapped; red: a check failed".to_owned(),
+        legend: "share of frames with a picture; the others were refused or trapped; red: a check \
+         failed"
+            .to_owned(),
     };
     let closed = plan
         .scenes
@@ -267,7 +269,8 @@ pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
                 (name.to_string(), tiles.collect())
             })
             .collect(),
-        legend: "samples, those at the level bound among them; from 1/16 on neighbours that changed apart leave some"
+        legend: "samples, those at the level bound among them; from 1/16 on neighbours that \
+         changed apart leave some"
             .to_owned(),
     };
     let tightness = HeatMap {

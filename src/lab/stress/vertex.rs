@@ -105,7 +105,8 @@ pub(super) fn check_path(
             let (is, least) = specified.change_depths(&path[..level]);
             if is < least && found.differs.is_none() {
                 found.differs = Some(format!(
-                    "the voxel at path {:?} changed to screen space at depth {is}, nearer than {least}",
+                    "the voxel at path {:?} changed to screen space at depth {is}, nearer than \
+                     {least}",
                     &path[..level]
                 ));
             }
@@ -114,7 +115,8 @@ pub(super) fn check_path(
         let specified_cage = specified.held(here, changed);
         if specified_cage.as_ref() != Some(held) && found.differs.is_none() {
             found.differs = Some(format!(
-                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the specification {specified_cage:?}"
+                "the voxel at path {here:?}, changed at {changed:?}: held {held:?}, by the \
+                 specification {specified_cage:?}"
             ));
         }
         measure(setup, bounds, &specified, here, changed, held, found);
@@ -167,8 +169,8 @@ fn measure(
             found.worst[hold as usize].note(off, bound, inside);
             if off > bound && found.beyond.is_none() {
                 found.beyond = Some(format!(
-                    "{}: vertex {vertex} of path {path:?}, changed at {changed:?}, is off by {off:.3e} samples, \
-                     more than {bound:.3e} ({parts:?})",
+                    "{}: vertex {vertex} of path {path:?}, changed at {changed:?}, is off by \
+                     {off:.3e} samples, more than {bound:.3e} ({parts:?})",
                     hold.name()
                 ));
             }

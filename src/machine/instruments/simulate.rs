@@ -77,8 +77,8 @@ impl From<cycles::SimulationError<Trap>> for SimulateError {
 }
 
 impl Machine {
-    /// Draws a frame on a simulated hardware, in its [`Organisation`](cycles::Organisation), whatever the
-    /// machine's own: each record has its turn in the
+    /// Draws a frame on a simulated hardware, in its [`Organisation`](cycles::Organisation),
+    /// whatever the machine's own: each record has its turn in the
     /// cycle in which `hardware` gets to it, and finds the fill vectors as they
     /// are by then.
     ///

@@ -55,8 +55,9 @@ pub enum BuildError {
     TooMany(&'static str),
     /// Numbers of cells or texels that there are not.
     #[error(
-        "a grid has an even number of cells from 2 to {MOST_CELLS}, since its middle plane parts it into halves, \
-         1 to {MOST_TEXELS} texels a cell and at most {MOST_ACROSS} texels in all; not {cells} cells of {texels} texels"
+        "a grid has an even number of cells from 2 to {MOST_CELLS}, since its middle plane parts \
+         it into halves, 1 to {MOST_TEXELS} texels a cell and at most {MOST_ACROSS} texels in all; \
+         not {cells} cells of {texels} texels"
     )]
     Grid {
         /// Cells along each axis.

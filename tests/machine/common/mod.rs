@@ -10,6 +10,16 @@ use shiftvox::graph::{Graph, Opacity, PackedNormal, Placement};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats};
 
+/// How many times as many cases as usual `SHIFTVOX_CASES` asks for.
+pub fn times() -> u32 {
+    std::env::var("SHIFTVOX_CASES").map_or(1, |n| n.parse().expect("a number"))
+}
+
+/// So many cases of a property, other ones in every run.
+pub fn cases(usual: u32) -> ProptestConfig {
+    ProptestConfig::with_cases(usual * times())
+}
+
 /// A graph from each node's children by octant; a node without any is a leaf.
 pub fn linked(depth: u32, nodes: &[[Option<u32>; 8]]) -> Graph {
     let mut masks = Vec::new();
@@ -193,7 +203,8 @@ pub fn any_camera(side: f64, sizes: std::ops::Range<u32>) -> impl Strategy<Value
     )
 }
 
-/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the same.
+/// A direction that is up for a camera that looks along another: Z, or Y where that is nearly the
+/// same.
 pub fn up_of(forward: DVec3) -> DVec3 {
     if forward.normalize_or_zero().z.abs() > 0.9 {
         DVec3::Y
