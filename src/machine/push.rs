@@ -14,6 +14,9 @@ use crate::project::Coverage;
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Makes the record of the whole object and pushes it.
     pub(super) fn push_object(&mut self) {
+        // Where a frame begins, also where a tile does after another's last record.
+        self.dp.resume(0);
+        self.dp.stage(Stage::Pop);
         let c = &self.constants;
         let dp = &mut self.dp;
         let mut coordinate =

@@ -397,7 +397,11 @@ fn results_of_something_else_are_refused_by_name() {
     refused("gen:menger,depth=2", &[], "`scene` is");
     refused(SCENE, &["--bits", "40"], "`options` is");
     refused(SCENE, &["--goal", "delay"], "`prices` is");
-    refused(SCENE, &["--eye", "9,9,9"], "`scene` is");
+    refused(
+        SCENE,
+        &["--eye", "9,9,9", "--target", "0,0,0"],
+        "`scene` is",
+    );
     fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 16]\n").unwrap();
     refused(SCENE, &[], "`space` is");
     fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 8]\n").unwrap();

@@ -212,7 +212,7 @@ impl Runs {
                 How::Json => {
                     let (stdout, _) = self.step(&step, Command::new(&self.program))?;
                     // Only the last step has to answer in JSON.
-                    serde_json::from_str(&stdout).unwrap_or(Value::Null)
+                    document(&stdout)
                 }
                 How::Instructions => self.instructions(&step)?,
                 How::Measured => self.measured(&step)?,
@@ -284,9 +284,32 @@ impl Runs {
     }
 }
 
+/// A document, or an array of documents that are a line each.
+fn document(text: &str) -> Value {
+    let lines = || {
+        let documents = text.lines().map(serde_json::from_str);
+        let documents = documents.collect::<Result<Vec<Value>, _>>();
+        documents.map_or(Value::Null, Value::Array)
+    };
+    match serde_json::from_str(text) {
+        Ok(document) => document,
+        Err(_) if text.trim().is_empty() => Value::Null,
+        Err(_) => lines(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn documents_in_lines_are_an_array() {
+        assert_eq!(document("{\n \"a\": 1\n}\n"), json!({ "a": 1 }));
+        let two = document("{\"a\":1}\n{\"b\":2}\n");
+        assert_eq!(two, json!([{ "a": 1 }, { "b": 2 }]));
+        assert_eq!(document("words\n"), Value::Null);
+        assert_eq!(document(""), Value::Null);
+    }
 
     #[test]
     fn commands_as_a_reader_types_them() {

@@ -4,6 +4,7 @@
 //! of the picture come one after the other. Else a turn depends on what hardware it is on,
 //! and [`simulate`](super::simulate) must have the workload itself.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use super::hardware::Hardware;
@@ -37,8 +38,8 @@ impl TurnProbe for (TurnLog, Tape) {
     }
 }
 
-/// Operations of a turn that are alike.
-#[derive(Debug, Clone, Copy)]
+/// Operations of a visit that are alike.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 struct Tally {
     stage: Stage,
     class: OpClass,
@@ -48,7 +49,7 @@ struct Tally {
 
 #[derive(Debug, Clone, Copy)]
 struct RecordedAccess {
-    address: u64,
+    address: u32,
     memory: Memory,
     stage: Stage,
     write: bool,
@@ -58,9 +59,14 @@ struct RecordedAccess {
 #[derive(Debug, Clone, Default)]
 struct Turn {
     level: u32,
-    tallies: Range<usize>,
-    accesses: Range<usize>,
-    children: Range<usize>,
+    visits: Range<u32>,
+    accesses: Range<u32>,
+    children: Range<u32>,
+}
+
+/// As an index.
+fn index(range: &Range<u32>) -> Range<usize> {
+    range.start as usize..range.end as usize
 }
 
 /// The turns of a frame.
@@ -68,7 +74,11 @@ struct Turn {
 pub struct Recording {
     /// By number; 0 is the start.
     turns: Vec<Turn>,
+    /// Operations of a stage, each different list once.
+    visits: Vec<Range<u32>>,
     tallies: Vec<Tally>,
+    /// The visits of turns.
+    visited: Vec<u32>,
     accesses: Vec<RecordedAccess>,
     /// Their items are numbers of turns.
     children: Vec<Child>,
@@ -78,7 +88,10 @@ impl Recording {
     /// Bytes of memory that it takes, about.
     fn bytes(&self) -> usize {
         size_of::<Turn>() * self.turns.len()
-            + size_of::<Tally>() * self.tallies.len()
+            + size_of::<Range<u32>>() * self.visits.len()
+            // Once here and once where they are looked up.
+            + 2 * size_of::<Tally>() * self.tallies.len()
+            + size_of::<u32>() * self.visited.len()
             + size_of::<RecordedAccess>() * self.accesses.len()
             + size_of::<Child>() * self.children.len()
     }
@@ -98,9 +111,11 @@ impl Recording {
 pub struct Tape {
     /// How often, in this turn; by stage, class and width.
     times: Box<[[[u32; WIDTHS]; CLASSES]; STAGES]>,
-    met: Vec<(Stage, OpClass, u8)>,
+    met: Vec<Tally>,
+    /// Numbers of the visits that there are.
+    known: HashMap<Box<[Tally]>, u32>,
     /// Where this turn's accesses begin.
-    begun: usize,
+    begun: u32,
     level: u32,
     /// The turn of each of the workload's items.
     numbers: Vec<u32>,
@@ -115,6 +130,7 @@ impl Tape {
         Self {
             times: Box::new([[[0; WIDTHS]; CLASSES]; STAGES]),
             met: Vec::new(),
+            known: HashMap::new(),
             begun: 0,
             level: 0,
             numbers: Vec::new(),
@@ -142,17 +158,28 @@ impl Tape {
         }
         let recording = &mut self.recording;
         let number = item.map_or(0, |item| self.numbers[item as usize] as usize);
-        let tallies = recording.tallies.len();
-        for (stage, class, bits) in self.met.drain(..) {
-            let times = &mut self.times[stage as usize][class as usize][usize::from(bits)];
-            recording.tallies.push(Tally {
-                stage,
-                class,
-                bits,
-                times: std::mem::take(times),
-            });
+        for met in &mut self.met {
+            let by_width = &mut self.times[met.stage as usize][met.class as usize];
+            met.times = std::mem::take(&mut by_width[usize::from(met.bits)]);
         }
-        let first_child = recording.children.len();
+        self.met.sort_unstable();
+        let first_visit = recording.visited.len() as u32;
+        for visit in self.met.chunk_by(|a, b| a.stage == b.stage) {
+            let number = match self.known.get(visit) {
+                Some(&number) => number,
+                None => {
+                    let number = recording.visits.len() as u32;
+                    let first = recording.tallies.len() as u32;
+                    recording.tallies.extend_from_slice(visit);
+                    recording.visits.push(first..recording.tallies.len() as u32);
+                    self.known.insert(visit.into(), number);
+                    number
+                }
+            };
+            recording.visited.push(number);
+        }
+        self.met.clear();
+        let first_child = recording.children.len() as u32;
         for child in children {
             let turn = recording.turns.len() as u32;
             recording.turns.push(Turn::default());
@@ -168,26 +195,35 @@ impl Tape {
         }
         recording.turns[number] = Turn {
             level: self.level,
-            tallies: tallies..recording.tallies.len(),
-            accesses: self.begun..recording.accesses.len(),
-            children: first_child..recording.children.len(),
+            visits: first_visit..recording.visited.len() as u32,
+            accesses: self.begun..recording.accesses.len() as u32,
+            children: first_child..recording.children.len() as u32,
         };
-        self.begun = recording.accesses.len();
+        self.begun = recording.accesses.len() as u32;
         if recording.bytes() > self.most_bytes {
-            self.most_bytes = 0;
-            self.recording = Recording::default();
+            self.give_up();
         }
     }
 
+    fn give_up(&mut self) {
+        self.most_bytes = 0;
+        self.recording = Recording::default();
+        self.known = HashMap::new();
+    }
+
     fn access(&mut self, memory: Memory, address: u64, stage: Stage, write: bool) {
-        if self.is_on() {
-            self.recording.accesses.push(RecordedAccess {
-                address,
-                memory,
-                stage,
-                write,
-            });
+        if !self.is_on() {
+            return;
         }
+        let Ok(address) = u32::try_from(address) else {
+            return self.give_up();
+        };
+        self.recording.accesses.push(RecordedAccess {
+            address,
+            memory,
+            stage,
+            write,
+        });
     }
 }
 
@@ -198,7 +234,12 @@ impl Probe for Tape {
         let bits = (bits as usize).min(WIDTHS - 1);
         let sum = &mut self.times[place.stage as usize][class as usize][bits];
         if *sum == 0 {
-            self.met.push((place.stage, class, bits as u8));
+            self.met.push(Tally {
+                stage: place.stage,
+                class,
+                bits: bits as u8,
+                times: 0,
+            });
         }
         *sum += times;
     }
@@ -232,19 +273,20 @@ impl Replay<'_> {
             level: turn.level,
         };
         self.log.record(0, turn.level);
-        for tally in &recording.tallies[turn.tallies.clone()] {
-            let bits = u32::from(tally.bits);
-            self.log
-                .op(tally.class, bits, place(tally.stage), tally.times);
-        }
-        for access in &recording.accesses[turn.accesses.clone()] {
-            let at = place(access.stage);
-            match access.write {
-                false => self.log.read(access.memory, access.address, at),
-                true => self.log.write(access.memory, access.address, at),
+        for &visit in &recording.visited[index(&turn.visits)] {
+            for tally in &recording.tallies[index(&recording.visits[visit as usize])] {
+                let (bits, at) = (u32::from(tally.bits), place(tally.stage));
+                self.log.op(tally.class, bits, at, tally.times);
             }
         }
-        children.extend_from_slice(&recording.children[turn.children.clone()]);
+        for access in &recording.accesses[index(&turn.accesses)] {
+            let (address, at) = (u64::from(access.address), place(access.stage));
+            match access.write {
+                false => self.log.read(access.memory, address, at),
+                true => self.log.write(access.memory, address, at),
+            }
+        }
+        children.extend_from_slice(&recording.children[index(&turn.children)]);
     }
 }
 

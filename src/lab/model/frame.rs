@@ -183,11 +183,8 @@ fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) 
     hardware
 }
 
-/// Most bytes of a frame's recorded turns.
-const MOST_RECORDED: usize = 1 << 28;
-
-/// Records a frame's turns where they do not depend on the hardware, but for its organisation, and are not
-/// too many. With them, the picture.
+/// Records a frame's turns where they do not depend on the hardware, but for its organisation, and take no
+/// more than `most_bytes`. With them, the picture.
 ///
 /// # Errors
 /// When a word overflows under the trap policy.
@@ -196,13 +193,14 @@ pub fn record_turns(
     setup: &FrameSetup,
     organisation: Organisation,
     overflow: Overflow,
+    most_bytes: usize,
 ) -> Result<Option<(Frame, Recording)>, ModelError> {
     let mut frame = Frame::new(setup.width, setup.height, false);
     // One that lets every frame through.
     let mut hardware = Hardware::preset("tiny")?;
     hardware.organisation = organisation;
     let mut machine = machine(overflow, organisation);
-    let turns = machine.record_turns(graph, setup, &mut frame, &hardware, MOST_RECORDED)?;
+    let turns = machine.record_turns(graph, setup, &mut frame, &hardware, most_bytes)?;
     Ok(turns.map(|turns| (frame, turns)))
 }
 

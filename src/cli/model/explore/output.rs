@@ -46,13 +46,19 @@ pub(super) fn write(
 }
 
 fn front_json(of: &Explorations) -> Value {
+    let point = |point: &FrontPoint| {
+        let mut fields = json!(point);
+        fields["hardware_says"] = json!(values(&point.line, &of.points));
+        fields["gives_up_says"] = json!(given_up(point));
+        fields
+    };
     json!({
         "scene": of.scene,
         "space_points": of.all,
         "points": of.points.len(),
         "refused": refused(of),
         "too_slow_for_their_clock": too_slow(of),
-        "front": of.front,
+        "front": of.front.iter().map(point).collect::<Vec<_>>(),
     })
 }
 

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 
 use hwmodel::Overflow;
-use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording};
+use hwmodel::cycles::{Cache, CycleReport, Hardware, NoObserver, Recording, StackHolds};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +104,9 @@ pub struct RivalFigures {
 
 /// What is there, or the reason why it is not.
 type OrReason<T> = Result<T, String>;
+
+/// Most bytes of all recorded turns.
+const MOST_RECORDED: usize = 1 << 30;
 
 /// What points have in common, by what it depends on.
 struct Shared<'a> {
@@ -235,6 +238,13 @@ impl<'a> Shared<'a> {
                 sizes.push(bytes);
             }
         }
+        let machines: Vec<_> = machines.into_iter().collect();
+        let is_recorded = |point: &&Point| {
+            let organisation = point.hardware.organisation;
+            organisation.stack == StackHolds::Parents
+        };
+        let recorded = machines.iter().map(|(_, point)| *point);
+        let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
         let count = |(key, point): (String, &Point)| {
             let hardware = &point.hardware;
             let draw = || -> Result<_, String> {
@@ -243,7 +253,8 @@ impl<'a> Shared<'a> {
                     .map_err(|error| error.to_string())?;
                 let view = of.graph.view();
                 // What fails here fails in the simulation too, and is told there.
-                let turns = frame::record_turns(&view, setup, hardware.organisation, of.overflow);
+                let kind = hardware.organisation;
+                let turns = frame::record_turns(&view, setup, kind, of.overflow, most_bytes);
                 let turns = turns.ok().flatten();
                 let turns = turns.map(|(frame, turns)| (turns, counted.differing(&frame)));
                 Ok((counted, turns))
@@ -253,7 +264,6 @@ impl<'a> Shared<'a> {
                 Err(reason) => (key, Err(reason), None),
             }
         };
-        let machines: Vec<_> = machines.into_iter().collect();
         let drawn: Vec<_> = machines.into_par_iter().map(count).collect();
         let orders = of.order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
         let cast = |(key, (point, sizes)): (String, (&Point, Vec<u32>))| {
