@@ -1,5 +1,7 @@
 //! `reproduce`: the image-order paper's Table I and its claims, beside this program's figures.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::{Value, json};
 
@@ -32,6 +34,9 @@ pub(super) struct ReproduceArgs {
     /// Frames of each contender that count [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: Option<u32>,
+    /// Folder for all of it: results.json, report.md and figures.svg
+    #[arg(long, value_name = "DIR")]
+    outdir: Option<PathBuf>,
     #[command(flatten)]
     export: ExportArgs,
 }
@@ -61,8 +66,23 @@ fn plan(args: &ReproduceArgs) -> Plan {
     plan
 }
 
+/// Where results go: what `--outdir` stands for, unless a flag says another place.
+fn exports(args: &ReproduceArgs) -> ExportArgs {
+    let mut export = args.export.clone();
+    if let Some(folder) = &args.outdir {
+        let place = |path: &mut Option<PathBuf>, name: &str| {
+            path.get_or_insert_with(|| folder.join(name));
+        };
+        place(&mut export.export_json, "results.json");
+        place(&mut export.export_markdown, "report.md");
+        place(&mut export.export_svg, "figures.svg");
+    }
+    export
+}
+
 pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliError> {
-    export::check(&args.export)?;
+    let export = exports(args);
+    export::check(&export)?;
     let plan = plan(args);
     let context = Context::now();
     context.warn(console);
@@ -122,5 +142,5 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
             tables::order_bars(&order),
         ],
     };
-    export::write(&results, &args.export, console)
+    export::write(&results, &export, console)
 }

@@ -98,21 +98,20 @@ fn the_papers_results_are_counted_the_same_in_every_run() {
         "1",
         "--growing",
         "gen:terrain,depth=5;gen:terrain,depth=6",
-        "--export-markdown",
-        "run.md",
-        "--export-json",
+        "--outdir",
     ];
-    let run = |json: &str| {
-        let assert = shiftvox(folder.path(), &[&line[..], &[json, "--force"]].concat()).success();
+    let run = |outdir: &str| {
+        let assert = shiftvox(folder.path(), &[&line[..], &[outdir]].concat()).success();
         assert!(stdout_of(&assert).contains("Table I"));
-        let text = fs::read_to_string(folder.path().join(json)).unwrap();
+        let text = fs::read_to_string(folder.path().join(outdir).join("results.json")).unwrap();
         serde_json::from_str::<Value>(&text).unwrap()
     };
-    let (one, two) = (run("one.json"), run("two.json"));
+    let (one, two) = (run("one"), run("two"));
+    assert!(folder.path().join("two/figures.svg").exists());
     // A simple scene at two sizes, and six more at one of them; the paper's settings and the default ones.
     assert_eq!(one["evidence"].as_array().unwrap().len(), 2 * (2 + 6));
     assert_eq!(one["evidence"], two["evidence"]);
-    let page = fs::read_to_string(folder.path().join("run.md")).unwrap();
+    let page = fs::read_to_string(folder.path().join("one/report.md")).unwrap();
     for part in ["Table I", "occlusion order", "Objects at one size"] {
         assert!(page.contains(part), "{part}");
     }

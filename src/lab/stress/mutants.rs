@@ -2,7 +2,7 @@
 
 use hwmodel::Trap;
 
-use super::subject::{Product, Subject};
+use super::subject::Subject;
 use super::sweep::sweep_of;
 use super::{Check, Findings, StressScene, SweepPlan};
 use crate::frame::Frame;
@@ -47,15 +47,9 @@ fn sweep(subject: &dyn Subject, scenes: &[&str], bits: &[u32]) -> Findings {
     sweep_of(subject, &plan, &Silent).unwrap()
 }
 
-#[test]
-fn the_machine_itself_keeps_all() {
-    let found = sweep(&Product, &SCENES, &[24, 64]);
-    assert_eq!(found.failures, Default::default(), "{:?}", found.failed);
-    assert!(found.total().drawn > 500);
-}
-
 /// Every mutation is found by the check that is meant for it, and what
-/// fails is shrunk to a case that fails still.
+/// fails is shrunk to a case that fails still. The machine itself fails none of them:
+/// `tests/machine/stress.rs`.
 #[test]
 fn every_mutation_is_found_by_name() {
     for (mutation, expected) in [
@@ -68,19 +62,16 @@ fn every_mutation_is_found_by_name() {
         (Mutation::OrderReversed, Check::Order),
         (Mutation::NearSkipped, Check::Specification),
     ] {
-        // Few records change where they may not: more cases for that.
-        let is_rare = mutation == Mutation::NearSkipped;
-        let found = if is_rare {
-            sweep(&Mutant(mutation), &SCENES, &[24, 64])
-        } else {
-            sweep(&Mutant(mutation), &SCENES[..1], &[24])
+        // Few records change to screen space where they may not: more scenes, until one has them.
+        let mut scenes = SCENES.iter();
+        let found = loop {
+            let scene = scenes.next().expect("a scene that shows it");
+            let found = sweep(&Mutant(mutation), &[scene], &[24]);
+            if found.failures.contains_key(&expected) {
+                break found;
+            }
         };
         println!("{mutation:?}: {:?}", found.failures);
-        assert!(
-            found.failures.contains_key(&expected),
-            "{mutation:?}: {:?}",
-            found.failures
-        );
         let first = found.failed.iter().find(|f| f.check == expected).unwrap();
         println!("  {:?}", first.minimal);
         assert!(first.minimal_detail.is_some(), "{mutation:?}: {first:?}");
