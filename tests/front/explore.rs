@@ -426,7 +426,11 @@ fn results_of_something_else_are_refused_by_name() {
             "{\"kind\":\"front\"",
             "line 2: what this point is of",
         ),
-        ("\"point\":1,", "\"point\":7,", "there is no point 7"),
+        (
+            "\"point\":1,",
+            "\"point\":7,",
+            "there.jsonl: there is no point 7",
+        ),
     ] {
         let broken = there.replacen(from, to, 1);
         assert_ne!(broken, there, "{from}");

@@ -79,8 +79,20 @@ pub(super) fn run(
         None => (None, Default::default()),
         Some(path) => {
             let (file, recorded) = ResultsFile::open(path, &headers)?;
+            let mut numbers = recorded.points.keys().map(|(_, number)| number);
+            if let Some(stranger) = numbers.find(|&&number| number >= space.len()) {
+                let told = format!("there is no point {stranger}");
+                return Err(CliError::input(told).at(path.display()));
+            }
             (Some(file), recorded)
         }
+    };
+    let asked = Asked {
+        args,
+        space: &space,
+        picked,
+        prices: &prices,
+        console,
     };
     let mut found = Vec::new();
     for (subject, header) in &scenes {
@@ -99,15 +111,7 @@ pub(super) fn run(
         let known = known
             .map(|((_, number), line)| (*number, line.clone()))
             .collect();
-        let points = measure(
-            subject,
-            known,
-            picked.clone(),
-            &space,
-            &mut file,
-            args,
-            console,
-        );
+        let points = measure(&asked, subject, known, &mut file);
         let points = points.map_err(|error| error.at(name))?;
         found.push(Explorations {
             scene: name.clone(),
@@ -193,19 +197,29 @@ fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -
     )
 }
 
+/// What is measured of every scene.
+struct Asked<'a> {
+    args: &'a ModelArgs,
+    space: &'a Space,
+    picked: Range<usize>,
+    prices: &'a Prices,
+    console: &'a Console,
+}
+
 /// Measures the points of a scene that are picked and not known. Returns all that are known then.
 fn measure(
+    asked: &Asked<'_>,
     subject: &Subject,
     mut known: BTreeMap<usize, PointLine>,
-    picked: Range<usize>,
-    space: &Space,
     file: &mut Option<ResultsFile>,
-    args: &ModelArgs,
-    console: &Console,
 ) -> Result<Vec<PointLine>, CliError> {
-    if let Some(stranger) = known.keys().find(|&&number| number >= space.len()) {
-        return Err(CliError::input(format!("there is no point {stranger}")));
-    }
+    let Asked {
+        args,
+        space,
+        picked,
+        prices,
+        console,
+    } = asked;
     let wanted = picked.clone().filter(|number| !known.contains_key(number));
     let points = wanted.map(|number| space.point(number));
     let points = points
@@ -223,14 +237,14 @@ fn measure(
         height: args.size.height,
         ..subject.camera
     };
-    let (options, prices) = (setup_options(args), args.hardware.prices()?);
+    let options = setup_options(args);
     let explored = Explored {
         graph: &subject.graph,
         camera: &camera,
         options: &options,
         overflow: args.rules.overflow(),
         order: args.hardware.ray_order,
-        prices: &prices,
+        prices,
     };
     // Lines are printed in the points' order, also those that were there.
     let mut next = picked.start;

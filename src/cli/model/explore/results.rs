@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::bounded;
 use crate::cli::error::{CliError, Kind};
 use crate::lab::model::explore::lines::{self, Recorded};
+use crate::whole;
 
 /// A file of results that is open, and nobody else's.
 pub(super) struct ResultsFile {
@@ -25,6 +26,7 @@ impl ResultsFile {
         if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
             return Err(at(Kind::Input)(&"it is not a regular file"));
         }
+        whole::make_folder(whole::folder_of(path))?;
         let mut options = File::options();
         let file = options.create(true).append(true).open(path);
         let file = file.map_err(|error| at(Kind::Run)(&error))?;

@@ -12,10 +12,7 @@ use crate::lab::model::sweep::with_width;
 pub const MAX_POINTS: usize = 1 << 16;
 
 /// Names and texts of the spaces that ship.
-pub const SPACES: [(&str, &str); 1] = [(
-    "bundled",
-    include_str!("../../../../hwmodel/spaces/bundled.toml"),
-)];
+pub const SPACES: [(&str, &str); 1] = [("bundled", include_str!("bundled.toml"))];
 
 /// The key of the word's width, which is no part of a hardware's description.
 const BITS: &str = "bits";
@@ -214,11 +211,11 @@ impl Space {
         let range = i64::from(MIN_BITS)..=i64::from(MAX_BITS);
         for axis in &self.axes[1..] {
             if axis.key == BITS {
-                let is_width = |value: &&Value| {
+                let is_no_width = |value: &&Value| {
                     let bits = value.as_integer();
                     !bits.is_some_and(|bits| range.contains(&bits))
                 };
-                if let Some(value) = axis.values.iter().find(is_width) {
+                if let Some(value) = axis.values.iter().find(is_no_width) {
                     let why = format!("{value}: a word has {MIN_BITS} to {MAX_BITS} bits");
                     return Err(wrong("ranges.bits", &why));
                 }
