@@ -22,6 +22,8 @@ use crate::project::SetupOptions;
 use crate::report::Table;
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
+use crate::scene::generate::Spec;
+use crate::scene::{OpenError, Source};
 use crate::whole;
 
 /// Arguments of `reproduce`.
@@ -89,8 +91,12 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
 fn open(config: &Config, console: &Console) -> Result<Vec<Subject>, CliError> {
     let (camera, scene) = (CameraArgs::default(), SceneArgs::default());
     let side = config.object_side;
-    config
-        .scenes()
+    let names = config.scenes();
+    // A wrong name is told before any scene is made.
+    for name in names.iter().filter(|name| Source::is_generated(name)) {
+        Spec::parse(name).map_err(OpenError::from)?;
+    }
+    names
         .iter()
         .map(|name| subjects::open(name, &camera, &scene, (side, side), console))
         .collect()

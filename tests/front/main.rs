@@ -4,6 +4,7 @@
 mod bench;
 mod buffers;
 mod damaged;
+mod disk;
 mod knot;
 mod limits;
 mod manners;
