@@ -1,10 +1,11 @@
-//! Memory, asked for before it is taken.
+//! Memory and room on disks, asked for before they are taken.
 //!
 //! What a file or a flag makes large is [checked](check) against the memory that is free before work begins,
 //! and [allocated](filled) so that a refusal is an error with figures and not the end of the process. Small
 //! things are allocated as usual: a system without memory for those has none for an error message either.
 
 use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// Too little memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
@@ -40,6 +41,55 @@ pub fn check(what: &'static str, needed: u64) -> Result<(), Shortage> {
             free: Some(free),
         }),
         _ => Ok(()),
+    }
+}
+
+/// Too little room on a disk.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, thiserror::Error)]
+#[error("{}: {needed} bytes of disk are needed, and {free} are free", folder.display())]
+pub struct DiskShortage {
+    /// A folder on the disk.
+    pub folder: PathBuf,
+    /// Bytes that would be written, or more.
+    pub needed: u64,
+    /// Bytes that are free.
+    pub free: u64,
+}
+
+/// Fails where files in a folder take more than is free on its disk. A folder that is going to be made is on the disk of
+/// the one above it.
+///
+/// # Errors
+/// [`DiskShortage`]; never where the system does not report how much is free.
+pub fn check_disk(folder: &Path, needed: u64) -> Result<(), DiskShortage> {
+    match free_disk(folder) {
+        Some(free) if needed > free => Err(DiskShortage {
+            folder: folder.to_owned(),
+            needed,
+            free,
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Bytes that can still be written in a folder. `None` where the system does not report it.
+#[must_use]
+pub fn free_disk(folder: &Path) -> Option<u64> {
+    #[cfg(unix)]
+    {
+        let mut of = folder
+            .ancestors()
+            .map(|above| match above.as_os_str().is_empty() {
+                true => Path::new("."),
+                false => above,
+            });
+        let found = of.find_map(|above| rustix::fs::statvfs(above).ok())?;
+        Some(found.f_bavail.saturating_mul(found.f_frsize))
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = folder;
+        None
     }
 }
 
@@ -135,5 +185,16 @@ mod tests {
             assert!(check("a test", u64::MAX).is_err());
         }
         assert_eq!(check("a test", 1), Ok(()));
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn free_disk_is_that_of_the_nearest_folder() {
+        let folder = tempfile::tempdir().unwrap();
+        let below = folder.path().join("not/there");
+        assert_eq!(check_disk(&below, 1), Ok(()));
+        let short = check_disk(&below, u64::MAX).unwrap_err();
+        assert_eq!((short.needed, &short.folder), (u64::MAX, &below));
+        assert!(short.free > 0 && check_disk(Path::new("a"), u64::MAX).is_err());
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
-use crate::budget::Shortage;
+use crate::budget::{DiskShortage, Shortage};
 use crate::drawing::DrawError;
 use crate::graph::ExternalError;
 use crate::graph::file::FileError;
@@ -205,7 +205,7 @@ impl From<OpenError> for CliError {
                  OUT.vxg",
             ),
             OpenError::External {
-                error: ExternalError::Temporary { .. },
+                error: ExternalError::Temporary { .. } | ExternalError::Disk(_),
                 ..
             } => failure.advise("choose a folder with more room with --temp"),
             OpenError::External {
@@ -299,6 +299,12 @@ impl From<Shortage> for CliError {
     fn from(short: Shortage) -> Self {
         Self::new(Kind::Limit, short)
             .advise("ask for a smaller --size or fewer samples, or a scene of fewer levels")
+    }
+}
+
+impl From<DiskShortage> for CliError {
+    fn from(short: DiskShortage) -> Self {
+        Self::new(Kind::Limit, short).advise("make room, or write to another disk")
     }
 }
 

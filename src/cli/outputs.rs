@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::Setting;
 use super::error::CliError;
+use crate::budget;
 use crate::drawing::{Buffers, Shown};
 use crate::picture::{Buffer, Rows, npy};
 use crate::whole;
@@ -27,6 +28,22 @@ pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError>
         whole::check_free(path, force)?;
     }
     Ok(())
+}
+
+/// Fails before the work if the buffers of so many pictures take more disk than is free.
+pub(super) fn check_room(
+    picture: &Path,
+    buffers: &[Buffer],
+    (width, height): (u32, u32),
+    pictures: usize,
+) -> Result<(), CliError> {
+    let pixels = u64::from(width) * u64::from(height) * pictures as u64;
+    let bytes = |buffer: &Buffer| match buffer {
+        Buffer::Color => 4,
+        other => 4 * other.entries() as u64,
+    };
+    let needed = pixels.saturating_mul(buffers.iter().map(bytes).sum());
+    Ok(budget::check_disk(whole::folder_of(picture), needed)?)
 }
 
 /// Whether the name is one of a picture that we write.

@@ -193,6 +193,7 @@ fn render_one(
     let output = output_path(args, &scenes::stem(name));
     if let Some(path) = &output {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
+        outputs::check_room(path, &args.picture.aov, args.picture.size(), 1)?;
     }
     let opened = methods::open(name, &draw_args, console)?;
     let mut drawable = opened.drawable(&draw_args).map_err(|e| e.at(name))?;

@@ -16,6 +16,8 @@ use super::report;
 use crate::lab::bench::{Harness, Subject};
 use crate::lab::reproduce::{self, Engines, Plan, ReproduceError, tables};
 use crate::project::SetupOptions;
+use crate::scene::generate::Spec;
+use crate::scene::{OpenError, Source};
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]
@@ -88,8 +90,12 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
     context.warn(console);
     let (camera, scene) = (CameraArgs::default(), SceneArgs::default());
     let side = plan.object_side;
-    let subjects: Vec<Subject> = plan
-        .scenes()
+    let names = plan.scenes();
+    // A wrong name is refused before any scene is made.
+    for name in names.iter().filter(|name| Source::is_generated(name)) {
+        Spec::parse(name).map_err(OpenError::from)?;
+    }
+    let subjects: Vec<Subject> = names
         .iter()
         .map(|name| subjects::open(name, &camera, &scene, (side, side), console))
         .collect::<Result<_, _>>()?;

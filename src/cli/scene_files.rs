@@ -9,12 +9,18 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::scenes::{self, Scene};
 use super::{names, report};
+use crate::budget;
 use crate::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
 use crate::scene::{self, OpenOptions, Source};
 use crate::whole;
 
 /// Most voxels that are written to a voxel file.
 const MAX_WRITTEN: u64 = 1 << 28;
+
+/// Least bytes of a node in a `.vxg`, of a voxel in a `.ply` and in a `.vox`.
+const NODE_BYTES: u64 = 5;
+const PLY_BYTES: u64 = 27;
+const VOX_BYTES: u64 = 4;
 
 /// Where a conversion reads and writes.
 #[derive(Debug, Clone, Copy)]
@@ -65,6 +71,12 @@ pub(super) fn write(
     let graph = &scene.graph;
     let mut warnings = Vec::new();
     let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let least = match ending {
+        "vxg" => NODE_BYTES * graph.len() as u64,
+        "ply" => graph.voxels.saturating_mul(PLY_BYTES),
+        _ => graph.voxels.saturating_mul(VOX_BYTES),
+    };
+    budget::check_disk(whole::folder_of(output), least)?;
     progress.begin("writing", 0);
     match ending {
         "vxg" => whole::write_with(output, force, |file| {

@@ -76,6 +76,8 @@ pub(super) fn run(
     for path in &paths {
         outputs::check_free(&outputs::paths(path, &args.picture.aov), args.out.force)?;
     }
+    let (buffers, size) = (&args.picture.aov, args.picture.size());
+    outputs::check_room(&args.output, buffers, size, paths.len())?;
     if let Some(outdir) = &args.out.outdir {
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
     }

@@ -6,7 +6,7 @@ use super::generate::Spec;
 use super::mesh::{MeshSummary, Ready, SameFolder};
 use super::open::OpenOptions;
 use super::open_error::OpenError;
-use super::{FileKind, SceneInfo, Source};
+use super::{FileKind, ReadOptions, SceneError, SceneInfo, Source};
 use crate::graph::{BuildError, ExternalBuilder, ExternalOptions, ExternalReport, Progress, vxg};
 
 /// A `.vxg` file that was built.
@@ -85,16 +85,18 @@ pub fn build_file_of(
             if least >= u64::from(u32::MAX) {
                 return Err(failed(BuildError::TooMany(least).into()));
             }
+            builder.expect(least, output).map_err(failed)?;
             spec.voxels(&mut |voxel| builder.push(voxel), progress);
         }
         Source::File(file) if file.kind().is_some_and(FileKind::is_mesh) => {
             let beside = SameFolder::of(file.path());
             let ready = Ready::read(file, &beside, &options.mesh, progress)?;
             // The mesh's share; nothing was pushed yet.
-            if let Some(voxels) = ready.expected_voxels(progress)
-                && voxels >= u64::from(u32::MAX)
-            {
-                return Err(failed(BuildError::TooMany(voxels).into()));
+            if let Some(voxels) = ready.expected_voxels(progress) {
+                if voxels >= u64::from(u32::MAX) {
+                    return Err(failed(BuildError::TooMany(voxels).into()));
+                }
+                builder.expect(voxels, output).map_err(failed)?;
             }
             let mut external = external;
             external.memory = external.memory.saturating_sub(ready.bytes());
@@ -104,8 +106,20 @@ pub fn build_file_of(
             (info, mesh) = (Some(found), Some(summary));
         }
         Source::File(file) => {
-            let sink = &mut |voxel| builder.push(voxel);
-            info = Some(file.read_voxels(&options.read, sink, progress)?);
+            let wanted = options.read.most_voxels;
+            let read = ReadOptions {
+                most_voxels: wanted.min(builder.most_voxels()),
+                ..options.read.clone()
+            };
+            let found = file.read_voxels(&read, &mut |voxel| builder.push(voxel), progress);
+            info = Some(match found {
+                // Fewer than the caller would take: for want of room.
+                Err(SceneError::TooMany { voxels, most, .. }) if most < wanted => {
+                    builder.expect(voxels, output).map_err(failed)?;
+                    found?
+                }
+                found => found?,
+            });
         }
     }
     let report = builder

@@ -9,7 +9,7 @@ use glam::DVec3;
 use super::open_error::OpenError;
 use super::{FileKind, SceneError, SceneFile, SceneInfo};
 use crate::graph::{Graph, MeshBox, Progress, Voxel};
-use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid};
+use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
 use crate::mesh::{self, LoadOptions, Mesh, MeshFormat, mesh_box};
 pub(super) use crate::mesh::{Beside, Nothing, SameFolder};
 
@@ -132,8 +132,15 @@ impl Ready {
         let source_name = file.name();
         let (mesh, kind) = read(file, beside, &options.load, progress)?;
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let grid = Grid::around(&mesh, options.depth)
-            .map_err(|error| OpenError::Grid { source_name, error })?;
+        let refused = |error| OpenError::Grid { source_name, error };
+        let grid = match Grid::around(&mesh, options.depth) {
+            Ok(grid) => grid,
+            Err(error) => return Err(refused(error)),
+        };
+        let (depth, least) = (options.depth, voxelize::least_looked_at(&mesh, &grid));
+        if least > voxelize::MOST_LOOKED_AT {
+            return Err(refused(GridError::TooMuch { depth, least }));
+        }
         Ok(Self {
             y_up: options.y_up.unwrap_or(is_y_up(kind)),
             kind,

@@ -79,14 +79,17 @@ impl OpenError {
                 error: ExternalError::Build(error),
                 ..
             } => !matches!(error, BuildError::Empty),
+            Self::External { error, .. } => matches!(error, ExternalError::Disk(_)),
             Self::Scene(error) => error.is_limit(),
             #[cfg(not(feature = "mesh"))]
             Self::NoMeshes(_) => false,
             #[cfg(feature = "mesh")]
             Self::Mesh(error) => error.is_limit(),
             #[cfg(feature = "mesh")]
-            Self::Grid { error, .. } => matches!(error, GridError::TooMany(_)),
-            Self::Spec(_) | Self::Graph(_) | Self::External { .. } => false,
+            Self::Grid { error, .. } => {
+                matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. })
+            }
+            Self::Spec(_) | Self::Graph(_) => false,
         }
     }
 }

@@ -4,6 +4,7 @@
 mod bench;
 mod buffers;
 mod damaged;
+mod disk;
 mod explore;
 mod knot;
 mod limits;

@@ -71,6 +71,16 @@ fn pages() -> Vec<PathBuf> {
     pages
 }
 
+/// Files in a folder and below, without those of links.
+fn files(folder: &Path) -> usize {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap());
+    let counts = entries.map(|entry| match entry.file_type().unwrap().is_dir() {
+        true => files(&entry.path()),
+        false => 1,
+    });
+    counts.sum()
+}
+
 #[test]
 fn printed_commands_run_and_run_again() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -79,6 +89,8 @@ fn printed_commands_run_and_run_again() {
     let path = format!("{}:{path}", program.parent().unwrap().display());
     let all = std::env::var_os("SHIFTVOX_PRINTED").is_some_and(|what| what == "all");
     let (mut ran, mut failed) = (0, Vec::new());
+    // What wrote something runs again, on the first page that prints it.
+    let mut again = std::collections::HashSet::new();
     for page in pages() {
         let folder = tempfile::tempdir().unwrap();
         for (from, to) in [("assets", "assets"), ("tests/data", "tests/data")] {
@@ -86,11 +98,18 @@ fn printed_commands_run_and_run_again() {
             std::os::unix::fs::symlink(root.join(from), folder.path().join(to)).unwrap();
         }
         let commands = commands(&fs::read_to_string(&page).unwrap());
+        let mut writes = std::collections::HashSet::new();
         for round in 1..=2 {
             for (command, mark) in &commands {
                 if *mark == Mark::Forms || (*mark == Mark::Long && !all) {
                     continue;
                 }
+                if round == 2 && !writes.contains(command)
+                    || !again.insert((round, command.clone())) && round == 2
+                {
+                    continue;
+                }
+                let before = files(folder.path());
                 let output = Command::new("sh")
                     .args(["-c", command])
                     .current_dir(folder.path())
@@ -98,6 +117,9 @@ fn printed_commands_run_and_run_again() {
                     .output()
                     .unwrap();
                 ran += 1;
+                if files(folder.path()) > before {
+                    writes.insert(command);
+                }
                 if !output.status.success() {
                     let told = String::from_utf8_lossy(&output.stderr);
                     failed.push(format!(
@@ -109,7 +131,7 @@ fn printed_commands_run_and_run_again() {
         }
     }
     assert!(failed.is_empty(), "{}", failed.join("\n"));
-    assert!(ran > 50, "{ran} commands found");
+    assert!(ran > 40, "{ran} commands run");
 }
 
 #[test]

@@ -157,6 +157,26 @@ fn verbs_agree_about_scenes_that_do_not_exist() {
 }
 
 #[test]
+fn a_wrong_name_is_told_before_other_scenes_are_made() {
+    let folder = folder();
+    let line = [
+        "reproduce",
+        "--growing",
+        "gen:terrain,depth=3",
+        "--outdir",
+        "r",
+    ];
+    let started = Instant::now();
+    let assert = run(folder.path(), &line).code(4);
+    assert!(stderr_of(&assert).contains("from 5 to 16"));
+    assert!(
+        started.elapsed() < Duration::from_secs(1),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+#[test]
 fn experiments_have_manual_pages() {
     let folder = folder();
     let page = run(folder.path(), &["man", "bench", "error"]).success();
@@ -187,8 +207,8 @@ mod unix {
     fn names_are_bytes_and_shown_escaped() {
         let folder = folder();
         let odd = OsStr::from_bytes(b"t\xff\x1b[2J.vox");
-        let tree = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
-        fs::copy(tree, folder.path().join(odd)).unwrap();
+        run(folder.path(), &["generate", SCENE, "-o", "t.vox"]).success();
+        fs::rename(folder.path().join("t.vox"), folder.path().join(odd)).unwrap();
         let with = |verb: &[&str], rest: &[&str]| {
             let mut command = Command::cargo_bin("shiftvox").unwrap();
             command.current_dir(folder.path());
@@ -266,6 +286,35 @@ mod unix {
             assert_eq!(fs::read(folder.path().join(name)).unwrap(), b"old");
         }
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn progress_is_for_terminals_that_can_draw_it() {
+        let folder = folder();
+        let drawn = |term: &str| {
+            let line = "\"$PROGRAM\" convert gen:terrain,depth=8 a.vxg --force";
+            let script = format!(
+                "PROGRAM=\"$0\" TERM={term} SHELL=/bin/sh script -qec '{line}' /dev/null < /dev/null"
+            );
+            let assert = sh(folder.path(), &script).success();
+            String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
+        };
+        if std::process::Command::new("script")
+            .arg("--version")
+            .output()
+            .is_err()
+        {
+            eprintln!("skipped: there is no `script` to make a terminal");
+            return;
+        }
+        for term in ["", "dumb"] {
+            let told = drawn(term);
+            assert!(
+                told.contains("voxels") && !told.contains(['\x1b', '%']),
+                "{told:?}"
+            );
+        }
+        assert!(drawn("xterm").contains('%'));
     }
 
     #[test]

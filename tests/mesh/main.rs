@@ -4,9 +4,12 @@
 mod bad_files;
 mod command;
 mod files;
+mod gltf_document;
+mod gltf_scenes;
 mod models;
 mod opacities;
 mod raster;
 mod shapes;
 mod voxels;
 mod watertight;
+mod work;

@@ -9,6 +9,8 @@ use shiftvox::mesh::{
     self, LoadOptions, Material, Mesh, MeshBuilder, MeshError, MeshFormat, Nothing,
 };
 
+pub use super::gltf_document::{data_uri, glb};
+
 /// A mesh of one material.
 pub fn mesh_of(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
     let mut builder = MeshBuilder::new();
@@ -199,26 +201,6 @@ pub fn square_buffer() -> Vec<u8> {
         .collect()
 }
 
-/// Bytes as an address.
-pub fn data_uri(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::from("data:application/octet-stream;base64,");
-    for chunk in bytes.chunks(3) {
-        let word = chunk
-            .iter()
-            .enumerate()
-            .fold(0u32, |w, (i, b)| w | u32::from(*b) << (16 - 8 * i));
-        for i in 0..4 {
-            text.push(if i <= chunk.len() {
-                char::from(DIGITS[(word >> (18 - 6 * i) & 63) as usize])
-            } else {
-                '='
-            });
-        }
-    }
-    text
-}
-
 /// A document of the square; its buffer at an address, or in the file where
 /// that is empty; `node` is put into its node.
 pub fn gltf_json(uri: &str, node: &str) -> String {
@@ -237,21 +219,6 @@ pub fn gltf_json(uri: &str, node: &str) -> String {
         \"bufferViews\": [{{\"buffer\": 0, \"byteLength\": 48}}, {{\"buffer\": 0, \"byteOffset\": 48, \"byteLength\": 12}}],
         \"buffers\": [{{{uri}\"byteLength\": 60}}]}}"
     )
-}
-
-/// A binary file of a document and its buffer.
-pub fn glb(json: &str, buffer: &[u8]) -> Vec<u8> {
-    let mut json = json.as_bytes().to_vec();
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut bytes = b"glTF".to_vec();
-    bytes.extend(2u32.to_le_bytes());
-    bytes.extend((12 + 8 + json.len() as u32 + 8 + buffer.len() as u32).to_le_bytes());
-    for (kind, content) in [(b"JSON", &json[..]), (b"BIN\0", buffer)] {
-        bytes.extend((content.len() as u32).to_le_bytes());
-        bytes.extend(kind);
-        bytes.extend(content);
-    }
-    bytes
 }
 
 /// A point of the world.

@@ -31,12 +31,18 @@ use std::sync::Arc;
 use super::pushed::extent;
 use super::vxg::{self, VxgError};
 use super::{BuildError, BuildOptions, MeshBox, Placement, Progress, Voxel};
+use crate::budget::{self, DiskShortage};
 use buffer_sizes::BufferSizes;
 use finest::Finest;
 use gather::Gather;
 use join::Built;
 use scratch::Scratch;
 use tree::TreeWriter;
+
+/// Bytes of a pushed voxel in a temporary file.
+const RUN_BYTES: u64 = 16;
+/// Bytes of a voxel in the graph, at the least.
+const GRAPH_BYTES: u64 = 5;
 
 /// How a file is built outside memory.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -56,6 +62,9 @@ pub enum ExternalError {
     /// The voxels make no graph.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// The voxels, or the graph, take more disk than is free.
+    #[error(transparent)]
+    Disk(#[from] DiskShortage),
     /// A temporary file could not be made, written or read.
     #[error("{}: temporary files: {source}", folder.display())]
     Temporary {
@@ -132,6 +141,24 @@ impl ExternalBuilder {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Fails where so many voxels, sorted, or the graph of them take more disk than is free: to ask before they are
+    /// pushed.
+    ///
+    /// # Errors
+    /// [`ExternalError::Disk`].
+    pub fn expect(&self, voxels: u64, path: &Path) -> Result<(), ExternalError> {
+        budget::check_disk(&self.options.temporary, voxels.saturating_mul(RUN_BYTES))?;
+        let folder = path.parent().unwrap_or(path);
+        budget::check_disk(folder, voxels.saturating_mul(GRAPH_BYTES))?;
+        Ok(())
+    }
+
+    /// Most voxels that [`expect`](Self::expect) lets pass, as far as temporary files go.
+    #[must_use]
+    pub fn most_voxels(&self) -> u64 {
+        budget::free_disk(&self.options.temporary).map_or(u64::MAX, |free| free / RUN_BYTES)
     }
 
     /// Adds a voxel; it replaces an earlier one at the same index. If a

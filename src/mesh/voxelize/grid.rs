@@ -8,6 +8,9 @@ use crate::mesh::Surface;
 pub const DEFAULT_DEPTH: u32 = 9;
 /// Most levels.
 pub const MAX_DEPTH: u32 = 20;
+/// Most pairs of a voxel and a triangle that are looked at, by [`least_looked_at`](super::least_looked_at): 2^32 voxels,
+/// the most of a graph, are a smaller area.
+pub const MOST_LOOKED_AT: u64 = 1 << 33;
 /// Bits of a coordinate on the lattice; `touch.rs` counts on it.
 pub(super) const BITS: u32 = 30;
 
@@ -23,6 +26,17 @@ pub enum GridError {
     /// More triangles than 32 bits number.
     #[error("{0} triangles are more than 32 bits can number; split the mesh")]
     TooMany(usize),
+    /// Voxels and triangles that are compared without end.
+    #[error(
+        "at {depth} levels its triangles cross voxels {least} times or more, and at most {MOST_LOOKED_AT} are \
+         looked at: ask for fewer levels, or cut the mesh into parts"
+    )]
+    TooMuch {
+        /// Levels that were asked for.
+        depth: u32,
+        /// How often a triangle crosses a voxel, at the least.
+        least: u64,
+    },
     /// Coordinates beyond what numbers hold, or all but equal far from the origin.
     #[error(
         "the mesh spans {extent} units {distance} units from the origin: too little for its \

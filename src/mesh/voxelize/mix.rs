@@ -6,6 +6,7 @@
 
 use glam::DVec3;
 
+use super::distinct::Repeated;
 use super::touch::Prepared;
 use crate::graph::PackedNormal;
 use crate::mesh::Triangle;
@@ -26,27 +27,23 @@ pub(super) struct Painted {
     colors: [DVec3; 3],
     normals: [DVec3; 3],
     alpha: f64,
-    /// How often it follows itself in the mesh.
+    /// How many triangles it stands for.
     pub(super) times: u32,
 }
 
 impl Painted {
-    pub(super) fn new(prepared: Prepared, triangle: &Triangle) -> Self {
+    pub(super) fn new(
+        prepared: Prepared,
+        triangle: &Triangle,
+        repeated: Option<&Repeated>,
+    ) -> Self {
         Self {
             prepared,
-            colors: triangle.colors,
+            colors: repeated.map_or(triangle.colors, |all| all.colors),
             normals: triangle.normals,
-            alpha: triangle.alpha,
-            times: 1,
+            alpha: repeated.map_or(triangle.alpha, |all| all.alpha),
+            times: repeated.map_or(1, |all| all.times),
         }
-    }
-
-    /// Whether it is this triangle, to the bit.
-    pub(super) fn is(&self, corners: [[i64; 3]; 3], triangle: &Triangle) -> bool {
-        self.prepared.corners == corners
-            && self.colors == triangle.colors
-            && self.normals == triangle.normals
-            && self.alpha == triangle.alpha
     }
 }
 
@@ -81,14 +78,12 @@ impl Mix {
         let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
         let light = blend(&painted.colors) * weight;
         let normal = blend(&painted.normals).normalize_or(painted.normals[0]) * weight;
-        for _ in 0..painted.times {
-            self.weight += weight;
-            self.light += light;
-            let is_turned = self.turned.dot(normal) < 0.0;
-            self.normal += normal;
-            self.turned += if is_turned { -normal } else { normal };
-            self.normal_weight += weight;
-        }
+        self.weight += weight;
+        self.light += light;
+        let is_turned = self.turned.dot(normal) < 0.0;
+        self.normal += normal;
+        self.turned += if is_turned { -normal } else { normal };
+        self.normal_weight += weight;
     }
 
     /// The voxel's colour (sRGB) and normal.

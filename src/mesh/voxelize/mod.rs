@@ -8,6 +8,7 @@
 //! subtrees of 32 voxels a side, some at a time; memory grows with the
 //! triangles and not with the voxels. Rules: `spec/mesh.md`.
 
+mod distinct;
 mod grid;
 mod mix;
 mod opacity;
@@ -16,11 +17,12 @@ mod touch;
 
 use rayon::prelude::*;
 
-pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH};
+pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH, MOST_LOOKED_AT};
 pub use opacity::opacities;
 
 use super::Surface;
 use crate::graph::{Progress, Voxel};
+use distinct::Distinct;
 use subtree::Subtree;
 pub(crate) use touch::{Prepared, child};
 
@@ -40,6 +42,8 @@ pub struct VoxelizeReport {
     pub voxels: u64,
     /// Pairs of a voxel and a triangle that touches it.
     pub touches: u64,
+    /// Of these the pairs that were looked at: of equal triangles one.
+    pub looked_at: u64,
 }
 
 /// Hands every voxel that a triangle touches to `sink`, once, in Morton order.
@@ -52,9 +56,12 @@ pub fn voxelize<S: Surface + ?Sized>(
     sink: &mut dyn FnMut(Voxel),
     progress: &dyn Progress,
 ) -> VoxelizeReport {
+    let mut distinct = Distinct::of(surface, grid);
+    let all = std::mem::take(&mut distinct.numbers);
     let mut voxelizer = Voxelizer {
         surface,
         grid,
+        distinct: &distinct,
         sink,
         progress,
         batch: Vec::new(),
@@ -62,18 +69,39 @@ pub fn voxelize<S: Surface + ?Sized>(
         report: VoxelizeReport::default(),
     };
     progress.begin("voxelise", 1 << (3 * PROGRESS_LEVEL));
-    // Fewer than 2^32: the grid made sure.
-    let all: Vec<u32> = (0..surface.len() as u32).collect();
     voxelizer.node(all, [0; 3], 0);
     voxelizer.flush();
     progress.end();
     voxelizer.report
 }
 
+/// Pairs of a voxel and a triangle that touches it: as many as this or more.
+///
+/// Of each triangle as many as its area, or its longest side, is faces of voxels. Equal triangles count each, but as one
+/// where there are more than [`MOST_LOOKED_AT`] pairs.
+pub fn least_looked_at<S: Surface + ?Sized>(surface: &S, grid: &Grid) -> u64 {
+    let side = grid.side(grid.depth()) as f64;
+    let least = |number: u32| {
+        let prepared = Prepared::new(grid.corners(surface, number));
+        let largest = |of: [i64; 3]| of.iter().fold(0.0f64, |most, &c| most.max(c.abs() as f64));
+        let area = largest(prepared.normal) / (2.0 * side * side);
+        let length = largest(std::array::from_fn(|k| prepared.high[k] - prepared.low[k])) / side;
+        area.max(length).max(1.0) as u64
+    };
+    let sum = |numbers: &[u32]| numbers.par_iter().map(|&number| least(number)).sum::<u64>();
+    let all: Vec<u32> = (0..surface.len() as u32).collect();
+    match sum(&all) {
+        few if few <= MOST_LOOKED_AT => few,
+        // Of equal ones one is looked at.
+        _ => sum(&Distinct::of(surface, grid).numbers),
+    }
+}
+
 /// Finds the subtrees, from the root down, and voxelises them in batches.
 struct Voxelizer<'w, S: ?Sized> {
     surface: &'w S,
     grid: &'w Grid,
+    distinct: &'w Distinct,
     sink: &'w mut dyn FnMut(Voxel),
     progress: &'w dyn Progress,
     batch: Vec<Subtree>,
@@ -126,17 +154,18 @@ impl<S: Surface + ?Sized> Voxelizer<'_, S> {
 
     /// Does the subtrees that were gathered and hands on their voxels.
     fn flush(&mut self) {
-        let (surface, grid) = (self.surface, self.grid);
-        let done: Vec<(Vec<Voxel>, u64)> = self
+        let (surface, grid, distinct) = (self.surface, self.grid, self.distinct);
+        let done: Vec<(Vec<Voxel>, VoxelizeReport)> = self
             .batch
             .par_iter()
-            .map(|subtree| subtree.voxels(surface, grid))
+            .map(|subtree| subtree.voxels(surface, grid, distinct))
             .collect();
         self.batch.clear();
         self.batch_triangles = 0;
-        for (voxels, touches) in done {
-            self.report.voxels += voxels.len() as u64;
-            self.report.touches += touches;
+        for (voxels, report) in done {
+            self.report.voxels += report.voxels;
+            self.report.touches += report.touches;
+            self.report.looked_at += report.looked_at;
             for voxel in voxels {
                 (self.sink)(voxel);
             }

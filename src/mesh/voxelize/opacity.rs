@@ -16,6 +16,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
+use super::distinct::Distinct;
 use super::touch::{OTHERS, Prepared, child};
 use super::{Grid, SUBTREE_LEVELS};
 use crate::graph::{Graph, GraphView, Opacity, Progress};
@@ -49,8 +50,9 @@ pub fn opacities<S: Surface + ?Sized>(
     };
     let voxels = graph.len() as u64;
     progress.begin("find opacities", voxels);
-    let all: Vec<u32> = (0..surface.len() as u32).collect();
-    finder.node(graph.root, &all, origin, 0);
+    // Equal triangles cover what one of them covers.
+    let distinct = Distinct::of(surface, grid).numbers;
+    finder.node(graph.root, &distinct, origin, 0);
     progress.end();
     let opacity = |bits: AtomicU32| {
         let [x, y, z, _] = bits.into_inner().to_le_bytes();

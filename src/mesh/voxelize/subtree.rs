@@ -1,8 +1,9 @@
 //! One subtree: from its triangles to its voxels.
 
-use super::Grid;
+use super::distinct::Distinct;
 use super::mix::{Mix, Painted};
 use super::touch::{Prepared, child};
+use super::{Grid, VoxelizeReport};
 use crate::graph::Voxel;
 use crate::mesh::Surface;
 
@@ -15,36 +16,27 @@ pub(super) struct Subtree {
 }
 
 impl Subtree {
-    /// The voxels within, in Morton order, and how often a triangle touches one.
+    /// The voxels within, in Morton order, and what finding them took.
     pub(super) fn voxels<S: Surface + ?Sized>(
         &self,
         surface: &S,
         grid: &Grid,
-    ) -> (Vec<Voxel>, u64) {
-        let mut painted: Vec<Painted> = Vec::new();
-        for &number in &self.triangles {
-            let (corners, triangle) = (
-                grid.corners(surface, number),
-                surface.triangle(number as usize),
-            );
-            // One that repeats the one before it is looked at once, and counts again.
-            if let Some(last) = painted.last_mut()
-                && last.is(corners, &triangle)
-            {
-                last.times += 1;
-            } else {
-                painted.push(Painted::new(Prepared::new(corners), &triangle));
-            }
-        }
+        distinct: &Distinct,
+    ) -> (Vec<Voxel>, VoxelizeReport) {
+        let painted = |&number: &u32| {
+            let prepared = Prepared::new(grid.corners(surface, number));
+            let triangle = surface.triangle(number as usize);
+            Painted::new(prepared, &triangle, distinct.repeated(number))
+        };
         let mut descent = Descent {
             grid,
-            list: (0..painted.len() as u32).collect(),
-            painted,
+            list: (0..self.triangles.len() as u32).collect(),
+            painted: self.triangles.iter().map(painted).collect(),
             voxels: Vec::new(),
-            touches: 0,
+            report: VoxelizeReport::default(),
         };
         descent.node(0, self.corner, self.level);
-        (descent.voxels, descent.touches)
+        (descent.voxels, descent.report)
     }
 }
 
@@ -54,7 +46,7 @@ struct Descent<'g> {
     /// The triangles of the nodes on the way down, one node's after the other's.
     list: Vec<u32>,
     voxels: Vec<Voxel>,
-    touches: u64,
+    report: VoxelizeReport,
 }
 
 impl Descent<'_> {
@@ -87,8 +79,10 @@ impl Descent<'_> {
         for &triangle in &self.list[begin..] {
             let painted = &self.painted[triangle as usize];
             mix.add(painted, corner, side);
-            self.touches += u64::from(painted.times);
+            self.report.touches += u64::from(painted.times);
         }
+        self.report.looked_at += (self.list.len() - begin) as u64;
+        self.report.voxels += 1;
         let (color, normal) = mix.finish();
         self.voxels.push(Voxel {
             // Below 2^20.

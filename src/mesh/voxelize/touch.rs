@@ -47,8 +47,8 @@ impl Flat {
 pub(crate) struct Prepared {
     /// Corners on the lattice.
     pub(super) corners: [[i64; 3]; 3],
-    low: [i64; 3],
-    high: [i64; 3],
+    pub(super) low: [i64; 3],
+    pub(super) high: [i64; 3],
     pub(super) normal: [i64; 3],
     /// The normal dotted with any corner.
     offset: i128,

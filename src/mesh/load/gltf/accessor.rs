@@ -1,7 +1,7 @@
 //! Numbers out of a glTF document's buffers, every place checked.
 
 use super::document::Document;
-use super::{BROKEN, fault_of};
+use super::{BROKEN, Buffers, fault_of};
 use crate::mesh::error::MeshError;
 
 /// An accessor whose numbers are known to be there.
@@ -21,7 +21,7 @@ impl<'b> Numbers<'b> {
     /// Finds the numbers of an accessor.
     pub(super) fn find(
         document: &Document,
-        buffers: &'b [Vec<u8>],
+        buffers: &'b Buffers,
         number: usize,
     ) -> Result<Self, MeshError> {
         let wrong = |expected: &str, found: &str| -> MeshError {

@@ -11,6 +11,8 @@ mod accessor;
 mod document;
 mod scene;
 
+use std::collections::HashMap;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::{STANDARD, STANDARD_NO_PAD};
 
@@ -119,36 +121,66 @@ fn read_document(
         )
     })?;
     document.check()?;
-    let buffers = buffers(&document, binary, beside)?;
+    let buffers = Buffers::read(&document, binary, beside)?;
     scene::Reader::new(&document, &buffers, json.len()).read(options, builder)
 }
 
-/// The bytes of all buffers.
-fn buffers(
-    document: &Document,
-    binary: Option<&[u8]>,
-    beside: &dyn Beside,
-) -> Result<Vec<Vec<u8>>, MeshError> {
-    document
-        .buffers
-        .iter()
-        .enumerate()
-        .map(|(number, buffer)| {
-            let bytes = match (&buffer.uri, binary) {
-                (None, Some(binary)) if number == 0 => binary.to_vec(),
-                (None, _) => {
-                    return Err(fault_of("buffer", number, "content", "none", BROKEN));
+/// The bytes of all buffers. One address is read once.
+struct Buffers {
+    distinct: Vec<Vec<u8>>,
+    /// By number.
+    of: Vec<usize>,
+}
+
+impl Buffers {
+    fn read(
+        document: &Document,
+        binary: Option<&[u8]>,
+        beside: &dyn Beside,
+    ) -> Result<Self, MeshError> {
+        let (mut distinct, mut of) = (Vec::new(), Vec::new());
+        let mut known: HashMap<Option<&str>, usize> = HashMap::new();
+        for (number, buffer) in document.buffers.iter().enumerate() {
+            let uri = buffer.uri.as_deref();
+            let at = match known.get(&uri) {
+                Some(&at) if uri.is_some() => at,
+                _ => {
+                    let bytes = match (uri, binary) {
+                        (None, Some(binary)) if number == 0 => binary.to_vec(),
+                        (None, _) => {
+                            return Err(fault_of("buffer", number, "content", "none", BROKEN));
+                        }
+                        (Some(uri), _) => fetch(uri, number, beside)?,
+                    };
+                    distinct.push(bytes);
+                    known.insert(uri, distinct.len() - 1);
+                    distinct.len() - 1
                 }
-                (Some(uri), _) => fetch(uri, number, beside)?,
             };
-            if (bytes.len() as u64) < buffer.byte_length {
+            let bytes = distinct[at].len() as u64;
+            if bytes < buffer.byte_length {
                 let expected = format!("{} bytes", buffer.byte_length);
-                let found = bytes.len().to_string();
-                return Err(fault_of("buffer", number, &expected, &found, BROKEN));
+                return Err(fault_of(
+                    "buffer",
+                    number,
+                    &expected,
+                    &bytes.to_string(),
+                    BROKEN,
+                ));
             }
-            Ok(bytes)
-        })
-        .collect()
+            of.push(at);
+        }
+        Ok(Self { distinct, of })
+    }
+
+    fn get(&self, number: usize) -> Option<&[u8]> {
+        self.of.get(number).map(|&at| &self.distinct[at][..])
+    }
+
+    /// Bytes of all, each once.
+    fn len(&self) -> usize {
+        self.distinct.iter().map(Vec::len).sum()
+    }
 }
 
 fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, MeshError> {

@@ -4,7 +4,7 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Node, Primitive};
-use super::{BROKEN, LoadOptions, fault_of};
+use super::{BROKEN, Buffers, LoadOptions, fault_of};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::material::linear_to_srgb;
 use crate::mesh::{ColorSpace, Material, MeshBuilder};
@@ -17,7 +17,7 @@ const TRIANGLES_A_BYTE: u64 = 16;
 /// Walks a document.
 pub(super) struct Reader<'d> {
     document: &'d Document,
-    buffers: &'d [Vec<u8>],
+    buffers: &'d Buffers,
     /// Triangles that may still be added.
     left: u64,
     skipped_modes: u64,
@@ -26,8 +26,8 @@ pub(super) struct Reader<'d> {
 }
 
 impl<'d> Reader<'d> {
-    pub(super) fn new(document: &'d Document, buffers: &'d [Vec<u8>], json_bytes: usize) -> Self {
-        let bytes = json_bytes + buffers.iter().map(Vec::len).sum::<usize>();
+    pub(super) fn new(document: &'d Document, buffers: &'d Buffers, json_bytes: usize) -> Self {
+        let bytes = json_bytes + buffers.len();
         Self {
             document,
             buffers,

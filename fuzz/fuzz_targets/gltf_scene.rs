@@ -1,0 +1,15 @@
+//! A glTF document that is composed of the bytes: read as what it shows, or, where it was damaged afterwards, read or
+//! refused.
+#![no_main]
+
+#[path = "../../tests/mesh/gltf_document.rs"]
+mod gltf_document;
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    // Bytes, then zeros.
+    let mut bytes = data.iter();
+    let document = gltf_document::compose(&mut |end| u32::from(bytes.next().copied().unwrap_or(0)) % end);
+    document.check("fuzz");
+});
