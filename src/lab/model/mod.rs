@@ -5,7 +5,8 @@
 //! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
 //! units with the clock; [`rules`],
 //! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, over sizes of the node cache, and over pictures and objects; [`claims`] compares the image-order
+//! formats, over sizes of the node cache, and over pictures and objects; [`steps`] over the settings of a hardware's
+//! organisation; [`floor`] says what every design must move; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
 pub mod area;
@@ -14,6 +15,7 @@ pub mod claims;
 pub mod clock;
 pub mod compare;
 pub mod cost;
+pub mod floor;
 pub mod frame;
 pub mod growth;
 pub mod heat;
@@ -26,6 +28,7 @@ pub mod record;
 pub mod rules;
 pub mod safe;
 pub mod statistics;
+pub mod steps;
 pub mod sweep;
 pub mod tables;
 #[cfg(feature = "cli")]
