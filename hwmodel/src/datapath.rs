@@ -390,6 +390,13 @@ impl<P: Probe> Datapath<P> {
         (a.raw() >> place.min(63)) & 1 != 0
     }
 
+    /// A word with bit `place` zero: a wire to ground.
+    #[inline(always)]
+    #[must_use]
+    pub fn without_bit(&self, a: Word, place: u32) -> Word {
+        Word(a.0 & !(1 << place.min(63)))
+    }
+
     /// A word as a wide word: wires that repeat the sign.
     #[inline(always)]
     #[must_use]

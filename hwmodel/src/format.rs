@@ -16,6 +16,9 @@ pub const MAX_BITS: u32 = 64;
 pub struct Format {
     bits: u32,
     frac: u32,
+    /// Bits of a wide word.
+    #[serde(skip)]
+    wide_bits: u32,
 }
 
 /// A format as a file has it, before it is checked.
@@ -61,7 +64,12 @@ impl Format {
         if frac > bits - 2 {
             return Err(FormatError::Frac { bits, frac });
         }
-        Ok(Self { bits, frac })
+        let wide_bits = widest(bits);
+        Ok(Self {
+            bits,
+            frac,
+            wide_bits,
+        })
     }
 
     /// Width in bits, 16..=64.
@@ -76,13 +84,26 @@ impl Format {
         self.frac
     }
 
-    /// The format with twice the bits (at most 64) that holds products of two words.
+    /// The format of wide words: twice the bits (at most 64), which hold products of two words,
+    /// unless [`with_wide_bits`](Self::with_wide_bits) says fewer.
     #[must_use]
     pub const fn wide(self) -> Self {
-        let bits = if self.bits > 32 { 64 } else { self.bits * 2 };
         Self {
-            bits,
+            bits: self.wide_bits,
             frac: self.frac,
+            wide_bits: widest(self.wide_bits),
+        }
+    }
+
+    /// The same words, with wide words of `bits`: as many as a word has at least, twice as many (or 64) at most.
+    #[must_use]
+    pub const fn with_wide_bits(self, bits: u32) -> Self {
+        let most = widest(self.bits);
+        let bits = if bits > most { most } else { bits };
+        let bits = if bits < self.bits { self.bits } else { bits };
+        Self {
+            wide_bits: bits,
+            ..self
         }
     }
 
@@ -104,6 +125,11 @@ impl Format {
         let spare = 64 - self.bits;
         (value << spare) >> spare == value
     }
+}
+
+/// Bits of what holds products of two words of `bits`.
+const fn widest(bits: u32) -> u32 {
+    if bits > 32 { 64 } else { bits * 2 }
 }
 
 /// What a result outside the format becomes.

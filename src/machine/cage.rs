@@ -24,6 +24,15 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The coordinate of one child, selected from the pool: wires, no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
+    /// What the children's numbers are made from, one child at a time.
+    type Seed: Copy;
+
+    /// Computes what the children's numbers are made from.
+    fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed;
+
+    /// The coordinate of one child, as [`child`](Self::child) has it.
+    fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self::Seed, octant: usize) -> Self;
+
     /// The children's coordinates, in Morton order, selected from the pool.
     fn all(pool: &Self::Pool) -> [Self; 8] {
         std::array::from_fn(|octant| Self::child(pool, octant))
@@ -51,6 +60,9 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
 
     /// `f`, which must be linear, applied to each pair of numbers.
     fn zip(&self, other: &Self, f: impl FnMut(Word, Word) -> Word) -> Self;
+
+    /// The parent's coordinate, of a child in an octant whose numbers were halved without a remainder.
+    fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self;
 
     /// All vertices moved by `by`.
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self;
@@ -127,6 +139,16 @@ impl CageCoordinate for Corners {
         pool
     }
 
+    type Seed = [Word; 27];
+
+    fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed {
+        self.pool(dp)
+    }
+
+    fn grow<P: Probe>(_: &mut Datapath<P>, seed: &Self::Seed, octant: usize) -> Self {
+        Self::child(seed, octant)
+    }
+
     #[inline]
     fn child(pool: &[Word; 27], octant: usize) -> Self {
         // Index of the child's lowest corner. Masked, so that no bounds check
@@ -174,6 +196,18 @@ impl CageCoordinate for Corners {
         Self(std::array::from_fn(|i| f(self.0[i], other.0[i])))
     }
 
+    /// The child shares the vertex of its octant; all others are twice as far from it.
+    fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
+        let shared = self.0[usize::from(octant & 7)];
+        Self(std::array::from_fn(|corner| {
+            if corner == usize::from(octant & 7) {
+                return shared;
+            }
+            let doubled = dp.shl(self.0[corner], 1);
+            dp.sub(doubled, shared)
+        }))
+    }
+
     fn moved<P: Probe>(&self, dp: &mut Datapath<P>, by: Word) -> Self {
         Self(self.0.map(|value| dp.add(value, by)))
     }
@@ -213,11 +247,32 @@ impl CageCoordinate for CornerAndEdges {
     /// that children never leave their parent; seven adds give the eight corners.
     #[inline]
     fn pool<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Pool {
+        let Self { corner, edges } = self.seed(dp);
+        (parallelepiped(dp, corner, edges), edges)
+    }
+
+    /// The lowest child.
+    type Seed = Self;
+
+    #[inline]
+    fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self {
         let edges = self.edges.map(|edge| {
             let sign = Word::from_host(i64::from(dp.bit(edge, 63)));
             dp.midpoint(edge, sign)
         });
-        (parallelepiped(dp, self.corner, edges), edges)
+        Self { edges, ..*self }
+    }
+
+    /// Moved by up to three edges.
+    #[inline]
+    fn grow<P: Probe>(dp: &mut Datapath<P>, seed: &Self, octant: usize) -> Self {
+        let mut child = *seed;
+        for (k, &edge) in seed.edges.iter().enumerate() {
+            if octant >> (2 - k) & 1 != 0 {
+                child.corner = dp.add(child.corner, edge);
+            }
+        }
+        child
     }
 
     #[inline]
@@ -272,6 +327,20 @@ impl CageCoordinate for CornerAndEdges {
         Self {
             corner: f(self.corner, other.corner),
             edges: std::array::from_fn(|k| f(self.edges[k], other.edges[k])),
+        }
+    }
+
+    /// The octant's edges lead from the parent's lowest corner to the child's.
+    fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
+        let mut corner = self.corner;
+        for (k, &edge) in self.edges.iter().enumerate() {
+            if octant >> (2 - k) & 1 != 0 {
+                corner = dp.sub(corner, edge);
+            }
+        }
+        Self {
+            corner,
+            edges: self.edges.map(|edge| dp.shl(edge, 1)),
         }
     }
 

@@ -1,13 +1,13 @@
 //! The picture in the making: draws samples and updates the fill vectors
 //! (image-order paper, 3.3).
 
-use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+use hwmodel::{Datapath, Memory, Probe, Stage};
 
 use super::alpha::BlendColor;
-use super::blocks::Block;
+use super::fill::FillStore;
 use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
-use crate::frame::{FillVectors, Frame, QuadNode};
+use crate::frame::{Frame, QuadNode};
 
 /// What a record shows at the samples where it is drawn.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ pub(super) struct Paint {
 /// The picture, the fill vectors, and counts of what was drawn.
 #[derive(Debug)]
 pub(super) struct Canvas<'f> {
-    pub(super) fill: &'f mut FillVectors,
+    pub(super) fill: FillStore<'f>,
     frame: &'f mut Frame,
     /// Samples drawn.
     pub(super) drawn: u64,
@@ -34,7 +34,7 @@ pub(super) struct Canvas<'f> {
 }
 
 impl<'f> Canvas<'f> {
-    pub(super) fn new(fill: &'f mut FillVectors, frame: &'f mut Frame) -> Self {
+    pub(super) fn new(fill: FillStore<'f>, frame: &'f mut Frame) -> Self {
         Self {
             fill,
             frame,
@@ -48,9 +48,7 @@ impl<'f> Canvas<'f> {
     #[inline]
     pub(super) fn draw<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode, paint: &Paint) {
         dp.stage(Stage::Draw);
-        let address = sample.address();
-        dp.read(Memory::FillVector, address as u64);
-        let vector = self.fill.vector(sample);
+        let vector = self.fill.read(dp, sample);
         if dp.and_bits(4, vector, FULL) == FULL {
             self.occluded += 1;
             return;
@@ -64,37 +62,7 @@ impl<'f> Canvas<'f> {
             dp.read(Memory::Attribute, u64::from(paint.node));
             self.put(dp, at, paint);
         }
-        self.mark_full(dp, sample);
-    }
-
-    /// Sets a sample's fill vector, and in each ancestor the bit of a quadrant
-    /// that is full with it.
-    #[inline(always)]
-    fn mark_full<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
-        dp.stage(Stage::FillUpdate);
-        let mut quad = sample;
-        let mut bits = FULL;
-        loop {
-            dp.write(Memory::FillVector, quad.address() as u64);
-            let before = self.fill.vector(quad);
-            let vector = self.fill.set(quad, bits);
-            dp.tap(
-                Block::FillUpdate,
-                &(Short::unsigned(before, 4), Short::unsigned(bits, 4)),
-                &(Short::unsigned(vector, 4), vector == FULL),
-            );
-            if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
-                break;
-            }
-            bits = 1 << quad.in_parent();
-            quad = QuadNode {
-                level: quad.level - 1,
-                x: quad.x >> 1,
-                y: quad.y >> 1,
-            };
-            dp.read(Memory::FillVector, quad.address() as u64);
-            dp.or_bits(4, self.fill.vector(quad), bits);
-        }
+        self.fill.mark(dp, sample);
     }
 
     /// Writes node and voxel to sample number `at`.
@@ -163,14 +131,32 @@ impl<'f> Canvas<'f> {
         }
     }
 
+    /// Whether a sample of `quad` inside a silhouette is not full yet.
+    pub(super) fn sees<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        mut silhouette: Silhouette,
+    ) -> bool {
+        let below = self.fill.levels() - quad.level;
+        match silhouette.cover(dp, below) {
+            Cover::None => false,
+            Cover::All => self.open_quadrants(dp, quad).next().is_some(),
+            Cover::Some => self.open_quadrants(dp, quad).any(|quadrant| {
+                let inner = silhouette.in_quadrant(dp, quadrant);
+                self.sees(dp, quad.quadrant(quadrant), inner)
+            }),
+        }
+    }
+
     /// The quadrants of a node that are not full.
     fn open_quadrants<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         quad: QuadNode,
     ) -> impl Iterator<Item = u8> + use<P> {
-        dp.read(Memory::FillVector, quad.address() as u64);
-        let open = dp.xor_bits(4, self.fill.vector(quad), FULL);
+        let vector = self.fill.read(dp, quad);
+        let open = dp.xor_bits(4, vector, FULL);
         (0..4).filter(move |quadrant| open >> quadrant & 1 != 0)
     }
 }

@@ -27,14 +27,16 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 let y = pool(dp, &clip.y);
                 let w = pool(dp, &clip.w);
                 self.push_children(cube, order, &centre, |state, octant, child| {
-                    state.push_clip_child(octant, (&x, &y, &w), planes, child, place)
+                    let cage = [&x, &y, &w].map(|pool| L::child(pool, octant as usize));
+                    state.push_clip_child(octant, cage, planes, child, place)
                 });
             }
             Pose::Screen(screen) => {
                 let x = pool(dp, &screen.x);
                 let y = pool(dp, &screen.y);
                 self.push_children(cube, order, &centre, |state, octant, child| {
-                    state.push_screen_child(octant, &x, &y, child, place)
+                    let coordinates = || [&x, &y].map(|pool| L::child(pool, octant as usize));
+                    state.push_screen_child(coordinates, child, place)
                 });
             }
         }
@@ -128,20 +130,17 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
     }
 
-    /// Pushes a child in clip space, if it can be seen. The pools and planes are
+    /// Pushes a child in clip space, if it can be seen. The planes are
     /// its parent's.
     pub(super) fn push_clip_child(
         &mut self,
         octant: u8,
-        (x, y, w): (&L::Pool, &L::Pool, &L::Pool),
+        [x, y, w]: [L; 3],
         planes: &Planes,
         child: Cube,
         parent_place: ImagePlace,
     ) -> bool {
-        let of_child = |pool| L::child(pool, octant as usize);
-        let (x, y, w) = (of_child(x), of_child(y), of_child(w));
-        let (w_min, w_max) = w.span(&mut self.dp);
-        self.dp.tap(Block::ChildSpan, &w, &(w_min, w_max));
+        let (w_min, w_max) = child_span(&mut self.dp, &w);
         let planes = if self.constants.coverage == Coverage::Exact {
             self.dp.stage(Stage::VertexPool);
             let parent_level = child.level - 1;
@@ -153,24 +152,28 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.push_clip(child, parent_place, clip, planes, w_max)
     }
 
-    /// Pushes a child in screen space, if it can be seen.
+    /// Pushes a child in screen space, if it can be seen. `coordinates` gives its x and y.
     #[inline(always)]
     pub(super) fn push_screen_child(
         &mut self,
-        octant: u8,
-        x: &L::Pool,
-        y: &L::Pool,
+        coordinates: impl Fn() -> [L; 2],
         child: Cube,
         parent_place: ImagePlace,
     ) -> bool {
-        let coordinates = || [x, y].map(|pool| L::child(pool, octant as usize));
-        let spans = coordinates().map(|coordinate| {
-            let span = coordinate.span(&mut self.dp);
-            self.dp.tap(Block::ChildSpan, &coordinate, &span);
-            span
-        });
+        let spans = coordinates().map(|coordinate| child_span(&mut self.dp, &coordinate));
         self.push_screen(child, parent_place, spans, coordinates)
     }
+}
+
+/// The least and the greatest of a child's vertices, one coordinate.
+#[inline(always)]
+pub(super) fn child_span<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    coordinate: &L,
+) -> (Word, Word) {
+    let span = coordinate.span(dp);
+    dp.tap(Block::ChildSpan, coordinate, &span);
+    span
 }
 
 /// One coordinate of the vertices of a record's children.

@@ -33,8 +33,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         if !self.options.reject_filled {
             return false;
         }
-        self.dp.read(Memory::FillVector, quad.address() as u64);
-        let vector = self.canvas.fill.vector(quad);
+        let vector = self.canvas.fill.read(&mut self.dp, quad);
         let full = self.dp.and_bits(4, vector, FULL) == FULL;
         self.dp
             .tap(Block::Filled, &Short::unsigned(vector, 4), &full);
@@ -49,10 +48,12 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.dp.stage(Stage::OnePixel);
         let cube = &mut record.cube;
         // A record whose parent says what is a leaf reads its node only if it is subdivided.
-        let is_read_late = self.options.organisation.leaf_masks;
+        let is_read_late = self.layout.leaf_masks;
         if !cube.solid {
             if !is_read_late {
-                self.dp.read(Memory::Node, u64::from(cube.node));
+                for word in self.layout.words(cube.node, cube.level) {
+                    self.dp.read(Memory::Node, word);
+                }
             }
             cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;
         }
@@ -66,7 +67,9 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 // Parts of a solid have no node of their own.
                 if is_read_late && !record.cube.solid {
                     self.dp.stage(Stage::OnePixel);
-                    self.dp.read(Memory::Node, u64::from(record.cube.node));
+                    for word in self.layout.words(record.cube.node, record.cube.level) {
+                        self.dp.read(Memory::Node, word);
+                    }
                 }
                 return RemainingWork::Children;
             }

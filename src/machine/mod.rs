@@ -19,8 +19,8 @@
 //! Each file imports files named before it only:
 //!
 //! - data: `blocks`, `options`, `cage`, `record`, `constants`;
-//! - steps on words: `shifts`, `planes`, `quadrants`, `smallest_node`,
-//!   `to_screen`, `size`, `alpha`, `canvas`;
+//! - steps on words: `shifts`, `planes`, `fill`, `quadrants`, `smallest_node`,
+//!   `to_screen`, `size`, `alpha`, `canvas`, `path`;
 //! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
 //!   `verdict`, `decide`, `children`, `record_loop`, and `parents`, the loop
 //!   with parents on its stack, and tiles;
@@ -36,10 +36,12 @@ mod children;
 mod constants;
 mod decide;
 mod engine;
+mod fill;
 mod heat;
 mod instruments;
 mod options;
 mod parents;
+mod path;
 mod planes;
 mod push;
 mod quadrants;
@@ -60,5 +62,8 @@ pub use engine::Machine;
 #[cfg(test)]
 pub(crate) use instruments::mutants;
 pub(crate) use instruments::{Cage, cages_along};
-pub use instruments::{Positions, SimulateError, Simulated, Space, visit_positions};
+pub use instruments::{
+    MOST_OPEN_TILES, NumberSpan, NumberSpans, Positions, ProvenWidths, RecordNumber, SimulateError,
+    Simulated, Space, narrowed, proven_widths, visit_positions,
+};
 pub use options::MachineOptions;

@@ -15,7 +15,9 @@
 //! back. Here only what is subdivided is stored, and that only while it has children left, so the
 //! stack is never deeper than the octree, and a drawn voxel is never on it. A child is fitted when
 //! its turn comes, so it finds more of the picture drawn. The vertices of a parent's children are
-//! kept in registers, and made again when the parent comes back from the stack.
+//! kept in registers, and made again when the parent comes back from the stack. The stack holds
+//! whole parents, or of each its node and the children that are left; then the rest is worked back
+//! from the record that the walk comes from (`path.rs`).
 //!
 //! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile
 //! full from the start. Only the fill vectors above the tiles differ from one tile to the next.
@@ -24,8 +26,8 @@ use hwmodel::cycles::StackHolds;
 use hwmodel::{Memory, Probe, Stage, Word};
 
 use super::cage::CageCoordinate;
-use super::children::pool;
 use super::decide::RemainingWork;
+use super::path::{self, PathEntry};
 use super::record::{Pose, Record};
 use super::state::State;
 use super::watch::Watch;
@@ -39,8 +41,17 @@ pub(super) struct Parent<L: CageCoordinate> {
     pub(super) record: Record<L>,
     /// Children that are left, a bit for each place in the order, nearest first.
     left: u8,
-    /// What its children are made from; `None`: it was stored, and that is made again.
+    /// What its children are made from; `None`: it is new or was stored, and that is to be made.
     expanded: Option<Expanded<L>>,
+    /// Whether it lies on the stack.
+    is_stored: bool,
+}
+
+/// What lies on the stack: a whole parent, or the way to it.
+#[derive(Clone, Copy)]
+pub(super) enum Stored<L: CageCoordinate> {
+    Whole(Parent<L>),
+    Way(PathEntry),
 }
 
 /// What the children of a record are made from: in registers.
@@ -49,7 +60,7 @@ struct Expanded<L: CageCoordinate> {
     centre: [Word; 3],
     order: [u8; 8],
     /// X, Y, W in clip space; x and y in screen space.
-    pools: [L::Pool; 3],
+    seeds: [L::Seed; 3],
 }
 
 impl<L: CageCoordinate> Parent<L> {
@@ -58,6 +69,7 @@ impl<L: CageCoordinate> Parent<L> {
             record,
             left: u8::MAX,
             expanded: None,
+            is_stored: false,
         }
     }
 
@@ -87,7 +99,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 x: tile & (side - 1),
                 y: tile >> tile_levels,
             };
-            if self.canvas.fill.vector(tile) == FULL {
+            if self.canvas.fill.peek(tile) == FULL {
                 // It lies beside the picture.
                 continue;
             }
@@ -116,17 +128,29 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let mut stack = Vec::new();
         let mut current = self.object();
         self.check_trap()?;
-        while let Some(mut parent) = current.take().or_else(|| stack.pop()) {
+        // Where the walk comes from.
+        let mut last = None;
+        loop {
+            let mut parent = match current.take().map(Stored::Whole).or_else(|| stack.pop()) {
+                None => break,
+                Some(Stored::Whole(parent)) => parent,
+                Some(Stored::Way(entry)) => {
+                    match self.take_back(&entry, last.as_ref(), stack.len() as u64) {
+                        Some(parent) => parent,
+                        None => continue,
+                    }
+                }
+            };
             if self.counts.records >= most_records {
                 return Ok(false);
             }
             let child = self.parent_turn(&mut parent, stack.len() as u64);
             self.check_trap()?;
+            last = Some(parent.record);
             current = match child {
                 Some(child) => {
                     if !parent.is_done() {
-                        self.store(&mut parent, stack.len() as u64);
-                        stack.push(parent);
+                        stack.push(self.store(parent, stack.len() as u64));
                     }
                     Some(child)
                 }
@@ -143,12 +167,51 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 
     /// A parent goes to the stack. `address`: its place there.
-    pub(super) fn store(&mut self, parent: &mut Parent<L>, address: u64) {
+    pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
         self.dp.resume(parent.record.cube.level);
         self.dp.stage(Stage::Push);
         self.dp.write(Memory::Stack, address);
         self.counts.deepest_stack = self.counts.deepest_stack.max(address + 1);
         parent.expanded = None;
+        parent.is_stored = true;
+        if self.options.organisation.stack != StackHolds::Path {
+            return Stored::Whole(parent);
+        }
+        let Record { cube, place, .. } = &parent.record;
+        Stored::Way(PathEntry {
+            node: cube.node,
+            level: cube.level,
+            quad_level: place.quad.level,
+            inside: place.inside,
+            left: parent.left,
+        })
+    }
+
+    /// Takes a parent back of which the way is on the stack, at `address`, to go on with its children; `None`: its
+    /// place is full by now. `from`: the record that the walk comes from.
+    pub(super) fn take_back(
+        &mut self,
+        entry: &PathEntry,
+        from: Option<&Record<L>>,
+        address: u64,
+    ) -> Option<Parent<L>> {
+        let Some(from) = from else {
+            unreachable!("what is on the stack was left for a child");
+        };
+        self.canvas.fill.begin_turn();
+        self.dp.resume(entry.level);
+        self.dp.stage(Stage::Pop);
+        self.dp.read(Memory::Stack, address);
+        if self.is_full(path::quad_above(from.place.quad, entry.quad_level)) {
+            self.counts.already_full += 1;
+            return None;
+        }
+        self.dp.stage(Stage::Pop);
+        let record = path::back(&mut self.dp, &self.constants, entry, from);
+        Some(Parent {
+            left: entry.left,
+            ..Parent::new(record)
+        })
     }
 
     /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if
@@ -158,11 +221,12 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         parent: &mut Parent<L>,
         address: u64,
     ) -> Option<Parent<L>> {
+        self.canvas.fill.begin_turn();
         self.dp.resume(parent.record.cube.level);
         let expanded = match parent.expanded {
             Some(expanded) => expanded,
             None => {
-                if !parent.is_new() {
+                if std::mem::take(&mut parent.is_stored) {
                     self.dp.stage(Stage::Pop);
                     self.dp.read(Memory::Stack, address);
                     if self.is_full(parent.record.place.quad) {
@@ -183,13 +247,25 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             let Some(child) = self.child_cube(cube, octant, &expanded.centre) else {
                 continue;
             };
-            let [x, y, w] = &expanded.pools;
             let from = parent.record.place;
+            self.dp.stage(Stage::VertexPool);
             let is_seen = match &parent.record.pose {
                 Pose::Clip(_, planes) => {
-                    self.push_clip_child(octant, (x, y, w), planes, child, from)
+                    let dp = &mut self.dp;
+                    let cage = expanded
+                        .seeds
+                        .each_ref()
+                        .map(|seed| L::grow(dp, seed, octant as usize));
+                    self.dp.stage(Stage::ChildBox);
+                    self.push_clip_child(octant, cage, planes, child, from)
                 }
-                Pose::Screen(_) => self.push_screen_child(octant, x, y, child, from),
+                Pose::Screen(_) => {
+                    let dp = &mut self.dp;
+                    let [x, y, _] = &expanded.seeds;
+                    let cage = [x, y].map(|seed| L::grow(dp, seed, octant as usize));
+                    self.dp.stage(Stage::ChildBox);
+                    self.push_screen_child(|| cage, child, from)
+                }
             };
             if is_seen {
                 return self.work_on_new();
@@ -215,17 +291,17 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let (centre, order) = self.centre_and_order(&record.cube);
         self.dp.stage(Stage::VertexPool);
         let dp = &mut self.dp;
-        let pools = match &record.pose {
-            Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| pool(dp, cage)),
+        let seeds = match &record.pose {
+            Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
             Pose::Screen(screen) => {
-                let [x, y] = [&screen.x, &screen.y].map(|cage| pool(dp, cage));
+                let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
                 [x, y, y]
             }
         };
         Expanded {
             centre,
             order,
-            pools,
+            seeds,
         }
     }
 }

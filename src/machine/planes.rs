@@ -331,6 +331,50 @@ pub(super) fn of_child<P: Probe>(
     planes
 }
 
+/// The planes of a parent at a level, from its child's: what [`of_child`] did, undone.
+pub(super) fn to_parent<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    planes: &mut Planes,
+    parent_level: u32,
+    octant: u8,
+) {
+    let half_shift = constants.depth - parent_level - 1;
+    for j in 0..3 {
+        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+        for (axis, of, add) in [(k, l, true), (l, k, false)] {
+            if octant >> (2 - axis) & 1 != 0 {
+                let across = axis_plane(constants, planes, of).map(|v| dp.shl(v, half_shift));
+                planes.edge[j] = combine(dp, planes.edge[j], across, add);
+            }
+        }
+    }
+}
+
+/// Makes planes relative to the parent of their node, of which that is a quadrant: what [`move_to_quadrant`] did, undone.
+pub(super) fn move_out_of_quadrant<P: Probe>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    planes: &mut Planes,
+    quadrant: u8,
+) {
+    let mut undo = |[a, b]: [WideWord; 2], c: &mut WideWord| {
+        if quadrant & 1 != 0 {
+            *c = dp.sub(*c, a);
+        }
+        if quadrant & 2 != 0 {
+            *c = dp.sub(*c, b);
+        }
+        *c = dp.shr(*c, 1);
+    };
+    for [a, b, c] in &mut planes.edge {
+        undo([*a, *b], c);
+    }
+    for (c, &ab) in planes.axis_c.iter_mut().zip(&constants.axis_ab) {
+        undo(ab, c);
+    }
+}
+
 /// Makes planes relative to a quadrant of their node.
 pub(super) fn move_to_quadrant<P: Probe>(
     dp: &mut Datapath<P>,

@@ -62,7 +62,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             return false;
         }
         let fill = Fill {
-            vectors: self.canvas.fill,
+            vectors: &self.canvas.fill,
             reject: self.options.reject_filled,
         };
         let (dp, constants) = (&mut self.dp, &self.constants);
@@ -82,7 +82,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         coordinates: impl FnOnce() -> [L; 2],
     ) -> bool {
         let fill = Fill {
-            vectors: self.canvas.fill,
+            vectors: &self.canvas.fill,
             reject: self.options.reject_filled,
         };
         let found = smallest_node::screen(&mut self.dp, &self.constants, &fill, from, &spans);
@@ -109,11 +109,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         if self.options.organisation.stack == StackHolds::Children {
             self.dp.write(Memory::Stack, self.stack.len() as u64);
         }
-        self.stack.push(Record {
+        let record = Record {
             cube,
             place,
             pose: pose(),
-        });
+        };
+        self.watch.made(&record);
+        self.stack.push(record);
         if self.options.organisation.stack == StackHolds::Children {
             self.counts.deepest_stack = self.counts.deepest_stack.max(self.stack.len() as u64);
         }

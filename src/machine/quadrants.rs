@@ -18,16 +18,16 @@ use crate::frame::quadtree::FULL;
 
 /// The halves that a box overlaps along one axis.
 #[derive(Clone, Copy)]
-struct Halves {
-    low: bool,
-    high: bool,
+pub(super) struct Halves {
+    pub(super) low: bool,
+    pub(super) high: bool,
 }
 
 /// The quadrants (bit `y << 1 | x`) in the given halves along x and y. In
 /// hardware four gates on the comparators' outputs, counted with the 4-bit "and"
 /// that follows.
 #[inline(always)]
-fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
+pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) -> u8 {
     // By low and high along x (bits 0 and 1) and along y (bits 2 and 3).
     const QUADRANTS: [u8; 16] = {
         let mut of = [0; 16];

@@ -61,6 +61,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     #[inline(always)]
     fn draw_or_drop(&mut self, record: &mut Record<L>, address: u64) -> RemainingWork {
         self.dp.begin_record(self.counts.records, record.cube.level);
+        self.canvas.fill.begin_turn();
         self.counts.records += 1;
         self.watch.turn(record.place.quad);
         self.dp.stage(Stage::Pop);

@@ -11,33 +11,38 @@
 //! Where a box ends does not depend on what is drawn; only whether it is
 //! rejected does.
 
-use hwmodel::{Datapath, Memory, Probe, Short, Stage, Word};
+use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
 use super::blocks::{Block, LEVEL_BITS, NODE_BITS};
 use super::cage::CageCoordinate;
 use super::constants::Constants;
+use super::fill::FillStore;
 use super::planes;
 use super::quadrants::{self, margins};
 use super::record::{Clip, ImagePlace, Planes, Spans};
+use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
-use crate::frame::{FillVectors, QuadNode};
 use crate::project::Coverage;
 
 /// The fill vectors, and whether full quadrants reject boxes.
 pub(super) struct Fill<'f> {
-    pub(super) vectors: &'f FillVectors,
+    pub(super) vectors: &'f FillStore<'f>,
     pub(super) reject: bool,
 }
 
 impl Fill<'_> {
     /// Whether a box that overlaps `quadrants` of `quad` is rejected.
     #[inline]
-    fn rejects<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode, quadrants: u8) -> bool {
+    pub(super) fn rejects<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        quadrants: u8,
+    ) -> bool {
         if !self.reject {
             return quadrants == 0;
         }
-        dp.read(Memory::FillVector, quad.address() as u64);
-        let vector = self.vectors.vector(quad);
+        let vector = self.vectors.read(dp, quad);
         let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
         let choice = only(quadrants);
         dp.tap(

@@ -6,11 +6,12 @@ use hwmodel::{Datapath, Probe, Stage};
 use super::cage::CageCoordinate;
 use super::canvas::Canvas;
 use super::constants::Constants;
+use super::fill::FillStore;
 use super::options::MachineOptions;
 use super::record::Record;
 use super::watch::Watch;
 use crate::frame::{FillVectors, Frame};
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 use crate::project::{FrameSetup, Stats};
 
 /// Counts of a frame, by the names in [`State::finish`].
@@ -35,6 +36,8 @@ pub(super) struct State<'a, P: Probe, L, W> {
     pub(super) constants: Constants,
     pub(super) options: MachineOptions,
     pub(super) graph: &'a GraphView<'a>,
+    /// Where its nodes are read.
+    pub(super) layout: NodeLayout,
     pub(super) canvas: Canvas<'a>,
     pub(super) stack: Vec<Record<L>>,
     pub(super) counts: RecordCounts,
@@ -45,7 +48,7 @@ impl<'a, P: Probe, L: CageCoordinate, W: Watch> State<'a, P, L, W> {
     /// The state of a frame before the first record: the stack is empty. `fill`
     /// and `frame` have the set-up's size and are cleared.
     pub(super) fn new(
-        options: MachineOptions,
+        mut options: MachineOptions,
         graph: &'a GraphView<'a>,
         setup: &FrameSetup,
         (fill, frame): (&'a mut FillVectors, &'a mut Frame),
@@ -54,12 +57,19 @@ impl<'a, P: Probe, L: CageCoordinate, W: Watch> State<'a, P, L, W> {
     ) -> Self {
         let mut dp = Datapath::new(setup.format, options.overflow, probe);
         dp.stage(Stage::Push);
+        if !setup.options.coverage.draws_outlines() {
+            options.organisation = options.organisation.without_outlines();
+        }
+        let organisation = options.organisation;
+        let layout = NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks);
+        let fill = FillStore::new(fill, organisation.joined_fill, organisation.tile_levels);
         let constants = Constants::load(&mut dp, setup);
         Self {
             dp,
             constants,
             options,
             graph,
+            layout,
             canvas: Canvas::new(fill, frame),
             stack: Vec::new(),
             counts: RecordCounts::default(),

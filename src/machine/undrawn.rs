@@ -2,22 +2,23 @@
 //!
 //! Unlike the fit this goes on where a box lies across a bisector.
 
-use hwmodel::{Datapath, Memory, Probe, Stage};
+use hwmodel::{Datapath, Probe, Stage};
 
 use super::cage::CageCoordinate;
 use super::constants::Constants;
+use super::fill::FillStore;
 use super::quadrants;
 use super::record::{Clip, Pose, Record, Spans};
 use super::state::State;
 use super::watch::Watch;
+use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
-use crate::frame::{FillVectors, QuadNode};
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// The first sample of a record's box that is not drawn yet.
     #[inline]
     pub(super) fn first_undrawn(&mut self, record: &Record<L>) -> Option<QuadNode> {
-        let fill = &*self.canvas.fill;
+        let fill = &self.canvas.fill;
         let (dp, constants, quad) = (&mut self.dp, &self.constants, record.place.quad);
         match &record.pose {
             Pose::Clip(clip, _) => first(dp, constants, fill, quad, *clip),
@@ -53,14 +54,13 @@ trait ImageBox: Copy {
 fn first_inlined<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &FillVectors,
+    fill: &FillStore<'_>,
     mut quad: QuadNode,
     mut of: B,
 ) -> Option<QuadNode> {
     dp.stage(Stage::QuadtreeFit);
     loop {
-        dp.read(Memory::FillVector, quad.address() as u64);
-        let open = !fill.vector(quad) & FULL;
+        let open = !fill.read(dp, quad) & FULL;
         if quad.level == constants.levels {
             return (open != 0).then_some(quad);
         }
@@ -89,7 +89,7 @@ fn first_inlined<P: Probe, B: ImageBox>(
 fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &FillVectors,
+    fill: &FillStore<'_>,
     quad: QuadNode,
     of: B,
 ) -> Option<QuadNode> {

@@ -1,10 +1,11 @@
 //! The drawing rules: whether a record is drawn, dropped or subdivided
 //! (`SPEC.md`, "Drawing rules").
 
-use hwmodel::Probe;
+use hwmodel::{Probe, Stage};
 
 use super::blocks::Block;
 use super::cage::CageCoordinate;
+use super::planes::Silhouette;
 use super::record::{Pose, Record};
 use super::size;
 use super::state::State;
@@ -58,12 +59,28 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// the fit stops, and all samples that it overlaps are drawn. Without this
     /// test all parts of a solid along a bisector would be kept until both sides
     /// of it are full.
+    ///
+    /// Where what is hidden is not read: whether no undrawn sample's ray meets the record.
     pub(super) fn is_hidden(&mut self, record: &Record<L>) -> bool {
+        if self.options.organisation.hidden_unread {
+            return self.options.reject_filled && !self.sees(record);
+        }
         self.options.reject_filled
             && record.place.quad.level < self.constants.levels
             && !self.crosses_near(record)
             && self.is_at_most_a_sample(record)
             && self.first_undrawn(record).is_none()
+    }
+
+    /// Whether the ray of a sample that is not drawn yet meets a record.
+    fn sees(&mut self, record: &Record<L>) -> bool {
+        let Pose::Clip(clip, planes) = &record.pose else {
+            unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
+        };
+        self.dp.stage(Stage::Draw);
+        let (dp, cube) = (&mut self.dp, &record.cube);
+        let silhouette = Silhouette::new(dp, &self.constants, cube, planes, clip.w_min);
+        self.canvas.sees(dp, record.place.quad, silhouette)
     }
 
     /// Whether a record lies across the near plane and spans so little depth
@@ -135,7 +152,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// Level of detail: makes a node with children solid if it is small enough.
     #[inline(always)]
-    fn apply_level_of_detail(&mut self, record: &mut Record<L>) {
+    pub(super) fn apply_level_of_detail(&mut self, record: &mut Record<L>) {
         if record.cube.solid {
             return;
         }

@@ -4,6 +4,8 @@
 //! are reported to an [`hwmodel::Probe`]; what the record loop does with whole
 //! records is reported to a [`Watch`].
 
+use super::cage::CageCoordinate;
+use super::record::Record;
 use crate::frame::QuadNode;
 
 /// Receives what happens to records. Every method does nothing by default, so
@@ -18,6 +20,11 @@ pub(super) trait Watch {
     /// occlusion order, 0 (nearest) to 7.
     fn pushed(&mut self, rank: u8) {
         let _ = rank;
+    }
+
+    /// A record was made, and is where it belongs in the picture.
+    fn made<L: CageCoordinate>(&mut self, record: &Record<L>) {
+        let _ = record;
     }
 }
 

@@ -38,7 +38,7 @@ fn a_folder_of_vectors() {
     let folder = at.join("made/rows");
     let first = files(&folder);
     let manifest: Value = serde_json::from_slice(&first["manifest.json"]).unwrap();
-    assert_eq!(manifest["schema"], 3);
+    assert_eq!(manifest["schema"], 4);
     assert_eq!(manifest["scene"], "gen:menger,depth=2");
     assert_eq!(manifest["records"], 5);
     assert_eq!(manifest["word"]["bits"], 32);
@@ -46,14 +46,15 @@ fn a_folder_of_vectors() {
     let centre = blocks.iter().find(|b| b["name"] == "centre").unwrap();
     let rows = centre["rows"].as_u64().unwrap();
     // No record has more than one centre.
-    assert!((1..=5).contains(&rows));
+    assert!((1..=5).contains(&centre["frame_rows"].as_u64().unwrap()));
+    assert!(rows > 5, "rows made for the block");
     assert_eq!(centre["stimulus"]["bits"], 6 * 32);
     let text = String::from_utf8(first["centre.in.hex"].clone()).unwrap();
     let lines = text.lines().filter(|line| !line.starts_with("//"));
     assert_eq!(lines.count() as u64, rows);
     let readme = String::from_utf8(first["README.txt"].clone()).unwrap();
     assert!(readme.contains("$readmemh(\"centre.in.hex\", stimulus);"));
-    assert!(readme.contains("module tb;"));
+    assert!(readme.contains("module centre_tb;"));
     // The same again is the same to the byte; more records are more rows.
     let more = ["--vectors", "more", "--vector-records", "40"];
     model(at, &["--vectors", "again", "--vector-records", "5"]).success();

@@ -11,7 +11,7 @@ use hwmodel::{Memory, OpClass, Probe, StageLevel};
 use rayon::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
-use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::machine::{MOST_OPEN_TILES, Machine, MachineOptions, narrowed};
 use shiftvox::project::{CageKind, Coverage, FrameSetup, SetupOptions};
 
 use crate::common::{lights, times, with_opacities};
@@ -34,18 +34,32 @@ fn machine(organisation: Organisation) -> Machine {
 /// All organisations, that of the image-order paper first.
 fn organisations() -> Vec<Organisation> {
     let mut all = Vec::new();
-    for stack in [StackHolds::Children, StackHolds::Parents] {
-        for leaf_masks in [false, true] {
+    for stack in [StackHolds::Children, StackHolds::Parents, StackHolds::Path] {
+        for (leaf_masks, bricks) in [(false, false), (true, false), (true, true)] {
             for tile_levels in [0, 2, MAX_TILE_LEVELS] {
+                // All eight ways of the rest come up.
+                let rest = all.len();
                 all.push(Organisation {
                     stack,
                     leaf_masks,
+                    bricks,
                     tile_levels,
+                    hidden_unread: rest & 1 != 0,
+                    joined_fill: rest & 2 != 0,
+                    packed: rest & 4 != 0,
                 });
             }
         }
     }
     all
+}
+
+/// The set-up in the words of an organisation: a wide word that is too narrow traps.
+fn in_words(setup: &FrameSetup, organisation: Organisation) -> FrameSetup {
+    match organisation.packed {
+        true => narrowed(setup),
+        false => setup.clone(),
+    }
 }
 
 fn rules() -> [SetupOptions; 5] {
@@ -105,6 +119,7 @@ fn every_organisation_draws_every_scene_alike() {
                 };
                 let draw = |organisation: Organisation| {
                     let mut frame = Frame::new(setup.width, setup.height, false);
+                    let setup = in_words(&setup, organisation);
                     let stats = machine(organisation)
                         .render_within(&view, &setup, &mut frame, MOST_RECORDS)
                         .unwrap();
@@ -141,10 +156,16 @@ fn every_organisation_draws_every_scene_alike() {
                     for (contexts, independence) in [(1, serial[number % 2]), (8, independent)] {
                         let hardware = hardware(organisation, contexts, independence);
                         let mut frame = Frame::new(setup.width, setup.height, false);
-                        machine(Organisation::default())
+                        let setup = in_words(&setup, organisation);
+                        let simulated = machine(Organisation::default())
                             .simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver)
                             .unwrap();
                         assert!(frame == right, "{independence:?}, {contexts}: {}", what());
+                        // A lane takes up a tile only where no record of another one is ready.
+                        let mut counts = simulated.counts.iter();
+                        let open = counts.find(|(name, _)| *name == MOST_OPEN_TILES).unwrap().1;
+                        let is_enough = open <= hardware.all_contexts() || hardware.lanes > 1;
+                        assert!(is_enough, "{open} tiles at once: {}", what());
                         frames += 1;
                     }
                 }
@@ -167,7 +188,7 @@ fn parents_are_stored_less_often_and_leaves_are_not_read() {
         let organisation = Organisation {
             stack,
             leaf_masks,
-            tile_levels: 0,
+            ..Organisation::default()
         };
         let mut frame = Frame::new(setup.width, setup.height, false);
         let drawn =
@@ -198,6 +219,73 @@ fn parents_are_stored_less_often_and_leaves_are_not_read() {
     assert!(deepest <= u64::from(graph.depth), "{deepest}");
 }
 
+/// What each further setting is for, on the same picture.
+#[test]
+fn what_is_hidden_is_not_read_and_what_is_known_is_not_stored() {
+    let graph = graph_of_spec("gen:terrain,depth=7");
+    let camera = camera_at(CameraPlace::Outside, &graph, (128, 128), &mut Dice::new(3));
+    let options = SetupOptions::default();
+    let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+    let reads = |organisation: Organisation| {
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let drawn =
+            machine(organisation).render_probed(&graph.view(), &setup, &mut frame, Counter::new());
+        let all = drawn.unwrap().1.accesses_by(|cell| cell.memory);
+        let of = |memory: Memory| all.get(&memory).map_or((0, 0), |of| (of.reads, of.writes));
+        (
+            of(Memory::Stack).0,
+            of(Memory::Node).0,
+            of(Memory::FillVector),
+        )
+    };
+    let parents = Organisation {
+        stack: StackHolds::Parents,
+        leaf_masks: true,
+        ..Organisation::default()
+    };
+    let (stored, nodes, fill) = reads(parents);
+    let path = Organisation {
+        stack: StackHolds::Path,
+        ..parents
+    };
+    assert_eq!(
+        reads(path),
+        (stored, nodes, fill),
+        "the same, of fewer bits"
+    );
+    let unread = Organisation {
+        hidden_unread: true,
+        ..path
+    };
+    let seen = reads(unread);
+    assert!(3 * seen.1 < 2 * nodes, "{} of {nodes} nodes", seen.1);
+    let bricks = Organisation {
+        bricks: true,
+        ..unread
+    };
+    let of_bricks = reads(bricks);
+    assert!(
+        10 * of_bricks.1 < 7 * seen.1,
+        "{} of {} words",
+        of_bricks.1,
+        seen.1
+    );
+    let joined = Organisation {
+        joined_fill: true,
+        ..unread
+    };
+    let of_joined = reads(joined);
+    assert_eq!((of_joined.0, of_joined.1), (seen.0, seen.1));
+    let (before, after) = (seen.2, of_joined.2);
+    assert!(2 * after.0 < before.0, "{} of {} reads", after.0, before.0);
+    assert!(
+        4 * after.1 < 3 * before.1,
+        "{} of {} writes",
+        after.1,
+        before.1
+    );
+}
+
 /// The samples that are drawn, in order.
 #[derive(Default)]
 struct Drawn(Vec<u64>);
@@ -221,11 +309,12 @@ fn tiles_are_drawn_one_after_the_other() {
     let camera = camera_at(CameraPlace::Outside, &graph, (64, 64), &mut Dice::new(7));
     let options = SetupOptions::default();
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    for stack in [StackHolds::Children, StackHolds::Parents] {
+    for stack in [StackHolds::Children, StackHolds::Parents, StackHolds::Path] {
         let organisation = Organisation {
             stack,
             leaf_masks: true,
             tile_levels: 2,
+            ..Organisation::default()
         };
         let mut frame = Frame::new(64, 64, false);
         let drawn = machine(organisation).render_probed(

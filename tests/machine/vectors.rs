@@ -489,18 +489,25 @@ fn read(folder: &Path, ports: &Value) -> Vec<Row> {
     lines.map(row).collect()
 }
 
+fn constants_of(manifest: &Value) -> Constants {
+    let number = |name: &str| i128::from(manifest["constants"][name].as_i64().unwrap());
+    let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
+    Constants {
+        fraction: number("screen_fraction_bits"),
+        shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
+    }
+}
+
 /// Rows that are not what their block gives, and the first of them; and rows by block.
 fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
     let manifest: Value = serde_json::from_str(&text).unwrap();
-    assert_eq!(manifest["schema"], 3);
-    let number = |name: &str| i128::from(manifest["constants"][name].as_i64().unwrap());
-    let shifts = manifest["constants"]["size_shifts"].as_array().unwrap();
-    let constants = Constants {
-        fraction: number("screen_fraction_bits"),
-        shifts: shifts.iter().map(|s| s.as_i64().unwrap().into()).collect(),
-    };
-    let mut files = BTreeSet::from(["manifest.json".to_owned(), "README.txt".to_owned()]);
+    assert_eq!(manifest["schema"], 4);
+    let constants = constants_of(&manifest);
+    let mut files = ["manifest.json", "README.txt", "parameters.vh"]
+        .map(str::to_owned)
+        .into_iter()
+        .collect::<BTreeSet<_>>();
     let mut wrong = None;
     let mut counts = BTreeMap::new();
     for block in manifest["blocks"].as_array().unwrap() {
@@ -516,6 +523,7 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
         for ports in ["stimulus", "expected"] {
             files.insert(block[ports]["file"].as_str().unwrap().to_owned());
         }
+        files.insert(format!("{name}_tb.v"));
         let stimulus = read(folder, &block["stimulus"]);
         let expected = read(folder, &block["expected"]);
         assert_eq!((stimulus.len(), expected.len()), (rows, rows), "{name}");
@@ -819,4 +827,302 @@ fn changed_bits_are_found(options: &SetupOptions, files: &[&str]) {
         assert!(wrong.is_some_and(|w| w.starts_with(block)), "{file}");
         fs::write(&path, text).unwrap();
     }
+}
+
+/// A block's rows, as a folder has them.
+struct BlockRows {
+    name: String,
+    inputs: Vec<(String, u32, bool)>,
+    outputs: Vec<(String, u32, bool)>,
+    stimulus: Vec<Row>,
+    expected: Vec<Row>,
+}
+
+fn rows_of(folder: &Path) -> (Vec<BlockRows>, Constants) {
+    let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&text).unwrap();
+    let blocks = manifest["blocks"].as_array().unwrap();
+    let fields = |ports: &Value| -> Vec<(String, u32, bool)> {
+        let all = ports["fields"].as_array().unwrap();
+        let field = |f: &Value| {
+            let bits = f["bits"].as_u64().unwrap() as u32;
+            let name = f["name"].as_str().unwrap().to_owned();
+            (name, bits, f["signed"].as_bool().unwrap())
+        };
+        all.iter().map(field).collect()
+    };
+    let found = blocks
+        .iter()
+        .filter(|block| block["rows"].as_u64() > Some(0));
+    let found = found.map(|block| BlockRows {
+        name: block["name"].as_str().unwrap().to_owned(),
+        inputs: fields(&block["stimulus"]),
+        outputs: fields(&block["expected"]),
+        stimulus: read(folder, &block["stimulus"]),
+        expected: read(folder, &block["expected"]),
+    });
+    (found.collect(), constants_of(&manifest))
+}
+
+/// A number with one of its bits stuck.
+fn stuck(value: i128, bit: u32, at_one: bool, bits: u32, signed: bool) -> i128 {
+    let changed = if at_one {
+        value | 1 << bit
+    } else {
+        value & !(1 << bit)
+    };
+    let spare = 128 - bits;
+    match signed {
+        true => changed << spare >> spare,
+        false => changed & ((1 << bits) - 1),
+    }
+}
+
+/// Whether a block has a result for a row: quotients of a divide have four integer bits.
+fn takes(block: &str, row: &Row) -> bool {
+    block != "to_screen_divide" || {
+        let (x, w) = (row.get("x"), row.get("w"));
+        w > 0 && -4 * w <= x && x < 12 * w
+    }
+}
+
+/// Mutants of a block whose inputs or outputs have a bit stuck at 0 or at 1: how many there are, and which
+/// the rows do not tell from the block. An unsigned input's bits above all its values are no wires.
+fn stuck_mutants(block: &BlockRows, constants: &Constants) -> (usize, Vec<String>) {
+    let (mut all, mut alive) = (0, Vec::new());
+    for (at, (name, bits, signed)) in block.inputs.iter().enumerate() {
+        let used = block.stimulus.iter().map(|row| row.values[at]);
+        let used = if *signed {
+            *bits
+        } else {
+            128 - used.max().unwrap_or(0).leading_zeros()
+        };
+        for bit in 0..used {
+            for at_one in [false, true] {
+                all += 1;
+                let is_killed = block
+                    .stimulus
+                    .iter()
+                    .zip(&block.expected)
+                    .any(|(row, right)| {
+                        let value = stuck(row.values[at], bit, at_one, *bits, *signed);
+                        if value == row.values[at] {
+                            return false;
+                        }
+                        let mut values = row.values.clone();
+                        values[at] = value;
+                        let row = Row {
+                            names: row.names.clone(),
+                            values,
+                        };
+                        // An input that the block's rule does not take is found out, too.
+                        !takes(&block.name, &row)
+                            || replay(&block.name, &row, constants) != right.values
+                    });
+                if !is_killed {
+                    alive.push(format!(
+                        "{}: {name}[{bit}] stuck at {}",
+                        block.name,
+                        u8::from(at_one)
+                    ));
+                }
+            }
+        }
+    }
+    for (at, (name, bits, signed)) in block.outputs.iter().enumerate() {
+        let used = block.expected.iter().map(|row| row.values[at]);
+        let used = if *signed {
+            *bits
+        } else {
+            128 - used.max().unwrap_or(0).leading_zeros()
+        };
+        for bit in 0..used {
+            for at_one in [false, true] {
+                all += 1;
+                let shows = |row: &Row| {
+                    stuck(row.values[at], bit, at_one, *bits, *signed) != row.values[at]
+                };
+                if !block.expected.iter().any(shows) {
+                    alive.push(format!(
+                        "{}: {name}[{bit}] stuck at {}",
+                        block.name,
+                        u8::from(at_one)
+                    ));
+                }
+            }
+        }
+    }
+    (all, alive)
+}
+
+/// What somebody who builds a block may get wrong: the block, the fault in words, and what it gives then.
+type Fault = (
+    &'static str,
+    &'static str,
+    fn(&Row, &[i128], u32) -> Vec<i128>,
+);
+
+/// Word of `bits`: what is above it is lost.
+fn wrapped(value: i128, bits: u32) -> i128 {
+    value << (128 - bits) >> (128 - bits)
+}
+
+/// Faults, given a row, what is right, and the bits of a word.
+const FAULTS: [Fault; 17] = [
+    ("filled", "any bit will do", |row, _, _| {
+        vec![i128::from(row.get("vector") != 0)]
+    }),
+    ("centre", "midpoints without the carry", |row, _, bits| {
+        let (min, max) = (row.axes("min"), row.axes("max"));
+        (0..3)
+            .map(|k| wrapped(min[k] + max[k], bits) >> 1)
+            .collect()
+    }),
+    ("centre", "midpoints towards zero", |row, _, _| {
+        let (min, max) = (row.axes("min"), row.axes("max"));
+        (0..3).map(|k| (min[k] + max[k]) / 2).collect()
+    }),
+    ("octant_order", "<= for <", |row, _, _| {
+        let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+        let octant: i128 = (0..3)
+            .map(|k| i128::from(centre[k] >= eye[k]) << (2 - k))
+            .sum();
+        let order = [7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest);
+        std::iter::once(octant).chain(order).collect()
+    }),
+    ("octant_order", "comparison without sign", |row, _, bits| {
+        let plain = |value: i128| value & ((1 << bits) - 1);
+        let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+        let above = |k: usize| i128::from(plain(centre[k]) > plain(eye[k])) << (2 - k);
+        let octant: i128 = (0..3).map(above).sum();
+        let order = [7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest);
+        std::iter::once(octant).chain(order).collect()
+    }),
+    ("detail_depth", "< for <=", |row, _, _| {
+        vec![i128::from(row.get("w_min") > row.get("least"))]
+    }),
+    ("child_corners", "upper and lower exchanged", |row, _, _| {
+        let (min, max, centre) = (row.axes("min"), row.axes("max"), row.axes("centre"));
+        let upper = |k: usize| row.get("octant") >> k & 1 == 1;
+        let low = (0..3).map(|k| if upper(k) { centre[k] } else { min[k] });
+        let high = (0..3).map(|k| if upper(k) { max[k] } else { centre[k] });
+        low.chain(high).collect()
+    }),
+    ("near_node", "< for <= at the left", |row, _, _| {
+        let (x, w) = (row.cage("x"), row.cage("w"));
+        vec![i128::from(
+            x.with(1, &w, 1).least() > 0 && x.with(1, &w, -2).greatest() <= 0,
+        )]
+    }),
+    ("margin_gap", "margins towards zero", |row, _, _| {
+        let below = row.get("below");
+        row.cage("w").each(|w| -(w / (1 << below))).0
+    }),
+    ("plane_quadrant", "not doubled", |row, _, _| {
+        let [a, b, c] = row.plane("plane");
+        let quadrant = row.get("quadrant");
+        vec![c + (quadrant & 1) * a + (quadrant >> 1) * b]
+    }),
+    (
+        "plane_quadrant",
+        "columns and rows exchanged",
+        |row, _, _| {
+            let [a, b, c] = row.plane("plane");
+            let quadrant = row.get("quadrant");
+            vec![2 * c + (quadrant >> 1) * a + (quadrant & 1) * b]
+        },
+    ),
+    ("plane_side", "ties not broken", |row, right, _| {
+        let [a, b, c] = row.plane("plane");
+        match row.flag("sample") && 2 * c + a + b == 0 {
+            true => vec![3],
+            false => right.to_vec(),
+        }
+    }),
+    (
+        "plane_side",
+        "ties broken by b before a",
+        |row, right, _| {
+            let [a, b, c] = row.plane("plane");
+            match row.flag("sample") && right[0] != 3 && 2 * c + a + b == 0 && b != 0 {
+                true => vec![if b > 0 { 1 } else { 2 }],
+                false => right.to_vec(),
+            }
+        },
+    ),
+    ("cube_front", "< for <= above", |row, right, _| {
+        let (max, floor) = (row.axes("max"), row.axes("eye_floor"));
+        match (0..3).any(|k| max[k] == floor[k]) {
+            true => vec![0, 0, 0],
+            false => right.to_vec(),
+        }
+    }),
+    ("fill_update", "bits replaced, not added", |row, _, _| {
+        vec![row.get("bits"), i128::from(row.get("bits") == 15)]
+    }),
+    (
+        "node_choice",
+        "full quadrants not left out",
+        |row, right, _| vec![i128::from(row.get("overlapped") == 0), right[1], right[2]],
+    ),
+    ("size_clip", "< for <=", |row, right, _| {
+        let (x, w) = (row.axes("edge_x"), row.axes("edge_w"));
+        let size: i128 = (0..3).map(|k| x[k].abs().max((x[k] - w[k]).abs())).sum();
+        match size == row.get("most") {
+            true => vec![0],
+            false => right.to_vec(),
+        }
+    }),
+];
+
+/// The rows of two frames tell nearly every block from its mutants, and every named fault from the block.
+#[test]
+fn rows_tell_blocks_from_their_mutants() {
+    let (_, graph, camera) = scenes().swap_remove(0);
+    let (mut all, mut alive) = (0, Vec::new());
+    let mut killed = BTreeSet::new();
+    for coverage in [Coverage::Exact, Coverage::Center] {
+        let shelter = tempfile::tempdir().unwrap();
+        let folder = shelter.path().join("vectors");
+        let request = Request {
+            scene: "a test",
+            records: 100,
+            overflow: Overflow::Trap,
+            folder: &folder,
+            overwrite: false,
+        };
+        let options = options(coverage, CageKind::Frame, 0.125, 32);
+        vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+        let (blocks, constants) = rows_of(&folder);
+        for block in &blocks {
+            let (mutants, left) = stuck_mutants(block, &constants);
+            all += mutants;
+            alive.extend(left);
+            for (at, (name, _, fault)) in FAULTS.iter().enumerate() {
+                let mut rows = block.stimulus.iter().zip(&block.expected);
+                let tells =
+                    |(row, right): (&Row, &Row)| fault(row, &right.values, 32) != right.values;
+                if block.name == *name && rows.any(tells) {
+                    killed.insert(at);
+                }
+            }
+        }
+    }
+    for line in &alive {
+        eprintln!("alive: {line}");
+    }
+    let score = 100.0 * (all - alive.len()) as f64 / all as f64;
+    eprintln!(
+        "{} of {all} stuck bits found: {score:.1} %",
+        all - alive.len()
+    );
+    let missed = FAULTS
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| !killed.contains(at));
+    let missed: Vec<_> = missed
+        .map(|(_, (block, fault, _))| format!("{block}: {fault}"))
+        .collect();
+    assert!(missed.is_empty(), "not found: {missed:?}");
+    assert!(score >= 95.0, "{score}");
 }

@@ -98,6 +98,33 @@ pub struct Organisation {
     /// Levels of the image quadtree above its tiles, each of which is drawn by a walk of its own; 0: one
     /// walk for the picture.
     pub tile_levels: u32,
+    /// Whether a node two levels above the finest voxels holds all voxels below it as a mask of 64 bits, so that the
+    /// nodes between are not read. Of trees stored level by level; needs `leaf_masks`.
+    pub bricks: bool,
+    /// Whether a record is compared with the samples drawn before its node is read: what is hidden is not read.
+    /// Only under the rules that draw outlines.
+    pub hidden_unread: bool,
+    /// Whether the lowest two levels of fill vectors are held as one word of 16 bits, one a sample.
+    pub joined_fill: bool,
+    /// Whether fields of a record and wide words have as many bits as the frame's set-up proves to be enough.
+    pub packed: bool,
+}
+
+impl Organisation {
+    /// What of it there is under a rule that does not draw outlines: vertices can be worked back,
+    /// and what is hidden told, only where both are exact.
+    #[must_use]
+    pub fn without_outlines(self) -> Self {
+        let stack = match self.stack {
+            StackHolds::Path => StackHolds::Parents,
+            stack => stack,
+        };
+        Self {
+            stack,
+            hidden_unread: false,
+            ..self
+        }
+    }
 }
 
 /// What lies on the stack of a record loop.
@@ -110,6 +137,9 @@ pub enum StackHolds {
     /// Parents: a record that is subdivided stays, with a mask of the children that are left. Children are
     /// made one by one when their turn comes, and only what is subdivided is ever stored.
     Parents,
+    /// The way to a record: of each parent its node and the children that are left. Its vertices, planes and place in
+    /// the picture are worked back from those of the descendant that the walk comes from.
+    Path,
 }
 
 /// Most levels above the tiles of an image.
@@ -333,6 +363,13 @@ impl Hardware {
         within("lanes", self.lanes, 1, MAX_LANES)?;
         let tile_levels = self.organisation.tile_levels;
         within("organisation.tile_levels", tile_levels, 0, MAX_TILE_LEVELS)?;
+        let Organisation {
+            bricks, leaf_masks, ..
+        } = self.organisation;
+        if bricks && !leaf_masks {
+            let range = "false where leaf_masks is";
+            return Err(out_of_range("organisation.bricks", bricks, range));
+        }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {

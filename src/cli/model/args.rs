@@ -86,6 +86,9 @@ pub(super) struct TableArgs {
     /// Node caches of 4 KiB to 1 MiB, for this hardware and for the ray caster in every order
     #[arg(long)]
     pub(super) caches: bool,
+    /// What each setting of the hardware's organisation gives, alone and on top of those before
+    #[arg(long)]
+    pub(super) steps: bool,
     /// Growing pictures of this object, and growing objects in this picture
     #[arg(long)]
     pub(super) growth: bool,

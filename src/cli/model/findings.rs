@@ -20,10 +20,13 @@ use crate::lab::model::clock::ClockCheck;
 use crate::lab::model::compare::{self, ComparedLine, Design};
 use crate::lab::model::cost::{FrameCost, Prices};
 use crate::lab::model::design::LightDesign;
+use crate::lab::model::floor::{self, Floor, HalfRow};
 use crate::lab::model::frame::{self, Counted};
 use crate::lab::model::growth::{self, GrowthRow};
 use crate::lab::model::ray_caster::{self, RayCasterReport};
+use crate::lab::model::record::{self, NumberWidths};
 use crate::lab::model::rules::{self, RuleRow};
+use crate::lab::model::steps::{self, StepRow};
 use crate::lab::model::sweep::{self, FormatRow};
 use crate::machine::Simulated;
 use crate::project::{FrameSetup, SetupOptions};
@@ -51,6 +54,12 @@ pub(super) struct Findings {
     pub(super) formats: Vec<FormatRow>,
     pub(super) lanes: Vec<ScalingRow>,
     pub(super) caches: Vec<CacheRow>,
+    /// What every design must move, and half of the ray caster's energy beside it.
+    pub(super) floor: Floor,
+    pub(super) halves: Vec<HalfRow>,
+    pub(super) steps: Vec<StepRow>,
+    /// Bits of a record's numbers: seen, and proven.
+    pub(super) numbers: Vec<NumberWidths>,
     pub(super) pictures: Vec<GrowthRow>,
     pub(super) objects: Vec<GrowthRow>,
 }
@@ -161,6 +170,16 @@ pub(super) fn find(
     } else {
         Vec::new()
     };
+    let floor = floor::floor(graph, &exact, &hardware, &prices.table).map_err(ModelError::from)?;
+    let halves = floor::halves(&caches, &floor);
+    let steps = if tables.steps || tables.all {
+        let drawn = (graph, &setup, &exact);
+        steps::table(drawn, overflow, &hardware, prices, progress)?
+    } else {
+        Vec::new()
+    };
+    let numbers =
+        record::number_widths(graph, &setup, hardware.organisation).map_err(ModelError::from)?;
     let (pictures, objects) = if tables.growth || tables.all {
         let sides = sides_to(size.0.max(size.1));
         let pictures = growth::pictures(name, graph, &camera, &sides, &options, progress)?;
@@ -190,6 +209,10 @@ pub(super) fn find(
         formats,
         lanes,
         caches,
+        floor,
+        halves,
+        steps,
+        numbers,
         pictures,
         objects,
         subject,

@@ -15,7 +15,7 @@ use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
-use crate::lab::model::{caches, cost, heat, plots, record, statistics};
+use crate::lab::model::{caches, cost, floor, heat, plots, record, statistics};
 use crate::picture::png;
 use crate::report::plot::Panel;
 use crate::report::{Cell, Table};
@@ -177,7 +177,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "record": record,
             "records_by_kind": by_kind,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
-            "fill_vector_bits": cost::fill_vector_bits(&found.setup),
+            "fill_vector_bits": cost::fill_store_bits(&found.setup, &found.hardware),
             "accumulator_bits": cost::accumulator_bits(&found.setup),
             "operations": cells,
             "miss_curves": curve,
@@ -197,6 +197,11 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "lanes": found.lanes,
             "caches": found.caches,
             "caches_say": (!found.caches.is_empty()).then(|| caches::sentence(&found.caches)),
+            "floor": found.floor,
+            "halves": found.halves,
+            "halves_say": (!found.halves.is_empty()).then(|| floor::sentence(&found.halves, &found.floor)),
+            "steps": found.steps,
+            "numbers": found.numbers,
             "growing_pictures": found.pictures,
             "growing_objects": found.objects,
             "statistics": list,

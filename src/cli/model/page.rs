@@ -50,7 +50,10 @@ pub(super) fn html(
         figure(format!("{:.1} uJ", energy / 1e6), "a frame"),
         figure(format!("{:.1}", cycles.parallelism), "work over span"),
         figure(
-            format!("{}", cost::fill_vector_bits(&found.setup) / 8192),
+            format!(
+                "{}",
+                cost::fill_store_bits(&found.setup, &found.hardware) / 8192
+            ),
             "kilobytes of fill vectors",
         ),
     ]);

@@ -87,7 +87,7 @@ pub(super) fn summary(found: &Findings) -> Table {
         "fill vectors",
         format!(
             "{} kbit",
-            grouped(cost::fill_vector_bits(&found.setup) / 1024)
+            grouped(cost::fill_store_bits(&found.setup, &found.hardware) / 1024)
         ),
     );
     let accumulators = cost::accumulator_bits(&found.setup);
@@ -203,6 +203,10 @@ pub(super) fn short_tables(found: &Findings) -> Vec<Table> {
     }
     if !found.caches.is_empty() {
         all.push(tables::caches(&found.caches));
+        all.push(tables::halves(&found.halves, &found.floor));
+    }
+    if !found.steps.is_empty() {
+        all.push(tables::steps(&found.steps));
     }
     if !found.pictures.is_empty() {
         all.push(tables::growth(
@@ -223,6 +227,7 @@ pub(super) fn long_tables(found: &Findings) -> Vec<Table> {
         tables::classes(&found.counted),
         tables::levels(&found.counted),
         tables::record(&found.counted.fields),
+        tables::numbers(&found.numbers),
         tables::records_by_kind(&found.counted),
         tables::miss_curve(&found.counted),
         tables::clock(&found.clock),

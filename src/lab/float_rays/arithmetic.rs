@@ -83,8 +83,8 @@ pub(super) trait Arithmetic {
     /// goes on: its longest chain. What can be done at the same time is not in it.
     fn wait(&mut self, step: FloatStep, times: u32);
 
-    /// A node is read.
-    fn node(&mut self, node: u32);
+    /// A word of a node is read.
+    fn node(&mut self, word: u64);
 
     /// `a + b`.
     #[inline(always)]
@@ -155,5 +155,5 @@ impl Arithmetic for Plain {
     fn wait(&mut self, _: FloatStep, _: u32) {}
 
     #[inline(always)]
-    fn node(&mut self, _: u32) {}
+    fn node(&mut self, _: u64) {}
 }

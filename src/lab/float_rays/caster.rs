@@ -2,7 +2,7 @@
 
 use super::arithmetic::{Arithmetic, FloatStep};
 use super::{LEAST_SLOPE, MANTISSA_BITS};
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 
 /// What is put aside when a ray descends: the node above, and where the ray leaves it.
 #[derive(Debug, Clone, Copy, Default)]
@@ -17,8 +17,8 @@ pub(super) struct Caster<'g> {
     pub(super) last_level: u32,
     /// Levels of the object.
     pub(super) depth: u32,
-    /// Whether a node says which of its children are leaves; these need not be read.
-    pub(super) leaf_masks: bool,
+    /// How nodes lie in memory.
+    pub(super) layout: NodeLayout,
 }
 
 impl Caster<'_> {
@@ -63,8 +63,7 @@ impl Caster<'_> {
             return None;
         }
         let mut node = self.graph.root;
-        by.node(node);
-        by.wait(FloatStep::NodeRead, 1);
+        self.read(node, 0, by);
         let mut mask = self.graph.mask(node);
         if mask == 0 || self.last_level == 0 {
             return Some((node, [0; 4]));
@@ -106,14 +105,12 @@ impl Caster<'_> {
                     let level = MANTISSA_BITS - bit;
                     let child_mask = self.graph.mask(child);
                     let is_solid = child_mask == 0 || level == self.last_level;
-                    let is_read = !(is_solid && self.leaf_masks);
-                    if is_read {
-                        by.node(child);
-                    }
                     // Is there anything of the ray in it, and where is it?
                     by.wait(FloatStep::FloatMinMax, 1);
                     by.wait(FloatStep::FloatCompare, 1);
-                    by.wait(FloatStep::NodeRead, u32::from(is_read));
+                    if !(is_solid && self.layout.leaf_masks) {
+                        self.read(child, level, by);
+                    }
                     // Its place: the bits of the mask before it, counted and added.
                     by.count(FloatStep::Logic, 1);
                     by.count(FloatStep::IntegerAdd, 2);
@@ -185,10 +182,10 @@ impl Caster<'_> {
             // The level, what was put aside there, and that node.
             by.wait(FloatStep::Shift, 1);
             by.wait(FloatStep::StackRead, 1);
-            by.wait(FloatStep::NodeRead, 1);
             let above = stack[bit as usize];
             node = above.node;
-            by.node(node);
+            // The node's children are a level below it.
+            self.read(node, MANTISSA_BITS - 1 - bit, by);
             mask = self.graph.mask(node);
             exit = above.exit;
             octant = 0;
@@ -202,6 +199,16 @@ impl Caster<'_> {
                 }
             }
             aside = 0.0;
+        }
+    }
+
+    /// Reads a node at a level, and waits for it.
+    #[inline]
+    fn read<A: Arithmetic>(&self, node: u32, level: u32, by: &mut A) {
+        let words = self.layout.words(node, level);
+        by.wait(FloatStep::NodeRead, u32::from(!words.is_empty()));
+        for word in words {
+            by.node(word);
         }
     }
 

@@ -11,7 +11,7 @@ use super::arithmetic::{Arithmetic, FloatStep};
 use super::caster::Caster;
 use super::{MAX_LEVEL, RayOrder, Rays};
 use crate::frame::Frame;
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 use crate::project::FrameSetup;
 
 /// Steps of a frame.
@@ -59,8 +59,8 @@ impl FloatRayCounts {
 /// What a ray reads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RayRead {
-    /// A node's mask and first child.
-    Node(u32),
+    /// A word of a node, by its place among all words.
+    Node(u64),
     /// Colour and normal of a node.
     Attribute(u32),
 }
@@ -83,21 +83,21 @@ impl Arithmetic for Counting<'_> {
     }
 
     #[inline]
-    fn node(&mut self, node: u32) {
+    fn node(&mut self, word: u64) {
         self.counts.steps[FloatStep::NodeRead as usize] += 1;
-        (self.reads)(RayRead::Node(node));
+        (self.reads)(RayRead::Node(word));
     }
 }
 
 /// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
-/// `leaf_masks`: whether nodes say which of their children are leaves, so that these need not be
-/// read. `reads` is called for every node and attribute that is read, in order.
+/// `layout`: how nodes lie in memory.
+/// `reads` is called for every node and attribute that is read, in order.
 pub fn count(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
     frame: &mut Frame,
     order: RayOrder,
-    leaf_masks: bool,
+    layout: NodeLayout,
     reads: &mut dyn FnMut(RayRead),
 ) -> FloatRayCounts {
     frame.clear();
@@ -106,7 +106,7 @@ pub fn count(
         graph,
         last_level: setup.depth.min(MAX_LEVEL),
         depth: setup.depth,
-        leaf_masks,
+        layout,
     };
     let mut by = Counting {
         counts: FloatRayCounts::default(),
@@ -182,7 +182,7 @@ mod tests {
             &setup,
             &mut frame,
             RayOrder::Rows,
-            false,
+            NodeLayout::default(),
             &mut |_| (),
         );
         assert_eq!(frame.drawn(), 0);
@@ -232,7 +232,7 @@ mod tests {
             &setup,
             &mut counted,
             RayOrder::Rows,
-            false,
+            NodeLayout::default(),
             &mut reads,
         );
         let error = CoverageError::between(&counted.voxel, &plain.voxel);
@@ -251,7 +251,15 @@ mod tests {
         assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
         // A node that says which children are leaves saves each ray that hits the last read.
         let mut frame = plain.clone();
-        let with_leaf_masks = count(&view, &setup, &mut frame, RayOrder::Rows, true, &mut |_| ());
+        let masks = NodeLayout::new(&view, true, false);
+        let with_leaf_masks = count(
+            &view,
+            &setup,
+            &mut frame,
+            RayOrder::Rows,
+            masks,
+            &mut |_| (),
+        );
         assert_eq!(frame, counted);
         let hits = counted.drawn() as u64;
         assert_eq!(
@@ -265,7 +273,14 @@ mod tests {
         // The other orders draw the same, but for roundings.
         for order in [RayOrder::Tiles, RayOrder::Morton] {
             let mut frame = plain.clone();
-            let other = count(&view, &setup, &mut frame, order, false, &mut |_| ());
+            let other = count(
+                &view,
+                &setup,
+                &mut frame,
+                order,
+                NodeLayout::default(),
+                &mut |_| (),
+            );
             assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
             assert_eq!(other.rays, counts.rays);
             assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());

@@ -22,7 +22,7 @@ pub use counted::{FloatRayCounts, RayRead, count};
 pub use order::RayOrder;
 
 use crate::frame::{Frame, NO_NODE};
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 use crate::project::vector::cross;
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
@@ -55,7 +55,7 @@ impl Engine for FloatRays {
             graph,
             last_level: setup.depth.min(MAX_LEVEL),
             depth: setup.depth,
-            leaf_masks: false,
+            layout: NodeLayout::default(),
         };
         let mut steps = 0;
         let mut drawn = 0;

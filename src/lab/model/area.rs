@@ -18,7 +18,7 @@ use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
-use super::cost::{Prices, accumulator_bits, fill_vector_bits, stack_bits};
+use super::cost::{Prices, accumulator_bits, fill_store_bits, stack_bits};
 use super::range::Range;
 use super::ray_caster;
 use super::ray_cycles::RayHardware;
@@ -134,6 +134,8 @@ const ADDRESS_BITS: u32 = 32;
 /// each), entry, exit, exit of the parent, side, direction to come (three words), and
 /// node, mask, two octants, level.
 const RAY_BITS: u64 = 32 * (3 + 3 + 3 + 4 + 3) + 32 + 8 + 3 + 3 + 5;
+/// Bits of a brick's voxels, which a ray keeps too, and where they begin.
+const BRICK_BITS: u64 = 64 + 32;
 
 /// Bits beside a cache's lines: the rest of the address, whether the line is
 /// there, and its turn among its set's.
@@ -220,7 +222,11 @@ pub fn light(
         stack_bits(hardware, frame.record_bits),
         prices,
     )?;
-    area.memory("fill vectors", fill_vector_bits(frame.setup), prices)?;
+    area.memory(
+        "fill vectors",
+        fill_store_bits(frame.setup, hardware),
+        prices,
+    )?;
     area.memory("accumulators", accumulator_bits(frame.setup), prices)?;
     caches(area, hardware, prices)
 }
@@ -266,7 +272,16 @@ pub fn of_rays(
         area.units(step.name(), of, prices)?;
     }
     let contexts = lanes * u64::from(rays.contexts);
-    area.register_bits("rays of the contexts", contexts * RAY_BITS, prices)?;
+    let brick = if hardware.organisation.bricks {
+        BRICK_BITS
+    } else {
+        0
+    };
+    area.register_bits(
+        "rays of the contexts",
+        contexts * (RAY_BITS + brick),
+        prices,
+    )?;
     area.memory(
         "stacks of rays",
         lanes * ray_caster::stack_bits(rays),

@@ -1,5 +1,7 @@
 //! One frame of the machine, with everything counted.
 
+use std::borrow::Cow;
+
 use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
@@ -7,11 +9,11 @@ use hwmodel::cycles::{self, CycleReport, Hardware, NoObserver, Observer, Organis
 use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
-use super::ModelError;
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
+use super::{ModelError, cost};
 use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
-use crate::machine::{Machine, MachineOptions, SimulateError, Simulated};
+use crate::machine::{Machine, MachineOptions, SimulateError, Simulated, narrowed};
 use crate::measure::CoverageError;
 use crate::picture::{Shading, lights};
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
@@ -19,8 +21,6 @@ use crate::rays::Rays;
 
 /// Bits of a pixel: red, green and blue.
 pub const PIXEL_BITS: u32 = 24;
-/// Bits of a fill vector.
-pub const FILL_VECTOR_BITS: u32 = 4;
 
 /// What was counted while a frame was drawn.
 #[derive(Debug)]
@@ -76,7 +76,7 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
         stack_bits: record_bits(&record_fields(setup, graph.len(), hardware.organisation)),
         node_bits: 8 * hardware.node_cache.entry_bytes,
         attribute_bits: 8 * hardware.attribute_cache.entry_bytes,
-        fill_vector_bits: FILL_VECTOR_BITS,
+        fill_vector_bits: cost::fill_access_bits(setup, hardware.organisation),
         pixel_bits: PIXEL_BITS,
     }
 }
@@ -90,6 +90,14 @@ fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
     })
 }
 
+/// The set-up in the words that an organisation has.
+fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetup> {
+    match organisation.packed {
+        true => Cow::Owned(narrowed(setup)),
+        false => Cow::Borrowed(setup),
+    }
+}
+
 /// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
 ///
 /// # Errors
@@ -100,6 +108,7 @@ pub fn count(
     hardware: &Hardware,
     overflow: Overflow,
 ) -> Result<Counted, EngineError> {
+    let setup = &*in_words(setup, hardware.organisation);
     let line = hardware.node_cache.line_bytes;
     let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
     let mut frame = Frame::new(setup.width, setup.height, true);
@@ -151,6 +160,7 @@ pub fn count_priced(
     organisation: Organisation,
     overflow: Overflow,
 ) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
+    let setup = &*in_words(setup, organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let probes = (Counter::new(), ShiftProbe::new());
     let mut machine = machine(overflow, organisation);
@@ -169,6 +179,7 @@ pub fn simulate<O: Observer>(
     overflow: Overflow,
     observer: &mut O,
 ) -> Result<(Frame, Simulated), ModelError> {
+    let setup = &*in_words(setup, hardware.organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     let hardware = with_records(graph, setup, hardware);
     let mut machine = machine(overflow, hardware.organisation);
@@ -195,6 +206,7 @@ pub fn record_turns(
     overflow: Overflow,
     most_bytes: usize,
 ) -> Result<Option<(Frame, Recording)>, ModelError> {
+    let setup = &*in_words(setup, organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
     // One that lets every frame through.
     let mut hardware = Hardware::preset("tiny")?;
@@ -214,6 +226,7 @@ pub fn replay(
     setup: &FrameSetup,
     hardware: &Hardware,
 ) -> Result<CycleReport, ModelError> {
+    let setup = &*in_words(setup, hardware.organisation);
     let hardware = with_records(graph, setup, hardware);
     hardware.check()?;
     let mut workload = turns.replay(&hardware);

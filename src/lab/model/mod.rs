@@ -5,8 +5,9 @@
 //! with the ray caster; [`cost`] turns counts into energy and area, [`clock`] compares the
 //! units with the clock, [`design`] does all of that; [`rules`],
 //! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
-//! formats, over sizes of the node cache, and over pictures and objects; [`mod@explore`] over many
-//! hardwares; [`claims`] compares the image-order
+//! formats, over sizes of the node cache, and over pictures and objects; [`steps`] over the settings
+//! of a hardware's organisation; [`mod@explore`] over many hardwares; [`floor`] says what every
+//! design must move; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 
 pub mod area;
@@ -17,6 +18,7 @@ pub mod compare;
 pub mod cost;
 pub mod design;
 pub mod explore;
+pub mod floor;
 pub mod frame;
 pub mod growth;
 pub mod heat;
@@ -29,6 +31,7 @@ pub mod record;
 pub mod rules;
 pub mod safe;
 pub mod statistics;
+pub mod steps;
 pub mod sweep;
 pub mod tables;
 #[cfg(feature = "cli")]

@@ -13,7 +13,7 @@ use super::cost::{FrameCost, OuterTraffic, Prices, outer_energy};
 use super::frame;
 use super::ray_cycles::{self, RayCycles, RayHardware, RayMisses};
 use crate::frame::Frame;
-use crate::graph::Graph;
+use crate::graph::{Graph, NodeLayout};
 use crate::lab::float_rays::{self, FloatRayCounts, FloatStep, RayOrder, RayRead};
 use crate::measure::CoverageError;
 use crate::project::FrameSetup;
@@ -126,16 +126,18 @@ pub fn cast(
     let node_entry = u64::from(hardware.node_cache.entry_bytes);
     let attribute_entry = u64::from(hardware.attribute_cache.entry_bytes);
     let view = graph.view();
+    let organisation = hardware.organisation;
+    let layout = NodeLayout::new(&view, organisation.leaf_masks, organisation.bricks);
     let counts = float_rays::count(
         &view,
         setup,
         &mut frame,
         order,
-        hardware.organisation.leaf_masks,
+        layout,
         &mut |read| match read {
-            RayRead::Node(node) => {
+            RayRead::Node(word) => {
                 for cache in &mut nodes {
-                    cache.access(u64::from(node) * node_entry);
+                    cache.access(word * node_entry);
                 }
             }
             RayRead::Attribute(node) => {

@@ -2,13 +2,17 @@
 //! architect needs for the stack's width.
 //!
 //! Numbers have as many bits as their greatest value needs, coordinates those
-//! of the frame's format. Poses share their bits: a record has one at a time,
+//! of the frame's format or, packed, those that its set-up proves to be enough. Poses share their bits: a record has one at a time,
 //! and under the rules that draw outlines there is one pose alone.
 
 use hwmodel::cycles::{Organisation, StackHolds};
 use hwmodel::memory::RecordBits;
+use serde::Serialize;
 
-use crate::project::{CageKind, FrameSetup};
+use crate::frame::Frame;
+use crate::graph::Graph;
+use crate::machine::{Machine, MachineOptions, RecordNumber, proven_widths};
+use crate::project::{CageKind, EngineError, FrameSetup};
 
 /// A field of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,10 +38,6 @@ pub enum FieldPresence {
     AsFinestVoxel,
 }
 
-/// Silhouette plane coefficients of a record: three planes of three, and
-/// three constants.
-const PLANE_WORDS: u32 = 12;
-
 /// Bits of a number from 0 to `greatest`.
 fn bits_to(greatest: u64) -> u32 {
     u64::BITS - greatest.leading_zeros()
@@ -52,11 +52,25 @@ pub fn record_fields(
 ) -> Vec<RecordField> {
     let word = setup.format.bits();
     let wide = setup.format.wide().bits();
-    let vertices = match setup.options.cage {
-        CageKind::Corners => 8,
-        CageKind::Frame => 4,
+    let (corners, edges) = match setup.options.cage {
+        CageKind::Corners => (8, 0),
+        CageKind::Frame => (1, 3),
     };
+    let vertices = corners + edges;
     let exact = setup.options.coverage.draws_outlines();
+    let organisation = if exact {
+        organisation
+    } else {
+        organisation.without_outlines()
+    };
+    let proven = match organisation.packed {
+        true => proven_widths(setup, nodes),
+        false => None,
+    };
+    let bits_of = |number: RecordNumber, otherwise: u32| match &proven {
+        Some(proven) => proven.numbers[&number].bits().min(otherwise),
+        None => otherwise,
+    };
     let position = bits_to(1 << setup.level_bound());
     let field = |name, bits, held| RecordField { name, bits, held };
     let mut fields = vec![
@@ -70,6 +84,29 @@ pub fn record_fields(
             bits_to(u64::from(setup.level_bound())),
             FieldPresence::Always,
         ),
+    ];
+    if organisation.stack != StackHolds::Children {
+        // Its node need not be read again: the place of its children stands where the node's would.
+        if organisation.bricks {
+            let places = bits_to(nodes.saturating_sub(1) as u64);
+            fields.push(field("voxels of a brick", 64, FieldPresence::Always));
+            fields.push(field("where they begin", places, FieldPresence::Always));
+        }
+        // Of a brick, which children it has follows from its voxels.
+        let masks = match (organisation.leaf_masks, organisation.bricks) {
+            (true, false) => 16,
+            _ => 8,
+        };
+        fields.push(field("which children it has", masks, FieldPresence::Always));
+        fields.push(field("children left", 8, FieldPresence::Always));
+    }
+    let quad_level = bits_to(u64::from(setup.levels));
+    if organisation.stack == StackHolds::Path {
+        fields.push(field("inside", 1, FieldPresence::Always));
+        fields.push(field("quadtree level", quad_level, FieldPresence::Always));
+        return fields;
+    }
+    fields.extend([
         // A part of a solid is below its voxel's level; under the exact rule
         // solids have no parts.
         field(
@@ -85,30 +122,35 @@ pub fn record_fields(
             true => field("solid, inside", 2, FieldPresence::Always),
             false => field("solid, inside, pose", 3, FieldPresence::Always),
         },
-        field("lowest vertex", 3 * position, FieldPresence::Always),
-        // It can be had from the lowest vertex and the level; the image-order paper keeps it.
-        field("highest vertex", 3 * position, FieldPresence::Always),
         field(
-            "quadtree level",
-            bits_to(u64::from(setup.levels)),
+            "lowest vertex",
+            3 * bits_of(RecordNumber::Lowest, position),
             FieldPresence::Always,
         ),
+        // It can be had from the lowest vertex and the level; the image-order paper keeps it.
+        field("highest vertex", 3 * position, FieldPresence::Always),
+        field("quadtree level", quad_level, FieldPresence::Always),
         field("quadtree place", 2 * setup.levels, FieldPresence::Always),
         field(
             "clip X, Y, W",
-            3 * vertices * word,
+            corners
+                * (2 * bits_of(RecordNumber::ClipXy, word) + bits_of(RecordNumber::ClipW, word))
+                + edges
+                    * (2 * bits_of(RecordNumber::EdgeXy, word)
+                        + bits_of(RecordNumber::EdgeW, word)),
             FieldPresence::InClipSpace,
         ),
-        field("least W", word, FieldPresence::InClipSpace),
-    ];
-    if organisation.stack == StackHolds::Parents {
-        // Its node need not be read again: the place of its children stands where the node's would.
-        let masks = if organisation.leaf_masks { 16 } else { 8 };
-        fields.push(field("which children it has", masks, FieldPresence::Always));
-        fields.push(field("children left", 8, FieldPresence::Always));
-    }
+        field(
+            "least W",
+            bits_of(RecordNumber::LeastW, word),
+            FieldPresence::InClipSpace,
+        ),
+    ]);
     if exact {
-        let planes = PLANE_WORDS * wide;
+        // Three planes of three coefficients, and three constants.
+        let planes = 6 * bits_of(RecordNumber::PlaneAb, wide)
+            + 3 * bits_of(RecordNumber::PlaneC, wide)
+            + 3 * bits_of(RecordNumber::AxisC, wide);
         fields.push(field("silhouette planes", planes, FieldPresence::Always));
         fields.push(field("least W above 0", 1, FieldPresence::AsFinestVoxel));
     } else {
@@ -122,6 +164,76 @@ pub fn record_fields(
     fields
 }
 
+/// Bits of one of a record's numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct NumberWidths {
+    /// Its name.
+    pub name: &'static str,
+    /// How many of them a record has.
+    pub count: u32,
+    /// Bits that the frame's records took.
+    pub seen: u32,
+    /// Bits that the set-up proves to be enough.
+    pub proven: u32,
+    /// Bits that the hardware has.
+    pub used: u32,
+}
+
+/// The widths of a record's numbers in a frame; none under the rules that do not draw outlines.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn number_widths(
+    graph: &Graph,
+    setup: &FrameSetup,
+    organisation: Organisation,
+) -> Result<Vec<NumberWidths>, EngineError> {
+    let Some(proven) = proven_widths(setup, graph.len()) else {
+        return Ok(Vec::new());
+    };
+    let mut machine = Machine::new(MachineOptions {
+        organisation,
+        ..MachineOptions::default()
+    });
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let seen = machine.seen_numbers(&graph.view(), setup, &mut frame)?;
+    let word = setup.format.bits();
+    let wide = setup.format.wide().bits();
+    let (corners, edges) = match setup.options.cage {
+        CageKind::Corners => (8, 0),
+        CageKind::Frame => (1, 3),
+    };
+    let position = bits_to(1 << setup.level_bound());
+    let row = |number: RecordNumber| {
+        let bits = proven.numbers[&number].bits();
+        // How many there are, and their bits without packing; what is not a coordinate has its proven bits anyway.
+        let (count, plain) = match number {
+            RecordNumber::Node | RecordNumber::Level | RecordNumber::QuadLevel => (1, bits),
+            RecordNumber::QuadPlace => (2, bits),
+            RecordNumber::Lowest | RecordNumber::Highest => (3, position),
+            RecordNumber::ClipXy => (2 * corners, word),
+            RecordNumber::ClipW => (corners, word),
+            RecordNumber::EdgeXy => (2 * edges, word),
+            RecordNumber::EdgeW => (edges, word),
+            RecordNumber::LeastW => (1, word),
+            RecordNumber::PlaneAb => (6, wide),
+            RecordNumber::PlaneC | RecordNumber::AxisC => (3, wide),
+        };
+        NumberWidths {
+            name: number.name(),
+            count,
+            seen: seen.get(&number).map_or(0, |span| span.bits()),
+            proven: bits,
+            used: match organisation.packed {
+                true => bits.min(plain),
+                false => plain,
+            },
+        }
+    };
+    let rows = RecordNumber::ALL.into_iter().map(row);
+    Ok(rows.filter(|row| row.count > 0).collect())
+}
+
 /// Bits of a stack's entry, which holds records of any kind.
 #[must_use]
 pub fn record_bits(fields: &[RecordField]) -> u32 {
@@ -133,15 +245,31 @@ pub fn record_bits(fields: &[RecordField]) -> u32 {
 #[must_use]
 pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisation) -> u64 {
     let record = u64::from(record_bits);
-    if organisation.stack == StackHolds::Children {
-        return record;
+    let word = u64::from(setup.format.bits());
+    match (organisation.stack, setup.options.cage) {
+        (StackHolds::Children, _) => record,
+        // Of each coordinate: 27 vertices, or what the children's corners and edges are made from.
+        (StackHolds::Parents, CageKind::Corners) => 2 * record + 3 * 27 * word,
+        (StackHolds::Parents, CageKind::Frame) => 2 * record + 3 * 4 * word,
+        (StackHolds::Path, cage) => {
+            // The stack's entry is not the record; a node's number takes 32 bits at most.
+            let whole = Organisation {
+                stack: StackHolds::Parents,
+                ..organisation
+            };
+            let nodes = u32::MAX as usize;
+            let record = record_bits_of(setup, nodes, whole);
+            match cage {
+                CageKind::Corners => 2 * record + 3 * 27 * word,
+                // The parent's numbers are its lowest child's, the edges doubled: wires.
+                CageKind::Frame => 2 * record,
+            }
+        }
     }
-    // Of each coordinate: 27 vertices, or eight corners and the edges that they share.
-    let numbers = match setup.options.cage {
-        CageKind::Corners => 27,
-        CageKind::Frame => 8 + 3,
-    };
-    2 * record + 3 * numbers * u64::from(setup.format.bits())
+}
+
+fn record_bits_of(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> u64 {
+    u64::from(record_bits(&record_fields(setup, nodes, organisation)))
 }
 
 /// Bits of a frame's records by their kind. Under the rules that draw outlines
@@ -206,7 +334,7 @@ mod tests {
             ..Organisation::default()
         };
         assert_eq!(context_bits(&frame, 1000, Organisation::default()), 1000);
-        assert_eq!(context_bits(&frame, 1000, parents), 2000 + 3 * 11 * 64);
+        assert_eq!(context_bits(&frame, 1000, parents), 2000 + 3 * 4 * 64);
     }
 
     #[test]

@@ -3,12 +3,15 @@
 //! import the machine, never the reverse.
 
 mod descent;
+mod directed;
 #[cfg(test)]
 pub(crate) mod mutants;
 mod positions;
 mod simulate;
 mod vertices;
+mod widths;
 
 pub use positions::{Positions, Space, visit_positions};
-pub use simulate::{SimulateError, Simulated};
+pub use simulate::{MOST_OPEN_TILES, SimulateError, Simulated};
 pub(crate) use vertices::{Cage, cages_along};
+pub use widths::{NumberSpan, NumberSpans, ProvenWidths, RecordNumber, narrowed, proven_widths};

@@ -83,6 +83,20 @@ impl<L: CageCoordinate, const MUTATION: u8> CageCoordinate for Mutated<L, MUTATI
         Self(pool[octant])
     }
 
+    type Seed = [L; 8];
+
+    fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> [L; 8] {
+        self.pool(dp)
+    }
+
+    fn grow<P: Probe>(_: &mut Datapath<P>, seed: &[L; 8], octant: usize) -> Self {
+        Self(seed[octant])
+    }
+
+    fn of_parent<P: Probe>(&self, dp: &mut Datapath<P>, octant: u8) -> Self {
+        Self(self.0.of_parent(dp, octant))
+    }
+
     fn span<P: Probe>(&self, dp: &mut Datapath<P>) -> (Word, Word) {
         self.0.span(dp)
     }

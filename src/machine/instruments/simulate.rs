@@ -19,7 +19,8 @@ use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
 use crate::machine::engine::Machine;
 use crate::machine::heat::Heat;
 use crate::machine::options::MachineOptions;
-use crate::machine::parents::{Parent, TileView};
+use crate::machine::parents::{Parent, Stored, TileView};
+use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
 use crate::machine::state::State;
 use crate::machine::watch::Watch;
@@ -176,11 +177,15 @@ impl Machine {
             free: Vec::new(),
             // The first sees what there is: nothing is above the whole picture.
             tiles: vec![TileView::new(QuadNode::ROOT)],
+            walks: vec![Walk::default()],
+            open: Open::default(),
             shown: 0,
         };
         let cycles = cycles::simulate(hardware, &mut steps, observer)?;
+        let most_open = steps.open.most;
         let (mut counts, log, watch) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
+        counts.push((MOST_OPEN_TILES, most_open));
         if let (Some(heat), Some(shares)) = (watch.heat, &mut frame.records) {
             heat.write_shares(frame.width, shares);
         }
@@ -213,7 +218,36 @@ enum Work<L: CageCoordinate> {
     Record(Record<L>),
     /// A parent: in registers if it was not stored, else on the stack.
     Parent(Parent<L>),
+    /// A parent of which the way is on the stack.
+    Way(PathEntry, QuadNode),
 }
+
+/// The walk that draws a tile.
+struct Walk<L> {
+    /// The record that it comes from.
+    last: Option<Record<L>>,
+    /// Its work that waits.
+    waiting: u32,
+}
+
+impl<L> Default for Walk<L> {
+    fn default() -> Self {
+        Self {
+            last: None,
+            waiting: 0,
+        }
+    }
+}
+
+/// Tiles that are begun and have work left.
+#[derive(Default)]
+struct Open {
+    now: u64,
+    most: u64,
+}
+
+/// The counter of tiles that were under way at once: as many need fill vectors on the chip.
+pub const MOST_OPEN_TILES: &str = "most_open_tiles";
 
 /// The machine, and the work that waits for its turn.
 struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
@@ -224,6 +258,9 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     free: Vec<u32>,
     /// What each tile sees of the fill vectors above it.
     tiles: Vec<TileView>,
+    /// By tile, its walk.
+    walks: Vec<Walk<L>>,
+    open: Open,
     /// The tile whose view is in place.
     shown: usize,
 }
@@ -239,12 +276,19 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             Work::Tiles(quad) => *quad,
             Work::Record(record) => record.place.quad,
             Work::Parent(parent) => parent.record.place.quad,
+            Work::Way(_, quad) => *quad,
         };
         let image_node = ImageNode {
             level: quad.level,
             x: quad.x,
             y: quad.y,
         };
+        let walk = &mut self.walks[self.shown];
+        if !matches!(work, Work::Tiles(_)) {
+            walk.waiting += 1;
+            self.open.now += u64::from(walk.waiting == 1);
+            self.open.most = self.open.most.max(self.open.now);
+        }
         let entry = (work, self.shown);
         let item = if let Some(at) = self.free.pop() {
             self.waiting[at as usize] = entry;
@@ -282,7 +326,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
 
     /// Begins the tiles of a node of the image quadtree: itself, or its quadrants later.
     fn begin_tiles(&mut self, quad: QuadNode, children: &mut Vec<Child>) {
-        if self.state.canvas.fill.vector(quad) == FULL && quad.level > 0 {
+        if self.state.canvas.fill.peek(quad) == FULL && quad.level > 0 {
             // It lies beside the picture.
             return;
         }
@@ -294,6 +338,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             return;
         }
         self.tiles.push(TileView::new(quad));
+        self.walks.push(Walk::default());
         self.switch_to(self.tiles.len() - 1);
         match self.state.options.organisation.stack {
             StackHolds::Children => {
@@ -304,7 +349,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
                 }
                 self.hand_over_records(children);
             }
-            StackHolds::Parents => {
+            StackHolds::Parents | StackHolds::Path => {
                 if let Some(object) = self.state.object() {
                     self.hand_over(Work::Parent(object), FIRST_PLACE, children);
                 }
@@ -316,7 +361,9 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     fn parent_turn(&mut self, mut parent: Parent<L>, children: &mut Vec<Child>) {
         // The scheduler has stacks of its own; addresses only distinguish one read from another.
         let address = u64::from(parent.record.cube.level);
-        let Some(child) = self.state.parent_turn(&mut parent, address) else {
+        let child = self.state.parent_turn(&mut parent, address);
+        self.walks[self.shown].last = Some(parent.record);
+        let Some(child) = child else {
             if !parent.is_done() {
                 self.hand_over(Work::Parent(parent), LAST_PLACE, children);
             }
@@ -324,8 +371,21 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         };
         self.hand_over(Work::Parent(child), FIRST_PLACE, children);
         if !parent.is_done() {
-            self.state.store(&mut parent, address);
-            self.hand_over(Work::Parent(parent), LAST_PLACE, children);
+            let quad = parent.record.place.quad;
+            let work = match self.state.store(parent, address) {
+                Stored::Whole(parent) => Work::Parent(parent),
+                Stored::Way(entry) => Work::Way(entry, quad),
+            };
+            self.hand_over(work, LAST_PLACE, children);
+        }
+    }
+
+    /// The turn of a parent of which the way is on the stack.
+    fn way_turn(&mut self, entry: &PathEntry, children: &mut Vec<Child>) {
+        let from = self.walks[self.shown].last.as_ref();
+        let address = u64::from(entry.level);
+        if let Some(parent) = self.state.take_back(entry, from, address) {
+            self.parent_turn(parent, children);
         }
     }
 
@@ -355,6 +415,12 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
                 self.hand_over_records(children);
             }
             Work::Parent(parent) => self.parent_turn(parent, children),
+            Work::Way(entry, _) => self.way_turn(&entry, children),
+        }
+        if !matches!(work, Work::Tiles(_)) {
+            let walk = &mut self.walks[tile];
+            walk.waiting -= 1;
+            self.open.now -= u64::from(walk.waiting == 0);
         }
         self.state.dp.probe_mut().ended(Some(item), children);
         self.trap()

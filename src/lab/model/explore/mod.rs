@@ -241,7 +241,7 @@ impl<'a> Shared<'a> {
         let machines: Vec<_> = machines.into_iter().collect();
         let is_recorded = |point: &&Point| {
             let organisation = point.hardware.organisation;
-            organisation.stack == StackHolds::Parents
+            organisation.stack != StackHolds::Children
         };
         let recorded = machines.iter().map(|(_, point)| *point);
         let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
@@ -379,9 +379,10 @@ fn ray_key(point: &Point) -> String {
     let hardware = &point.hardware;
     let format = |of: &Cache| (of.ways, of.line_bytes, of.entry_bytes);
     format!(
-        "{:?} {} {} {:?} {:?}",
+        "{:?} {} {} {} {:?} {:?}",
         point.bits,
         hardware.organisation.leaf_masks,
+        hardware.organisation.bricks,
         hardware.attribute_cache.bytes,
         format(&hardware.node_cache),
         format(&hardware.attribute_cache)

@@ -8,7 +8,7 @@ use hwmodel::{Memory, OpClass, Stage};
 
 use super::{number, percent};
 use crate::lab::model::frame::Counted;
-use crate::lab::model::record::{FieldPresence, RecordField};
+use crate::lab::model::record::{FieldPresence, NumberWidths, RecordField};
 use crate::report::{Cell, Table};
 
 /// Operations and cycles by stage.
@@ -125,6 +125,25 @@ pub fn record(fields: &[RecordField]) -> Table {
             Cell::from(field.name),
             Cell::from(u64::from(field.bits)),
             Cell::from(held),
+        ]);
+    }
+    table
+}
+
+/// Bits of a record's numbers: seen in this frame, proven by its set-up, and had by the hardware.
+#[must_use]
+pub fn numbers(numbers: &[NumberWidths]) -> Table {
+    let mut table = Table::new(
+        "Numbers of a record, and the bits of each",
+        &["number", "of_them", "seen", "proven", "used"],
+    );
+    for of in numbers {
+        table.rows.push(vec![
+            Cell::from(of.name),
+            Cell::from(u64::from(of.count)),
+            Cell::from(u64::from(of.seen)),
+            Cell::from(u64::from(of.proven)),
+            Cell::from(u64::from(of.used)),
         ]);
     }
     table

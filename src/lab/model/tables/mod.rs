@@ -6,10 +6,10 @@ mod repeats;
 
 pub use cost::{area, breakdown, clock, comparison, side_by_side};
 pub use frame::{
-    bounds, classes, levels, memories, miss_curve, operations_by_stage, record, records_by_kind,
-    shifts, stages,
+    bounds, classes, levels, memories, miss_curve, numbers, operations_by_stage, record,
+    records_by_kind, shifts, stages,
 };
-pub use repeats::{caches, claims, formats, growth, lanes, rules};
+pub use repeats::{caches, claims, formats, growth, halves, lanes, rules, steps};
 
 use crate::report::Cell;
 

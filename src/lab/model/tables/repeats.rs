@@ -5,8 +5,10 @@ use hwmodel::cycles::ScalingRow;
 use super::{micro, number, percent};
 use crate::lab::model::caches::{self, CacheRow};
 use crate::lab::model::claims::Claim;
+use crate::lab::model::floor::{self, Floor, HalfRow};
 use crate::lab::model::growth::GrowthRow;
 use crate::lab::model::rules::{Costs, Outcome, RuleRow};
+use crate::lab::model::steps::StepRow;
 use crate::lab::model::sweep::FormatRow;
 use crate::report::{Cell, Table};
 
@@ -47,6 +49,80 @@ pub fn caches(rows: &[CacheRow]) -> Table {
                 },
             ]);
         }
+    }
+    table
+}
+
+/// Half of the ray caster's energy, and what every design must move.
+#[must_use]
+pub fn halves(rows: &[HalfRow], floor: &Floor) -> Table {
+    let mut table = Table::new(
+        floor::sentence(rows, floor),
+        &[
+            "node_cache",
+            "half_uj",
+            "floor_uj",
+            "light_of_ray_caster_percent",
+            "floor_of_ray_caster_percent",
+            "half_is",
+        ],
+    );
+    for row in rows {
+        table.rows.push(vec![
+            Cell::Text(caches::size(row.bytes)),
+            micro(row.half_pj.value),
+            micro(row.floor_pj.value),
+            percent(row.light_share),
+            percent(row.floor_share),
+            Cell::from(if row.is_impossible {
+                "impossible"
+            } else {
+                "not excluded"
+            }),
+        ]);
+    }
+    table
+}
+
+/// What each setting of an organisation gives.
+#[must_use]
+pub fn steps(rows: &[StepRow]) -> Table {
+    let mut table = Table::new(
+        "What each setting of the organisation gives: alone, then on top of those before it",
+        &[
+            "setting",
+            "with_those_before",
+            "stack_entry_bits",
+            "node_reads",
+            "node_misses",
+            "fill_kbit",
+            "fill_accesses",
+            "operations_uj",
+            "on_chip_uj",
+            "outer_uj",
+            "all_uj",
+            "ray_caster_uj",
+            "area_nand2",
+            "cycles",
+        ],
+    );
+    for row in rows {
+        table.rows.push(vec![
+            Cell::from(row.step),
+            Cell::from(if row.with_those_before { "yes" } else { "no" }),
+            Cell::from(u64::from(row.stack_entry_bits)),
+            Cell::from(row.node_reads),
+            Cell::from(row.node_misses),
+            number(row.fill_bits as f64 / 1024.0, 1),
+            Cell::from(row.fill_accesses),
+            micro(row.operations_pj.value),
+            micro(row.on_chip_pj.value),
+            micro(row.outer_pj.value),
+            micro(row.energy_pj.value),
+            micro(row.ray_caster_pj.value),
+            number(row.area.value, 0),
+            Cell::from(row.cycles),
+        ]);
     }
     table
 }

@@ -11,6 +11,10 @@ use crate::whole::WholeError;
 pub(super) const MANIFEST: &str = "manifest.json";
 /// The file that describes the others.
 pub(super) const README: &str = "README.txt";
+/// The header with the frame's constants.
+pub(super) const PARAMETERS: &str = "parameters.vh";
+/// How testbenches end.
+pub(super) const VERILOG: &str = "v";
 /// How the files of rows end.
 pub(super) const ROWS: &str = "hex";
 
@@ -71,10 +75,12 @@ fn find_target(path: &Path, overwrite: bool) -> Result<Target, FolderError> {
         let entry = entry.map_err(|e| failed(path, e))?;
         let name = entry.file_name().to_string_lossy().into_owned();
         let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
-        let is_rows = Path::new(&name).extension().is_some_and(|e| e == ROWS);
+        let is_rows = Path::new(&name)
+            .extension()
+            .is_some_and(|e| e == ROWS || e == VERILOG);
         is_empty = false;
         is_known |= name == MANIFEST;
-        if !(is_file && (is_rows || name == MANIFEST || name == README)) {
+        if !(is_file && (is_rows || [MANIFEST, README, PARAMETERS].contains(&name.as_str()))) {
             others = Some(name);
         }
     }

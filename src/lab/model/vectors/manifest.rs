@@ -4,7 +4,7 @@ use hwmodel::Format;
 use serde_json::{Value, json};
 
 use super::blocks::absence;
-use super::ports::Ports;
+use super::ports::{self, Ports};
 use super::recorder::{EXPECTED, Recording, STIMULUS, file_name};
 use super::{Request, SCHEMA};
 use crate::machine::Block;
@@ -76,14 +76,15 @@ fn entry(setup: &FrameSetup, block: Block, recording: &Recording) -> Value {
         "section": format!("SPEC.md, {}", description.section),
         "function": description.function,
         "rows": recording.rows,
+        "frame_rows": recording.frame_rows,
         "reason": reason,
-        "stimulus": ports(setup.format, &description.stimulus, file(STIMULUS)),
-        "expected": ports(setup.format, &description.expected, file(EXPECTED)),
+        "stimulus": fields(setup.format, &description.stimulus, file(STIMULUS)),
+        "expected": fields(setup.format, &description.expected, file(EXPECTED)),
     })
 }
 
-fn ports(format: Format, ports: &Ports, file: Option<String>) -> Value {
-    let fields: Vec<Value> = ports
+fn fields(format: Format, ports: &Ports, file: Option<String>) -> Value {
+    let all: Vec<Value> = ports
         .placed(format)
         .map(|(field, lowest)| {
             json!({
@@ -91,6 +92,7 @@ fn ports(format: Format, ports: &Ports, file: Option<String>) -> Value {
                 "bits": field.kind.bits(format),
                 "signed": field.kind.is_signed(),
                 "lowest_bit": lowest,
+                "changes": if ports::is_of_frame(&field.name) { "frame" } else { "row" },
                 "meaning": field.meaning,
             })
         })
@@ -99,6 +101,6 @@ fn ports(format: Format, ports: &Ports, file: Option<String>) -> Value {
         "file": file,
         "bits": ports.bits(format),
         "digits": ports.digits(format),
-        "fields": fields,
+        "fields": all,
     })
 }

@@ -3,7 +3,7 @@
 //! For the first records of a frame, all that went into and came out of each
 //! block, as `$readmemh` files: one row a line, a file of inputs and one of
 //! outputs a block, and a manifest that names every bit. The rows are what
-//! the machine itself computed while it drew. `docs/vectors.md` describes their use.
+//! the machine itself computed while it drew, and then for inputs that no frame brings: ends of ranges, ties, random numbers. `docs/vectors.md` describes their use.
 
 mod blocks;
 mod folder;
@@ -28,7 +28,10 @@ use crate::whole::{self, WholeError};
 use recorder::Recorder;
 
 /// Version of the manifest and of what blocks there are.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
+
+/// Rounds of inputs that are made for the blocks, beside those of the frame.
+const DIRECTED_ROUNDS: u32 = 64;
 
 /// What is to be recorded, and where.
 #[derive(Debug, Clone, Copy)]
@@ -94,11 +97,20 @@ pub fn write(
             ..MachineOptions::default()
         });
         let recorder = Recorder::new(folder, setup, request.records);
-        let (stats, recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
+        let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
+        recorder.begin_directed();
+        let recorder = machine.show_directed(graph, setup, recorder, DIRECTED_ROUNDS);
         let recordings = recorder.finish()?;
         let manifest = manifest::document(setup, request, &stats, &recordings);
         let text = serde_json::to_string_pretty(&manifest)? + "\n";
         whole::write(&folder.join(folder::MANIFEST), text.as_bytes(), false)?;
+        let write =
+            |name: &str, text: &str| whole::write(&folder.join(name), text.as_bytes(), false);
+        write(folder::PARAMETERS, &readme::parameters(setup))?;
+        for recording in recordings.iter().filter(|recording| recording.rows > 0) {
+            let name = format!("{}_tb.{}", recording.description.name, folder::VERILOG);
+            write(&name, &readme::testbench(setup.format, recording))?;
+        }
         let readme = readme::text(setup.format, &recordings);
         whole::write(&folder.join(folder::README), readme.as_bytes(), false)?;
         Ok(Recorded {

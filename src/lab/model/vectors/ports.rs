@@ -13,6 +13,26 @@ pub(super) const BIT: SignalKind = SignalKind::Unsigned(1);
 /// A level of a tree, or a shift by levels.
 pub(super) const LEVEL: SignalKind = SignalKind::Unsigned(6);
 
+/// Inputs that are constants of a frame: a register that set-up writes, not wires from another block.
+const OF_FRAME: [&str; 9] = [
+    "eye_floor_",
+    "eye_ceil_",
+    "positive",
+    "axis_x_",
+    "axis_y_",
+    "axis_z_",
+    "wider",
+    "closed",
+    "limit",
+];
+
+/// Whether an input is a constant of the frame, by its name. In rows made for the blocks it changes all the same.
+pub(super) fn is_of_frame(name: &str) -> bool {
+    // `axis_x_c` to `axis_z_c` are relative to a record's place in the picture.
+    OF_FRAME.iter().any(|of| name.starts_with(of))
+        && !(name.starts_with("axis_") && name.ends_with("_c"))
+}
+
 /// A field of a row.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Field {

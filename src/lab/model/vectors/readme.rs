@@ -6,6 +6,7 @@ use hwmodel::Format;
 
 use super::ports::Ports;
 use super::recorder::{EXPECTED, Recording, STIMULUS, file_name};
+use crate::project::FrameSetup;
 
 /// The text, with a testbench for one of the blocks.
 pub(super) fn text(format: Format, recordings: &[Recording]) -> String {
@@ -29,7 +30,8 @@ pub(super) fn text(format: Format, recordings: &[Recording]) -> String {
     if let Some(recording) = chosen {
         text += "\nA testbench. Save it as ../tb.v (--force replaces no folder that holds other\n\
                  files), add your block, and run in this folder\n\
-                 `iverilog -g2005 -o ../tb ../tb.v && vvp ../tb`.\n\n";
+                 `iverilog -g2005 -o ../tb ../tb.v && vvp ../tb`. Every block has one like it,\n\
+                 BLOCK_tb.v, and parameters.vh has the frame's constants.\n\n";
         text += &testbench(format, recording);
         if recording.description.name == "centre" {
             text += "\n// A block that passes, as an example:\n";
@@ -39,8 +41,27 @@ pub(super) fn text(format: Format, recordings: &[Recording]) -> String {
     text
 }
 
+/// The frame's constants as Verilog parameters.
+pub(super) fn parameters(setup: &FrameSetup) -> String {
+    let format = setup.format;
+    let mut text = String::from("// The frame's constants; word widths in bits.\n");
+    for (name, value) in [
+        ("WORD_BITS", format.bits()),
+        ("WIDE_BITS", format.wide().bits()),
+        ("SCREEN_FRACTION_BITS", format.frac()),
+        ("DEPTH", setup.depth),
+        ("IMAGE_LEVELS", setup.levels),
+        ("WIDTH", setup.width),
+        ("HEIGHT", setup.height),
+    ] {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "localparam {name} = {value};");
+    }
+    text
+}
+
 /// A testbench of one block.
-fn testbench(format: Format, recording: &Recording) -> String {
+pub(super) fn testbench(format: Format, recording: &Recording) -> String {
     let d = &recording.description;
     let (into, out) = (d.stimulus.bits(format), d.expected.bits(format));
     let names = |ports: &Ports| {
@@ -61,7 +82,7 @@ fn testbench(format: Format, recording: &Recording) -> String {
     let (last_row, last_in, last_out) = (rows - 1, into - 1, out - 1);
     let (outputs, connections) = (names(&d.expected), connections.join(", "));
     format!(
-        "module tb;\n\
+        "module {name}_tb;\n\
          \x20 reg [{last_in}:0] stimulus [0:{last_row}];\n\
          \x20 reg [{last_out}:0] expected [0:{last_row}];\n\
          \x20 reg [{last_in}:0] row;\n\

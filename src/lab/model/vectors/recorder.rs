@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
-use super::blocks::{Description, describe};
+use super::blocks::{Description, absence, describe};
 use super::folder::ROWS;
 use super::ports::Ports;
 use crate::machine::Block;
@@ -71,6 +71,10 @@ fn head(file: &mut impl Write, format: Format, ports: &Ports) -> io::Result<()> 
 pub(super) struct Recording {
     pub(super) description: Description,
     pub(super) rows: u64,
+    /// Of them, those that the frame's records brought.
+    pub(super) frame_rows: u64,
+    /// Whether the frame's rules have the block.
+    is_there: bool,
     files: Option<(Rows, Rows)>,
 }
 
@@ -83,6 +87,7 @@ pub(super) struct Recorder {
     blocks: Vec<Recording>,
     records: u64,
     is_open: bool,
+    is_directed: bool,
     error: Option<VectorsError>,
 }
 
@@ -92,6 +97,8 @@ impl Recorder {
         let recording = |&block: &Block| Recording {
             description: describe(block, setup),
             rows: 0,
+            frame_rows: 0,
+            is_there: absence(block, setup).is_none(),
             files: None,
         };
         Self {
@@ -100,8 +107,18 @@ impl Recorder {
             blocks: Block::ALL.iter().map(recording).collect(),
             records,
             is_open: true,
+            is_directed: false,
             error: None,
         }
+    }
+
+    /// The frame is drawn; what follows are inputs made for the blocks.
+    pub(super) fn begin_directed(&mut self) {
+        for recording in &mut self.blocks {
+            recording.frame_rows = recording.rows;
+        }
+        self.is_open = self.error.is_none();
+        self.is_directed = true;
     }
 
     /// What was recorded, in the order of [`Block::ALL`], once all files are whole.
@@ -129,6 +146,9 @@ impl Recorder {
         let Some(recording) = self.blocks.get_mut(block as usize) else {
             return Err(VectorsError::Unknown(block));
         };
+        if self.is_directed && !recording.is_there {
+            return Ok(());
+        }
         let description = &recording.description;
         let into = packed(stimulus, &description.stimulus, self.format);
         let out = packed(expected, &description.expected, self.format);

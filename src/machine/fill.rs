@@ -1,0 +1,257 @@
+//! The fill vectors as the machine holds them: four bits for each node of the image quadtree, or the lowest two levels
+//! joined.
+//!
+//! A sample's vector is all ones or all zeros, and each bit of its parent's says the same of a sample. *Joined*,
+//! a node two levels above the samples has one word of 16 bits, one a sample, in the place of the 21 vectors
+//! from it down. The word read last stays in a register for as long as a record has its turn.
+
+use std::cell::Cell;
+
+use hwmodel::{Datapath, Memory, Probe, Short, Stage};
+
+use super::blocks::Block;
+use crate::frame::quadtree::FULL;
+use crate::frame::{FillVectors, QuadNode};
+
+/// Levels of fill vectors that a word takes the place of, below its own.
+const LEVELS_BELOW: u32 = 2;
+/// A word whose samples are all drawn.
+const ALL_DRAWN: u16 = u16::MAX;
+/// No word is in the register.
+const NO_WORD: u64 = u64::MAX;
+
+/// Fill vectors, joined or not.
+#[derive(Debug)]
+pub(super) struct FillStore<'f> {
+    vectors: &'f mut FillVectors,
+    /// Of the nodes two levels above the samples, row by row; empty where nothing is joined.
+    words: Vec<u16>,
+    /// The address of the word in the register.
+    latched: Cell<u64>,
+}
+
+impl<'f> FillStore<'f> {
+    /// Vectors as they are, or with the lowest two levels joined, where there are
+    /// so many below `tile_levels`.
+    pub(super) fn new(vectors: &'f mut FillVectors, joined: bool, tile_levels: u32) -> Self {
+        let level = vectors.levels().checked_sub(LEVELS_BELOW);
+        let words = match level.filter(|level| joined && *level >= tile_levels) {
+            None => Vec::new(),
+            Some(level) => {
+                let side = 1u32 << level;
+                let nodes = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
+                nodes
+                    .map(|(x, y)| word_of(vectors, QuadNode { level, x, y }))
+                    .collect()
+            }
+        };
+        Self {
+            vectors,
+            words,
+            latched: Cell::new(NO_WORD),
+        }
+    }
+
+    /// Level of the samples.
+    pub(super) fn levels(&self) -> u32 {
+        self.vectors.levels()
+    }
+
+    /// A record begins its turn: the register holds nothing of use.
+    #[inline(always)]
+    pub(super) fn begin_turn(&self) {
+        self.latched.set(NO_WORD);
+    }
+
+    /// Reads a node's vector.
+    #[inline(always)]
+    pub(super) fn read<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
+        if self.is_joined(node) {
+            self.read_word(dp, node);
+        } else {
+            dp.read(Memory::FillVector, node.address() as u64);
+        }
+        self.peek(node)
+    }
+
+    /// A node's vector.
+    #[inline(always)]
+    pub(super) fn peek(&self, node: QuadNode) -> u8 {
+        if self.is_joined(node) {
+            self.in_word(node)
+        } else {
+            self.vectors.vector(node)
+        }
+    }
+
+    /// Puts a vector in place of a node's, and returns that. Not for joined nodes.
+    pub(super) fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
+        self.vectors.replace(node, vector)
+    }
+
+    /// Sets a sample's vector, and in each ancestor the bit of a quadrant
+    /// that is full with it.
+    #[inline(always)]
+    pub(super) fn mark<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode) {
+        dp.stage(Stage::FillUpdate);
+        let (mut quad, mut bits) = (sample, FULL);
+        if self.is_joined(sample) {
+            match self.mark_in_word(dp, sample) {
+                Some(above) => (quad, bits) = above,
+                None => return,
+            }
+            dp.read(Memory::FillVector, quad.address() as u64);
+            dp.or_bits(4, self.vectors.vector(quad), bits);
+        }
+        loop {
+            dp.write(Memory::FillVector, quad.address() as u64);
+            let before = self.vectors.vector(quad);
+            let vector = self.vectors.set(quad, bits);
+            dp.tap(
+                Block::FillUpdate,
+                &(Short::unsigned(before, 4), Short::unsigned(bits, 4)),
+                &(Short::unsigned(vector, 4), vector == FULL),
+            );
+            if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
+                break;
+            }
+            bits = 1 << quad.in_parent();
+            quad = parent_of(quad);
+            dp.read(Memory::FillVector, quad.address() as u64);
+            dp.or_bits(4, self.vectors.vector(quad), bits);
+        }
+    }
+
+    /// Sets a sample's bit in its word. Where that fills the word: the node above it, and its bit there.
+    fn mark_in_word<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        sample: QuadNode,
+    ) -> Option<(QuadNode, u8)> {
+        let (node, at) = self.word_at(sample);
+        self.read_word(dp, sample);
+        let word = &mut self.words[at];
+        let quadrant = parent_of(sample).in_parent();
+        // Four gates a quadrant, of which one changes.
+        let before = (*word >> (quadrant << 2)) as u8 & FULL;
+        dp.or_bits(4, before, 1 << sample.in_parent());
+        *word |= 1 << ((quadrant << 2) + sample.in_parent());
+        dp.write(Memory::FillVector, node.address() as u64);
+        dp.and_bits(4, before, FULL);
+        let is_full = *word == ALL_DRAWN && node.level > 0;
+        is_full.then(|| (parent_of(node), 1 << node.in_parent()))
+    }
+
+    #[inline(always)]
+    fn is_joined(&self, node: QuadNode) -> bool {
+        !self.words.is_empty() && node.level + LEVELS_BELOW >= self.levels()
+    }
+
+    /// The node whose word holds a joined node, and the word's place.
+    fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
+        let level = self.levels() - LEVELS_BELOW;
+        let below = node.level - level;
+        let (x, y) = (node.x >> below, node.y >> below);
+        (
+            QuadNode { level, x, y },
+            ((y as usize) << level) + x as usize,
+        )
+    }
+
+    fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
+        let address = self.word_at(node).0.address() as u64;
+        if self.latched.replace(address) != address {
+            dp.read(Memory::FillVector, address);
+        }
+    }
+
+    /// A joined node's vector, from its word.
+    fn in_word(&self, node: QuadNode) -> u8 {
+        let (of, at) = self.word_at(node);
+        let word = self.words[at];
+        let quarter = |quadrant: u8| (word >> (quadrant << 2)) as u8 & FULL;
+        match node.level - of.level {
+            0 => (0..4).fold(0, |bits, q| bits | u8::from(quarter(q) == FULL) << q),
+            1 => quarter(node.in_parent()),
+            _ => {
+                let drawn = quarter(parent_of(node).in_parent()) >> node.in_parent() & 1;
+                if drawn == 0 { 0 } else { FULL }
+            }
+        }
+    }
+}
+
+/// The samples of a node two levels above them that are full from the start.
+fn word_of(vectors: &FillVectors, node: QuadNode) -> u16 {
+    (0..4).fold(0, |word, quadrant| {
+        let bits = vectors.vector(node.quadrant(quadrant));
+        word | u16::from(bits) << (quadrant << 2)
+    })
+}
+
+fn parent_of(node: QuadNode) -> QuadNode {
+    QuadNode {
+        level: node.level - 1,
+        x: node.x >> 1,
+        y: node.y >> 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hwmodel::count::Counter;
+    use hwmodel::{Format, Overflow};
+
+    use super::*;
+
+    /// A picture of 8 x 8 samples, the first 4 x 4 of which are drawn one by one.
+    #[test]
+    fn a_word_holds_what_its_vectors_do() {
+        let (mut plain, mut joined) = (FillVectors::new(3, 8, 7), FillVectors::new(3, 8, 7));
+        let mut plain = FillStore::new(&mut plain, false, 0);
+        let mut joined = FillStore::new(&mut joined, true, 0);
+        let dp = || Datapath::new(Format::new(32, 8).unwrap(), Overflow::Trap, Counter::new());
+        let (mut one, mut two) = (dp(), dp());
+        for at in 0..16 {
+            let (x, y) = (at & 3, at >> 2);
+            let sample = QuadNode { level: 3, x, y };
+            plain.mark(&mut one, sample);
+            joined.begin_turn();
+            joined.mark(&mut two, sample);
+            for level in 0..=3 {
+                for place in 0..1u32 << (level << 1) {
+                    let (x, y) = (place & ((1 << level) - 1), place >> level);
+                    let node = QuadNode { level, x, y };
+                    assert_eq!(joined.peek(node), plain.peek(node), "{at}: {node:?}");
+                }
+            }
+        }
+        let accesses = |dp: Datapath<Counter>| {
+            let all = dp.into_probe().accesses_by(|cell| cell.memory);
+            let of = all[&Memory::FillVector];
+            (of.reads, of.writes)
+        };
+        // Plain: a sample and its parent each time, once four their parent, once that the root.
+        assert_eq!(accesses(one), (16 + 4 + 1, 32 + 4 + 1));
+        // Joined: a word each time, read and written; at last the root.
+        assert_eq!(accesses(two), (17, 17));
+    }
+
+    #[test]
+    fn the_register_saves_reads_within_a_turn() {
+        let mut vectors = FillVectors::new(3, 8, 8);
+        let fill = FillStore::new(&mut vectors, true, 0);
+        let format = Format::new(32, 8).unwrap();
+        let mut dp = Datapath::new(format, Overflow::Trap, Counter::new());
+        let node = QuadNode::ROOT.quadrant(2);
+        for _ in 0..2 {
+            fill.begin_turn();
+            fill.read(&mut dp, QuadNode::ROOT);
+            fill.read(&mut dp, node);
+            fill.read(&mut dp, node.quadrant(1));
+            fill.read(&mut dp, node.quadrant(1).quadrant(3));
+        }
+        let all = dp.into_probe().accesses_by(|cell| cell.memory);
+        assert_eq!(all[&Memory::FillVector].reads, 2 * 2);
+    }
+}

@@ -1,0 +1,358 @@
+//! Inputs that a frame seldom or never brings, given to the machine's blocks: ends of their ranges, ties, and
+//! random numbers. The probe sees what crosses the blocks' borders, as it does in a frame.
+//!
+//! Every input is such that no result leaves its word: where a block adds, numbers keep some bits' distance from
+//! the ends of the format; where it does not, they do not.
+
+use hwmodel::{Probe, Stage, WideWord, Word};
+
+use crate::frame::{Frame, QuadNode};
+use crate::graph::GraphView;
+use crate::machine::MachineOptions;
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
+use crate::machine::children::{child_span, pool};
+use crate::machine::engine::Machine;
+use crate::machine::planes::{self, Silhouette};
+use crate::machine::quadrants::{self, Halves};
+use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
+use crate::machine::smallest_node::{self, Fill};
+use crate::machine::state::State;
+use crate::machine::{size, to_screen};
+use crate::project::{CageKind, FrameSetup};
+use crate::split_mix::SplitMix;
+
+/// Bits that words keep from the ends of the format where they are added, doubled or halved a few times.
+const SPARE: u32 = 8;
+
+/// Numbers at the ends of ranges, and random ones.
+struct Inputs {
+    dice: SplitMix,
+    bits: u32,
+    wide_bits: u32,
+}
+
+impl Inputs {
+    /// A number of at most `bits` bits with its sign: an end of the range, next to nothing, or any.
+    fn number(&mut self, bits: u32) -> i64 {
+        let most = i64::MAX >> (64 - bits);
+        let ends = [-most - 1, -most, most, most - 1, -2, -1, 0, 1, 2];
+        // Every third is one of these.
+        let choice = self.dice.below(27) as usize;
+        if let Some(&end) = ends.get(choice) {
+            return end;
+        }
+        // As many bits as any other number of bits.
+        let length = 1 + self.dice.below(u64::from(bits)) as u32;
+        (self.dice.bits() as i64) >> (64 - length)
+    }
+
+    fn word(&mut self, spare: u32) -> Word {
+        Word::from_host(self.number(self.bits - spare))
+    }
+
+    fn words<const N: usize>(&mut self, spare: u32) -> [Word; N] {
+        std::array::from_fn(|_| self.word(spare))
+    }
+
+    fn flag(&mut self) -> bool {
+        self.dice.below(2) == 1
+    }
+
+    fn level(&mut self, most: u32) -> u32 {
+        self.dice.below(u64::from(most) + 1) as u32
+    }
+
+    /// A coordinate whose numbers are independent of one another.
+    fn cage<P: Probe, L: CageCoordinate>(&mut self, state: &mut State<'_, P, L, ()>) -> L {
+        let any = L::from_frame(&mut state.dp, Word::ZERO, [Word::ZERO; 3]);
+        any.map(|_| self.word(SPARE))
+    }
+
+    fn clip<P: Probe, L: CageCoordinate>(&mut self, state: &mut State<'_, P, L, ()>) -> Clip<L> {
+        let [x, y, w] = [(); 3].map(|()| self.cage(state));
+        let (w_min, _) = w.span(&mut state.dp);
+        Clip { x, y, w, w_min }
+    }
+
+    /// Planes of small coefficients, which have ties, or of large ones.
+    fn planes(&mut self) -> Planes {
+        let bits = if self.flag() { 2 } else { self.wide_bits / 2 };
+        let mut number = || WideWord::from_host(self.number(bits));
+        Planes {
+            edge: std::array::from_fn(|_| std::array::from_fn(|_| number())),
+            axis_c: std::array::from_fn(|_| number()),
+        }
+    }
+
+    fn cube(&mut self, level: u32) -> Cube {
+        Cube {
+            min: self.words(0),
+            max: self.words(0),
+            node: 0,
+            level,
+            voxel_level: level,
+            solid: true,
+        }
+    }
+
+    fn quad(&mut self, levels: u32) -> QuadNode {
+        let level = self.level(levels);
+        let mut place = || self.dice.below(1 << level) as u32;
+        QuadNode {
+            level,
+            x: place(),
+            y: place(),
+        }
+    }
+}
+
+impl Machine {
+    /// Gives inputs of `rounds` rounds to the blocks of a frame.
+    pub fn show_directed<P: Probe>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        probe: P,
+        rounds: u32,
+    ) -> P {
+        match setup.options.cage {
+            CageKind::Corners => self.directed_as::<P, Corners>(graph, setup, probe, rounds),
+            CageKind::Frame => self.directed_as::<P, CornerAndEdges>(graph, setup, probe, rounds),
+        }
+    }
+
+    fn directed_as<P: Probe, L: CageCoordinate>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        probe: P,
+        rounds: u32,
+    ) -> P {
+        let mut frame = Frame::nodes_only(setup.width, setup.height);
+        let canvas = (self.emptied(setup, &mut frame), &mut frame);
+        let options = MachineOptions::default();
+        let mut state = State::<P, L, ()>::new(options, graph, setup, canvas, probe, ());
+        let mut inputs = Inputs {
+            dice: SplitMix::new(0),
+            bits: setup.format.bits(),
+            wide_bits: setup.format.wide().bits(),
+        };
+        all_vectors(&mut state);
+        for _ in 0..rounds {
+            object_space(&mut state, &mut inputs);
+            cages(&mut state, &mut inputs);
+            fit(&mut state, &mut inputs);
+            depths_and_sizes(&mut state, &mut inputs);
+            if setup.options.coverage.draws_outlines() {
+                outlines(&mut state, &mut inputs);
+            } else {
+                screen_space(&mut state, &mut inputs);
+            }
+        }
+        state.finish().1
+    }
+}
+
+/// All short vectors: there are few.
+fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
+    for bits in 0..16u8 {
+        let halves = |at: u8| Halves {
+            low: bits >> at & 1 != 0,
+            high: bits >> at & 2 != 0,
+        };
+        quadrants::quadrants(&mut state.dp, halves(0), halves(2));
+    }
+    let levels = state.constants.levels;
+    let root = QuadNode::ROOT;
+    for vector in 0..16u8 {
+        let kept = state.canvas.fill.replace(root, vector);
+        state.is_full(root);
+        let fill = Fill {
+            vectors: &state.canvas.fill,
+            reject: true,
+        };
+        for overlapped in 0..16 {
+            fill.rejects(&mut state.dp, root, overlapped);
+        }
+        let _ = state.canvas.fill.replace(root, kept);
+        if levels == 0 {
+            continue;
+        }
+        for quadrant in 0..4 {
+            // A sample below which vectors stand as in the row, so that its parent's is updated.
+            let mut parent = root;
+            while parent.level + 1 < levels {
+                parent = parent.quadrant(0);
+            }
+            let sample = parent.quadrant(quadrant);
+            let before = state.canvas.fill.replace(sample, vector);
+            let above = state.canvas.fill.replace(parent, vector);
+            state.canvas.fill.mark(&mut state.dp, sample);
+            let _ = state.canvas.fill.replace(sample, before);
+            let _ = state.canvas.fill.replace(parent, above);
+        }
+    }
+}
+
+/// Cubes of object space: the whole range of words.
+fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let mut cube = inputs.cube(0);
+    if inputs.flag() {
+        // Both ends of the range: their sum has a carry.
+        cube.max = cube.min;
+    }
+    for k in 0..3 {
+        let centre = state.dp.midpoint(cube.min[k], cube.max[k]);
+        let any = inputs.word(0);
+        state.constants.eye_floor[k] = if inputs.flag() { centre } else { any };
+    }
+    let (centre, _) = state.centre_and_order(&cube);
+    let octant = inputs.level(7) as u8;
+    state.child_cube(&cube, octant, &centre);
+}
+
+/// Cages by themselves.
+fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let cage = inputs.cage(state);
+    state.dp.stage(Stage::VertexPool);
+    pool(&mut state.dp, &cage);
+    state.dp.stage(Stage::ChildBox);
+    child_span(&mut state.dp, &cage);
+}
+
+/// Boxes against quadtree nodes.
+fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let mut clip = inputs.clip(state);
+    // A fit doubles planes once a level.
+    let mut planes = Planes::default();
+    for plane in planes.edge.as_flattened_mut() {
+        *plane = WideWord::from_host(inputs.number(8));
+    }
+    let place = ImagePlace {
+        quad: inputs.quad(state.constants.levels),
+        inside: false,
+    };
+    state.dp.stage(Stage::QuadtreeFit);
+    quadrants::of_clip(&mut state.dp, &state.constants, place.quad, &clip);
+    let fill = Fill {
+        vectors: &state.canvas.fill,
+        reject: true,
+    };
+    let (dp, constants) = (&mut state.dp, &state.constants);
+    smallest_node::clip(dp, constants, &fill, place, &mut clip, &mut planes);
+}
+
+/// Comparisons of depths and sizes, with ties.
+fn depths_and_sizes<P: Probe, L: CageCoordinate>(
+    state: &mut State<'_, P, L, ()>,
+    inputs: &mut Inputs,
+) {
+    let mut clip = inputs.clip(state);
+    let level = inputs.level(state.constants.depth);
+    let least = inputs.word(1);
+    let one = Word::from_host(inputs.number(1));
+    clip.w_min = if inputs.flag() {
+        state.dp.add(least, one)
+    } else {
+        inputs.word(0)
+    };
+    let kept = state.constants.lod_depth[level as usize].replace(least);
+    let mut record = Record {
+        cube: Cube {
+            solid: false,
+            ..inputs.cube(level)
+        },
+        place: ImagePlace::ROOT,
+        pose: Pose::Clip(clip, Planes::default()),
+    };
+    state.dp.stage(Stage::OnePixel);
+    state.apply_level_of_detail(&mut record);
+    state.constants.lod_depth[level as usize] = kept;
+
+    clip.w_min = inputs.word(SPARE);
+    let below = inputs.level(state.constants.levels);
+    let limit = state.constants.size_limit.clone();
+    size::clip_at_most(&mut state.dp, &clip, &limit, below);
+}
+
+/// Silhouettes.
+fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let depth = state.constants.depth;
+    let mut planes = inputs.planes();
+    if depth > 0 {
+        let parent_level = inputs.level(depth - 1);
+        let octant = inputs.level(7) as u8;
+        state.dp.stage(Stage::VertexPool);
+        planes::of_child(
+            &mut state.dp,
+            &state.constants,
+            &planes,
+            parent_level,
+            octant,
+        );
+    }
+    let quadrant = inputs.level(3) as u8;
+    let mut moved = planes;
+    state.dp.stage(Stage::QuadtreeFit);
+    planes::move_to_quadrant(&mut state.dp, &state.constants, &mut moved, quadrant);
+    let level = inputs.level(depth);
+    let cube = inputs.cube(level);
+    for k in 0..3 {
+        let [any, other] = inputs.words(0);
+        let c = &mut state.constants;
+        c.eye_floor[k] = if inputs.flag() { cube.max[k] } else { any };
+        c.eye_ceil[k] = if inputs.flag() { cube.min[k] } else { other };
+    }
+    state.constants.positive = inputs.flag();
+    if inputs.flag() {
+        planes.edge = [planes.edge[0]; 3];
+    }
+    let w_min = inputs.word(0);
+    state.dp.stage(Stage::Draw);
+    let silhouette = Silhouette::new(&mut state.dp, &state.constants, &cube, &planes, w_min);
+    for below in [0, 1] {
+        let mut silhouette = silhouette.clone();
+        silhouette.cover(&mut state.dp, below);
+        silhouette.in_quadrant(&mut state.dp, quadrant);
+    }
+}
+
+/// Boxes and centres in screen space, and the way there.
+fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
+    let place = ImagePlace {
+        quad: inputs.quad(state.constants.levels),
+        inside: inputs.flag(),
+    };
+    let [x, y] = [(); 2].map(|()| inputs.cage(state));
+    let spans = [x.span(&mut state.dp), y.span(&mut state.dp)];
+    state.dp.stage(Stage::QuadtreeFit);
+    let fill = Fill {
+        vectors: &state.canvas.fill,
+        reject: true,
+    };
+    smallest_node::screen(&mut state.dp, &state.constants, &fill, place, &spans);
+    let screen = Screen { x, y, spans };
+    let limit = if inputs.flag() {
+        state.dp.sub(spans[0].1, spans[0].0)
+    } else {
+        inputs.word(SPARE)
+    };
+    state.dp.stage(Stage::OnePixel);
+    size::screen_at_most(&mut state.dp, &screen, limit);
+    state.dp.stage(Stage::Draw);
+    size::screen_sample(&mut state.dp, &state.constants, place, &screen);
+
+    let clip = inputs.clip(state);
+    let w = inputs.word(SPARE);
+    // Beyond the node's edges a centre is none of it.
+    let across = ImagePlace {
+        inside: false,
+        ..place
+    };
+    size::clip_sample(&mut state.dp, &state.constants, across, &clip, w);
+    let level = inputs.level(state.constants.depth) as usize;
+    let least = if inputs.flag() { clip.w_min } else { w };
+    let kept = state.constants.screen_depth[level].replace(least);
+    to_screen::may_change(&mut state.dp, &state.constants, level as u32, place, &clip);
+    state.constants.screen_depth[level] = kept;
+}

@@ -1,0 +1,383 @@
+//! How many bits the numbers of a record need, as a frame's set-up proves it, under the rules that draw outlines; and
+//! how many they really take.
+//!
+//! The proof. A vertex of any record lies in the object, so its clip vector lies in the hull of the object's eight
+//! corners: that bounds `W`, and `X` and `Y` relative to the whole picture. A box goes down to a quadrant only if it
+//! leaves that by at most half a sample, or by the quadrant's width at most (`near_node`): so relative to any other node
+//! `-W <= X <= 2W`, and no vertex lies behind the eye. Edges are differences of two such numbers.
+//! Of a plane `a X + b Y + c W = 0` through an edge, `a` and `b` are products of a point of the object with an edge's
+//! direction, greatest at a corner of the object, and the same relative to every node. The edge's end is on the plane, so
+//! `|c| <= 2 (|a| + |b|)`. A plane across an axis is the difference of two planes through edges of
+//! the record, so its `c` is at most twice theirs.
+
+use std::collections::BTreeMap;
+
+use crate::frame::Frame;
+use crate::graph::GraphView;
+use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
+use crate::machine::engine::Machine;
+use crate::machine::record::{Pose, Record};
+use crate::machine::state::State;
+use crate::machine::watch::Watch;
+use crate::project::vector::cross;
+use crate::project::{CageKind, Coverage, EngineError, FrameSetup};
+
+/// The numbers of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum RecordNumber {
+    /// Octree node.
+    Node,
+    /// Octree level.
+    Level,
+    /// A coordinate of the lowest vertex in object space.
+    Lowest,
+    /// Of the highest one.
+    Highest,
+    /// Quadtree level.
+    QuadLevel,
+    /// Column or row of the quadtree node.
+    QuadPlace,
+    /// X or Y of a vertex in clip space.
+    ClipXy,
+    /// W of a vertex.
+    ClipW,
+    /// X or Y of an edge.
+    EdgeXy,
+    /// W of an edge.
+    EdgeW,
+    /// The least W of the vertices.
+    LeastW,
+    /// Coefficient a or b of a silhouette plane.
+    PlaneAb,
+    /// Its constant.
+    PlaneC,
+    /// The constant of a plane across an axis.
+    AxisC,
+}
+
+impl RecordNumber {
+    /// All numbers, in the order of their discriminants.
+    pub const ALL: [Self; 14] = [
+        Self::Node,
+        Self::Level,
+        Self::Lowest,
+        Self::Highest,
+        Self::QuadLevel,
+        Self::QuadPlace,
+        Self::ClipXy,
+        Self::ClipW,
+        Self::EdgeXy,
+        Self::EdgeW,
+        Self::LeastW,
+        Self::PlaneAb,
+        Self::PlaneC,
+        Self::AxisC,
+    ];
+
+    /// The number in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Node => "octree node",
+            Self::Level => "octree level",
+            Self::Lowest => "lowest vertex",
+            Self::Highest => "highest vertex",
+            Self::QuadLevel => "quadtree level",
+            Self::QuadPlace => "quadtree place",
+            Self::ClipXy => "X, Y",
+            Self::ClipW => "W",
+            Self::EdgeXy => "edge's X, Y",
+            Self::EdgeW => "edge's W",
+            Self::LeastW => "least W",
+            Self::PlaneAb => "plane's a, b",
+            Self::PlaneC => "plane's c",
+            Self::AxisC => "axis plane's c",
+        }
+    }
+}
+
+/// Least and greatest value of a number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct NumberSpan {
+    /// The least value.
+    pub least: i128,
+    /// The greatest value.
+    pub greatest: i128,
+}
+
+impl NumberSpan {
+    /// From a value to its opposite.
+    fn around(most: i128) -> Self {
+        Self {
+            least: -most,
+            greatest: most,
+        }
+    }
+
+    /// From 0.
+    fn to(greatest: i128) -> Self {
+        Self { least: 0, greatest }
+    }
+
+    /// The span that holds both.
+    #[must_use]
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            least: self.least.min(other.least),
+            greatest: self.greatest.max(other.greatest),
+        }
+    }
+
+    /// Bits that hold all of it: two's complement where it goes below 0.
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        let of = |value: i128| i128::BITS - value.leading_zeros();
+        match self.least < 0 {
+            true => 1 + of(self.greatest.max(0)).max(of(!self.least)),
+            false => of(self.greatest),
+        }
+    }
+
+    /// Whether it holds all of another.
+    #[must_use]
+    pub fn holds(self, other: Self) -> bool {
+        self.with(other) == self
+    }
+}
+
+/// Spans by number.
+pub type NumberSpans = BTreeMap<RecordNumber, NumberSpan>;
+
+/// What the set-up proves of a frame's records, and of wide words on the way to them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProvenWidths {
+    /// Spans by number.
+    pub numbers: NumberSpans,
+    /// Bits of a wide word that holds every plane and every sum of the steps on planes.
+    pub wide_bits: u32,
+}
+
+/// What a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
+#[must_use]
+pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
+    if !setup.options.coverage.draws_outlines() {
+        return None;
+    }
+    let origin = setup.origin_clip.map(i128::from);
+    let edges = setup.edge_clip.map(|edge| edge.map(i128::from));
+    let corners: Vec<[i128; 3]> = (0..8u32)
+        .map(|corner| {
+            let mut at = origin;
+            for (k, edge) in edges.iter().enumerate() {
+                if corner >> (2 - k) & 1 != 0 {
+                    for c in 0..3 {
+                        at[c] += edge[c] << setup.depth;
+                    }
+                }
+            }
+            at
+        })
+        .collect();
+    let span_of = |values: &mut dyn Iterator<Item = i128>| {
+        values
+            .map(|value| NumberSpan {
+                least: value,
+                greatest: value,
+            })
+            .reduce(NumberSpan::with)
+            .unwrap_or_default()
+    };
+    let scaled = |span: NumberSpan| NumberSpan {
+        least: span.least << setup.sub_levels,
+        greatest: span.greatest << setup.sub_levels,
+    };
+    // In the whole picture; then in any other node.
+    let w = scaled(span_of(&mut corners.iter().map(|at| at[2])));
+    let far = w.greatest.max(0);
+    let xy = scaled(span_of(&mut corners.iter().flat_map(|at| [at[0], at[1]])));
+    let in_node = NumberSpan {
+        least: -far,
+        greatest: 2 * far,
+    };
+    let along = |c: usize| {
+        let most = edges.iter().map(|edge| edge[c].abs() << setup.depth).max();
+        most.unwrap_or(0) << setup.sub_levels
+    };
+    let edge_xy = along(0).max(along(1)).max(3 * far);
+    // Planes through an edge at a corner of the object, in the whole picture.
+    let through = corners
+        .iter()
+        .flat_map(|&at| edges.iter().map(move |&edge| cross(at, edge)));
+    let (mut plane_ab, mut plane_c, mut sums) = (0, 0, 0);
+    for [a, b, c] in through {
+        plane_ab = plane_ab.max(a.abs()).max(b.abs());
+        sums = sums.max(a.abs() + b.abs());
+        plane_c = plane_c.max(c.abs());
+    }
+    let plane_c = plane_c.max(2 * sums);
+    let axis_ab = (0..3)
+        .map(|k| {
+            let [a, b, _] = cross(edges[(k + 1) % 3], edges[(k + 2) % 3]);
+            a.abs() + b.abs()
+        })
+        .max()
+        .unwrap_or(0);
+    let position = setup.depth + setup.sub_levels;
+    let numbers = [
+        (
+            RecordNumber::Node,
+            NumberSpan::to(nodes.saturating_sub(1) as i128),
+        ),
+        (RecordNumber::Level, NumberSpan::to(i128::from(setup.depth))),
+        (RecordNumber::Lowest, NumberSpan::to((1 << position) - 1)),
+        (RecordNumber::Highest, NumberSpan::to(1 << position)),
+        (
+            RecordNumber::QuadLevel,
+            NumberSpan::to(i128::from(setup.levels)),
+        ),
+        (
+            RecordNumber::QuadPlace,
+            NumberSpan::to((1 << setup.levels) - 1),
+        ),
+        (RecordNumber::ClipXy, xy.with(in_node)),
+        (RecordNumber::ClipW, w),
+        (RecordNumber::EdgeXy, NumberSpan::around(edge_xy)),
+        (RecordNumber::EdgeW, NumberSpan::around(along(2))),
+        (RecordNumber::LeastW, w),
+        (RecordNumber::PlaneAb, NumberSpan::around(plane_ab)),
+        (RecordNumber::PlaneC, NumberSpan::around(plane_c)),
+        (RecordNumber::AxisC, NumberSpan::around(2 * plane_c)),
+    ];
+    // The largest sums: of an axis plane's constant, doubled, and its coefficients; of twice the constant of a plane
+    // that crosses a node, which is at most `|a| + |b|`, and its coefficients.
+    let most = (4 * plane_c + axis_ab).max(2 * plane_c + 4 * sums);
+    Some(ProvenWidths {
+        numbers: numbers.into_iter().collect(),
+        wide_bits: NumberSpan::around(most).bits(),
+    })
+}
+
+/// The set-up with wide words of the bits that are proven, where that is so. Blending has wide words of its own.
+#[must_use]
+pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
+    let mut narrow = setup.clone();
+    if setup.options.coverage == Coverage::Exact
+        && let Some(proven) = proven_widths(setup, 0)
+    {
+        narrow.format = setup.format.with_wide_bits(proven.wide_bits);
+    }
+    narrow
+}
+
+/// Adds what a record holds to the spans that were seen.
+fn see<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
+    let Record { cube, place, pose } = record;
+    let mut note = |number, value: i128| {
+        let span = NumberSpan {
+            least: value,
+            greatest: value,
+        };
+        let seen = spans.entry(number).or_insert(span);
+        *seen = seen.with(span);
+    };
+    note(RecordNumber::Node, i128::from(cube.node));
+    note(RecordNumber::Level, i128::from(cube.level));
+    note(RecordNumber::QuadLevel, i128::from(place.quad.level));
+    note(RecordNumber::QuadPlace, i128::from(place.quad.x));
+    note(RecordNumber::QuadPlace, i128::from(place.quad.y));
+    let mut note_all = |number, of: &dyn hwmodel::Wires, from: usize, to: usize| {
+        let mut shown = Vec::new();
+        of.show(&mut shown);
+        let part = shown.get(from..to.min(shown.len())).unwrap_or(&[]);
+        for signal in part {
+            note(number, i128::from(signal.value));
+        }
+    };
+    note_all(RecordNumber::Lowest, &cube.min, 0, 3);
+    note_all(RecordNumber::Highest, &cube.max, 0, 3);
+    if let Pose::Clip(clip, planes) = pose {
+        // A corner and three edges, or eight corners.
+        let corners = match cage {
+            CageKind::Corners => 8,
+            CageKind::Frame => 1,
+        };
+        for coordinate in [&clip.x, &clip.y] {
+            note_all(RecordNumber::ClipXy, coordinate, 0, corners);
+            note_all(RecordNumber::EdgeXy, coordinate, corners, 8);
+        }
+        note_all(RecordNumber::ClipW, &clip.w, 0, corners);
+        note_all(RecordNumber::EdgeW, &clip.w, corners, 8);
+        note_all(RecordNumber::LeastW, &clip.w_min, 0, 1);
+        for plane in &planes.edge {
+            note_all(RecordNumber::PlaneAb, plane, 0, 2);
+            note_all(RecordNumber::PlaneC, plane, 2, 3);
+        }
+        note_all(RecordNumber::AxisC, &planes.axis_c, 0, 3);
+    }
+}
+
+/// Least and greatest of all numbers of the records made so far.
+struct Seen {
+    cage: CageKind,
+    spans: NumberSpans,
+}
+
+impl Watch for Seen {
+    fn made<L: CageCoordinate>(&mut self, record: &Record<L>) {
+        see(&mut self.spans, self.cage, record);
+    }
+}
+
+impl Machine {
+    /// Draws a frame and returns the least and the greatest of each number of its records.
+    ///
+    /// # Errors
+    /// When a word overflows under the trap policy.
+    pub fn seen_numbers(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<NumberSpans, EngineError> {
+        match setup.options.cage {
+            CageKind::Corners => self.seen_as::<Corners>(graph, setup, frame),
+            CageKind::Frame => self.seen_as::<CornerAndEdges>(graph, setup, frame),
+        }
+    }
+
+    fn seen_as<L: CageCoordinate>(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<NumberSpans, EngineError> {
+        let watch = Seen {
+            cage: setup.options.cage,
+            spans: NumberSpans::new(),
+        };
+        let options = self.options;
+        let canvas = (self.emptied(setup, frame), &mut *frame);
+        let mut state =
+            State::<_, L, _>::new(options, graph, setup, canvas, hwmodel::NoProbe, watch);
+        state.draw_by_tiles(u64::MAX)?;
+        let (_, _, watch) = state.finish();
+        Ok(watch.spans)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_by_hand() {
+        let span = |least, greatest| NumberSpan { least, greatest }.bits();
+        assert_eq!(span(0, 0), 0);
+        assert_eq!(span(0, 255), 8);
+        assert_eq!(span(0, 256), 9);
+        assert_eq!(span(-1, 0), 1);
+        assert_eq!(span(-128, 127), 8);
+        assert_eq!(span(-129, 0), 9);
+        assert_eq!(span(-1, 128), 9);
+    }
+}

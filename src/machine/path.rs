@@ -1,0 +1,108 @@
+//! The way back: a record's ancestor, from the record.
+//!
+//! Under the rules that draw outlines every step down can be undone to the bit. Edges were halved without a remainder,
+//! since no record is finer than the finest voxels; a child's vertices and planes are its parent's, moved by its own
+//! edges; and what a quadrant did to coordinates (`2x` or `2x - w`) is undone by an add and a shift by one place. So a
+//! parent need not be stored with its vertices: its node and the children that are left are enough.
+
+use hwmodel::{Datapath, Probe};
+
+use super::cage::CageCoordinate;
+use super::constants::Constants;
+use super::planes;
+use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
+use crate::frame::QuadNode;
+
+/// What is stored of a parent.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PathEntry {
+    /// Its octree node; with it, in hardware, which children it has and where they begin.
+    pub(super) node: u32,
+    /// Its octree level.
+    pub(super) level: u32,
+    /// The level of its quadtree node, which holds its descendants'.
+    pub(super) quad_level: u32,
+    /// [`ImagePlace::inside`].
+    pub(super) inside: bool,
+    /// Children that are left, a bit for each place in the order.
+    pub(super) left: u8,
+}
+
+/// The quadtree node of `level` that holds `quad`.
+pub(super) fn quad_above(quad: QuadNode, level: u32) -> QuadNode {
+    let up = quad.level - level;
+    QuadNode {
+        level,
+        x: quad.x >> up,
+        y: quad.y >> up,
+    }
+}
+
+/// The parent of which `entry` was stored, from a descendant of it.
+pub(super) fn back<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    entry: &PathEntry,
+    from: &Record<L>,
+) -> Record<L> {
+    let Pose::Clip(mut clip, mut planes) = from.pose else {
+        unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
+    };
+    let mut quad = from.place.quad;
+    while quad.level > entry.quad_level {
+        out_of_quadrant(dp, constants, &mut clip, &mut planes, quad.in_parent());
+        quad = quad_above(quad, quad.level - 1);
+    }
+    let mut min = from.cube.min;
+    for level in (entry.level..from.cube.level).rev() {
+        // The child's octant is in its lowest vertex: wires.
+        let place = constants.depth + constants.sub_levels - level - 1;
+        let octant = (0..3).fold(0u8, |bits, k| bits << 1 | u8::from(dp.bit(min[k], place)));
+        for coordinate in [&mut clip.x, &mut clip.y, &mut clip.w] {
+            *coordinate = coordinate.of_parent(dp, octant);
+        }
+        planes::to_parent(dp, constants, &mut planes, level, octant);
+        min = min.map(|corner| dp.without_bit(corner, place));
+    }
+    let side = dp.load(1i64 << (constants.depth + constants.sub_levels - entry.level));
+    (clip.w_min, _) = clip.w.span(dp);
+    Record {
+        cube: Cube {
+            min,
+            max: min.map(|corner| dp.add(corner, side)),
+            node: entry.node,
+            level: entry.level,
+            voxel_level: entry.level,
+            solid: false,
+        },
+        place: ImagePlace {
+            quad,
+            inside: entry.inside,
+        },
+        pose: Pose::Clip(clip, planes),
+    }
+}
+
+/// Vertices and planes relative to the parent of a quadrant, to which they were relative.
+fn out_of_quadrant<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    clip: &mut Clip<L>,
+    planes: &mut Planes,
+    quadrant: u8,
+) {
+    let w = clip.w;
+    let mut undo = |is_far: bool, x: &L| {
+        let doubled = if is_far {
+            x.zip(&w, |x, w| dp.add(x, w))
+        } else {
+            *x
+        };
+        doubled.map(|x| dp.shr(x, 1))
+    };
+    (clip.x, clip.y) = (
+        undo(quadrant & 1 != 0, &clip.x),
+        undo(quadrant & 2 != 0, &clip.y),
+    );
+    planes::move_out_of_quadrant(dp, constants, planes, quadrant);
+}

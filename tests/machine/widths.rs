@@ -1,0 +1,128 @@
+//! The widths that a frame's set-up proves: no record of any frame needs more, and with a bit less some do.
+
+use std::collections::BTreeMap;
+
+use hwmodel::cycles::{Organisation, StackHolds};
+use rayon::prelude::*;
+use shiftvox::frame::Frame;
+use shiftvox::machine::{
+    Machine, MachineOptions, NumberSpans, RecordNumber, narrowed, proven_widths,
+};
+use shiftvox::project::{CageKind, Coverage, Engine, FrameSetup, SetupOptions};
+
+use crate::scene_table::SCENES;
+use crate::scenes::*;
+
+/// Cameras of a scene.
+const CAMERAS: usize = 10;
+
+fn machine() -> Machine {
+    Machine::new(MachineOptions {
+        organisation: Organisation {
+            stack: StackHolds::Path,
+            leaf_masks: true,
+            hidden_unread: true,
+            ..Organisation::default()
+        },
+        ..MachineOptions::default()
+    })
+}
+
+/// Every test scene from random places, with either cage.
+fn frames() -> impl ParallelIterator<Item = (&'static shiftvox::graph::Graph, FrameSetup)> {
+    SCENES.par_iter().flat_map_iter(|scene| {
+        let graph = scene.graph();
+        let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(scene.name.as_bytes()) ^ 19);
+        (0..CAMERAS).filter_map(move |number| {
+            let place = PLACES[number % PLACES.len()];
+            let camera = camera_at(place, graph, (37, 29), &mut dice);
+            let options = SetupOptions {
+                cage: [CageKind::Frame, CageKind::Corners][number % 2],
+                bits: [32, 24][number / 2 % 2],
+                ..SetupOptions::of(Coverage::Exact)
+            };
+            let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).ok()?;
+            setup.has_headroom.then_some((graph, setup))
+        })
+    })
+}
+
+fn seen(graph: &shiftvox::graph::Graph, setup: &FrameSetup) -> NumberSpans {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    machine()
+        .seen_numbers(&graph.view(), setup, &mut frame)
+        .unwrap()
+}
+
+#[test]
+fn no_record_needs_more_bits_than_are_proven() {
+    let least_spare: BTreeMap<RecordNumber, (u32, u32)> = frames()
+        .map(|(graph, setup)| {
+            let proven = proven_widths(&setup, graph.len()).unwrap();
+            let mut spare = BTreeMap::new();
+            for (number, span) in seen(graph, &setup) {
+                let bound = proven.numbers[&number];
+                assert!(
+                    bound.holds(span),
+                    "{}: {span:?} is not in {bound:?}",
+                    number.name()
+                );
+                let needed = span.bits();
+                spare.insert(number, (bound.bits() - needed, needed));
+            }
+            spare
+        })
+        .reduce(BTreeMap::new, |mut all, some| {
+            for (number, spare) in some {
+                let least = all.entry(number).or_insert(spare);
+                *least = spare.min(*least);
+            }
+            all
+        });
+    for (number, (spare, seen)) in &least_spare {
+        eprintln!("{}: {seen} bits seen, {spare} more proven", number.name());
+    }
+    assert_eq!(least_spare.len(), RecordNumber::ALL.len());
+    // With a bit less, the proof of each of these would be wrong in some frame.
+    for tight in [
+        RecordNumber::Node,
+        RecordNumber::Level,
+        RecordNumber::Lowest,
+        RecordNumber::Highest,
+        RecordNumber::QuadLevel,
+        RecordNumber::QuadPlace,
+        RecordNumber::ClipXy,
+        RecordNumber::ClipW,
+        RecordNumber::EdgeW,
+        RecordNumber::LeastW,
+        RecordNumber::PlaneAb,
+    ] {
+        assert_eq!(least_spare[&tight].0, 0, "{}", tight.name());
+    }
+    // The others' bounds add what never comes together.
+    assert!(
+        least_spare.values().all(|&(spare, _)| spare <= 3),
+        "{least_spare:?}"
+    );
+}
+
+/// Wide words of the proven width hold all sums on planes: a narrower one traps.
+#[test]
+fn wide_words_of_the_proven_width_do_not_overflow() {
+    let fewest = frames()
+        .map(|(graph, setup)| {
+            let narrow = narrowed(&setup);
+            let bits = narrow.format.wide().bits();
+            let draws = |bits: u32| {
+                let mut setup = setup.clone();
+                setup.format = setup.format.with_wide_bits(bits);
+                let mut frame = Frame::new(setup.width, setup.height, false);
+                machine().render(&graph.view(), &setup, &mut frame).is_ok()
+            };
+            assert!(draws(bits), "{bits} bits are not enough for {setup:?}");
+            (1..8).find(|spare| !draws(bits - spare)).unwrap_or(8)
+        })
+        .min();
+    eprintln!("a frame traps with {fewest:?} bits fewer");
+    assert!(fewest.is_some_and(|spare| spare <= 4), "{fewest:?}");
+}
