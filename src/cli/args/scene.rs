@@ -22,7 +22,7 @@ pub struct SceneArgs {
     /// Give the voxels of a mesh six opacities, for --coverage alpha; of a mesh that is drawn with that they are found anyway
     #[arg(long)]
     pub opacities: bool,
-    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else z]
+    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and what was made of them, else z]
     #[arg(long, value_enum)]
     pub mesh_up: Option<Up>,
     /// How the colours of an .obj mesh's .mtl are meant; the format does not say
