@@ -81,7 +81,7 @@ pub(super) struct Opened {
 }
 
 enum Content {
-    Graph(Scene),
+    Graph(Box<Scene>),
     Far(FarFile),
     Textured(TexturedFile),
 }
@@ -113,7 +113,7 @@ pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result
         return Ok(Opened {
             engine: asked.unwrap_or_default(),
             load_ms: scene.load_ms,
-            content: Content::Graph(scene),
+            content: Content::Graph(Box::new(scene)),
         });
     };
     method.check(name, kind, args)?;

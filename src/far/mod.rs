@@ -35,8 +35,8 @@ pub struct FarData {
     pub grid: u32,
     /// Whether +Y is up, for fitted cameras; else +Z.
     pub y_up: bool,
-    /// For fitted cameras too: [`MeshBox::cuts`](crate::graph::MeshBox::cuts).
-    pub cuts: [u8; 8],
+    /// For fitted cameras too: [`MeshBox::bevels`](crate::graph::MeshBox::bevels).
+    pub bevels: [u8; 8],
     /// The hierarchy, parents before children, a node's first child right after it.
     pub nodes: Vec<Node>,
     /// Records of the voxels, node by node, list by list.

@@ -3,56 +3,57 @@
 
 use super::place;
 
-/// Parts of a box's side in which what is cut off its corners is counted.
+/// Parts of an edge in which bevels are counted.
 const PARTS: f64 = 512.0;
 
-/// The box around a mesh with its corners cut off, and which axis is up.
+/// The box around a mesh with bevelled corners, and which axis is up.
 ///
-/// A corner is cut by the plane that meets its three edges at one share of their lengths, beyond which the mesh has
-/// no vertex. A share is less than half an edge, so cuts do not meet, and the 24 points where planes and edges meet
-/// enclose the mesh. Of the box alone a camera would see round objects a third smaller.
+/// A bevel is the plane that cuts a corner off at one share of its three edges, beyond which the mesh has no vertex. A
+/// share is less than half an edge, so bevels do not meet, and the 24 points where bevels and edges meet enclose the
+/// mesh. Fitted to the box alone, a camera would show round objects smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshBox {
-    /// Lowest corner, world units: what single precision holds of it, as [`place::centre`] says.
+    /// Lowest corner, world units, as single precision holds it.
     pub low: [f64; 3],
     /// Highest corner.
     pub high: [f64; 3],
-    /// Shares cut off the corners `x << 2 | y << 1 | z`, in 512ths; 0: nothing.
-    pub cuts: [u8; 8],
+    /// Bevels of the corners `x << 2 | y << 1 | z`, in 512ths; 0: nothing.
+    pub bevels: [u8; 8],
     /// Whether +Y is up; else +Z.
     pub y_up: bool,
 }
 
 impl MeshBox {
-    /// A box with shares cut off its corners, in single precision as in all files.
+    /// A box with bevels, in single precision as in all files.
     #[must_use]
-    pub fn new((low, high): ([f64; 3], [f64; 3]), cuts: [u8; 8], y_up: bool) -> Self {
+    pub fn new((low, high): ([f64; 3], [f64; 3]), bevels: [u8; 8], y_up: bool) -> Self {
+        // As far voxels are stored; the others round likewise, so that all are the same.
         let centre = place::centre(low, high);
         let kept =
             |p: [f64; 3]| [0, 1, 2].map(|k| centre[k] + f64::from((p[k] - centre[k]) as f32));
         Self {
             low: kept(low),
             high: kept(high),
-            cuts,
+            bevels,
             y_up,
         }
     }
 
-    /// The box around points, with as much cut off its corners as none of them needs.
+    /// The box around points, bevelled as far as they allow.
     #[must_use]
     pub fn around(
         span: ([f64; 3], [f64; 3]),
         points: impl Iterator<Item = [f64; 3]>,
         y_up: bool,
     ) -> Self {
-        Self::new(span, cuts(span, points), y_up)
+        Self::new(span, bevels(span, points), y_up)
     }
 
     /// Points that enclose the mesh.
     pub fn hull(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..24).map(|i| {
             let (corner, along) = (i / 3, i % 3);
-            let share = f64::from(self.cuts[corner]) / PARTS;
+            let share = f64::from(self.bevels[corner]) / PARTS;
             let (mut from, to) = (self.corner(corner), self.corner(7 - corner));
             from[along] += (to[along] - from[along]) * share;
             from
@@ -75,7 +76,7 @@ impl MeshBox {
 }
 
 /// Which share of the edges at each corner of a box has no point beyond it.
-fn cuts((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 3]>) -> [u8; 8] {
+fn bevels((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 3]>) -> [u8; 8] {
     let side = [0, 1, 2].map(|k| high[k] - low[k]);
     let mut least = [1.0f64; 8];
     for point in points {
@@ -92,7 +93,7 @@ fn cuts((low, high): ([f64; 3], [f64; 3]), points: impl Iterator<Item = [f64; 3]
             *least = least.min(x + y + z);
         }
     }
-    // A step less, so that rounding cuts nothing off; saturates.
+    // A step less, so that rounding takes no point; saturates.
     least.map(|share| (share * PARTS - 1.0) as u8)
 }
 
@@ -107,9 +108,9 @@ mod tests {
             .map(|i| [0, 1, 2].map(|k| if k == i / 2 { [1.0, 3.0][i % 2] } else { 2.0 }))
             .collect();
         let span = ([1.0; 3], [3.0; 3]);
-        let cuts = cuts(span, points.iter().copied());
-        assert_eq!(cuts, [255; 8]);
-        let mesh = MeshBox::new(span, cuts, true);
+        let bevels = bevels(span, points.iter().copied());
+        assert_eq!(bevels, [255; 8]);
+        let mesh = MeshBox::new(span, bevels, true);
         let hull: Vec<[f64; 3]> = mesh.hull().collect();
         for signs in 0..27 {
             let way = [signs % 3, signs / 3 % 3, signs / 9].map(|s| f64::from(s) - 1.0);
@@ -127,7 +128,7 @@ mod tests {
     fn flat_boxes_and_full_ones_lose_nothing() {
         let flat = ([0.0; 3], [4.0, 4.0, 0.0]);
         let corners = [[0.0; 3], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [4.0, 4.0, 0.0]];
-        assert_eq!(cuts(flat, corners.into_iter()), [0; 8]);
+        assert_eq!(bevels(flat, corners.into_iter()), [0; 8]);
         let mesh = MeshBox::new(flat, [0; 8], false);
         assert!(mesh.can_be_seen(1.0) && !mesh.can_be_seen(5.0));
         assert!(mesh.hull().all(|p| corners.contains(&p)));
@@ -143,7 +144,7 @@ mod tests {
             let mesh = MeshBox {
                 low,
                 high: [odd; 3],
-                cuts: [0; 8],
+                bevels: [0; 8],
                 y_up: true,
             };
             assert!(!mesh.can_be_seen(1e-3));

@@ -96,7 +96,7 @@ impl Bounds {
         }
     }
 
-    /// A mesh's box, without what is cut off its corners.
+    /// A mesh's box, with its bevels.
     #[must_use]
     pub fn of_mesh(mesh: &MeshBox) -> Self {
         Self {

@@ -16,7 +16,7 @@ pub struct MeshOptions {
 
 /// Stands in for what a mesh was; never made.
 #[derive(Debug, Clone, PartialEq)]
-pub enum MeshSummary {}
+pub struct MeshSummary;
 
 /// Files beside a mesh.
 pub(super) trait Beside {}

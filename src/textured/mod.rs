@@ -48,8 +48,8 @@ pub struct TexturedData {
     pub high: DVec3,
     /// Whether +Y is up, for fitted cameras; else +Z.
     pub y_up: bool,
-    /// For fitted cameras too: [`MeshBox::cuts`](crate::graph::MeshBox::cuts).
-    pub cuts: [u8; 8],
+    /// For fitted cameras too: [`MeshBox::bevels`](crate::graph::MeshBox::bevels).
+    pub bevels: [u8; 8],
     /// The primitives, in the mesh's order.
     pub primitives: Vec<Primitive>,
     /// The grids, coarse before fine, each of another number of cells.

@@ -102,7 +102,7 @@ fn fields_are_checked_behind_their_checksums() {
     );
     // Every byte of the header and of the root, but for those that may have any
     // value: the centre (48..72), the distance (72..80), the settings (80, 84),
-    // what is cut off the box (104..112), and of the root its box, origin and
+    // the bevels (104..112), and of the root its box, origin and
     // voxel, what was counted and the fit's error.
     let header = (8..48).chain(86..91).chain(91..96).chain(112..120);
     let root = (41..64).filter(|byte| !(41..43).contains(byte));

@@ -119,7 +119,7 @@ fn what_is_read_in_parts_is_checked_where_it_is_read() {
     // The section at the end of the file: triangles, seen from near; texels of the second grid.
     for (made, end, is_read, is_not) in [
         (
-            &["a.far", "--leaf-triangles", "100"][..],
+            &["a.far", "--leaf-triangles", "100", "--rays", "20000"][..],
             "triangles",
             near,
             away,

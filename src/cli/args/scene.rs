@@ -23,8 +23,8 @@ pub struct SceneArgs {
     /// that they are found anyway
     #[arg(long)]
     pub opacities: bool,
-    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes, else
-    /// z]
+    /// Which axis is up, for fitted cameras [default: y of .obj, .ply, .gltf and .glb meshes and
+    /// what was made of them, else z]
     #[arg(long, value_enum)]
     pub mesh_up: Option<Up>,
     /// How the colours of an .obj mesh's .mtl are meant; the format does not say

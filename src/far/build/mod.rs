@@ -164,7 +164,7 @@ pub fn build<S: Surface + ?Sized>(
     progress.end();
     let triangles = leaf_triangles(surface, &order, centre);
     let mut data = assemble(built, triangles, centre, options)?;
-    data.cuts = mesh_box(surface, data.y_up).cuts;
+    data.bevels = mesh_box(surface, data.y_up).bevels;
     Ok(data)
 }
 
@@ -344,7 +344,7 @@ fn assemble(
         leaf_triangles: options.leaf_triangles,
         grid: options.grid,
         y_up: true,
-        cuts: [0; 8],
+        bevels: [0; 8],
         nodes,
         voxels,
         triangles,

@@ -11,13 +11,13 @@ pub(super) const FORMAT: Format = Format {
     ending: ".far",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89FAR\r\n\x1a\n",
-    versions: VERSION_WITHOUT_CUTS..=3,
+    versions: VERSION_WITHOUT_BEVELS..=3,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
 
-/// The version of the layout that says nothing of the box's corners.
-pub(super) const VERSION_WITHOUT_CUTS: u32 = 2;
+/// The version of the layout without bevels.
+pub(super) const VERSION_WITHOUT_BEVELS: u32 = 2;
 
 /// Where things are in the header, beside what every header has.
 pub(super) mod at {
@@ -33,7 +33,7 @@ pub(super) mod at {
     pub(in super::super) const Y_UP: usize = 90;
     pub(in super::super) const SPARE: std::ops::Range<usize> = 91..96;
     pub(in super::super) const NODES_CHECKSUM: usize = 96;
-    pub(in super::super) const CUTS: usize = 104;
+    pub(in super::super) const BEVELS: usize = 104;
     pub(in super::super) const MORE_SPARE: std::ops::Range<usize> = 112..120;
 }
 

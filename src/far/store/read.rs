@@ -11,7 +11,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
-use super::format::{FORMAT, Layout, VERSION_WITHOUT_CUTS, at, layout};
+use super::format::{FORMAT, Layout, VERSION_WITHOUT_BEVELS, at, layout};
 use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
@@ -42,7 +42,7 @@ pub struct FarFile {
     leaf_triangles: u32,
     grid: u32,
     y_up: bool,
-    cuts: [u8; 8],
+    bevels: [u8; 8],
 }
 
 impl FarFile {
@@ -170,7 +170,7 @@ impl FarFile {
             leaf_triangles: header.leaf_triangles,
             grid: header.grid,
             y_up: header.y_up,
-            cuts: header.cuts,
+            bevels: header.bevels,
             bytes,
         })
     }
@@ -243,14 +243,14 @@ impl FarFile {
         (world(root.low), world(root.high))
     }
 
-    /// What fitted cameras look at; in a file of an earlier program nothing is cut off the box.
+    /// What fitted cameras look at; in a file of an earlier program the box has no bevels.
     #[must_use]
     pub fn mesh_box(&self) -> MeshBox {
         let (low, high) = self.bounds();
         MeshBox {
             low: low.to_array(),
             high: high.to_array(),
-            cuts: self.cuts,
+            bevels: self.bevels,
             y_up: self.y_up,
         }
     }
@@ -406,7 +406,7 @@ struct Header {
     grid: u32,
     blends: [Blend; 2],
     y_up: bool,
-    cuts: [u8; 8],
+    bevels: [u8; 8],
     nodes_checksum: u64,
 }
 
@@ -437,9 +437,9 @@ impl Header {
         };
         let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        let cuts = header.bytes_at(at::CUTS);
-        let says_cuts = header.version() > VERSION_WITHOUT_CUTS;
-        header.ensure(says_cuts || cuts == [0; 8], at::CUTS, || "zeros")?;
+        let bevels = header.bytes_at(at::BEVELS);
+        let says_bevels = header.version() > VERSION_WITHOUT_BEVELS;
+        header.ensure(says_bevels || bevels == [0; 8], at::BEVELS, || "zeros")?;
         Ok(Self {
             places,
             triangles,
@@ -449,7 +449,7 @@ impl Header {
             grid,
             blends,
             y_up: header.byte_at(at::Y_UP) == 1,
-            cuts,
+            bevels,
             nodes_checksum: header.u64_at(at::NODES_CHECKSUM),
         })
     }

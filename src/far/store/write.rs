@@ -62,7 +62,7 @@ fn header(data: &FarData, nodes: &[u8], file_bytes: u64) -> [u8; HEADER_BYTES] {
         put(at::OPACITY_BLEND, &[blend_byte(data.opacity_blend)]);
         put(at::SHADER_BLEND, &[blend_byte(data.shader_blend)]);
         put(at::Y_UP, &[u8::from(data.y_up)]);
-        put(at::CUTS, &data.cuts);
+        put(at::BEVELS, &data.bevels);
         put(at::NODES_CHECKSUM, &xxh3_64(nodes).to_le_bytes());
     })
 }

@@ -39,10 +39,10 @@ pub(super) mod at {
     pub(in super::super) const LEVEL_START: usize = 288;
     /// Entry of the sixth section, beyond the level table.
     pub(in super::super) const OPACITY_SECTION: usize = 416;
-    /// Its box: lowest and highest corner, and what is cut off the corners.
+    /// Its box: lowest and highest corner, and its bevels.
     pub(in super::super) const MESH_LOW: usize = 448;
     pub(in super::super) const MESH_HIGH: usize = 472;
-    pub(in super::super) const MESH_CUTS: usize = 496;
+    pub(in super::super) const MESH_BEVELS: usize = 496;
     pub(in super::super) const CHECKSUM: usize = 504;
 }
 

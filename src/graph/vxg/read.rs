@@ -216,7 +216,7 @@ impl Header {
         let mesh = (up != NO_MESH).then(|| MeshBox {
             low: eights(at::MESH_LOW).map(f64::from_le_bytes),
             high: eights(at::MESH_HIGH).map(f64::from_le_bytes),
-            cuts: field(header, at::MESH_CUTS),
+            bevels: field(header, at::MESH_BEVELS),
             y_up: up == MESH_Y_UP,
         });
         Ok(Self {

@@ -215,7 +215,7 @@ fn header(graph: &Graph, table: &[Section], file_bytes: u64) -> [u8; HEADER_BYTE
             put(at::MESH_LOW + 8 * axis, &mesh.low[axis].to_le_bytes());
             put(at::MESH_HIGH + 8 * axis, &mesh.high[axis].to_le_bytes());
         }
-        put(at::MESH_CUTS, &mesh.cuts);
+        put(at::MESH_BEVELS, &mesh.bevels);
     }
     let checksum = xxh3_64(&header[..at::CHECKSUM]);
     header[at::CHECKSUM..].copy_from_slice(&checksum.to_le_bytes());

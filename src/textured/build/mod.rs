@@ -116,7 +116,7 @@ pub fn build<S: Surface + ?Sized>(
         low,
         high,
         y_up: false,
-        cuts: mesh_box(surface, false).cuts,
+        bevels: mesh_box(surface, false).bevels,
         primitives,
         grids,
     })

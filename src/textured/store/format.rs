@@ -14,13 +14,13 @@ pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89TVX\r\n\x1a\n",
-    versions: VERSION_WITHOUT_CUTS..=2,
+    versions: VERSION_WITHOUT_BEVELS..=2,
     signature: "the signature of a .tvx file",
     not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
 };
 
-/// The version of the layout that says nothing of the box's corners.
-pub(super) const VERSION_WITHOUT_CUTS: u32 = 1;
+/// The version of the layout without bevels.
+pub(super) const VERSION_WITHOUT_BEVELS: u32 = 1;
 
 /// Where things are in the header, beside what every header has.
 pub(super) mod at {
@@ -30,7 +30,7 @@ pub(super) mod at {
     pub(in super::super) const GRIDS: usize = 80;
     pub(in super::super) const Y_UP: usize = 84;
     pub(in super::super) const SPARE: std::ops::Range<usize> = 85..96;
-    pub(in super::super) const CUTS: usize = 96;
+    pub(in super::super) const BEVELS: usize = 96;
     pub(in super::super) const PRIMITIVES_CHECKSUM: usize = 104;
     pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
 }

@@ -8,7 +8,9 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::TexturedError;
 use super::check::{Part, check, check_entry, check_primitives};
-use super::format::{ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, VERSION_WITHOUT_CUTS, at};
+use super::format::{
+    ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, VERSION_WITHOUT_BEVELS, at,
+};
 use crate::graph::MeshBox;
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::graph::place::{MOST_PARTS, can_be_seen};
@@ -26,7 +28,7 @@ pub struct TexturedFile {
     low: DVec3,
     high: DVec3,
     y_up: bool,
-    cuts: Option<[u8; 8]>,
+    bevels: Option<[u8; 8]>,
     entries: Vec<GridEntry>,
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
@@ -74,7 +76,7 @@ impl TexturedFile {
             low: header.low,
             high: header.high,
             y_up: header.y_up,
-            cuts: header.cuts,
+            bevels: header.bevels,
             entries,
             levels: Vec::new(),
             levels_made: AtomicU64::new(0),
@@ -154,7 +156,8 @@ impl TexturedFile {
     #[must_use]
     pub fn mesh_box(&self) -> Option<MeshBox> {
         let span = (self.low.to_array(), self.high.to_array());
-        self.cuts.map(|cuts| MeshBox::new(span, cuts, self.y_up))
+        self.bevels
+            .map(|bevels| MeshBox::new(span, bevels, self.y_up))
     }
 
     /// The primitives, in the mesh's order.
@@ -346,7 +349,7 @@ struct Header {
     low: DVec3,
     high: DVec3,
     y_up: bool,
-    cuts: Option<[u8; 8]>,
+    bevels: Option<[u8; 8]>,
     primitives_checksum: u64,
     grids_checksum: u64,
 }
@@ -370,16 +373,16 @@ impl Header {
         let is_seen = can_be_seen(low.to_array(), high.to_array(), finest);
         header.ensure(is_seen, at::LOW, || "a box whose parts can be told apart")?;
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        let cuts = header.bytes_at(at::CUTS);
-        let says_cuts = header.version() > VERSION_WITHOUT_CUTS;
-        header.ensure(says_cuts || cuts == [0; 8], at::CUTS, || "zeros")?;
+        let bevels = header.bytes_at(at::BEVELS);
+        let says_bevels = header.version() > VERSION_WITHOUT_BEVELS;
+        header.ensure(says_bevels || bevels == [0; 8], at::BEVELS, || "zeros")?;
         Ok(Self {
             primitives,
             grids,
             low,
             high,
             y_up: header.byte_at(at::Y_UP) == 1,
-            cuts: says_cuts.then_some(cuts),
+            bevels: says_bevels.then_some(bevels),
             primitives_checksum: header.u64_at(at::PRIMITIVES_CHECKSUM),
             grids_checksum: header.u64_at(at::GRIDS_CHECKSUM),
         })

@@ -78,7 +78,7 @@ fn header(data: &TexturedData, entries: &[GridEntry], layout: &Layout) -> [u8; H
         // At most 16.
         put(at::GRIDS, &(entries.len() as u32).to_le_bytes());
         put(at::Y_UP, &[u8::from(data.y_up)]);
-        put(at::CUTS, &data.cuts);
+        put(at::BEVELS, &data.bevels);
         let primitives = xxh3_64(cast_slice(&data.primitives));
         put(at::PRIMITIVES_CHECKSUM, &primitives.to_le_bytes());
         let grids = xxh3_64(cast_slice(entries));
