@@ -112,7 +112,7 @@ impl Condition {
             ),
             // Nothing is closed to root.
             Self::ReadOnly if can.drop_root => {
-                format!("exec setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" \"$@\"")
+                "exec setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" \"$@\"".to_owned()
             }
             Self::ReadOnly if !can.is_root => run.to_owned(),
             Self::StdoutFull if Path::new("/dev/full").exists() => format!("{run} > /dev/full"),
