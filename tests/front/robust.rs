@@ -353,7 +353,7 @@ fn whatever_happens_it_ends_in_order() {
     let sum = |of: fn(&Counts) -> u64| both.iter().map(of).sum::<u64>();
     let (stopped, refused) = (sum(|counts| counts.stopped), sum(|counts| counts.refused));
     assert!(
-        stopped > 5 && refused > 10 && sum(|counts| counts.limits) > 0,
+        stopped > 0 && refused > 10 && sum(|counts| counts.limits) > 0,
         "{both:?}"
     );
 }
