@@ -28,14 +28,21 @@ mod handlers {
 
     /// The end of the pipe that handlers write to.
     static WAKE: AtomicI32 = AtomicI32::new(-1);
+    /// Bytes that are given back when memory is refused, so that there are some for the report.
+    const RESERVE: usize = 1 << 20;
     /// How long a handler waits to be ended, milliseconds.
     const PATIENCE_MS: c_int = 5000;
 
     pub(super) fn install(json: bool) -> io::Result<()> {
         let (mut reader, writer) = io::pipe()?;
+        let mut reserve: Vec<u8> = Vec::new();
+        // Where it is refused already, the report may be cut short.
+        let _ = reserve.try_reserve_exact(RESERVE);
+        let reserve = std::hint::black_box(reserve);
         let wait = move || {
             let mut signal = [0];
             if reader.read_exact(&mut signal).is_ok() {
+                drop(reserve);
                 end(c_int::from(signal[0]), json);
             }
         };

@@ -216,7 +216,7 @@ fn threads_change_no_table() {
         document(&with(&[
             "--rules",
             "--sweep",
-            "bits=16..32+16",
+            "bits=16..32+8",
             "--threads",
             threads,
         ]))

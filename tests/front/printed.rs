@@ -104,9 +104,8 @@ fn printed_commands_run_and_run_again() {
                 if *mark == Mark::Forms || (*mark == Mark::Long && !all) {
                     continue;
                 }
-                if round == 2 && !writes.contains(command)
-                    || !again.insert((round, command.clone())) && round == 2
-                {
+                let mut is_wanted = || writes.contains(command) && again.insert(command.clone());
+                if round == 2 && !is_wanted() {
                     continue;
                 }
                 let before = files(folder.path());

@@ -112,7 +112,7 @@ impl Condition {
             ),
             // Nothing is closed to root.
             Self::ReadOnly if can.drop_root => {
-                format!("exec setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" \"$@\"")
+                "exec setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" \"$@\"".to_owned()
             }
             Self::ReadOnly if !can.is_root => run.to_owned(),
             Self::StdoutFull if Path::new("/dev/full").exists() => format!("{run} > /dev/full"),
@@ -353,7 +353,7 @@ fn whatever_happens_it_ends_in_order() {
     let sum = |of: fn(&Counts) -> u64| both.iter().map(of).sum::<u64>();
     let (stopped, refused) = (sum(|counts| counts.stopped), sum(|counts| counts.refused));
     assert!(
-        stopped > 5 && refused > 10 && sum(|counts| counts.limits) > 0,
+        stopped > 0 && refused > 10 && sum(|counts| counts.limits) > 0,
         "{both:?}"
     );
 }
