@@ -99,12 +99,14 @@ struct Seen {
 /// ```
 #[derive(Debug, Clone, Default)]
 pub struct ShiftProbe {
-    seen: HashMap<(usize, u8, u32, u32), (Place, Seen), BuildHasherDefault<SiteHasher>>,
+    seen: HashMap<SiteKey, (Place, Seen), BuildHasherDefault<SiteHasher>>,
     /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
 }
 
 type Place = &'static Location<'static>;
+/// The place's address, stage, width and level.
+type SiteKey = (usize, u8, u32, u32);
 
 /// A hash of a few numbers that nobody chooses to collide: asked for at every shift of a frame.
 #[derive(Debug, Clone, Copy, Default)]
