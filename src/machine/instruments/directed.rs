@@ -82,7 +82,7 @@ impl Inputs {
 
     /// Planes of small coefficients, which have ties, or of large ones.
     fn planes(&mut self) -> Planes {
-        let bits = if self.flag() { 2 } else { self.wide_bits / 2 };
+        let bits = if self.flag() { 2 } else { self.wide_bits >> 1 };
         let mut number = || WideWord::from_host(self.number(bits));
         Planes {
             edge: std::array::from_fn(|_| std::array::from_fn(|_| number())),
