@@ -84,7 +84,7 @@ fn one_voxel(side: u32) -> (Graph, FrameSetup) {
     (graph, setup)
 }
 
-/// 1. Additions and subtractions of a frame of one voxel and one sample, by hand.
+/// Figure 1: additions and subtractions of a frame of one voxel and one sample, by hand.
 ///
 /// A span of four numbers takes six additions. Pushing: the span of W; against the picture's border, for x and y, four
 /// subtractions and two spans; against the bisector, for x and y, four subtractions and a span.
@@ -101,7 +101,7 @@ fn additions_of_a_frame_of_one_voxel() {
     assert_eq!((log.pixels, log.nodes.len()), (1, 1));
 }
 
-/// 2. Its cycles on a hardware that has a unit for every operation: the object is made in three visits of a cycle;
+/// Figure 2: its cycles on a hardware that has a unit for every operation: the object is made in three visits of a cycle;
 /// the record is taken, compared with its fill vector, reads its node (a miss), is drawn (a miss of its attribute) and
 /// marks its sample.
 #[test]
@@ -216,7 +216,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// 3 to 11, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
+/// Figures 3 to 11, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");
