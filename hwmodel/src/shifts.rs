@@ -17,7 +17,7 @@ use crate::{OpClass, Operand, Probe, Stage, StageLevel};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ShiftKind {
-    /// By one place at most, always: wires.
+    /// By one place, always: wires.
     Wires,
     /// The same in all of the frame; another frame may have another.
     Frame,
@@ -161,10 +161,11 @@ impl ShiftProbe {
                 ShiftKind::Operation
             } else if least < most {
                 ShiftKind::Level
-            } else if most > 1 {
-                ShiftKind::Frame
-            } else {
+            } else if most == 1 {
                 ShiftKind::Wires
+            } else {
+                // Also by 0: no line of the machine shifts by 0 in every frame.
+                ShiftKind::Frame
             };
             ShiftSite {
                 site: format!("{file}:{line}"),

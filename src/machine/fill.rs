@@ -252,6 +252,6 @@ mod tests {
             fill.read(&mut dp, node.quadrant(1).quadrant(3));
         }
         let all = dp.into_probe().accesses_by(|cell| cell.memory);
-        assert_eq!(all[&Memory::FillVector].reads, 2 * 2);
+        assert_eq!(all[&Memory::FillVector].reads, 4);
     }
 }

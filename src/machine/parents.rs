@@ -48,6 +48,10 @@ pub(super) struct Parent<L: CageCoordinate> {
 }
 
 /// What lies on the stack: a whole parent, or the way to it.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a stack holds one kind or the other; boxes would be slower"
+)]
 #[derive(Clone, Copy)]
 pub(super) enum Stored<L: CageCoordinate> {
     Whole(Parent<L>),

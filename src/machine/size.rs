@@ -32,18 +32,30 @@ pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     let edges_w = clip.w.edges(dp);
     [&clip.x, &clip.y].into_iter().all(|x| {
         let edges_x = x.edges(dp);
-        let mut size = Word::ZERO;
-        for (along_x, along_w) in edges_x.into_iter().zip(edges_w) {
-            let at_far_side = dp.sub(along_x, along_w);
-            let here = magnitude(dp, along_x);
-            let there = magnitude(dp, at_far_side);
-            let greater = dp.max(here, there);
-            size = dp.add(size, greater);
-        }
-        let fits = dp.le(size, most);
-        dp.tap(Block::SizeClip, &(edges_x, edges_w, most), &fits);
-        fits
+        edges_at_most(dp, edges_x, edges_w, |_, _| most)
     })
+}
+
+/// Whether edges are at most as long as `most` says, given their length.
+#[inline(always)]
+pub(super) fn edges_at_most<P: Probe>(
+    dp: &mut Datapath<P>,
+    edges_x: [Word; 3],
+    edges_w: [Word; 3],
+    most: impl FnOnce(&mut Datapath<P>, Word) -> Word,
+) -> bool {
+    let mut size = Word::ZERO;
+    for (along_x, along_w) in edges_x.into_iter().zip(edges_w) {
+        let at_far_side = dp.sub(along_x, along_w);
+        let here = magnitude(dp, along_x);
+        let there = magnitude(dp, at_far_side);
+        let greater = dp.max(here, there);
+        size = dp.add(size, greater);
+    }
+    let most = most(dp, size);
+    let fits = dp.le(size, most);
+    dp.tap(Block::SizeClip, &(edges_x, edges_w, most), &fits);
+    fits
 }
 
 /// `|a|`.

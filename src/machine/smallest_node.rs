@@ -141,7 +141,7 @@ pub(super) fn screen<P: Probe>(
 }
 
 /// Whether a clip-space box leaves a node by at most the node's width.
-fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
+pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L, w: &L) -> bool {
     let from_left = x.zip(w, |x, w| dp.add(x, w));
     let (low, _) = from_left.span(dp);
     let to_right = x.zip(w, |x, w| {

@@ -2,7 +2,7 @@
 //! the machine does is watched by a probe of this file, and the rest is arithmetic.
 
 use hwmodel::cost::{CostTable, Costing, Goal};
-use hwmodel::cycles::{Hardware, NoObserver};
+use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
@@ -60,8 +60,9 @@ fn logged(graph: &Graph, setup: &FrameSetup) -> Log {
     drawn.unwrap().1
 }
 
-/// One voxel, and one sample that looks at the middle of its face, so that no line through an edge crosses the sample.
-fn one_voxel() -> (Graph, FrameSetup) {
+/// One voxel, and a picture of `side` samples a side that looks at the middle of its face, so that no line through an
+/// edge crosses it.
+fn one_voxel(side: u32) -> (Graph, FrameSetup) {
     let mut builder = Builder::new(BuildOptions::default());
     builder.push(Voxel::default());
     let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
@@ -71,19 +72,19 @@ fn one_voxel() -> (Graph, FrameSetup) {
         target: glam::DVec3::new(1.0, 0.5, 0.5),
         up: glam::DVec3::Z,
         fov_degrees: 1.0,
-        width: 1,
-        height: 1,
+        width: side,
+        height: side,
     };
     let options = SetupOptions {
         bits: 32,
         ..SetupOptions::default()
     };
     let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
-    assert_eq!(setup.levels, 0);
+    assert_eq!(setup.levels, side.ilog2());
     (graph, setup)
 }
 
-/// 1. Additions and subtractions of a frame of one voxel and one sample, by hand.
+/// Figure 1: additions and subtractions of a frame of one voxel and one sample, by hand.
 ///
 /// A span of four numbers takes six additions. Pushing: the span of W; against the picture's border, for x and y, four
 /// subtractions and two spans; against the bisector, for x and y, four subtractions and a span.
@@ -91,7 +92,7 @@ fn one_voxel() -> (Graph, FrameSetup) {
 /// each plane has its least and greatest (two sums), and is compared with the sample (two sums).
 #[test]
 fn additions_of_a_frame_of_one_voxel() {
-    let (graph, setup) = one_voxel();
+    let (graph, setup) = one_voxel(1);
     let log = logged(&graph, &setup);
     assert_eq!(log.times(OpClass::Add, 32), 6 + 2 * 2 * 6 + 2 * 6);
     assert_eq!(log.times(OpClass::Sub, 32), 2 * 4 + 2 * 4);
@@ -100,13 +101,52 @@ fn additions_of_a_frame_of_one_voxel() {
     assert_eq!((log.pixels, log.nodes.len()), (1, 1));
 }
 
-/// 2. Its cycles on a hardware that has a unit for every operation: the object is made in three visits of a cycle;
+/// Figure 2: its cycles on a hardware that has a unit for every operation: the object is made in three visits of a cycle;
 /// the record is taken, compared with its fill vector, reads its node (a miss), is drawn (a miss of its attribute) and
 /// marks its sample.
 #[test]
 fn cycles_of_a_frame_of_one_voxel() {
-    let (graph, setup) = one_voxel();
+    assert_eq!(
+        cycles_of_one_voxel(1, Organisation::default()),
+        3 + 1 + 1 + (2 + 30) + (1 + 20) + 1
+    );
+}
+
+/// The same with parents on the stack, or the path: the object is not stored, its node is not read, and it is drawn in
+/// the turn that makes it. Three visits of a cycle, the attribute's miss, the sample's mark.
+#[test]
+fn cycles_of_a_voxel_that_is_never_stored() {
+    for stack in [StackHolds::Parents, StackHolds::Path] {
+        let organisation = Organisation {
+            stack,
+            leaf_masks: true,
+            bricks: true,
+            hidden_unread: true,
+            ..Organisation::default()
+        };
+        assert_eq!(cycles_of_one_voxel(1, organisation), 3 + (1 + 20) + 1);
+    }
+}
+
+/// Four by four samples, all of the voxel, with joined fill vectors: one word is read when the voxel is
+/// made, and stays in its register. The attribute is read for each sample; all wait for the first one's
+/// line. Then the word is written sixteen times, once a cycle.
+#[test]
+fn cycles_of_a_word_of_samples() {
+    let organisation = Organisation {
+        stack: StackHolds::Path,
+        leaf_masks: true,
+        joined_fill: true,
+        ..Organisation::default()
+    };
+    assert_eq!(cycles_of_one_voxel(4, organisation), 3 + (1 + 20) + 16);
+}
+
+fn cycles_of_one_voxel(side: u32, organisation: Organisation) -> u64 {
+    let (graph, setup) = one_voxel(side);
     let mut hardware = Hardware::preset("tiny").unwrap();
+    hardware.organisation = organisation;
+    (hardware.pixels.buffer, hardware.pixels.drain_interval) = (16, 1);
     for unit in hardware.units.values_mut() {
         (unit.count, unit.latency, unit.interval, unit.width) = (1000, 0, 1, 64);
     }
@@ -125,8 +165,7 @@ fn cycles_of_a_frame_of_one_voxel() {
         Overflow::Trap,
         &mut NoObserver,
     );
-    let cycles = simulated.unwrap().1.cycles.cycles;
-    assert_eq!(cycles, 3 + 1 + 1 + (2 + 30) + (1 + 20) + 1);
+    simulated.unwrap().1.cycles.cycles
 }
 
 /// A cache as in a textbook: sets of lines, the one that was used last at the end.
@@ -177,7 +216,7 @@ fn close(a: f64, b: f64) {
     assert!((a - b).abs() <= 1e-9 * a.abs().max(b.abs()), "{a} {b}");
 }
 
-/// 3 to 11, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
+/// Figures 3 to 11, of a terrain on a hardware with one context, whose units and memories have sizes that the tables have.
 #[test]
 fn figures_of_a_terrain() {
     let graph = graph_of_spec("gen:terrain,depth=6");

@@ -18,6 +18,7 @@ use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Scree
 use crate::machine::smallest_node::{self, Fill};
 use crate::machine::state::State;
 use crate::machine::{size, to_screen};
+use crate::project::options::SCREEN_GUARD_SHIFT;
 use crate::project::{CageKind, FrameSetup};
 use crate::split_mix::SplitMix;
 
@@ -58,6 +59,11 @@ impl Inputs {
         self.dice.below(2) == 1
     }
 
+    /// -1, 0 or 1.
+    fn step(&mut self) -> Word {
+        Word::from_host(self.dice.below(3) as i64 - 1)
+    }
+
     fn level(&mut self, most: u32) -> u32 {
         self.dice.below(u64::from(most) + 1) as u32
     }
@@ -76,7 +82,7 @@ impl Inputs {
 
     /// Planes of small coefficients, which have ties, or of large ones.
     fn planes(&mut self) -> Planes {
-        let bits = if self.flag() { 2 } else { self.wide_bits / 2 };
+        let bits = if self.flag() { 2 } else { self.wide_bits >> 1 };
         let mut number = || WideWord::from_host(self.number(bits));
         Planes {
             edge: std::array::from_fn(|_| std::array::from_fn(|_| number())),
@@ -220,9 +226,33 @@ fn cages<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &
     child_span(&mut state.dp, &cage);
 }
 
+/// X, such that a node's edge, its bisector, or where a box leaves it too far, goes through the vertices, or nearly.
+fn beside_an_edge<P: Probe, L: CageCoordinate>(
+    state: &mut State<'_, P, L, ()>,
+    inputs: &mut Inputs,
+    w: &L,
+) -> L {
+    let dp = &mut state.dp;
+    let x = match inputs.dice.below(6) {
+        0 => w.map(|_| Word::ZERO),
+        1 => *w,
+        2 => w.map(|w| dp.neg(w)),
+        3 => w.map(|w| dp.shl(w, 1)),
+        4 => w.map(|w| dp.shr(w, 1)),
+        _ => w.map(|_| inputs.word(SPARE)),
+    };
+    let x = x.map(|x| match inputs.dice.below(8) {
+        0 => inputs.word(SPARE),
+        _ => x,
+    });
+    let step = inputs.step();
+    x.moved(&mut state.dp, step)
+}
+
 /// Boxes against quadtree nodes.
 fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let mut clip = inputs.clip(state);
+    [clip.x, clip.y] = [(); 2].map(|()| beside_an_edge(state, inputs, &clip.w));
     // A fit doubles planes once a level.
     let mut planes = Planes::default();
     for plane in planes.edge.as_flattened_mut() {
@@ -239,6 +269,8 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
         reject: true,
     };
     let (dp, constants) = (&mut state.dp, &state.constants);
+    smallest_node::near_node(dp, &clip.x, &clip.w);
+    smallest_node::near_node(dp, &clip.y, &clip.w);
     smallest_node::clip(dp, constants, &fill, place, &mut clip, &mut planes);
 }
 
@@ -273,12 +305,20 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     let below = inputs.level(state.constants.levels);
     let limit = state.constants.size_limit.clone();
     size::clip_at_most(&mut state.dp, &clip, &limit, below);
+    let (edges_x, edges_w) = (inputs.words(SPARE), inputs.words(SPARE));
+    let step = inputs.step();
+    size::edges_at_most(&mut state.dp, edges_x, edges_w, |dp, size| {
+        dp.add(size, step)
+    });
 }
 
 /// Silhouettes.
 fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let depth = state.constants.depth;
     let mut planes = inputs.planes();
+    let kept = state.constants.axis_ab;
+    let axes = inputs.planes();
+    state.constants.axis_ab = axes.edge.map(|[a, b, _]| [a, b]);
     if depth > 0 {
         let parent_level = inputs.level(depth - 1);
         let octant = inputs.level(7) as u8;
@@ -296,12 +336,24 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     state.dp.stage(Stage::QuadtreeFit);
     planes::move_to_quadrant(&mut state.dp, &state.constants, &mut moved, quadrant);
     let level = inputs.level(depth);
-    let cube = inputs.cube(level);
+    let mut cube = inputs.cube(level);
+    // The eye lies beside the cube along the other axes, beside a face of it or anywhere along this one.
+    let axis = inputs.level(2) as usize;
     for k in 0..3 {
         let [any, other] = inputs.words(0);
+        let step = inputs.step();
         let c = &mut state.constants;
-        c.eye_floor[k] = if inputs.flag() { cube.max[k] } else { any };
-        c.eye_ceil[k] = if inputs.flag() { cube.min[k] } else { other };
+        let dp = &mut state.dp;
+        if k < axis {
+            (cube.min[k], cube.max[k]) = (dp.min(any, other), dp.max(any, other));
+            (c.eye_floor[k], c.eye_ceil[k]) = (cube.min[k], cube.max[k]);
+            continue;
+        }
+        let [min, max] = inputs.words(1);
+        (cube.min[k], cube.max[k]) = (min, max);
+        let (above, below) = (dp.add(max, step), dp.add(min, step));
+        c.eye_floor[k] = if inputs.flag() { above } else { any };
+        c.eye_ceil[k] = if inputs.flag() { below } else { other };
     }
     state.constants.positive = inputs.flag();
     if inputs.flag() {
@@ -315,6 +367,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
         silhouette.cover(&mut state.dp, below);
         silhouette.in_quadrant(&mut state.dp, quadrant);
     }
+    state.constants.axis_ab = kept;
 }
 
 /// Boxes and centres in screen space, and the way there.
@@ -324,7 +377,19 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         inside: inputs.flag(),
     };
     let [x, y] = [(); 2].map(|()| inputs.cage(state));
-    let spans = [x.span(&mut state.dp), y.span(&mut state.dp)];
+    let below = state.constants.levels - place.quad.level;
+    let [left, right] = state.constants.half_sample_places;
+    // Edges and middles of nodes, in halves of their width, or nearly.
+    let mut beside = |column: u32| {
+        let near = i64::from(column << 1) + inputs.dice.below(3) as i64;
+        let edge = Word::from_host(near << (below + left) >> right);
+        let step = inputs.step();
+        match inputs.dice.below(4) {
+            0 => inputs.word(SPARE),
+            _ => state.dp.add(edge, step),
+        }
+    };
+    let spans = [place.quad.x, place.quad.y].map(|column| (beside(column), beside(column)));
     state.dp.stage(Stage::QuadtreeFit);
     let fill = Fill {
         vectors: &state.canvas.fill,
@@ -342,8 +407,14 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     state.dp.stage(Stage::Draw);
     size::screen_sample(&mut state.dp, &state.constants, place, &screen);
 
-    let clip = inputs.clip(state);
-    let w = inputs.word(SPARE);
+    let mut clip = inputs.clip(state);
+    let centre = clip.x.centre(&mut state.dp);
+    let step = inputs.step();
+    let doubled = state.dp.shl(centre, 1);
+    let w = match inputs.flag() {
+        true => state.dp.add(doubled, step),
+        false => inputs.word(SPARE),
+    };
     // Beyond the node's edges a centre is none of it.
     let across = ImagePlace {
         inside: false,
@@ -352,6 +423,14 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     size::clip_sample(&mut state.dp, &state.constants, across, &clip, w);
     let level = inputs.level(state.constants.depth) as usize;
     let least = if inputs.flag() { clip.w_min } else { w };
+    if inputs.flag() {
+        // The guard's edge goes through the vertices, in the whole picture.
+        let dp = &mut state.dp;
+        clip.x = clip.w.map(|w| {
+            let part = dp.shr(w, SCREEN_GUARD_SHIFT);
+            dp.neg(part)
+        });
+    }
     let kept = state.constants.screen_depth[level].replace(least);
     to_screen::may_change(&mut state.dp, &state.constants, level as u32, place, &clip);
     state.constants.screen_depth[level] = kept;

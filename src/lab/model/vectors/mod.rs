@@ -31,7 +31,7 @@ use recorder::Recorder;
 pub const SCHEMA: u32 = 4;
 
 /// Rounds of inputs that are made for the blocks, beside those of the frame.
-const DIRECTED_ROUNDS: u32 = 64;
+const DIRECTED_ROUNDS: u32 = 200;
 
 /// What is to be recorded, and where.
 #[derive(Debug, Clone, Copy)]
