@@ -16,7 +16,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn push_object(&mut self) {
         // Where a frame begins, also where a tile does after another's last record.
         self.dp.resume(0);
-        self.dp.stage(Stage::Pop);
+        self.dp.stage(Stage::Push);
         let c = &self.constants;
         let dp = &mut self.dp;
         let mut coordinate =

@@ -142,8 +142,8 @@ fn a_budget_below_the_files_size_changes_nothing_but_time() {
         assert!(resident.most_bytes <= budget, "{resident:?} {budget}");
         if let Some(mapped) = mapped_bytes(&path) {
             // Two maps of the file, of which this is the emptier. The system maps up to 64 KiB about a page
-            // that is touched, beyond either end of what was requested.
-            let most = resident.most_bytes + 2 * (64 << 10);
+            // that is touched, beyond either end of what was requested, also about pages that were let go.
+            let most = resident.most_bytes + 4 * (64 << 10);
             assert!(mapped[1] <= most, "{mapped:?} {resident:?}");
         }
     }

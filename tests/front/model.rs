@@ -28,7 +28,7 @@ fn with(more: &[&'static str]) -> Vec<&'static str> {
 
 #[test]
 fn the_document_adds_up() {
-    let found = document(&SCENE);
+    let found = document(&with(&["--hw", "paper"]));
     assert_eq!(found["schema"], "shiftvox.model");
     assert_eq!(found["schema_version"], 1);
     let cells = found["operations"].as_array().expect("cells");
@@ -170,7 +170,7 @@ fn node_caches_of_many_sizes() {
 /// Figures with ranges: power follows from energy and speed, and the ends say who has less.
 #[test]
 fn both_designs_line_by_line() {
-    let found = document(&SCENE);
+    let found = document(&with(&["--hw", "paper"]));
     let lines = found["comparison"].as_array().expect("lines");
     let of = |what: &str| lines.iter().find(|l| l["what"] == what).expect("a line");
     let number = |value: &Value| value.as_f64().expect("a number");

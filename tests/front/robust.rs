@@ -41,12 +41,11 @@ const LINES: [&str; 34] = [
     "compare ../in/a.png ../in/b.png --threshold ssim=0 --diff d.png --force",
     "model gen:menger,depth=2 --size 48 --json",
     "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
-    "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --html s.html --force",
+    "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-svg s.svg --force",
     "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
     "bench engines gen:menger,depth=2 --size 64 --runs 1 --export-json engines.json --force",
     "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-csv e.csv --force",
     "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",
-    "bench coherence gen:menger,depth=2 --size 48 --steps 1 --export-markdown e.md --force",
     "bench vertex-error",
     "bench error gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --lods 0 --aas 1 --bits 32 --json",
     "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-html f.html --force",
@@ -234,7 +233,7 @@ fn inspect(folder: &Path, what: &str) -> bool {
             Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
             Some("svg") => ends(b"</svg>"),
             Some("html") => ends(b"</html>"),
-            Some("csv" | "md" | "toml" | "hex" | "txt") => bytes.ends_with(b"\n"),
+            Some("csv" | "md" | "toml" | "hex" | "txt" | "v" | "vh") => bytes.ends_with(b"\n"),
             _ => panic!("{what}: {name} should not be there"),
         };
         assert!(is_whole, "{what}: {name} is not whole");

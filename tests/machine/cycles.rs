@@ -17,7 +17,7 @@ use hwmodel::{Memory, OpClass, Stage};
 use proptest::prelude::*;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::machine::{Machine, OCCLUSION_ORDER, Simulated};
+use shiftvox::machine::{MOST_OPEN_TILES, Machine, OCCLUSION_ORDER, Simulated};
 use shiftvox::project::{
     CageKind, Camera, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
 };
@@ -112,7 +112,10 @@ fn agree(
         };
         let (drawn, simulated) = simulated(graph, &setup, &hardware);
         prop_assert!(drawn == right, "{independence:?}: another picture");
-        prop_assert_eq!(&simulated.counts, &counts);
+        // How many tiles are under way at once is the hardware's alone.
+        let mut of_hardware = simulated.counts.clone();
+        of_hardware.retain(|(name, _)| *name != MOST_OPEN_TILES);
+        prop_assert_eq!(&of_hardware, &counts);
         prop_assert_eq!(simulated.cycles.records, stat(&counts, "records"));
         is_sound(&simulated, &hardware)?;
     }

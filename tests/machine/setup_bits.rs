@@ -63,11 +63,23 @@ fn any_frame(dice: &mut Dice) -> (Camera, Placement, u32, SetupOptions) {
     (camera, placement, depth, options)
 }
 
+/// A word format as it was printed when the hash was recorded.
+#[derive(Debug)]
+#[expect(dead_code, reason = "it is printed")]
+struct Format {
+    bits: u32,
+    frac: u32,
+}
+
 /// All integers of a frame, as text.
 fn integers(setup: &FrameSetup) -> String {
+    let format = Format {
+        bits: setup.format.bits(),
+        frac: setup.format.frac(),
+    };
     let sizes = (
         (setup.width, setup.height, setup.levels, setup.depth),
-        (setup.format, setup.clip_frac, setup.sub_levels),
+        (format, setup.clip_frac, setup.sub_levels),
         (setup.positive, setup.grow_shift, setup.near),
     );
     let view = (setup.origin_clip, setup.edge_clip);
