@@ -20,7 +20,7 @@ use shiftvox::split_mix::SplitMix;
 use shiftvox::textured::TexturedFile;
 
 /// What is run: every command, on inputs from `../in`.
-const LINES: [&str; 34] = [
+const LINES: [&str; 33] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
     "render ../in/knot.obj --depth 6 --size 200 -o k.png --outdir run --force",
