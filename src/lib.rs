@@ -96,7 +96,6 @@ pub mod project;
 pub mod rays;
 #[doc(hidden)]
 pub mod scene;
-#[cfg(feature = "mesh")]
 #[doc(hidden)]
 pub mod split_mix;
 mod srgb;

@@ -99,7 +99,7 @@ mod sealed {
 pub(crate) use sealed::Raw;
 
 /// A number of few bits, 0 or more: a weight or a colour. Like a [`Word`] it has no operators: what
-/// is done with it is a call on a [`Datapath`] that names the bits.
+/// is done with it is a call on a [`Datapath`](crate::Datapath) that names the bits.
 ///
 /// ```compile_fail,E0369
 /// let a = hwmodel::Narrow::from_host(6);
