@@ -886,17 +886,21 @@ fn takes(block: &str, row: &Row) -> bool {
     }
 }
 
+/// Bits of a field that are wires: of an unsigned one not those above all its values.
+fn wires(rows: &[Row], at: usize, bits: u32, is_signed: bool) -> u32 {
+    let values = rows.iter().map(|row| row.values[at]);
+    match is_signed {
+        true => bits,
+        false => 128 - values.max().unwrap_or(0).leading_zeros(),
+    }
+}
+
 /// Mutants of a block whose inputs or outputs have a bit stuck at 0 or at 1: how many there are, and which
-/// the rows do not tell from the block. An unsigned input's bits above all its values are no wires.
+/// the rows do not tell from the block.
 fn stuck_mutants(block: &BlockRows, constants: &Constants) -> (usize, Vec<String>) {
     let (mut all, mut alive) = (0, Vec::new());
     for (at, (name, bits, signed)) in block.inputs.iter().enumerate() {
-        let used = block.stimulus.iter().map(|row| row.values[at]);
-        let used = if *signed {
-            *bits
-        } else {
-            128 - used.max().unwrap_or(0).leading_zeros()
-        };
+        let used = wires(&block.stimulus, at, *bits, *signed);
         for bit in 0..used {
             for at_one in [false, true] {
                 all += 1;
@@ -930,12 +934,7 @@ fn stuck_mutants(block: &BlockRows, constants: &Constants) -> (usize, Vec<String
         }
     }
     for (at, (name, bits, signed)) in block.outputs.iter().enumerate() {
-        let used = block.expected.iter().map(|row| row.values[at]);
-        let used = if *signed {
-            *bits
-        } else {
-            128 - used.max().unwrap_or(0).leading_zeros()
-        };
+        let used = wires(&block.expected, at, *bits, *signed);
         for bit in 0..used {
             for at_one in [false, true] {
                 all += 1;

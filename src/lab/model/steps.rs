@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ModelError;
-use super::area::{self, LightFrame};
 use super::cost::{self, Prices};
+use super::design::LightDesign;
 use super::frame;
 use super::range::Range;
 use super::ray_caster;
@@ -121,16 +121,8 @@ pub fn table(
         let (_, simulated) =
             frame::simulate(&graph.view(), setup, &hardware, overflow, &mut NoObserver)?;
         let cycles = &simulated.cycles;
-        let widths = frame::widths(setup, graph, &hardware);
-        let cost = cost::frame_cost(&counted, cycles, &widths, setup, &hardware, prices)?;
-        let used = LightFrame {
-            counter: &counted.counter,
-            shifts: &counted.shifts,
-            cycles,
-            setup,
-            record_bits: counted.record_bits(),
-        };
-        let area = area::light(used, &hardware, prices)?;
+        let LightDesign { cost, area, .. } =
+            LightDesign::price(graph, setup, &counted, cycles, &hardware, prices)?;
         let rays = ray_caster::measure(graph, setup, &hardware, prices, None, exact)?;
         let accesses = counted.counter.accesses_by(|cell| cell.memory);
         let fill = accesses.get(&hwmodel::Memory::FillVector);

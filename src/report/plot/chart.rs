@@ -200,6 +200,9 @@ fn has_place(chart: &Chart, point: &Point) -> bool {
     on(&chart.x, point.x) && on(&chart.y, point.y)
 }
 
+/// Room of a label, pixels across and down.
+const LABEL: (i32, i32) = (30, 13);
+
 /// Draws on axes of any kind. `across`: the ends of the axis across.
 fn on_axes<X, Y>(
     area: &Area<'_>,
@@ -242,6 +245,7 @@ where
             .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY));
     }
     let mut colored = 0;
+    let mut labels: Vec<(i32, i32)> = Vec::new();
     for (series, points) in shown {
         let (color, stroke) = if series.grey {
             (GREY, 1)
@@ -266,7 +270,20 @@ where
                 .map(|p| Circle::new((p.x, p.y), 3, color.filled()));
             drawing.draw_series(dots).map_err(PlotError::of)?;
         }
-        let labelled = points.iter().filter_map(|p| {
+        // Of labels that would lie on one another, the first.
+        let mut is_free = |p: &Point| {
+            let at = drawing.backend_coord(&(p.x, p.y));
+            let is_apart = |of: &(i32, i32)| {
+                let (x, y) = ((of.0 - at.0).abs(), (of.1 - at.1).abs());
+                x >= LABEL.0 || y >= LABEL.1
+            };
+            let is_free = labels.iter().all(is_apart);
+            labels.extend(is_free.then_some(at));
+            is_free
+        };
+        let labelled = points.iter().copied().filter(|p| p.label.is_some());
+        let labelled: Vec<&Point> = labelled.filter(|p| is_free(p)).collect();
+        let labelled = labelled.into_iter().filter_map(|p| {
             let label = p.label.clone()?;
             let text = Text::new(label, (6, -6), ("sans-serif", 12).into_font());
             Some(EmptyElement::at((p.x, p.y)) + text)

@@ -212,39 +212,52 @@ fn rows(found: &[Explorations]) -> Table {
     table
 }
 
-/// Energy over time: all points, and those of the front with their numbers.
+/// Energy over time: all points by the description that they begin with, the front's best with their numbers, and the
+/// ray caster beside each.
 fn panel(of: &Explorations) -> Panel {
     let axis = |label: &str| Axis {
         label: label.to_owned(),
         scale: Scale::Linear,
     };
-    let place = |line: &PointLine, label: Option<String>| {
-        let figures = line.figures()?;
-        Some(Point {
+    let numbers = of.front.iter().filter(|point| point.stands_out);
+    let numbers: Vec<usize> = numbers.map(|point| point.line.point).collect();
+    let mut series: Vec<Series> = Vec::new();
+    let mut rays = Vec::new();
+    for line in &of.points {
+        let Some(figures) = line.figures() else {
+            continue;
+        };
+        let label = numbers.contains(&line.point);
+        let point = Point {
             x: figures.time_ms,
             y: figures.energy_pj.value / 1e6,
-            label,
-        })
-    };
-    let all = of.points.iter().filter_map(|line| place(line, None));
-    let numbered = |point: &FrontPoint| {
-        let number = point.stands_out.then(|| point.line.point.to_string());
-        place(&point.line, number)
-    };
+            label: label.then(|| line.point.to_string()),
+        };
+        let name = line.values.get("hardware").and_then(Value::as_str);
+        let name = name.unwrap_or_default();
+        match series.iter_mut().find(|series| series.name == name) {
+            Some(series) => series.points.push(point),
+            None => series.push(Series::dots(name, vec![point])),
+        }
+        let rival = &figures.ray_caster;
+        let share = rival.cycles as f64 / figures.cycles.max(1) as f64;
+        rays.push(Point::from((
+            figures.time_ms * share,
+            rival.energy_pj.value / 1e6,
+        )));
+    }
+    series.push(Series {
+        grey: true,
+        ..Series::dots("ray casters beside them, at their fastest", rays)
+    });
     Panel::Chart(Chart {
         title: format!(
-            "{}: hardwares that no other beats (with numbers: clearly)",
+            "{}: time and energy of each hardware (numbered: no other is clearly better)",
             of.scene
         ),
         x: axis("time of the frame, ms"),
         y: axis("energy of the frame, microjoules"),
-        series: vec![
-            Series {
-                grey: true,
-                ..Series::dots("others", all.collect())
-            },
-            Series::dots("the front", of.front.iter().filter_map(numbered).collect()),
-        ],
+        series,
         level: None,
     })
 }
