@@ -248,7 +248,7 @@ fn tables_plots_and_a_page() {
         .filter(|line| line.contains(",yes,,"))
         .count();
     assert_eq!(on_front, points.len());
-    assert!(read("front.svg").contains("hardwares that no other beats"));
+    assert!(read("front.svg").contains("no other is clearly better"));
     assert!(read("front.md").contains("| point |"));
 }
 
