@@ -44,7 +44,7 @@
 //! | feature | default | what for |
 //! |---|---|---|
 //! | `png` | yes | [`Picture::save_png`] |
-//! | `mesh` | yes | meshes, far voxels and textured voxels; without it a binary `.stl` is of no known format |
+//! | `mesh` | yes | meshes, far voxels and textured voxels; without it meshes are refused, and a binary `.stl` is not recognised |
 //! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
 //! | `cli` | yes | the command line; needs all of them |
 //!

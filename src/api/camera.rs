@@ -6,8 +6,8 @@ use super::{Error, Scene};
 use crate::project;
 use crate::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 
-/// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's. With a call
-/// that is not for such a camera no picture is drawn: [`Error::Setting`](crate::Error::Setting).
+/// Where a picture is seen from: fitted to a scene, or placed. The size of the picture is the renderer's. A call
+/// that does not fit the kind of camera makes the renderer fail: [`Error::Setting`](crate::Error::Setting).
 ///
 /// ```
 /// # use shiftvox::{Camera, Scene};

@@ -64,7 +64,7 @@ impl Picture {
         &self.buffers.normal
     }
 
-    /// Index, finest voxels of the file, of the lowest corner of the voxel that is seen, and its level (0: the
+    /// Lowest corner of the voxel that is seen, in units of the finest voxels, and its level (0: the
     /// whole object); `[0, 0, 0, -1]` where nothing is seen.
     #[must_use]
     pub fn voxels(&self) -> &[[i32; 4]] {

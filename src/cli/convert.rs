@@ -29,7 +29,7 @@ pub struct ConvertArgs {
     /// Replace a file that exists
     #[arg(long)]
     force: bool,
-    /// Build a .vxg outside memory, taking at most this much of it: 512M, 2G; 64M at the least
+    /// Build a .vxg out of core, taking at most this much of it: 512M, 2G; 64M at the least
     #[arg(long, value_name = "SIZE")]
     memory: Option<Memory>,
     /// Folder of the temporary files of --memory, about 22 bytes a voxel; else beside OUT
@@ -180,7 +180,7 @@ fn build_outside_memory(
 ) -> Result<(), CliError> {
     if args.output.extension().is_none_or(|ending| ending != "vxg") {
         return Err(CliError::usage(format!(
-            "{}: only a .vxg is built outside memory",
+            "{}: only a .vxg is built out of core",
             args.output.display()
         ))
         .advise("end the name in .vxg, or leave --memory out"));

@@ -201,7 +201,7 @@ impl From<OpenError> for CliError {
                 failure.advise("ask for fewer levels: a graph has less than 2^32 nodes")
             }
             OpenError::TooMany { .. } => failure.advise(
-                "build it outside memory: shiftvox convert SCENE OUT.vxg --memory 2G; then draw \
+                "build it out of core: shiftvox convert SCENE OUT.vxg --memory 2G; then draw \
                  OUT.vxg",
             ),
             OpenError::External {

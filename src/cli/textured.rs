@@ -169,7 +169,7 @@ fn description(file: &TexturedFile, name: &str, with_levels: bool) -> String {
     parts.join("\n\n")
 }
 
-/// The image-order paper's Fig. 12 (c): what each level shows.
+/// Tellier and Baroud 2003, Fig. 12 (c): what each level shows.
 fn level_table(grid: &Grid<'_>) -> String {
     let head = ["level", "faces", "primitives", "voxels", "surfels"];
     let rows = grid.levels().rows().iter().map(|row| {

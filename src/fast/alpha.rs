@@ -1,5 +1,5 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 11): what the machine
-//! has in sums of shifts, in products.
+//! Blending, under the rule `alpha` (`SPEC.md`, section 11): with products
+//! where the machine adds shifts.
 //!
 //! Which samples a voxel draws, and in which order, is found as under `exact`; a
 //! sample stays open until it is opaque enough.

@@ -1,6 +1,6 @@
 //! A walk around far voxels and up to them: what anti-aliased voxels cost, frame by frame.
 //!
-//! The image-order paper's Fig. 5: frames per second along a path, with voxels that have
+//! Wagner et al. 2007, Fig. 5: frames per second along a path, with voxels that have
 //! opacities and with opaque ones. At every place all kinds draw, one after the
 //! other, each with what it remembers of its own last frame.
 

@@ -77,7 +77,7 @@ pub fn surfels(voxels: &[VoxelRecord], cells: u32) -> Vec<Surfel> {
     surfels
 }
 
-/// What a level shows, in numbers: a row of the image-order paper's Fig. 12.
+/// What a level shows, in numbers: a row of Tellier and Baroud 2003, Fig. 12.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LevelRow {
     /// Erosions.

@@ -4,7 +4,7 @@
 //! [`build()`] makes one of triangles: voxels with the primitives inside them,
 //! their erosion depths, and the six half-scene textures, computed slice by
 //! slice from the inside out. [`store`] is the `.tvx` file; [`levels`] computes
-//! what a level of detail shows; [`view`] draws it. Rules, and where the image-order paper
+//! what a level of detail shows; [`view`] draws it. Rules, and where Tellier and Baroud 2003
 //! leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a
 //! texel sees is decided in integers.
 
@@ -29,11 +29,11 @@ use record::{Primitive, Texel, VoxelRecord};
 pub enum Element {
     /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
     ///
-    /// The structuring element of the image-order paper's text.
+    /// The structuring element of the text of Tellier and Baroud 2003.
     Cube,
     /// Those with an empty cell at one of their six sides.
     ///
-    /// The image-order paper's text has this one too, and its table must have been made with it
+    /// the text of Tellier and Baroud 2003 has this one too, and its table must have been made with it
     /// (`spec/textured.md`).
     #[default]
     Sides,

@@ -7,7 +7,7 @@
 //! a voxel are spread evenly, whatever is around it.
 //!
 //! A large object of which a voxel has but a corner goes on behind it: such a
-//! pass is no evidence about the object, and does not count (the image-order paper's Fig. 3b).
+//! pass is no evidence about the object, and does not count (Wagner et al. 2007, Fig. 3b).
 
 use glam::DVec3;
 

@@ -44,7 +44,7 @@ const RUN_BYTES: u64 = 16;
 /// Bytes of a voxel in the graph, at the least.
 const GRAPH_BYTES: u64 = 5;
 
-/// How a file is built outside memory.
+/// How a file is built out of core.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct ExternalOptions {
     /// Where normals come from.

@@ -3,8 +3,8 @@
 //! One ray for each sample through the octree, with a stack, children in the
 //! order in which the ray meets them (Revelles, Urena, Lastra 2000; the form
 //! is that of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). No
-//! allocation for a ray, nothing tested twice, the first leaf ends it: what
-//! one writes when one has floating point and an hour. One thread, no packets.
+//! allocation for a ray, nothing tested twice, the first leaf ends it: a
+//! plain implementation. One thread, no packets.
 //!
 //! The object is the cube `[1, 2]^3`, so that a cell's position along an axis
 //! is the mantissa of an `f32` and its level a bit of it. Space is mirrored

@@ -31,7 +31,7 @@ pub struct BuildOptions {
 }
 
 impl Default for BuildOptions {
-    /// The image-order paper's: one grid of 16 cells, 16 texels.
+    /// As in Tellier and Baroud 2003: one grid of 16 cells, 16 texels.
     fn default() -> Self {
         Self {
             grids: vec![16],

@@ -1,4 +1,4 @@
-//! Which grid and level a camera gets: the image-order paper's future work.
+//! Which grid and level a camera gets: the future work of Tellier and Baroud 2003.
 
 use glam::DVec3;
 
