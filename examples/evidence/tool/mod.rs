@@ -300,7 +300,7 @@ impl Tool {
         if page::has_times(block) {
             let times = match page::times_of(old) {
                 Some(times) if !select.times => times,
-                _ => format!("then, load {load}"),
+                _ => format!("of the same run, load {load}"),
             };
             foot += &format!(" Times: {times}.");
         }

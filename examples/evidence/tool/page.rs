@@ -119,12 +119,12 @@ pub(crate) fn load() -> String {
     load.split(' ').next().unwrap_or("unknown").to_owned()
 }
 
-/// What a foot says of its times; those of the same run as its figures are `then, load 0.5`.
+/// What a foot says of its times; those of the same run as its figures are `of the same run, load 0.5`.
 pub(crate) fn times_of(lines: &[&str]) -> Option<String> {
     let foot = foot(lines);
     let (before, times) = foot.split_once(" Times: ")?;
     let times = times.trim_end_matches("</sub>").trim_end_matches('.');
-    match times.strip_prefix("then, ") {
+    match times.strip_prefix("of the same run, ") {
         Some(load) => {
             let (_, figures) = before.split_once(" Figures: ")?;
             Some(format!("{}, {load}", figures.trim_end_matches('.')))
@@ -159,7 +159,7 @@ pub(crate) fn foot_fault(page: &Page, block: &Block, lines: &[&str]) -> Option<S
     };
     if !parts
         .iter()
-        .all(|part| part.starts_with("then, ") || dated(part))
+        .all(|part| part.starts_with("of the same run, ") || dated(part))
     {
         return Some("its foot has no date".to_owned());
     }
@@ -223,7 +223,7 @@ mod tests {
             "2025-01-01.</sub>",
         ];
         assert_eq!(times_of(&lines), Some("commit 0, 2025-01-01".to_owned()));
-        let lines = ["<sub>Remade. Figures: commit 1, rustc 1.95.0. Times: then, load 2.5.</sub>"];
+        let lines = ["<sub>Remade. Figures: commit 1, rustc 1.95.0. Times: of the same run, load 2.5.</sub>"];
         assert_eq!(
             times_of(&lines),
             Some("commit 1, rustc 1.95.0, load 2.5".to_owned())
