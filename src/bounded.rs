@@ -54,9 +54,12 @@ pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
 /// The bytes of a regular file that there is memory for.
 ///
 /// # Errors
-/// As [`read`].
+/// As [`read`]; [`OutOfMemory`](io::ErrorKind::OutOfMemory) where there is less memory.
 pub fn read_whole(path: &Path) -> io::Result<Vec<u8>> {
-    read(path, crate::budget::available().unwrap_or(u64::MAX))
+    let bytes = open(path)?.metadata()?.len();
+    crate::budget::check("a file that is read whole", bytes)
+        .map_err(|short| io::Error::new(io::ErrorKind::OutOfMemory, short))?;
+    read(path, u64::MAX)
 }
 
 /// The text of a file of settings.

@@ -10,6 +10,7 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::{names, report};
 use crate::bounded;
+use crate::budget;
 use crate::measure::{ColorError, CoverageError, count_differing, difference};
 use crate::picture::npy::{self, Array, Values};
 use crate::picture::png::{self, Image};
@@ -101,12 +102,27 @@ pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError>
     judge(&args.threshold, &comparison.numbers)
 }
 
+/// Memory that comparing two pictures takes for each pixel, and more than reading one takes besides.
+const PICTURE_BYTES: u64 = 80;
+const READING_BYTES: u64 = 64 << 20;
+
 fn read(path: &Path) -> Result<Content, CliError> {
     let place = path.display();
-    let bytes = bounded::read_whole(path).map_err(|e| CliError::input(e).at(place))?;
+    let bytes = bounded::read_whole(path).map_err(|e| CliError::of_reading(e).at(place))?;
     if npy::is_npy(&bytes) {
+        // Its numbers beside its bytes.
+        budget::check("a buffer that is compared", bytes.len() as u64)
+            .map_err(|short| CliError::from(short).at(path.display()))?;
         let array = npy::decode(&bytes).map_err(|e| CliError::input(e).at(path.display()))?;
         return Ok(Content::Buffer(array));
+    }
+    if let Some((width, height)) = png::size(&bytes) {
+        let pixels = u64::from(width) * u64::from(height);
+        budget::check(
+            "pictures that are compared",
+            pixels * PICTURE_BYTES + READING_BYTES,
+        )
+        .map_err(|short| CliError::from(short).at(path.display()))?;
     }
     png::decode(&bytes).map(Content::Picture).map_err(|e| {
         CliError::input(e)

@@ -16,6 +16,9 @@ use crate::scene::Source;
 use crate::textured::Element;
 use crate::whole;
 
+/// Most rays of a `.far` build: days of work.
+const MOST_RAYS: u64 = 1 << 36;
+
 /// Arguments of `convert`.
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
@@ -37,7 +40,7 @@ pub struct ConvertArgs {
     temp: Option<PathBuf>,
     /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each
     /// that is seen]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=MOST_RAYS))]
     rays: Option<u64>,
     /// Of .far: nodes with fewer triangles are leaves [default: 1000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..))]

@@ -81,6 +81,15 @@ impl CliError {
         Self::new(Kind::Input, message)
     }
 
+    /// An input that cannot be read: for want of memory, or because of what it is.
+    pub fn of_reading(error: io::Error) -> Self {
+        match error.kind() {
+            io::ErrorKind::OutOfMemory => Self::new(Kind::Limit, error)
+                .advise("give the program more memory, or take a smaller file"),
+            _ => Self::input(error),
+        }
+    }
+
     /// The same failure with advice.
     #[must_use]
     pub fn advise(mut self, advice: impl Into<String>) -> Self {
@@ -225,7 +234,11 @@ impl From<SceneError> for CliError {
 
 impl From<FileError> for CliError {
     fn from(error: FileError) -> Self {
-        Self::input(error)
+        match error.is_limit() {
+            true => Self::new(Kind::Limit, error)
+                .advise("give the program more memory or address space"),
+            false => Self::input(error),
+        }
     }
 }
 

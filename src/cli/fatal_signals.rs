@@ -4,6 +4,20 @@
 //! which reports the error, removes unfinished files and exits with the usual code. If that thread
 //! does not act within five seconds, the handler exits itself.
 
+use std::sync::Mutex;
+
+/// The scenes that are read, for the report.
+static SCENES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+/// Has a scene named in the report.
+pub(super) fn reads(scene: &str) {
+    if let Ok(mut scenes) = SCENES.lock()
+        && !scenes.iter().any(|known| known == scene)
+    {
+        scenes.push(scene.to_owned());
+    }
+}
+
 /// Installs the handlers. `json`: whether the error is also printed as a JSON document.
 #[cfg(unix)]
 pub(super) fn install(json: bool) {
@@ -94,6 +108,11 @@ mod handlers {
                 "ask for a smaller picture or a scene of fewer levels, or give the program \
                  more memory",
             ),
+        };
+        // Held only while a name is added; where that very thread has stopped, there is no name.
+        let error = match super::SCENES.try_lock() {
+            Ok(scenes) if !scenes.is_empty() => error.at(scenes.join(", ")),
+            _ => error,
         };
         console::report_error(&error);
         remove_unfinished(|| {

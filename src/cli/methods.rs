@@ -9,6 +9,7 @@ use std::time::Instant;
 use super::args::{DataBudget, EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::error::CliError;
+use super::fatal_signals;
 use super::scenes::{self, Scene};
 use super::{engines, names};
 use crate::drawing::{
@@ -93,6 +94,7 @@ enum Content {
 /// A bad scene, or flags that do not go with it.
 pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result<Opened, CliError> {
     let started = Instant::now();
+    fatal_signals::reads(name);
     let asked = args.engine.engine;
     let source = Source::find(names::path(name));
     let kind = source.as_ref().ok().and_then(Source::kind);

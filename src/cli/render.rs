@@ -13,7 +13,8 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
-use crate::drawing::Shown;
+use crate::drawing::{DrawError, Shown};
+use crate::frame::count_samples;
 use crate::lab::bench::Summary;
 use crate::picture;
 use crate::project::Camera;
@@ -141,6 +142,8 @@ fn check(args: &RenderArgs, scenes: usize) -> Result<(), CliError> {
             .advise("put {stem} into the name, for example -o out/{stem}.png"));
         }
     }
+    let (width, height) = args.picture.size();
+    count_samples(width, height, args.picture.aa_log2()).map_err(DrawError::from)?;
     if let Some(outdir) = &args.out.outdir {
         outputs::check_free(&outputs::record_paths(outdir), args.out.force)?;
     }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
+use super::fatal_signals;
 use super::names;
 use crate::drawing::milliseconds_since;
 use crate::graph::{Graph, Progress};
@@ -94,6 +95,7 @@ pub(super) fn open_source(
     started: Instant,
     console: &Console,
 ) -> Result<Scene, CliError> {
+    fatal_signals::reads(name);
     let options = match verify {
         Verify::IfSmall => options(args),
         Verify::All => OpenOptions {
@@ -155,6 +157,12 @@ pub(super) fn read_mesh(
     args: &SceneArgs,
     progress: &dyn Progress,
 ) -> Result<(Mesh, Up), CliError> {
+    if source.starts_with("gen:") {
+        return Err(CliError::input(format!(
+            "{source}: a generator makes voxels, and a mesh is needed here"
+        )));
+    }
+    fatal_signals::reads(source);
     let (mesh, y_up) = scene::read_mesh(&names::path(source), &load_options(args), progress)?;
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }

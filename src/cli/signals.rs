@@ -5,16 +5,21 @@
 //! where it is killed, a temporary file is left, which the next run that writes to its folder
 //! removes ([`crate::whole`]).
 
-/// Installs the handlers. A signal that the program was started to ignore, as shells and `nohup` do
+/// Installs the handlers. A file that grows beyond a limit (SIGXFSZ) is an error of the write and
+/// no longer the program's end. A signal that the program was started to ignore, as shells and `nohup` do
 /// for work in the background, stays ignored.
 #[cfg(unix)]
 pub(super) fn tidy_up_when_stopped() {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    use std::sync::Arc;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
 
     use crate::whole::remove_unfinished;
 
+    // Nobody reads the flag: what counts is that the signal is caught.
+    let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let ignored = ignored_signals();
     let wanted = [SIGINT, SIGTERM, SIGHUP]
         .into_iter()

@@ -76,6 +76,12 @@ impl FileError {
         }
     }
 
+    /// Whether the file is sound and only too large for the memory that there is.
+    #[must_use]
+    pub fn is_limit(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == io::ErrorKind::OutOfMemory)
+    }
+
     /// The system's error for a file.
     pub(crate) fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
         Self::Io {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::error::{MeshError, MeshFault, Place};
 use super::{Material, Mesh};
+use crate::budget::{self, Shortage};
 
 /// Most positions and triangles of a mesh: both are numbered in 32 bits.
 const MOST: usize = u32::MAX as usize;
@@ -68,6 +69,28 @@ impl MeshBuilder {
         colors.resize(number as usize, [255; 3]);
         colors.push(color);
         number
+    }
+
+    /// Makes room for so many positions and triangles more.
+    ///
+    /// # Errors
+    /// [`Shortage`] where there is less memory.
+    pub fn reserve(&mut self, positions: usize, triangles: usize) -> Result<(), Shortage> {
+        const WHAT: &str = "a mesh";
+        let mesh = &mut self.mesh;
+        let needed = positions * size_of::<[f32; 3]>() + triangles * size_of::<([u32; 3], u32)>();
+        let needed = needed as u64;
+        budget::check(WHAT, needed)?;
+        let had = mesh
+            .positions
+            .try_reserve_exact(positions)
+            .and_then(|()| mesh.triangles.try_reserve_exact(triangles))
+            .and_then(|()| mesh.material_of.try_reserve_exact(triangles));
+        had.map_err(|_| Shortage {
+            what: WHAT,
+            needed,
+            free: budget::available(),
+        })
     }
 
     /// Positions so far.

@@ -50,6 +50,15 @@ pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, Imag
     Ok(bytes)
 }
 
+/// Pixels across and down, as a PNG file's header has them; `None` of what begins otherwise.
+#[must_use]
+pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
+    let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?;
+    let (width, rest) = header.split_first_chunk()?;
+    let (height, _) = rest.split_first_chunk()?;
+    Some((u32::from_be_bytes(*width), u32::from_be_bytes(*height)))
+}
+
 /// Reads a PNG file's bytes.
 ///
 /// # Errors
@@ -84,8 +93,10 @@ mod tests {
         for rgba in [opaque, clear] {
             let bytes = encode(2, 1, &rgba).unwrap();
             let image = decode(&bytes).unwrap();
+            assert_eq!(size(&bytes), Some((2, 1)));
             assert_eq!((image.width, image.height, image.rgba), (2, 1, rgba));
         }
         assert!(decode(b"not a picture").is_err());
+        assert_eq!(size(b"not a picture"), None);
     }
 }

@@ -89,6 +89,9 @@ impl OpenError {
             Self::Grid { error, .. } => {
                 matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. })
             }
+            Self::Graph(vxg::VxgError::Io { source, .. }) => {
+                source.kind() == std::io::ErrorKind::OutOfMemory
+            }
             Self::Spec(_) | Self::Graph(_) => false,
         }
     }

@@ -27,18 +27,31 @@ use temporary::{in_progress, temporary, tidy};
 /// # Errors
 /// [`WholeError::Exists`] where something is there already and may not be overwritten,
 /// [`WholeError::NoFolder`] where there is no place for it, [`WholeError::Io`] where a folder or a
-/// device is in its place.
+/// device is in its place, its name is too long or nothing can be written to its folder.
 pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
+    let path = &check_place(path, overwrite)?;
+    let folder = folder_of(path);
+    if folder.is_dir() {
+        temporary(folder, path).map_err(|e| failed(path, e))?;
+    }
+    Ok(())
+}
+
+/// The file that is going to be written, where there is a place for it.
+fn check_place(path: &Path, overwrite: bool) -> Result<PathBuf, WholeError> {
     if !overwrite && fs::symlink_metadata(path).is_ok() {
         return Err(WholeError::Exists(path.to_owned()));
     }
-    let path = &target(path);
-    if let Ok(there) = fs::metadata(path)
-        && !there.is_file()
-    {
-        return Err(failed(path, io::Error::other("it is not a regular file")));
+    let path = target(path);
+    match fs::metadata(&path) {
+        Ok(there) if !there.is_file() => {
+            return Err(failed(&path, io::Error::other("it is not a regular file")));
+        }
+        Err(e) if e.kind() == io::ErrorKind::InvalidFilename => return Err(failed(&path, e)),
+        _ => {}
     }
-    check_folder(folder_of(path))
+    check_folder(folder_of(&path))?;
+    Ok(path)
 }
 
 /// Whether a folder is there, or can be made in the one above it.
@@ -119,8 +132,7 @@ pub fn prepare(
     overwrite: bool,
     fill: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<Prepared, WholeError> {
-    check_free(path, overwrite)?;
-    let path = target(path);
+    let path = check_place(path, overwrite)?;
     let folder = folder_of(&path);
     make_folder(folder)?;
     tidy(folder);

@@ -223,7 +223,9 @@ mod tests {
             "2025-01-01.</sub>",
         ];
         assert_eq!(times_of(&lines), Some("commit 0, 2025-01-01".to_owned()));
-        let lines = ["<sub>Remade. Figures: commit 1, rustc 1.95.0. Times: of the same run, load 2.5.</sub>"];
+        let lines = [
+            "<sub>Remade. Figures: commit 1, rustc 1.95.0. Times: of the same run, load 2.5.</sub>",
+        ];
         assert_eq!(
             times_of(&lines),
             Some("commit 1, rustc 1.95.0, load 2.5".to_owned())

@@ -61,6 +61,9 @@ pub fn kind_first(kind: &str, fields: &Value) -> String {
     format!(r#"{{"kind":"{kind}",{}"#, &fields[1..])
 }
 
+/// How every line begins.
+const BEGIN: &[u8] = br#"{"kind":""#;
+
 /// Why lines cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinesError {
@@ -134,6 +137,14 @@ pub fn read(text: &[u8], asked: &[Value]) -> Result<Recorded, LinesError> {
             }
             _ => return Err(wrong("this is no result")),
         }
+    }
+    // Only what could have become a line of ours is cut off.
+    let rest = &text[recorded.bytes..];
+    if !rest.iter().zip(BEGIN).all(|(there, ours)| there == ours) {
+        return Err(LinesError::Line {
+            line: text.iter().filter(|&&byte| byte == b'\n').count() + 1,
+            why: "this is no result".to_owned(),
+        });
     }
     Ok(recorded)
 }

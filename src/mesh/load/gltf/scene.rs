@@ -3,7 +3,7 @@
 use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
-use super::document::{Document, Material as FileMaterial, Node, Primitive};
+use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
 use super::{BROKEN, Buffers, LoadOptions, fault_of};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::material::linear_to_srgb;
@@ -14,12 +14,20 @@ const FREE_TRIANGLES: u64 = 100_000;
 /// Triangles that a byte of file and buffers justifies: nodes may show a mesh many times.
 const TRIANGLES_A_BYTE: u64 = 16;
 
+/// What a primitive has: how its corners are listed, and how many.
+struct Sizes<'d> {
+    mode: u32,
+    positions: Numbers<'d>,
+    indices: Option<Numbers<'d>>,
+    triangles: usize,
+}
+
 /// Walks a document.
 pub(super) struct Reader<'d> {
     document: &'d Document,
     buffers: &'d Buffers,
-    /// Triangles that may still be added.
-    left: u64,
+    /// Positions and triangles that may be made.
+    most: u64,
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
@@ -31,7 +39,7 @@ impl<'d> Reader<'d> {
         Self {
             document,
             buffers,
-            left: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes as u64,
+            most: FREE_TRIANGLES + TRIANGLES_A_BYTE * bytes as u64,
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
@@ -65,6 +73,7 @@ impl<'d> Reader<'d> {
         };
         open.reverse();
         let mut seen = vec![false; nodes.len()];
+        let mut shown = Vec::new();
         while let Some((number, parent)) = open.pop() {
             let Some(node) = nodes.get(number) else {
                 return Err(fault_of(
@@ -88,9 +97,13 @@ impl<'d> Reader<'d> {
             let placed = parent * transform(node);
             if let Some(mesh) = node.mesh {
                 self.skinned += u64::from(node.skin.is_some());
-                self.mesh(mesh, placed, builder)?;
+                shown.push((mesh, placed));
             }
             open.extend(node.children.iter().rev().map(|&child| (child, placed)));
+        }
+        self.make_room(&shown, builder)?;
+        for (mesh, placed) in shown {
+            self.mesh(mesh, placed, builder)?;
         }
         self.tell(builder);
         Ok(())
@@ -118,6 +131,81 @@ impl<'d> Reader<'d> {
                 builder.warn(format!("{count} {what}"));
             }
         }
+    }
+
+    /// Makes room for all that nodes show, before any of it is made.
+    fn make_room(
+        &self,
+        shown: &[(usize, DMat4)],
+        builder: &mut MeshBuilder,
+    ) -> Result<(), MeshError> {
+        let fault = |expected: String, found: String| {
+            MeshError::Limit(MeshFault::new(
+                "nodes",
+                Place::Whole,
+                expected,
+                found,
+                "export a part of the scene",
+            ))
+        };
+        let mut of_mesh = vec![None; self.document.meshes.len()];
+        let (mut positions, mut triangles) = (0u64, 0u64);
+        for &(mesh, _) in shown {
+            // One that does not exist is told where it is drawn.
+            let Some(known) = of_mesh.get_mut(mesh) else {
+                continue;
+            };
+            let (more_positions, more_triangles) = match *known {
+                Some(known) => known,
+                None => *known.insert(self.size_of(&self.document.meshes[mesh])?),
+            };
+            positions += more_positions;
+            triangles += more_triangles;
+            // Positions count as triangles: they take memory too.
+            if positions + triangles > self.most {
+                return Err(fault(
+                    format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
+                    "more: they show meshes very often".to_owned(),
+                ));
+            }
+        }
+        let room = builder.reserve(positions as usize, triangles as usize);
+        room.map_err(|short| fault("memory for all triangles".to_owned(), short.to_string()))
+    }
+
+    /// Positions and triangles of a mesh.
+    fn size_of(&self, mesh: &FileMesh) -> Result<(u64, u64), MeshError> {
+        let (mut positions, mut triangles) = (0, 0);
+        for primitive in &mesh.primitives {
+            if let Some(of) = self.sizes(primitive)? {
+                positions += of.positions.count as u64;
+                triangles += of.triangles as u64;
+            }
+        }
+        Ok((positions, triangles))
+    }
+
+    /// What a primitive has; nothing where it has no triangles.
+    fn sizes(&self, primitive: &Primitive) -> Result<Option<Sizes<'d>>, MeshError> {
+        let mode = primitive.mode.unwrap_or(4);
+        let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {
+            return Ok(None);
+        };
+        let positions = self.numbers(position)?;
+        let indices = primitive.indices.map(|a| self.numbers(a)).transpose()?;
+        let corners = indices
+            .as_ref()
+            .map_or(positions.count, |indices| indices.count);
+        let triangles = match mode {
+            4 => corners / 3,
+            _ => corners.saturating_sub(2),
+        };
+        Ok(Some(Sizes {
+            mode,
+            positions,
+            indices,
+            triangles,
+        }))
     }
 
     fn mesh(
@@ -152,35 +240,20 @@ impl<'d> Reader<'d> {
         placed: DMat4,
         builder: &mut MeshBuilder,
     ) -> Result<(), MeshError> {
-        let mode = primitive.mode.unwrap_or(4);
-        let (Some(position), 4..=6) = (primitive.attributes.position, mode) else {
+        let Some(Sizes {
+            mode,
+            positions,
+            indices,
+            triangles,
+        }) = self.sizes(primitive)?
+        else {
             self.skipped_modes += 1;
             return Ok(());
         };
         self.morphed += u64::from(!primitive.targets.is_empty());
-        let positions = self.numbers(position)?;
         let optional = |accessor: Option<usize>| accessor.map(|a| self.numbers(a)).transpose();
         let normals = optional(primitive.attributes.normal)?;
         let colors = optional(primitive.attributes.color)?;
-        let indices = optional(primitive.indices)?;
-        let corners = indices
-            .as_ref()
-            .map_or(positions.count, |indices| indices.count);
-        let triangles = match mode {
-            4 => corners / 3,
-            _ => corners.saturating_sub(2),
-        };
-        // Positions count as triangles: they take memory too.
-        let cost = (triangles + positions.count) as u64;
-        self.left = self.left.checked_sub(cost).ok_or_else(|| {
-            MeshError::Limit(MeshFault::new(
-                format!("mesh {mesh}"),
-                Place::Whole,
-                format!("at most {TRIANGLES_A_BYTE} triangles for a byte of the file"),
-                "more: its nodes show meshes very often",
-                "export a part of the scene",
-            ))
-        })?;
         let base = builder.positions() as u32;
         for at in 0..positions.count {
             let point = DVec3::from_array(positions.triple(at).map(f64::from));
