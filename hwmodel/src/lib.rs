@@ -52,10 +52,12 @@ pub mod probe;
 pub mod shifts;
 pub mod statistics;
 pub mod tap;
+mod trap;
 mod word;
 
-pub use datapath::{Datapath, Trap, TrapOp};
+pub use datapath::Datapath;
 pub use format::{Format, FormatError, MAX_BITS, MIN_BITS, Overflow};
 pub use probe::{Memory, NoProbe, OpClass, Operand, Probe, Stage, StageLevel};
 pub use tap::{Short, Signal, SignalKind, Wires};
+pub use trap::{Trap, TrapOp};
 pub use word::{Narrow, Number, WideWord, Word};

@@ -101,3 +101,30 @@ fn a_line_waits_for_a_spilled_record() {
     // B: from 4 to 5, and 16 of waiting, 16 of its own, 5; then 1 + 16 of its line.
     assert_eq!(report.cycles, 5 + 16 + 16 + 5 + 17 + 1);
 }
+
+#[test]
+fn pixels_share_words_of_the_port() {
+    let pixel = Does::Write(Stage::Draw, Memory::Pixel, 0);
+    let mut nodes = family();
+    // C draws four pixels of 24 bits: three words of 32.
+    nodes[3].does.extend(vec![pixel; 4]);
+    nodes[3]
+        .does
+        .push(Does::Read(Stage::Blend, Memory::Node, 0));
+    let mut hardware = hardware();
+    (hardware.pixels.buffer, hardware.pixels.drain_interval) = (16, 1);
+    hardware.pixels.write_ports = 4;
+    let report = run(&nodes, &hardware);
+    // C pops from 18 to 19 and draws in cycle 19: the second, third and fourth pixel complete a
+    // word each, so they take the port from 19 to 22. Its line is asked for at 20, waits until 22,
+    // and is there at 22 + 1 + 10.
+    assert_eq!(report.outer_busy, 8 + 3 + 4);
+    assert_eq!(report.cycles, 33);
+    // By a port that takes a byte a cycle, the last of twelve bytes leaves in cycle 31.
+    nodes[3].does.pop();
+    hardware.outer_memory.bytes_per_cycle = 1;
+    hardware.stack.record = RecordBits::default();
+    let report = run(&nodes, &hardware);
+    // C pops from 10 to 11, draws in 11.
+    assert_eq!((report.outer_busy, report.cycles), (12, 23));
+}

@@ -323,7 +323,7 @@ fn anomalies_with_several_contexts_are_rare_and_small() {
         }
     }
     eprintln!("{slower} of {runs} improvements made a frame slower, at worst {worst:.3} times");
-    assert_eq!((slower, runs), (102, 2000));
+    assert_eq!((slower, runs), (117, 2000));
     assert!((1.18..1.19).contains(&worst), "{worst}");
 }
 

@@ -202,6 +202,13 @@ impl GraphView<'_> {
         self.mask.get(node as usize).copied().unwrap_or(0)
     }
 
+    /// Where a node's children begin, among the nodes or, in a linked graph, in the child lists; 0 for a leaf.
+    #[inline]
+    #[must_use]
+    pub fn first(&self, node: u32) -> u32 {
+        self.first.get(node as usize).copied().unwrap_or(0)
+    }
+
     /// Opacity of a node.
     #[inline]
     #[must_use]

@@ -193,9 +193,10 @@ fn plus_product<P: Probe>(
 /// What a voxel adds to each sample that it is drawn at.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendColor {
-    weight: Narrow,
+    /// 0 to 256.
+    pub(super) weight: Narrow,
     /// Linear light, 0 to 65535 a channel.
-    light: [Narrow; 3],
+    pub(super) light: [Narrow; 3],
 }
 
 /// The state of a sample after it took a voxel.

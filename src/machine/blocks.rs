@@ -2,6 +2,8 @@
 //! alone. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
 //! `shiftvox model --vectors` writes what crosses their borders.
 
+use hwmodel::{Datapath, Probe, Short, Wires};
+
 macro_rules! blocks {
     ($($(#[$doc:meta])* $name:ident,)*) => {
         /// A block of the machine that works without memory: its outputs follow
@@ -104,6 +106,49 @@ impl From<Block> for u32 {
     }
 }
 
+/// Where a record's turn meets the machine's memories. What crosses a port is shown as the block
+/// whose number follows those of all [`Block`]s: the address, and what is written or read there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[repr(u8)]
+pub enum Port {
+    /// A record is taken from the stack: its turn begins.
+    Pop,
+    /// A record is put on the stack.
+    Push,
+    /// A fill vector is read.
+    FillRead,
+    /// A fill vector is written.
+    FillWrite,
+    /// A node is read: which children it has, and where they begin.
+    NodeRead,
+    /// The attributes of a node are read; the record loop does not look at them.
+    AttributeRead,
+    /// A pixel is written: the node that it shows.
+    PixelWrite,
+}
+
+impl Port {
+    /// All ports, in the order of their numbers.
+    pub const ALL: [Self; 7] = [
+        Self::Pop,
+        Self::Push,
+        Self::FillRead,
+        Self::FillWrite,
+        Self::NodeRead,
+        Self::AttributeRead,
+        Self::PixelWrite,
+    ];
+
+    /// Shows what crosses the port.
+    #[inline(always)]
+    pub(super) fn show<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
+        let number = Block::ALL.len() as u32 + self as u32;
+        dp.tap(number, &Short::unsigned(address as u32, ADDRESS_BITS), data);
+    }
+}
+
+/// Wires of an address, and of a node's number.
+pub(super) const ADDRESS_BITS: u32 = 32;
 /// Wires of an octree or quadtree level, or of a shift by levels.
 pub(super) const LEVEL_BITS: u32 = 6;
 /// Wires of a signed number of places to shift by.

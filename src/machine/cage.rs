@@ -8,6 +8,23 @@
 
 use hwmodel::{Datapath, Probe, Signal, Wires, Word};
 
+/// Evaluates an expression with the type of cage coordinate that a set-up's records have.
+macro_rules! with_cage {
+    ($setup:expr, $coordinate:ident => $body:expr) => {
+        match $setup.options.cage {
+            $crate::project::CageKind::Corners => {
+                type $coordinate = $crate::machine::cage::Corners;
+                $body
+            }
+            $crate::project::CageKind::Frame => {
+                type $coordinate = $crate::machine::cage::CornerAndEdges;
+                $body
+            }
+        }
+    };
+}
+pub(super) use with_cage;
+
 /// One coordinate of eight vertices.
 pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The vertices of a parallelepiped with this corner and these edges

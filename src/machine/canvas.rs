@@ -1,9 +1,10 @@
 //! The picture in the making: draws samples and updates the fill vectors
 //! (image-order paper, 3.3).
 
-use hwmodel::{Datapath, Memory, Probe, Stage};
+use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::alpha::BlendColor;
+use super::blocks::{ADDRESS_BITS, Port};
 use super::fill::FillStore;
 use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
@@ -59,7 +60,9 @@ impl<'f> Canvas<'f> {
                 return;
             }
         } else {
-            dp.read(Memory::Attribute, u64::from(paint.node));
+            let node = u64::from(paint.node);
+            dp.read(Memory::Attribute, node);
+            Port::AttributeRead.show(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
             self.put(dp, at, paint);
         }
         self.fill.mark(dp, sample);
@@ -69,6 +72,8 @@ impl<'f> Canvas<'f> {
     #[inline(always)]
     fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, paint: &Paint) {
         dp.write(Memory::Pixel, at as u64);
+        let shown = Short::unsigned(paint.node, ADDRESS_BITS);
+        Port::PixelWrite.show(dp, at as u64, &shown);
         self.frame.node[at] = paint.node;
         // Empty in a frame of nodes alone.
         if let Some(to) = self.frame.voxel.get_mut(at) {

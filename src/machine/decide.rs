@@ -4,7 +4,7 @@
 use hwmodel::{Memory, Probe, Short, Stage};
 
 use super::alpha::BlendColor;
-use super::blocks::Block;
+use super::blocks::{ADDRESS_BITS, Block, Port};
 use super::cage::CageCoordinate;
 use super::canvas::Paint;
 use super::planes::Silhouette;
@@ -53,6 +53,11 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             if !is_read_late {
                 for word in self.layout.words(cube.node, cube.level) {
                     self.dp.read(Memory::Node, word);
+                    let data = (
+                        Short::unsigned(self.graph.mask(cube.node), 8),
+                        Short::unsigned(self.graph.first(cube.node), ADDRESS_BITS),
+                    );
+                    Port::NodeRead.show(&mut self.dp, word, &data);
                 }
             }
             cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;

@@ -3,13 +3,13 @@
 use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
-use super::cage::{CageCoordinate, CornerAndEdges, Corners};
+use super::cage::{CageCoordinate, with_cage};
 use super::heat::Heat;
 use super::options::MachineOptions;
 use super::state::State;
-use crate::frame::{FillVectors, Frame};
+use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::project::{CageKind, Coverage, Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
 
 /// The scalar engine.
 #[derive(Debug, Default)]
@@ -76,10 +76,7 @@ impl Machine {
         probe: P,
         most: u64,
     ) -> Result<Option<(Stats, P)>, EngineError> {
-        match setup.options.cage {
-            CageKind::Corners => self.run_as::<P, Corners>(graph, setup, frame, probe, most),
-            CageKind::Frame => self.run_as::<P, CornerAndEdges>(graph, setup, frame, probe, most),
-        }
+        with_cage!(setup, L => self.run_as::<P, L>(graph, setup, frame, probe, most))
     }
 
     /// Draws a frame in cages of type `L`, in at most `most` records.
@@ -96,7 +93,7 @@ impl Machine {
         let canvas = (self.emptied(setup, frame), &mut *frame);
         let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, heat);
         let is_done = if options.organisation == Organisation::default() {
-            state.draw_object(most)?
+            state.draw_object(QuadNode::ROOT, most)?
         } else {
             state.draw_by_tiles(most)?
         };

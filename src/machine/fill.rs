@@ -9,7 +9,7 @@ use std::cell::Cell;
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
-use super::blocks::Block;
+use super::blocks::{Block, Port};
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -57,6 +57,35 @@ impl<'f> FillStore<'f> {
         self.vectors.levels()
     }
 
+    /// A tile is begun, or a picture of one tile: each of its vectors is written, and those on the way to it. They are
+    /// as they should be already, so only a probe sees anything of it.
+    pub(super) fn begin_tile<P: Probe>(&self, dp: &mut Datapath<P>, tile: QuadNode) {
+        if !P::ENABLED {
+            return;
+        }
+        dp.stage(Stage::FillUpdate);
+        let below_words = if self.words.is_empty() {
+            0
+        } else {
+            LEVELS_BELOW
+        };
+        for level in 0..=self.levels() - below_words {
+            let (below, above) = (
+                level.saturating_sub(tile.level),
+                tile.level.saturating_sub(level),
+            );
+            for at in 0..1u64 << (2 * below) {
+                let (x, y) = (at as u32 & ((1 << below) - 1), (at >> below) as u32);
+                let node = QuadNode {
+                    level,
+                    x: (tile.x >> above << below) + x,
+                    y: (tile.y >> above << below) + y,
+                };
+                dp.write(Memory::FillVector, node.address() as u64);
+            }
+        }
+    }
+
     /// A record begins its turn: the register holds nothing of use.
     #[inline(always)]
     pub(super) fn begin_turn(&self) {
@@ -69,7 +98,7 @@ impl<'f> FillStore<'f> {
         if self.is_joined(node) {
             self.read_word(dp, node);
         } else {
-            dp.read(Memory::FillVector, node.address() as u64);
+            self.read_vector(dp, node);
         }
         self.peek(node)
     }
@@ -100,8 +129,8 @@ impl<'f> FillStore<'f> {
                 Some(above) => (quad, bits) = above,
                 None => return,
             }
-            dp.read(Memory::FillVector, quad.address() as u64);
-            dp.or_bits(4, self.vectors.vector(quad), bits);
+            let vector = self.read_vector(dp, quad);
+            dp.or_bits(4, vector, bits);
         }
         loop {
             dp.write(Memory::FillVector, quad.address() as u64);
@@ -112,13 +141,15 @@ impl<'f> FillStore<'f> {
                 &(Short::unsigned(before, 4), Short::unsigned(bits, 4)),
                 &(Short::unsigned(vector, 4), vector == FULL),
             );
+            let written = Short::unsigned(vector, 4);
+            Port::FillWrite.show(dp, quad.address() as u64, &written);
             if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
                 break;
             }
             bits = 1 << quad.in_parent();
             quad = parent_of(quad);
-            dp.read(Memory::FillVector, quad.address() as u64);
-            dp.or_bits(4, self.vectors.vector(quad), bits);
+            let vector = self.read_vector(dp, quad);
+            dp.or_bits(4, vector, bits);
         }
     }
 
@@ -140,6 +171,15 @@ impl<'f> FillStore<'f> {
         dp.and_bits(4, before, FULL);
         let is_full = *word == ALL_DRAWN && node.level > 0;
         is_full.then(|| (parent_of(node), 1 << node.in_parent()))
+    }
+
+    /// Reads a vector that is not joined.
+    #[inline(always)]
+    fn read_vector<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
+        let (address, vector) = (node.address() as u64, self.vectors.vector(node));
+        dp.read(Memory::FillVector, address);
+        Port::FillRead.show(dp, address, &Short::unsigned(vector, 4));
+        vector
     }
 
     #[inline(always)]

@@ -57,7 +57,7 @@ mod verdict;
 mod watch;
 
 pub use crate::project::OCCLUSION_ORDER;
-pub use blocks::Block;
+pub use blocks::{Block, Port};
 pub use engine::Machine;
 #[cfg(test)]
 pub(crate) use instruments::mutants;

@@ -109,7 +109,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             }
             let mut view = TileView::new(tile);
             view.swap(self);
-            let is_done = self.draw_tile(most_records)?;
+            let is_done = self.draw_tile(tile, most_records)?;
             view.swap(self);
             if !is_done {
                 return Ok(false);
@@ -125,12 +125,12 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     }
 
     /// Draws what is not full of the picture.
-    fn draw_tile(&mut self, most_records: u64) -> Result<bool, EngineError> {
+    fn draw_tile(&mut self, tile: QuadNode, most_records: u64) -> Result<bool, EngineError> {
         if self.options.organisation.stack == StackHolds::Children {
-            return self.draw_object(most_records);
+            return self.draw_object(tile, most_records);
         }
         let mut stack = Vec::new();
-        let mut current = self.object();
+        let mut current = self.object(tile);
         self.check_trap()?;
         // Where the walk comes from.
         let mut last = None;
@@ -164,9 +164,9 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         Ok(true)
     }
 
-    /// The whole object, if it is to be subdivided; it is drawn or dropped if not.
-    pub(super) fn object(&mut self) -> Option<Parent<L>> {
-        self.push_object();
+    /// The whole object in a tile, if it is to be subdivided; it is drawn or dropped if not.
+    pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
+        self.push_object(tile);
         self.work_on_new()
     }
 

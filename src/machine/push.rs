@@ -4,18 +4,21 @@
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Memory, Probe, Stage, Word};
 
+use super::blocks::Port;
 use super::cage::CageCoordinate;
 use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
 use super::smallest_node::{self, Fill};
 use super::state::State;
 use super::watch::Watch;
+use crate::frame::QuadNode;
 use crate::project::Coverage;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Makes the record of the whole object and pushes it.
-    pub(super) fn push_object(&mut self) {
+    /// Begins a tile of the picture, or all of it: makes the record of the whole object and pushes it.
+    pub(super) fn push_object(&mut self, tile: QuadNode) {
         // Where a frame begins, also where a tile does after another's last record.
         self.dp.resume(0);
+        self.canvas.fill.begin_tile(&mut self.dp, tile);
         self.dp.stage(Stage::Push);
         let c = &self.constants;
         let dp = &mut self.dp;
@@ -105,15 +108,17 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             return false;
         };
         self.dp.stage(Stage::Push);
-        // Where parents lie on the stack, what was just made is in registers.
-        if self.options.organisation.stack == StackHolds::Children {
-            self.dp.write(Memory::Stack, self.stack.len() as u64);
-        }
         let record = Record {
             cube,
             place,
             pose: pose(),
         };
+        // Where parents lie on the stack, what was just made is in registers.
+        if self.options.organisation.stack == StackHolds::Children {
+            let address = self.stack.len() as u64;
+            self.dp.write(Memory::Stack, address);
+            Port::Push.show(&mut self.dp, address, &record);
+        }
         self.watch.made(&record);
         self.stack.push(record);
         if self.options.organisation.stack == StackHolds::Children {

@@ -2,8 +2,10 @@
 //! Data only; the steps that work on it are in `push.rs`, `undrawn.rs`, `verdict.rs`, `decide.rs`,
 //! `children.rs`, `record_loop.rs` and `parents.rs`.
 
-use hwmodel::{WideWord, Word};
+use hwmodel::{Short, Signal, WideWord, Wires, Word};
 
+use super::blocks::{ADDRESS_BITS, LEVEL_BITS, NODE_BITS};
+use super::cage::CageCoordinate;
 use crate::frame::QuadNode;
 
 /// An entry of the stack: a cube of object space, where its box is in the
@@ -94,4 +96,35 @@ pub(super) struct Planes {
     /// By axis l: the constant `c` of the plane through the eye that is
     /// perpendicular to axis l. `a` and `b` are the same for all records.
     pub(super) axis_c: [WideWord; 3],
+}
+
+/// The fields one after the other, zeros where the record's pose has none.
+impl<L: CageCoordinate> Wires for Record<L> {
+    fn show(&self, to: &mut Vec<Signal>) {
+        let (cube, quad) = (&self.cube, &self.place.quad);
+        let in_screen_space = matches!(self.pose, Pose::Screen(_));
+        let levels = [cube.level, cube.voxel_level, quad.level];
+        let nothing = Spans::default();
+        ([cube.solid, self.place.inside, in_screen_space]).show(to);
+        levels
+            .map(|level| Short::unsigned(level, LEVEL_BITS))
+            .show(to);
+        Short::unsigned(cube.node, ADDRESS_BITS).show(to);
+        [quad.x, quad.y]
+            .map(|place| Short::unsigned(place, NODE_BITS))
+            .show(to);
+        (cube.min, cube.max).show(to);
+        match &self.pose {
+            Pose::Clip(clip, planes) => {
+                (&clip.x, &clip.y, &clip.w, clip.w_min).show(to);
+                (nothing, planes.edge, planes.axis_c).show(to);
+            }
+            Pose::Screen(screen) => {
+                let none = screen.x.map(|_| Word::ZERO);
+                (&screen.x, &screen.y, none, Word::ZERO).show(to);
+                let planes = Planes::default();
+                (screen.spans, planes.edge, planes.axis_c).show(to);
+            }
+        }
+    }
 }

@@ -2,21 +2,27 @@
 
 use hwmodel::{Memory, Probe, Stage};
 
+use super::blocks::Port;
 use super::cage::CageCoordinate;
 use super::decide::RemainingWork;
 use super::record::Record;
 use super::state::State;
 use super::watch::Watch;
+use crate::frame::QuadNode;
 use crate::project::EngineError;
 
 impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Draws the object, with children on the stack, in at most `most_records`
+    /// Draws the object in a tile, with children on the stack, in at most `most_records`
     /// turns. Returns whether that was enough.
     ///
     /// # Errors
     /// When a word overflows under the trap policy.
-    pub(super) fn draw_object(&mut self, most_records: u64) -> Result<bool, EngineError> {
-        self.push_object();
+    pub(super) fn draw_object(
+        &mut self,
+        tile: QuadNode,
+        most_records: u64,
+    ) -> Result<bool, EngineError> {
+        self.push_object(tile);
         while !self.stack.is_empty() {
             if self.counts.records >= most_records {
                 return Ok(false);
@@ -66,6 +72,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.watch.turn(record.place.quad);
         self.dp.stage(Stage::Pop);
         self.dp.read(Memory::Stack, address);
+        Port::Pop.show(&mut self.dp, address, record);
 
         if self.is_full(record.place.quad) {
             self.counts.already_full += 1;

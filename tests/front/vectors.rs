@@ -38,7 +38,7 @@ fn a_folder_of_vectors() {
     let folder = at.join("made/rows");
     let first = files(&folder);
     let manifest: Value = serde_json::from_slice(&first["manifest.json"]).unwrap();
-    assert_eq!(manifest["schema"], 4);
+    assert_eq!(manifest["schema"], 5);
     assert_eq!(manifest["scene"], "gen:menger,depth=2");
     assert_eq!(manifest["records"], 5);
     assert_eq!(manifest["word"]["bits"], 32);

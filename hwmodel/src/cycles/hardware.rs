@@ -67,8 +67,7 @@ pub struct Hardware {
     pub outer_memory: OuterMemory,
 }
 
-/// The port to outer memory, which cache misses and spilled records share.
-/// Pixels leave by a way of their own ([`Pixels`]).
+/// The port to outer memory, which cache misses, spilled records and pixels share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OuterMemory {
@@ -245,7 +244,7 @@ pub struct Banks {
     pub latency: u32,
 }
 
-/// The way out for pixels: ports into a buffer that drains at a fixed rate.
+/// The way out for pixels: ports into a buffer that drains at a fixed rate at most, by the port to outer memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pixels {

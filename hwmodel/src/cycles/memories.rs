@@ -5,8 +5,16 @@
 
 use super::hardware::{Banks, Cache, Hardware, OuterMemory, Pixels};
 use super::report::{CacheReport, Cause};
-use super::turn::Access;
 use crate::Memory;
+use crate::memory::PIXEL_BITS;
+
+/// An access to a memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Access {
+    pub(super) address: u64,
+    pub(super) memory: Memory,
+    pub(super) write: bool,
+}
 
 /// Division by a number that is a power of two more often than not.
 #[derive(Debug, Clone, Copy)]
@@ -95,6 +103,8 @@ impl Port {
 pub(super) struct OuterPort {
     of: OuterMemory,
     free_at: u64,
+    /// Bits of pixels that do not fill a word yet.
+    pixel_bits: u64,
     /// Cycles for which it was taken.
     pub(super) busy: u64,
 }
@@ -104,8 +114,18 @@ impl OuterPort {
         Self {
             of,
             free_at: 0,
+            pixel_bits: 0,
             busy: 0,
         }
+    }
+
+    /// Takes a pixel that is written at `at`; neighbours share words. Returns when it has left.
+    fn book_pixel(&mut self, at: u64) -> u64 {
+        let word = 8 * u64::from(self.of.bytes_per_cycle.max(1));
+        let bits = self.pixel_bits + u64::from(PIXEL_BITS);
+        self.pixel_bits = bits % word;
+        let (begun, cycles) = self.book(at, bits - self.pixel_bits);
+        begun + cycles
     }
 
     /// Takes the port for so many bits, from `at` on or as soon as it is free.
@@ -308,12 +328,13 @@ impl PixelsState {
     }
 
     #[inline]
-    fn write(&mut self, at: u64) -> Served {
+    fn write(&mut self, at: u64, outer: &mut OuterPort) -> Served {
         let slot = (self.port.accesses % self.leaving.len() as u64) as usize;
         let ported = self.port.book(at);
         let issued = ported.max(self.leaving[slot]);
         self.port.hold(issued);
-        self.last = issued.max(self.last) + u64::from(self.of.drain_interval);
+        let drained = issued.max(self.last) + u64::from(self.of.drain_interval);
+        self.last = drained.max(outer.book_pixel(issued));
         self.leaving[slot] = self.last;
         Served {
             issued,
@@ -375,7 +396,7 @@ impl Memories {
             Memory::Node => self.nodes.access(access.address, at, &mut self.outer),
             Memory::Attribute => self.attributes.access(access.address, at, &mut self.outer),
             Memory::FillVector => self.fill.access(access, at),
-            Memory::Pixel => self.pixels.write(at),
+            Memory::Pixel => self.pixels.write(at, &mut self.outer),
             // Beside the blending block, as wide as an accumulator, with a port
             // to read and one to write: an access a cycle each, never waited for.
             Memory::Accumulator => Served {
@@ -420,7 +441,8 @@ impl Latencies {
                 .cycles(8 * u64::from(cache.line_bytes));
             worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
         }
-        worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval);
+        let moving = hardware.outer_memory.cycles(u64::from(PIXEL_BITS));
+        worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval) + moving;
         Self { alone, worst }
     }
 

@@ -52,7 +52,9 @@
 //! 7. **Fill vectors.** An address lies in bank `address mod banks`; each bank has
 //!    its own ports.
 //! 8. **Pixels.** Written into a buffer through ports; one that finds it full
-//!    waits for the oldest to leave. They leave in order, `drain_interval` cycles apart.
+//!    waits for the oldest to leave. They leave in order, `drain_interval` cycles apart at least. Coming
+//!    into the buffer, a pixel of 24 bits asks for the port to outer memory: neighbours share words, so it takes the
+//!    port for as many cycles as it completes words, and has left when they are over, too.
 //! 9. **Children** are on the stack of the lane, nearest on top, in the cycle in which the turn ends.
 //!    A child is *ready* when all its earlier siblings that it is not
 //!    independent of ([`Independence::allows`]) are finished with all their
@@ -82,7 +84,7 @@
 //! no part that is made faster or wider makes a frame slower. With several that
 //! is not so: records then meet in another order (the anomalies of list
 //! scheduling, Graham 1969). Of 2000 improvements of random hardware on random
-//! records, 102 made the frame slower, at worst by 19 % (`tests/cycles_properties.rs`).
+//! records, 117 made the frame slower, at worst by 19 % (`tests/cycles_properties.rs`).
 //!
 //! # What is left out
 //!
@@ -99,6 +101,7 @@ mod report;
 mod scaling;
 mod simulate;
 mod tasks;
+mod totals;
 mod trace;
 mod turn;
 mod wheel;

@@ -5,11 +5,9 @@ use std::collections::VecDeque;
 use super::hardware::{Hardware, HardwareError, StackOverflow};
 use super::memories::Memories;
 use super::observe::{Observer, START, VisitSpan};
-use super::report::{
-    Bottleneck, Cause, ContextReport, CycleReport, OUTER_PORT, REPORT_VERSION, SPAN, StackReport,
-    StageReport, Stalls,
-};
+use super::report::{Cause, CycleReport};
 use super::tasks::Tasks;
+use super::totals::Totals;
 use super::turn::{Child, STAGES, TurnVisits, Workload};
 use super::wheel::Wheel;
 use crate::Stage;
@@ -109,17 +107,12 @@ struct Simulation<'a, W, O> {
     blocks: Vec<[StageBlock; STAGES]>,
     memories: Memories,
     tasks: Tasks,
-    stages: Vec<StageReport>,
+    totals: Totals,
     newly: Vec<u32>,
     ready: u64,
     idle: u64,
     live: u64,
-    records: u64,
-    work: u64,
-    serial: u64,
     accounted: u64,
-    idle_cycles: ContextReport,
-    stack: StackReport,
 }
 
 impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
@@ -142,18 +135,6 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             first: NONE,
             last: NONE,
         };
-        let stage = |stage| StageReport {
-            stage,
-            visits: 0,
-            operations: 0,
-            passes: 0,
-            most_passes: Default::default(),
-            busy: 0,
-            held: 0,
-            utilisation: 0.0,
-            alone: 0,
-            stalls: Stalls::default(),
-        };
         Self {
             wheel: Wheel::new(contexts.len()),
             idle: contexts.len() as u64,
@@ -162,16 +143,11 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             blocks: vec![[block; STAGES]; hardware.lanes as usize],
             memories: Memories::new(hardware),
             tasks: Tasks::new(hardware.independence),
-            stages: Stage::ALL.map(stage).into(),
+            totals: Totals::new(),
             newly: Vec::new(),
             ready: 0,
             live: 0,
-            records: 0,
-            work: 0,
-            serial: 0,
             accounted: 0,
-            idle_cycles: ContextReport::default(),
-            stack: StackReport::default(),
             hardware,
             workload,
             observer,
@@ -203,7 +179,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.lanes[0].idle &= !1;
         self.idle -= 1;
         self.live = 1;
-        self.stack.most_live = 1;
+        self.totals.stack.most_live = 1;
         let of = &mut self.contexts[0];
         self.workload.start(&mut of.children)?;
         of.task = task;
@@ -220,10 +196,10 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         of.arrived = now;
         of.granted = false;
         of.in_screen_space |= of.plan.changed_to_screen;
-        self.work += of.plan.alone;
-        self.serial += of.plan.worst + of.steal + of.spill;
+        self.totals.work += of.plan.alone;
+        self.totals.serial += of.plan.worst + of.steal + of.spill;
         for visit in &of.plan.visits {
-            let stage = &mut self.stages[visit.stage as usize];
+            let stage = &mut self.totals.stages[visit.stage as usize];
             stage.visits += 1;
             stage.operations += visit.operations;
             stage.passes += visit.passes;
@@ -240,9 +216,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let idle = (now - self.accounted) * self.idle;
         self.accounted = now;
         if self.tasks.waiting > 0 {
-            self.idle_cycles.order_wait += idle;
+            self.totals.idle_cycles.order_wait += idle;
         } else {
-            self.idle_cycles.no_record += idle;
+            self.totals.idle_cycles.no_record += idle;
         }
     }
 
@@ -288,7 +264,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     fn begin(&mut self, now: u64, context: u32) {
         let of = &mut self.contexts[context as usize];
         let visit = &of.plan.visits[of.visit];
-        let report = &mut self.stages[visit.stage as usize];
+        let report = &mut self.totals.stages[visit.stage as usize];
         let from = of.from as usize;
         let issued = now + visit.occupied;
         let mut frees = issued;
@@ -344,8 +320,8 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         stack.stored += count;
         self.live += count;
         self.live -= 1;
-        self.stack.most_live = self.stack.most_live.max(self.live);
-        self.stack.deepest = self.stack.deepest.max(stack.stored);
+        self.totals.stack.most_live = self.totals.stack.most_live.max(self.live);
+        self.totals.stack.deepest = self.totals.stack.deepest.max(stack.stored);
         let over = stack
             .stored
             .saturating_sub(u64::from(self.hardware.stack.entries));
@@ -360,13 +336,13 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
                     entries: self.hardware.stack.entries,
                 });
             }
-            self.stack.spilled += spills;
+            self.totals.stack.spilled += spills;
             let bits = u64::from(record.of(kind));
-            self.stack.spilled_bits += spills * bits;
+            self.totals.stack.spilled_bits += spills * bits;
             for _ in 0..spills {
                 // In the background: nothing waits for it but the port.
                 let (_, moving) = self.memories.outer.book(now, bits);
-                self.serial += moving;
+                self.totals.serial += moving;
             }
         }
         let newly = &mut self.newly;
@@ -440,7 +416,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.ready -= 1;
         self.idle -= 1;
         self.lanes[from].stored -= 1;
-        self.stack.stolen += u64::from(stolen);
+        self.totals.stack.stolen += u64::from(stolen);
         if O::ENABLED {
             let of = &self.lanes[from];
             self.observer
@@ -449,7 +425,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[context as usize];
         self.lanes[lane].idle &= !(1 << of.number);
         of.task = task;
-        of.record = self.records;
+        of.record = self.totals.records;
         of.from = record.lane;
         of.steal = u64::from(self.hardware.steal_cycles) * u64::from(stolen);
         of.in_screen_space = record.kind == RecordKind::Screen;
@@ -460,9 +436,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         } else {
             0
         };
-        self.records += 1;
-        if self.records.is_multiple_of(PROGRESS) {
-            self.observer.progress(now, self.records);
+        self.totals.records += 1;
+        if self.totals.records.is_multiple_of(PROGRESS) {
+            self.observer.progress(now, self.totals.records);
         }
         of.children.clear();
         self.workload.turn(record.item, &mut of.children)?;
@@ -473,74 +449,13 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     fn report(mut self, end: u64) -> CycleReport {
         let cycles = end.max(self.memories.pixels.last());
         self.account(cycles);
-        let per_lane = |sum: u64| sum.div_ceil(u64::from(self.hardware.lanes));
-        let mut bounds = vec![(SPAN.to_owned(), self.tasks.span)];
         let most_passes = *self.workload.log().most_passes();
-        for stage in &mut self.stages {
-            stage.most_passes = most_passes[stage.stage as usize];
-            let used = stage.busy + stage.held;
-            let all = (cycles * u64::from(self.hardware.lanes)).max(1);
-            stage.utilisation = used as f64 / all as f64;
-            bounds.push((format!("{} block", stage.stage.name()), per_lane(used)));
-        }
-        let memories = &self.memories;
-        let stack_ports = memories.stacks.iter().map(|port| port.bound()).sum();
-        bounds.push(("stack port".to_owned(), per_lane(stack_ports)));
-        for (name, bound) in [
-            ("node cache port", memories.nodes.port.bound()),
-            ("node cache misses", memories.nodes.miss_bound()),
-            ("attribute cache port", memories.attributes.port.bound()),
-            ("attribute cache misses", memories.attributes.miss_bound()),
-            ("busiest fill-vector bank", memories.fill.bound()),
-            ("pixel port", memories.pixels.port.bound()),
-            ("pixel drain", memories.pixels.drain_bound()),
-            (OUTER_PORT, memories.outer.busy),
-        ] {
-            bounds.push((name.to_owned(), bound));
-        }
-        let ratio = |a: u64, b: u64| if b == 0 { 0.0 } else { a as f64 / b as f64 };
-        let (fill_reads, fill_writes) = memories.fill.accesses();
-        let pixels = memories.pixels.port.accesses;
-        let mut report = CycleReport {
-            version: REPORT_VERSION,
-            hardware: self.hardware.name.clone(),
-            lanes: self.hardware.lanes,
-            contexts: self.hardware.contexts,
-            independence: self.hardware.independence,
-            clock_mhz: self.hardware.clock_mhz,
+        self.totals.report(
+            self.hardware,
             cycles,
-            records: self.records,
-            pixels,
-            cycles_per_record: ratio(cycles, self.records),
-            cycles_per_pixel: ratio(cycles, pixels),
-            frames_per_second: self.hardware.clock_mhz * 1e6 / cycles.max(1) as f64,
-            work: self.work,
-            span: self.tasks.span,
-            parallelism: ratio(self.work, self.tasks.span),
-            serial: self.serial,
-            context_cycles: ContextReport {
-                working: self.work,
-                stalled: self.stages.iter().map(|stage| stage.stalls.total()).sum(),
-                ..self.idle_cycles
-            },
-            node_cache: memories.nodes.report(),
-            attribute_cache: memories.attributes.report(),
-            fill_reads,
-            fill_writes,
-            outer_busy: memories.outer.busy,
-            stack: StackReport {
-                most_open: self.tasks.most_open,
-                ..self.stack
-            },
-            stages: self.stages,
-            bounds: Vec::new(),
-            bottleneck: Bottleneck {
-                resource: String::new(),
-                share: 0.0,
-                sentence: String::new(),
-            },
-        };
-        report.conclude(bounds);
-        report
+            &self.memories,
+            &self.tasks,
+            &most_passes,
+        )
     }
 }

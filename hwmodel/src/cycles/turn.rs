@@ -1,7 +1,7 @@
 //! What a record's turn does, as the cycle model needs it.
 
 use super::hardware::{Hardware, Independence};
-use super::memories::Latencies;
+use super::memories::{Access, Latencies};
 use crate::{Memory, OpClass, Probe, Stage, StageLevel};
 
 pub(super) const STAGES: usize = Stage::ALL.len();
@@ -90,14 +90,6 @@ impl Independence {
             Self::Both => classes() || image(),
         }
     }
-}
-
-/// An access to a memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Access {
-    pub(super) address: u64,
-    pub(super) memory: Memory,
-    pub(super) write: bool,
 }
 
 /// Marks a stage whose memories were accessed; the bits below are classes.

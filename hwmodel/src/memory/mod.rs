@@ -10,7 +10,7 @@ mod traffic;
 pub use cache::{Cache, CacheError};
 pub use curve::{MissCurve, MissPoint};
 pub use records::{RecordAccesses, RecordBits, RecordKind, RecordProbe};
-pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, Widths};
+pub use traffic::{ACCUMULATOR_BITS, MemoryProbe, PIXEL_BITS, Widths};
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};

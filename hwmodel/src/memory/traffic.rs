@@ -12,6 +12,9 @@ const MEMORIES: usize = Memory::ALL.len();
 /// it still lets through, 24 of each colour. Fixed by the drawing rule, whatever the format.
 pub const ACCUMULATOR_BITS: u32 = 9 + 3 * 24;
 
+/// Bits of a pixel: red, green and blue.
+pub const PIXEL_BITS: u32 = 24;
+
 /// Bits that one access of each memory moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Widths {

@@ -11,11 +11,11 @@ use std::collections::BTreeSet;
 
 use hwmodel::cost::{CostError, CostTable};
 use hwmodel::cycles::Hardware;
+use hwmodel::memory::PIXEL_BITS;
 use serde::Serialize;
 
 use super::caches::{self, CacheRow};
 use super::cost::{OuterTraffic, outer_energy};
-use super::frame::PIXEL_BITS;
 use super::range::Range;
 use crate::frame::{Frame, NO_NODE};
 use crate::graph::{Graph, NodeLayout};

@@ -6,7 +6,7 @@ use hwmodel::Memory;
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{self, CycleReport, Hardware, NoObserver, Observer, Organisation, Recording};
-use hwmodel::memory::{MemoryProbe, RecordProbe, Widths};
+use hwmodel::memory::{MemoryProbe, PIXEL_BITS, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
@@ -18,9 +18,6 @@ use crate::measure::CoverageError;
 use crate::picture::{Shading, lights};
 use crate::project::{Engine, EngineError, FrameSetup, Stats};
 use crate::rays::Rays;
-
-/// Bits of a pixel: red, green and blue.
-pub const PIXEL_BITS: u32 = 24;
 
 /// What was counted while a frame was drawn.
 #[derive(Debug)]

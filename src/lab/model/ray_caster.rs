@@ -3,7 +3,7 @@
 
 use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
 use hwmodel::cycles::{self, Hardware, HardwareError};
-use hwmodel::memory::Cache;
+use hwmodel::memory::{Cache, PIXEL_BITS};
 use hwmodel::{Memory, cycles::Bound};
 use serde::Serialize;
 
@@ -175,7 +175,7 @@ pub fn price(
     let traffic = OuterTraffic {
         node_bits: misses.node * line_bits(&hardware.node_cache),
         attribute_bits: misses.attribute * line_bits(&hardware.attribute_cache),
-        pixel_bits: counts.of(FloatStep::PixelWrite) * u64::from(frame::PIXEL_BITS),
+        pixel_bits: counts.of(FloatStep::PixelWrite) * u64::from(PIXEL_BITS),
         ..OuterTraffic::default()
     };
     let cost = cost_of(&counts, &traffic, hardware, rays, &prices.table)?;

@@ -138,10 +138,10 @@ pub fn cycles(
             misses * each / u64::from(cache.misses),
         ));
     }
-    let lines = traffic.node_bits + traffic.attribute_bits;
+    let moved = traffic.node_bits + traffic.attribute_bits + traffic.pixel_bits;
     needs.push((
         "outer memory port".to_owned(),
-        hardware.outer_memory.cycles(lines),
+        hardware.outer_memory.cycles(moved),
     ));
     let drain = counts.of(FloatStep::PixelWrite) * u64::from(hardware.pixels.drain_interval);
     needs.push(("pixel drain".to_owned(), drain));

@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use crate::frame::Frame;
 use crate::graph::Graph;
-use crate::machine::{Machine, MachineOptions, RecordNumber, proven_widths};
+use crate::machine::{Machine, MachineOptions, NumberSpan, RecordNumber, proven_widths};
+use crate::project::vector::cross;
 use crate::project::{CageKind, EngineError, FrameSetup};
 
 /// A field of a record.
@@ -164,12 +165,12 @@ pub fn record_fields(
     fields
 }
 
-/// Bits of one of a record's numbers.
+/// Bits of one of a record's numbers, or of a constant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct NumberWidths {
     /// Its name.
     pub name: &'static str,
-    /// How many of them a record has.
+    /// How many of them there are.
     pub count: u32,
     /// Bits that the frame's records took.
     pub seen: u32,
@@ -179,7 +180,34 @@ pub struct NumberWidths {
     pub used: u32,
 }
 
-/// The widths of a record's numbers in a frame; none under the rules that do not draw outlines.
+/// The constants that every record is compared with or moved by, which set-up writes to registers, six of each: name, what they
+/// span in this frame, what they can, and their bits without packing.
+fn setup_constants(setup: &FrameSetup) -> [(&'static str, NumberSpan, NumberSpan, u32); 2] {
+    let span_of = |values: &mut dyn Iterator<Item = i128>| {
+        let spans = values.map(NumberSpan::of);
+        spans.reduce(NumberSpan::with).unwrap_or_default()
+    };
+    // All eyes beyond the object compare alike.
+    let beyond = (1i128 << (setup.depth + setup.sub_levels)) + 1;
+    let eye = setup.eye_floor.iter().chain(&setup.eye_ceil);
+    let eye = span_of(&mut eye.map(|&c| i128::from(c).clamp(-1, beyond)));
+    let anywhere = NumberSpan::of(-1).with(NumberSpan::of(beyond));
+    let edges = setup.edge_clip.map(|edge| edge.map(i128::from));
+    let normals = (0..3).map(|k| cross(edges[(k + 1) % 3], edges[(k + 2) % 3]));
+    let axes = span_of(&mut normals.flat_map(|[a, b, _]| [a, b]));
+    let format = setup.format;
+    [
+        ("eye, of set-up", eye, anywhere, format.bits()),
+        (
+            "axis plane's a, b, of set-up",
+            axes,
+            axes,
+            format.wide().bits(),
+        ),
+    ]
+}
+
+/// The widths of a record's numbers in a frame, and of set-up's constants; none under the rules that do not draw outlines.
 ///
 /// # Errors
 /// When a word overflows under the trap policy.
@@ -231,7 +259,17 @@ pub fn number_widths(
         }
     };
     let rows = RecordNumber::ALL.into_iter().map(row);
-    Ok(rows.filter(|row| row.count > 0).collect())
+    let constants = setup_constants(setup).map(|(name, span, bound, plain)| NumberWidths {
+        name,
+        count: 6,
+        seen: span.bits(),
+        proven: bound.bits(),
+        used: match organisation.packed {
+            true => bound.bits().min(plain),
+            false => plain,
+        },
+    });
+    Ok(rows.filter(|row| row.count > 0).chain(constants).collect())
 }
 
 /// Bits of a stack's entry, which holds records of any kind.

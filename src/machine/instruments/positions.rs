@@ -2,8 +2,8 @@
 //! measurements of error.
 
 use super::descent::{Cage, CageWords, Descent};
-use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
-use crate::project::{CageKind, FrameSetup};
+use crate::machine::cage::{CageCoordinate, with_cage};
+use crate::project::FrameSetup;
 
 /// How a record holds its vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,10 +42,7 @@ pub fn visit_positions(
         .collect();
     paths.sort_unstable();
     paths.dedup();
-    match setup.options.cage {
-        CageKind::Corners => visit_as::<Corners>(setup, &paths, visit),
-        CageKind::Frame => visit_as::<CornerAndEdges>(setup, &paths, visit),
-    }
+    with_cage!(setup, L => visit_as::<L>(setup, &paths, visit))
 }
 
 fn visit_as<L: CageCoordinate>(

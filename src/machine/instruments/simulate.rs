@@ -15,7 +15,7 @@ use serde::Serialize;
 use crate::frame::quadtree::FULL;
 use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
+use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
 use crate::machine::heat::Heat;
 use crate::machine::options::MachineOptions;
@@ -24,7 +24,7 @@ use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
 use crate::machine::state::State;
 use crate::machine::watch::Watch;
-use crate::project::{CageKind, EngineError, FrameSetup, Stats};
+use crate::project::{EngineError, FrameSetup, Stats};
 
 /// The results of a simulated frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -106,8 +106,10 @@ impl Machine {
     ) -> Result<Simulated, SimulateError> {
         hardware.check()?;
         let log = TurnLog::new(hardware);
-        let ended = self.simulate_with(graph, setup, frame, hardware, observer, log);
-        ended.map(|(simulated, _)| simulated)
+        let (simulated, _) = with_cage!(setup, L => {
+            self.simulate_as::<_, L, _>(graph, setup, frame, hardware, observer, log)
+        })?;
+        Ok(simulated)
     }
 
     /// Draws a frame and records its turns, which are the same on every hardware of the organisation where
@@ -130,27 +132,10 @@ impl Machine {
         hardware.check()?;
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
-        let (_, (_, tape)) =
-            self.simulate_with(graph, setup, frame, hardware, &mut observer, probes)?;
+        let (_, (_, tape)) = with_cage!(setup, L => {
+            self.simulate_as::<_, L, _>(graph, setup, frame, hardware, &mut observer, probes)
+        })?;
         Ok(tape.finish())
-    }
-
-    fn simulate_with<P: TurnProbe, O: Observer>(
-        &mut self,
-        graph: &GraphView<'_>,
-        setup: &FrameSetup,
-        frame: &mut Frame,
-        hardware: &Hardware,
-        observer: &mut O,
-        log: P,
-    ) -> Result<(Simulated, P), SimulateError> {
-        match setup.options.cage {
-            CageKind::Corners => {
-                self.simulate_as::<P, Corners, O>(graph, setup, frame, hardware, observer, log)
-            }
-            CageKind::Frame => self
-                .simulate_as::<P, CornerAndEdges, O>(graph, setup, frame, hardware, observer, log),
-        }
     }
 
     fn simulate_as<P: TurnProbe, L: CageCoordinate, O: Observer>(
@@ -342,7 +327,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         self.switch_to(self.tiles.len() - 1);
         match self.state.options.organisation.stack {
             StackHolds::Children => {
-                self.state.push_object();
+                self.state.push_object(quad);
                 if !self.state.stack.is_empty() {
                     // The object has no siblings: any rank will do.
                     self.state.watch.pushed(FIRST_PLACE);
@@ -350,7 +335,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
                 self.hand_over_records(children);
             }
             StackHolds::Parents | StackHolds::Path => {
-                if let Some(object) = self.state.object() {
+                if let Some(object) = self.state.object(quad) {
                     self.hand_over(Work::Parent(object), FIRST_PLACE, children);
                 }
             }

@@ -4,8 +4,8 @@ use hwmodel::Trap;
 
 pub(crate) use super::descent::Cage;
 use super::descent::Descent;
-use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
-use crate::project::{CageKind, FrameSetup};
+use crate::machine::cage::{CageCoordinate, with_cage};
+use crate::project::FrameSetup;
 
 /// The cages of the voxels on the way that `path` leads from the root, octant
 /// by octant, the root's first, as [`FrameSetup::options`] has them. Each is
@@ -15,10 +15,7 @@ use crate::project::{CageKind, FrameSetup};
 /// If a word overflows. The machine has these vertices relative to a node of the
 /// quadtree, where they are never larger.
 pub(crate) fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
-    match setup.options.cage {
-        CageKind::Corners => cages_as::<Corners>(setup, path),
-        CageKind::Frame => cages_as::<CornerAndEdges>(setup, path),
-    }
+    with_cage!(setup, L => cages_as::<L>(setup, path))
 }
 
 /// As [`cages_along`], in any cage.

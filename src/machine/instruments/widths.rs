@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 
 use crate::frame::Frame;
 use crate::graph::GraphView;
-use crate::machine::cage::{CageCoordinate, CornerAndEdges, Corners};
+use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
 use crate::machine::record::{Pose, Record};
 use crate::machine::state::State;
@@ -106,6 +106,15 @@ pub struct NumberSpan {
 }
 
 impl NumberSpan {
+    /// One value.
+    #[must_use]
+    pub fn of(value: i128) -> Self {
+        Self {
+            least: value,
+            greatest: value,
+        }
+    }
+
     /// From a value to its opposite.
     fn around(most: i128) -> Self {
         Self {
@@ -180,10 +189,7 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
         .collect();
     let span_of = |values: &mut dyn Iterator<Item = i128>| {
         values
-            .map(|value| NumberSpan {
-                least: value,
-                greatest: value,
-            })
+            .map(NumberSpan::of)
             .reduce(NumberSpan::with)
             .unwrap_or_default()
     };
@@ -339,10 +345,7 @@ impl Machine {
         setup: &FrameSetup,
         frame: &mut Frame,
     ) -> Result<NumberSpans, EngineError> {
-        match setup.options.cage {
-            CageKind::Corners => self.seen_as::<Corners>(graph, setup, frame),
-            CageKind::Frame => self.seen_as::<CornerAndEdges>(graph, setup, frame),
-        }
+        with_cage!(setup, L => self.seen_as::<L>(graph, setup, frame))
     }
 
     fn seen_as<L: CageCoordinate>(

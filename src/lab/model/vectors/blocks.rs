@@ -2,36 +2,17 @@
 
 use hwmodel::{SignalKind, Stage};
 
+use super::blending;
+use super::description::{Description, OBJECT};
 use super::ports::{BIT, LEVEL, Ports, WIDE, WORD};
 use crate::machine::Block;
-use crate::project::{Coverage, FrameSetup};
-
-/// A block as the manifest describes it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Description {
-    /// Its name, and that of its files.
-    pub name: &'static str,
-    /// Stages that have it.
-    pub stages: &'static [Stage],
-    /// Section of `SPEC.md`.
-    pub section: &'static str,
-    /// What it does.
-    pub function: &'static str,
-    /// Its inputs.
-    pub stimulus: Ports,
-    /// Its outputs.
-    pub expected: Ports,
-}
+use crate::project::FrameSetup;
 
 const TWO: SignalKind = SignalKind::Unsigned(2);
 const THREE: SignalKind = SignalKind::Unsigned(3);
 const FOUR: SignalKind = SignalKind::Unsigned(4);
 const NODE: SignalKind = SignalKind::Unsigned(20);
 const PLACES: SignalKind = SignalKind::Signed(8);
-const SHARE: SignalKind = SignalKind::Unsigned(5);
-const WEIGHT: SignalKind = SignalKind::Unsigned(9);
-const COLOR: SignalKind = SignalKind::Unsigned(16);
-const SUM: SignalKind = SignalKind::Unsigned(24);
 
 const X: &str = "X (or Y) of the vertices, relative to the quadtree node";
 const W: &str = "W of the vertices";
@@ -43,9 +24,6 @@ const WITHIN: &str = "all of the box is";
 const PLANE: &str = "a, b, c of the edge's plane a x + b y + c";
 const NORMAL: &str = "a, b of the plane perpendicular to the axis";
 const AXIS_C: &str = "c of the plane perpendicular to the axis";
-const OBJECT: &str = "object coordinate, units of a finest voxel shifted by the levels below it";
-const COUNT: &str = "v of the axis: what the side counts for, sixteenths";
-const COLORS: [&str; 3] = ["red", "green", "blue"];
 
 const OCTANTS: [&str; 8] = ["000", "001", "010", "011", "100", "101", "110", "111"];
 
@@ -60,67 +38,12 @@ fn planes(ports: Ports) -> Ports {
     ports.each("axis", &["x_c", "y_c", "z_c"], WIDE, AXIS_C)
 }
 
-/// Why a frame with these integers has no rows of a block, if that is so.
-#[must_use]
-pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
-    let exact = setup.options.coverage.draws_outlines();
-    let changes = setup.screen_depth.iter().any(|&w| w != i64::MAX);
-    const NOT_EXACT: &str = "only coverages exact and alpha have it";
-    const IS_EXACT: &str = "coverages exact and alpha do not have it";
-    const NOT_ALPHA: &str = "only coverage alpha has it";
-    const NO_CHANGE: &str = "at this tolerance no record changes to screen space";
-    let of_screen = || match (exact, changes) {
-        (true, _) => Some(IS_EXACT),
-        (_, false) => Some(NO_CHANGE),
-        _ => None,
-    };
-    match block {
-        Block::ChangeDepth
-        | Block::ChangeGuard
-        | Block::ToScreenDivide
-        | Block::SizeScreen
-        | Block::BorderScreen
-        | Block::BisectorScreen
-        | Block::CentreSample => of_screen(),
-        Block::ChildPlanes
-        | Block::PlaneQuadrant
-        | Block::MarginGap
-        | Block::CubePlanes
-        | Block::CubeFront
-        | Block::PlaneSide
-        | Block::PlaneCover => (!exact).then_some(NOT_EXACT),
-        Block::CageCentre | Block::CentreHalf => exact.then_some(IS_EXACT),
-        Block::BlendWay
-        | Block::BlendShares
-        | Block::BlendCounts
-        | Block::BlendWeight
-        | Block::BlendSample => (setup.options.coverage != Coverage::Alpha).then_some(NOT_ALPHA),
-        Block::DetailDepth => {
-            (setup.lod_limit.is_none()).then_some("level of detail 0 takes no node for a solid")
-        }
-        Block::MarginGrow => {
-            if exact {
-                return Some(IS_EXACT);
-            }
-            (setup.grow_shift.is_none()).then_some("at this tolerance boxes are not widened")
-        }
-        _ => None,
-    }
-}
-
 /// Describes a block of a frame.
 #[must_use]
 #[expect(clippy::too_many_lines, reason = "one entry for each block")]
 pub fn describe(block: Block, setup: &FrameSetup) -> Description {
     let ports = || Ports::new(setup.options.cage);
-    let made = |name, stages, section, function, stimulus, expected| Description {
-        name,
-        stages,
-        section,
-        function,
-        stimulus,
-        expected,
-    };
+    let made = Description::new;
     let bit = |name: &str, meaning| ports().one(name, BIT, meaning);
     let border = || {
         ports()
@@ -286,7 +209,7 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
                 )
                 .one("octant", THREE, "which child, x highest"),
             ["x", "y", "z"].iter().fold(ports(), |ports, axis| {
-                ports.each(&format!("edge_{axis}"), &["a", "b", "c"], WIDE, PLANE)
+                ports.each(&format!("child_edge_{axis}"), &["a", "b", "c"], WIDE, PLANE)
             }),
         ),
         Block::ChildCorners => made(
@@ -536,67 +459,10 @@ pub fn describe(block: Block, setup: &FrameSetup) -> Description {
                 "the parent's bit is to be set",
             ),
         ),
-        Block::BlendWay => made(
-            "blend_way",
-            &[Stage::Blend],
-            "11",
-            "way = |((min + max) >> 1 >> shift) - eye|, the first sum with its carry",
-            ports()
-                .one("min", WORD, OBJECT)
-                .one("max", WORD, OBJECT)
-                .one("eye", WORD, "the eye, shifted already")
-                .one("shift", LEVEL, "k of the section"),
-            ports().one("way", WORD, "d of the axis"),
-        ),
-        Block::BlendShares => made(
-            "blend_shares",
-            &[Stage::Blend],
-            "11",
-            "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but at most 16 - share_x, share_z = 16 - share_x - share_y; seen = share >= 4",
-            ports().axes("way", WORD, "d of the axis"),
-            ports()
-                .axes("share", SHARE, "u of the axis, sixteenths")
-                .axes("seen", BIT, "a full side hides all"),
-        ),
-        Block::BlendCounts => made(
-            "blend_counts",
-            &[Stage::Blend],
-            "11",
-            "with n = the square root of the sum of the squares, to the nearest: count = share^2 / n to the nearest, halves up",
-            ports().axes("share", SHARE, "u of the axis, sixteenths"),
-            ports().axes("count", SHARE, COUNT),
-        ),
-        Block::BlendWeight => made(
-            "blend_weight",
-            &[Stage::Blend],
-            "11",
-            "with a = opacity_high where high is set, else opacity_low: weight = 256 where an axis that is seen has a = 15, else the sum of (a + (a >> 3)) count",
-            ["x", "y", "z"]
-                .iter()
-                .fold(ports(), |ports, axis| {
-                    let meaning = "the voxel's opacity from that side";
-                    ports.each(&format!("opacity_{axis}"), &["low", "high"], FOUR, meaning)
-                })
-                .axes("high", BIT, "the eye is on the high side")
-                .axes("count", SHARE, COUNT)
-                .axes("seen", BIT, "a full side hides all"),
-            ports().one("weight", WEIGHT, "w: 256 lets nothing through"),
-        ),
-        Block::BlendSample => made(
-            "blend_sample",
-            &[Stage::Blend],
-            "11",
-            "with m = (left weight + 128) >> 8: full = left - m <= 64, and then m = left; rest = left - m; after = sum + m light; first = left is 256",
-            ports()
-                .one("left", WEIGHT, "T: what the sample still lets through")
-                .one("weight", WEIGHT, "w of the voxel")
-                .each("light", &COLORS, COLOR, "linear light of the voxel")
-                .each("sum", &COLORS, SUM, "C: what the sample has so far"),
-            ports()
-                .one("rest", WEIGHT, "T, written back")
-                .each("after", &COLORS, SUM, "C, written back")
-                .one("first", BIT, "the first voxel that the sample takes")
-                .one("full", BIT, "opaque enough: the fill bit is to be set"),
-        ),
+        Block::BlendWay => blending::way(),
+        Block::BlendShares => blending::shares(),
+        Block::BlendCounts => blending::counts(),
+        Block::BlendWeight => blending::weight(),
+        Block::BlendSample => blending::sample(),
     }
 }

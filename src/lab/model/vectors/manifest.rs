@@ -1,21 +1,25 @@
 //! What stands in `manifest.json`.
 
-use hwmodel::Format;
+use hwmodel::SignalKind;
 use serde_json::{Value, json};
 
-use super::blocks::absence;
-use super::ports::{self, Ports};
-use super::recorder::{EXPECTED, Recording, STIMULUS, file_name};
+use super::description::absence;
+use super::manifest_fields::fields;
+use super::ports;
+use super::recorder::Recording;
+use super::rows::{EXPECTED, STIMULUS, file_name};
+use super::turns::Turns;
 use super::{Request, SCHEMA};
-use crate::machine::Block;
+use crate::machine::{Block, ProvenWidths, proven_widths};
 use crate::project::{FrameSetup, Stats};
 
-/// The manifest of a folder of vectors.
+/// The manifest of a folder of vectors; `nodes`: of the graph.
 pub(super) fn document(
     setup: &FrameSetup,
     request: &Request<'_>,
+    nodes: usize,
     stats: &Stats,
-    recordings: &[Recording],
+    (recordings, turns): (&[Recording], Option<&Turns>),
 ) -> Value {
     let records = stats.iter().find(|(name, _)| *name == "records");
     let overflows = stats.iter().find(|(name, _)| *name == "overflows");
@@ -25,10 +29,11 @@ pub(super) fn document(
     } else {
         json!("inf")
     };
+    let proven = proven_widths(setup, nodes);
     let blocks: Vec<Value> = Block::ALL
         .iter()
         .zip(recordings)
-        .map(|(&block, recording)| entry(setup, block, recording))
+        .map(|(&block, recording)| entry(setup, block, recording, proven.as_ref()))
         .collect();
     json!({
         "kind": "shiftvox vectors",
@@ -57,6 +62,10 @@ pub(super) fn document(
             "size_shifts": setup.size_limit.shifts(),
         },
         "blocks": blocks,
+        "turns": turns.map_or_else(
+            || json!({ "reason": "turns that blend are not written" }),
+            Turns::entry,
+        ),
         "stages_without_blocks": {
             "pop": "a record is read from the stack: no arithmetic",
             "push": "a record is written to the stack: no arithmetic",
@@ -64,7 +73,12 @@ pub(super) fn document(
     })
 }
 
-fn entry(setup: &FrameSetup, block: Block, recording: &Recording) -> Value {
+fn entry(
+    setup: &FrameSetup,
+    block: Block,
+    recording: &Recording,
+    proven: Option<&ProvenWidths>,
+) -> Value {
     let description = &recording.description;
     let stages: Vec<&str> = description.stages.iter().map(|s| s.name()).collect();
     let file = |end| (recording.rows > 0).then(|| file_name(description.name, end));
@@ -78,29 +92,32 @@ fn entry(setup: &FrameSetup, block: Block, recording: &Recording) -> Value {
         "rows": recording.rows,
         "frame_rows": recording.frame_rows,
         "reason": reason,
-        "stimulus": fields(setup.format, &description.stimulus, file(STIMULUS)),
-        "expected": fields(setup.format, &description.expected, file(EXPECTED)),
+        "stimulus": fields(setup.format, &description.stimulus, file(STIMULUS), &|(at, _)| {
+            known(recording, proven, 0, at)
+        }),
+        "expected": fields(setup.format, &description.expected, file(EXPECTED), &|(at, _)| {
+            known(recording, proven, 1, at)
+        }),
     })
 }
 
-fn fields(format: Format, ports: &Ports, file: Option<String>) -> Value {
-    let all: Vec<Value> = ports
-        .placed(format)
-        .map(|(field, lowest)| {
-            json!({
-                "name": field.name,
-                "bits": field.kind.bits(format),
-                "signed": field.kind.is_signed(),
-                "lowest_bit": lowest,
-                "changes": if ports::is_of_frame(&field.name) { "frame" } else { "row" },
-                "meaning": field.meaning,
-            })
-        })
-        .collect();
+/// What is known of a field of a block: when it changes, what values it took, and how many bits the
+/// set-up proves to be enough for those.
+fn known(recording: &Recording, proven: Option<&ProvenWidths>, side: usize, at: usize) -> Value {
+    let description = &recording.description;
+    let ports = [&description.stimulus, &description.expected][side];
+    let field = &ports.fields()[at];
+    // Within 64 bits: they are values of wires.
+    let seen = recording.seen[side].get(at);
+    let seen = seen.map(|span| [span.least as i64, span.greatest as i64]);
+    let number = (side == 0).then(|| ports::number_of(&field.name)).flatten();
+    let bits = proven.and_then(|proven| match (field.kind, number) {
+        (SignalKind::Wide, _) => Some(proven.wide_bits),
+        (_, number) => Some(proven.numbers.get(&number?)?.bits()),
+    });
     json!({
-        "file": file,
-        "bits": ports.bits(format),
-        "digits": ports.digits(format),
-        "fields": all,
+        "changes": if ports::is_of_frame(&field.name) { "frame" } else { "row" },
+        "seen": seen,
+        "proven_bits": bits,
     })
 }

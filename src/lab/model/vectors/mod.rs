@@ -5,18 +5,24 @@
 //! outputs a block, and a manifest that names every bit. The rows are what
 //! the machine itself computed while it drew, and then for inputs that no frame brings: ends of ranges, ties, random numbers. `docs/vectors.md` describes their use.
 
+mod blending;
 mod blocks;
+mod description;
 mod folder;
 mod manifest;
+mod manifest_fields;
 mod ports;
 mod readme;
 mod recorder;
+mod rows;
+mod turns;
 
 use std::path::Path;
 
 use hwmodel::Overflow;
 
-pub use blocks::{Description, absence, describe};
+pub use blocks::describe;
+pub use description::{Description, absence};
 pub use folder::{FolderError, check_free};
 pub use ports::{Field, Ports};
 
@@ -28,7 +34,7 @@ use crate::whole::{self, WholeError};
 use recorder::Recorder;
 
 /// Version of the manifest and of what blocks there are.
-pub const SCHEMA: u32 = 4;
+pub const SCHEMA: u32 = 5;
 
 /// Rounds of inputs that are made for the blocks, beside those of the frame.
 const DIRECTED_ROUNDS: u32 = 200;
@@ -96,12 +102,13 @@ pub fn write(
             overflow: request.overflow,
             ..MachineOptions::default()
         });
-        let recorder = Recorder::new(folder, setup, request.records);
+        let recorder = Recorder::new(folder, setup, request.records)?;
         let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
         recorder.begin_directed();
         let recorder = machine.show_directed(graph, setup, recorder, DIRECTED_ROUNDS);
-        let recordings = recorder.finish()?;
-        let manifest = manifest::document(setup, request, &stats, &recordings);
+        let (recordings, turns) = recorder.finish()?;
+        let found = (&recordings[..], turns.as_ref());
+        let manifest = manifest::document(setup, request, graph.mask.len(), &stats, found);
         let text = serde_json::to_string_pretty(&manifest)? + "\n";
         whole::write(&folder.join(folder::MANIFEST), text.as_bytes(), false)?;
         let write =

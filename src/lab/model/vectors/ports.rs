@@ -2,6 +2,7 @@
 
 use hwmodel::{Format, SignalKind};
 
+use crate::machine::RecordNumber;
 use crate::project::CageKind;
 
 /// A word.
@@ -31,6 +32,26 @@ pub(super) fn is_of_frame(name: &str) -> bool {
     // `axis_x_c` to `axis_z_c` are relative to a record's place in the picture.
     OF_FRAME.iter().any(|of| name.starts_with(of))
         && !(name.starts_with("axis_") && name.ends_with("_c"))
+}
+
+/// The number of a record that an input is, by its name: the set-up may prove how many bits are enough for it.
+pub(super) fn number_of(name: &str) -> Option<RecordNumber> {
+    let (stem, rest) = name.split_once('_').unwrap_or((name, ""));
+    let is_edge = rest.starts_with("edge");
+    match stem {
+        "w" if rest == "min" => Some(RecordNumber::LeastW),
+        "w" => Some(match is_edge {
+            true => RecordNumber::EdgeW,
+            false => RecordNumber::ClipW,
+        }),
+        "x" if is_edge => Some(RecordNumber::EdgeXy),
+        "x" if rest != "c" && !rest.is_empty() => Some(RecordNumber::ClipXy),
+        "edge" if rest.starts_with("x_") => Some(RecordNumber::EdgeXy),
+        "edge" if rest.starts_with("w_") => Some(RecordNumber::EdgeW),
+        "min" => Some(RecordNumber::Lowest),
+        "max" => Some(RecordNumber::Highest),
+        _ => None,
+    }
 }
 
 /// A field of a row.

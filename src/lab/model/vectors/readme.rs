@@ -5,7 +5,8 @@ use std::fmt::Write;
 use hwmodel::Format;
 
 use super::ports::Ports;
-use super::recorder::{EXPECTED, Recording, STIMULUS, file_name};
+use super::recorder::Recording;
+use super::rows::{EXPECTED, STIMULUS, file_name};
 use crate::project::FrameSetup;
 
 /// The text, with a testbench for one of the blocks.
@@ -20,7 +21,10 @@ pub(super) fn text(format: Format, recordings: &[Recording]) -> String {
          \"lowest_bit\" is where a field begins: row[lowest_bit +: bits].\n\
          Every block is a function of its inputs and of the manifest's \"constants\"; it\n\
          keeps nothing from row to row. \"function\" says which; \"section\" where SPEC.md\n\
-         has it.\n",
+         has it.\n\
+         turns.ports.hex has whole turns: what crosses the ports to stack, fill vectors,\n\
+         nodes and pixels, in order; a pop begins a turn. Records stand in\n\
+         turns.records.hex.\n",
     );
     let with_rows = |r: &&Recording| r.rows > 0;
     let centre = recordings.iter().find(|r| r.description.name == "centre");

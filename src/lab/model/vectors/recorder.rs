@@ -1,70 +1,16 @@
 //! A probe that writes what crosses the borders of blocks, row by row.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
-use super::blocks::{Description, absence, describe};
-use super::folder::ROWS;
-use super::ports::Ports;
-use crate::machine::Block;
+use super::blocks::describe;
+use super::description::{Description, absence};
+use super::rows::{EXPECTED, Rows, STIMULUS, file_name, packed};
+use super::turns::Turns;
+use crate::machine::{Block, NumberSpan, Port};
 use crate::project::FrameSetup;
-use crate::whole::WholeError;
-
-/// A file of rows in the making.
-#[derive(Debug)]
-struct Rows {
-    path: PathBuf,
-    file: BufWriter<File>,
-}
-
-impl Rows {
-    fn create(path: PathBuf, format: Format, ports: &Ports) -> Result<Self, VectorsError> {
-        let made = File::create(&path).and_then(|file| {
-            let mut file = BufWriter::new(file);
-            head(&mut file, format, ports)?;
-            Ok(file)
-        });
-        match made {
-            Ok(file) => Ok(Self { path, file }),
-            Err(source) => Err(WholeError::Io { path, source }.into()),
-        }
-    }
-
-    fn write(&mut self, text: &str) -> Result<(), VectorsError> {
-        writeln!(self.file, "{text}").map_err(|source| self.failed(source))
-    }
-
-    fn failed(&self, source: io::Error) -> VectorsError {
-        VectorsError::from(WholeError::Io {
-            path: self.path.clone(),
-            source,
-        })
-    }
-}
-
-/// What `$readmemh` skips and people read: the fields, from the highest bit down.
-fn head(file: &mut impl Write, format: Format, ports: &Ports) -> io::Result<()> {
-    let bits = ports.bits(format);
-    writeln!(
-        file,
-        "// {bits} bits a row, from the most significant; bits, sign, name"
-    )?;
-    for (field, lowest) in ports.placed(format) {
-        let width = field.kind.bits(format);
-        let sign = if field.kind.is_signed() {
-            "signed"
-        } else {
-            "unsigned"
-        };
-        let highest = lowest + width - 1;
-        writeln!(file, "// [{highest}:{lowest}] {sign} {}", field.name)?;
-    }
-    Ok(())
-}
 
 /// A block's files and how many rows they have by now.
 #[derive(Debug)]
@@ -73,6 +19,8 @@ pub(super) struct Recording {
     pub(super) rows: u64,
     /// Of them, those that the frame's records brought.
     pub(super) frame_rows: u64,
+    /// Least and greatest values of inputs and outputs in those rows.
+    pub(super) seen: [Vec<NumberSpan>; 2],
     /// Whether the frame's rules have the block.
     is_there: bool,
     files: Option<(Rows, Rows)>,
@@ -85,6 +33,7 @@ pub(super) struct Recorder {
     format: Format,
     /// By the block's number.
     blocks: Vec<Recording>,
+    turns: Option<Turns>,
     records: u64,
     is_open: bool,
     is_directed: bool,
@@ -93,15 +42,21 @@ pub(super) struct Recorder {
 
 impl Recorder {
     /// Of the first `records` records of a frame, into a folder that is there.
-    pub(super) fn new(folder: &Path, setup: &FrameSetup, records: u64) -> Self {
+    pub(super) fn new(
+        folder: &Path,
+        setup: &FrameSetup,
+        records: u64,
+    ) -> Result<Self, VectorsError> {
         let recording = |&block: &Block| Recording {
             description: describe(block, setup),
             rows: 0,
             frame_rows: 0,
+            seen: Default::default(),
             is_there: absence(block, setup).is_none(),
             files: None,
         };
-        Self {
+        Ok(Self {
+            turns: Turns::create(folder, setup)?,
             folder: folder.to_owned(),
             format: setup.format,
             blocks: Block::ALL.iter().map(recording).collect(),
@@ -109,7 +64,7 @@ impl Recorder {
             is_open: true,
             is_directed: false,
             error: None,
-        }
+        })
     }
 
     /// The frame is drawn; what follows are inputs made for the blocks.
@@ -121,20 +76,21 @@ impl Recorder {
         self.is_directed = true;
     }
 
-    /// What was recorded, in the order of [`Block::ALL`], once all files are whole.
-    pub(super) fn finish(mut self) -> Result<Vec<Recording>, VectorsError> {
+    /// What was recorded, blocks in the order of [`Block::ALL`], once all files are whole.
+    pub(super) fn finish(mut self) -> Result<(Vec<Recording>, Option<Turns>), VectorsError> {
         if let Some(error) = self.error {
             return Err(error);
         }
         for recording in &mut self.blocks {
             if let Some((stimulus, expected)) = &mut recording.files {
-                for rows in [stimulus, expected] {
-                    let flushed = rows.file.flush();
-                    flushed.map_err(|source| rows.failed(source))?;
-                }
+                stimulus.finish()?;
+                expected.finish()?;
             }
         }
-        Ok(self.blocks)
+        if let Some(turns) = &mut self.turns {
+            turns.finish()?;
+        }
+        Ok((self.blocks, self.turns))
     }
 
     fn record_row(
@@ -144,7 +100,14 @@ impl Recorder {
         expected: &[Signal],
     ) -> Result<(), VectorsError> {
         let Some(recording) = self.blocks.get_mut(block as usize) else {
-            return Err(VectorsError::Unknown(block));
+            let port = Port::ALL.get(block as usize - self.blocks.len());
+            let (&port, &[address]) = port
+                .zip(stimulus.first_chunk())
+                .ok_or(VectorsError::Unknown(block))?;
+            return match &mut self.turns {
+                Some(turns) if !self.is_directed => turns.record(port, address, expected),
+                _ => Ok(()),
+            };
         };
         if self.is_directed && !recording.is_there {
             return Ok(());
@@ -171,54 +134,18 @@ impl Recorder {
         to_stimulus.write(&into)?;
         to_expected.write(&out)?;
         recording.rows += 1;
+        if !self.is_directed {
+            for (seen, signals) in recording.seen.iter_mut().zip([stimulus, expected]) {
+                let one = |signal: &Signal| NumberSpan::of(signal.value.into());
+                if seen.is_empty() {
+                    seen.extend(signals.iter().map(one));
+                }
+                for (seen, signal) in seen.iter_mut().zip(signals) {
+                    *seen = seen.with(one(signal));
+                }
+            }
+        }
         Ok(())
-    }
-}
-
-/// What files of inputs have in their names.
-pub(super) const STIMULUS: &str = "in";
-/// What files of outputs have.
-pub(super) const EXPECTED: &str = "out";
-
-/// The name of a file of rows.
-pub(super) fn file_name(block: &str, end: &str) -> String {
-    format!("{block}.{end}.{ROWS}")
-}
-
-/// Signals as hexadecimal digits, the first the most significant; `None` where
-/// they are not the ports', or do not fit their wires.
-fn packed(signals: &[Signal], ports: &Ports, format: Format) -> Option<String> {
-    if signals.len() != ports.fields().len() {
-        return None;
-    }
-    let mut digits = String::with_capacity(ports.digits(format) as usize);
-    // Fewer than four bits wait; with a word of 64 they fit 128.
-    let mut waiting = 0u128;
-    let mut held = ports.digits(format) * 4 - ports.bits(format);
-    for (signal, field) in signals.iter().zip(ports.fields()) {
-        let bits = signal.kind.bits(format);
-        if signal.kind != field.kind || !fits(signal.value, bits, signal.kind.is_signed()) {
-            return None;
-        }
-        let mask = u64::MAX >> (64 - bits);
-        waiting = waiting << bits | u128::from(signal.value as u64 & mask);
-        held += bits;
-        while held >= 4 {
-            held -= 4;
-            let digit = (waiting >> held) as u32 & 0xf;
-            digits.push(char::from_digit(digit, 16)?);
-        }
-        waiting &= (1 << held) - 1;
-    }
-    Some(digits)
-}
-
-fn fits(value: i64, bits: u32, is_signed: bool) -> bool {
-    let spare = 64 - bits;
-    if is_signed {
-        (value << spare) >> spare == value
-    } else {
-        value >= 0 && (value as u64) << spare >> spare == value as u64
     }
 }
 
@@ -238,39 +165,5 @@ impl Probe for Recorder {
             self.error = Some(error);
             self.is_open = false;
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use hwmodel::SignalKind;
-
-    use super::super::ports::{BIT, WORD};
-    use super::*;
-    use crate::project::CageKind;
-
-    #[test]
-    fn fields_are_packed_from_the_top() {
-        let format = Format::new(18, 4).unwrap();
-        let ports = Ports::new(CageKind::Frame)
-            .one("bit", BIT, "")
-            .one("word", WORD, "")
-            .one("short", SignalKind::Signed(3), "");
-        let row = |values: [i64; 3]| {
-            let kinds = [BIT, WORD, SignalKind::Signed(3)];
-            let signals: Vec<Signal> = kinds
-                .into_iter()
-                .zip(values)
-                .map(|(kind, value)| Signal { kind, value })
-                .collect();
-            packed(&signals, &ports, format)
-        };
-        // 22 bits: two of padding, 1, 18 ones less the last, 101.
-        assert_eq!(row([1, -2, -3]).as_deref(), Some("3ffff5"));
-        assert_eq!(row([0, 1, 3]).as_deref(), Some("00000b"));
-        assert_eq!(row([2, 1, 3]), None);
-        assert_eq!(row([1, 1 << 17, 3]), None);
-        assert_eq!(row([1, 0, 4]), None);
-        assert_eq!(packed(&[], &ports, format), None);
     }
 }

@@ -1,0 +1,343 @@
+//! How good the rows are: the faults that they tell.
+
+use std::collections::BTreeSet;
+
+use hwmodel::Overflow;
+use shiftvox::lab::model::vectors::{self, Request};
+use shiftvox::project::{CageKind, Coverage};
+
+use super::replay::replay;
+use super::rows::{BlockRows, Constants, Row, rows_of};
+use super::{options, scenes};
+use crate::common::setup;
+
+/// A number with one of its bits stuck.
+fn stuck(value: i128, bit: u32, at_one: bool, bits: u32, signed: bool) -> i128 {
+    let changed = if at_one {
+        value | 1 << bit
+    } else {
+        value & !(1 << bit)
+    };
+    let spare = 128 - bits;
+    match signed {
+        true => changed << spare >> spare,
+        false => changed & ((1 << bits) - 1),
+    }
+}
+
+/// Whether a block has a result for a row: quotients of a divide have four integer bits, and some side has a share.
+fn takes(block: &str, row: &Row) -> bool {
+    match block {
+        "to_screen_divide" => {
+            let (x, w) = (row.get("x"), row.get("w"));
+            w > 0 && -4 * w <= x && x < 12 * w
+        }
+        "blend_counts" => row.axes("share") != [0; 3],
+        _ => true,
+    }
+}
+
+/// Bits of a field that are wires: of an unsigned one not those above all its values.
+fn wires(rows: &[Row], at: usize, bits: u32, is_signed: bool) -> u32 {
+    let values = rows.iter().map(|row| row.values[at]);
+    match is_signed {
+        true => bits,
+        false => 128 - values.max().unwrap_or(0).leading_zeros(),
+    }
+}
+
+/// Mutants of a block whose inputs or outputs have a bit stuck at 0 or at 1: how many there are, and which
+/// the rows do not tell from the block.
+fn stuck_mutants(block: &BlockRows, constants: &Constants) -> (usize, Vec<String>) {
+    let (mut all, mut alive) = (0, Vec::new());
+    for (at, (name, bits, signed)) in block.inputs.iter().enumerate() {
+        let used = wires(&block.stimulus, at, *bits, *signed);
+        for bit in 0..used {
+            for at_one in [false, true] {
+                all += 1;
+                let is_killed = block
+                    .stimulus
+                    .iter()
+                    .zip(&block.expected)
+                    .any(|(row, right)| {
+                        let value = stuck(row.values[at], bit, at_one, *bits, *signed);
+                        if value == row.values[at] {
+                            return false;
+                        }
+                        let mut values = row.values.clone();
+                        values[at] = value;
+                        let row = Row {
+                            names: row.names.clone(),
+                            values,
+                        };
+                        // An input that the block's rule does not take is found out, too.
+                        !takes(&block.name, &row)
+                            || replay(&block.name, &row, constants) != right.values
+                    });
+                if !is_killed {
+                    alive.push(format!(
+                        "{}: {name}[{bit}] stuck at {}",
+                        block.name,
+                        u8::from(at_one)
+                    ));
+                }
+            }
+        }
+    }
+    for (at, (name, bits, signed)) in block.outputs.iter().enumerate() {
+        let used = wires(&block.expected, at, *bits, *signed);
+        for bit in 0..used {
+            for at_one in [false, true] {
+                all += 1;
+                let shows = |row: &Row| {
+                    stuck(row.values[at], bit, at_one, *bits, *signed) != row.values[at]
+                };
+                if !block.expected.iter().any(shows) {
+                    alive.push(format!(
+                        "{}: {name}[{bit}] stuck at {}",
+                        block.name,
+                        u8::from(at_one)
+                    ));
+                }
+            }
+        }
+    }
+    (all, alive)
+}
+
+/// What somebody who builds a block may get wrong: the block, the fault in words, and what it gives then.
+type Fault = (
+    &'static str,
+    &'static str,
+    fn(&Row, &[i128], u32) -> Vec<i128>,
+);
+
+/// Word of `bits`: what is above it is lost.
+fn wrapped(value: i128, bits: u32) -> i128 {
+    value << (128 - bits) >> (128 - bits)
+}
+
+/// Faults, given a row, what is right, and the bits of a word.
+const FAULTS: [Fault; 26] = [
+    ("filled", "any bit will do", |row, _, _| {
+        vec![i128::from(row.get("vector") != 0)]
+    }),
+    ("centre", "midpoints without the carry", |row, _, bits| {
+        let (min, max) = (row.axes("min"), row.axes("max"));
+        (0..3)
+            .map(|k| wrapped(min[k] + max[k], bits) >> 1)
+            .collect()
+    }),
+    ("centre", "midpoints towards zero", |row, _, _| {
+        let (min, max) = (row.axes("min"), row.axes("max"));
+        (0..3).map(|k| (min[k] + max[k]) / 2).collect()
+    }),
+    ("octant_order", "<= for <", |row, _, _| {
+        let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+        let octant: i128 = (0..3)
+            .map(|k| i128::from(centre[k] >= eye[k]) << (2 - k))
+            .sum();
+        let order = [7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest);
+        std::iter::once(octant).chain(order).collect()
+    }),
+    ("octant_order", "comparison without sign", |row, _, bits| {
+        let plain = |value: i128| value & ((1 << bits) - 1);
+        let (centre, eye) = (row.axes("centre"), row.axes("eye_floor"));
+        let above = |k: usize| i128::from(plain(centre[k]) > plain(eye[k])) << (2 - k);
+        let octant: i128 = (0..3).map(above).sum();
+        let order = [7, 6, 5, 3, 4, 2, 1, 0].map(|nearest| octant ^ nearest);
+        std::iter::once(octant).chain(order).collect()
+    }),
+    ("detail_depth", "< for <=", |row, _, _| {
+        vec![i128::from(row.get("w_min") > row.get("least"))]
+    }),
+    ("child_corners", "upper and lower exchanged", |row, _, _| {
+        let (min, max, centre) = (row.axes("min"), row.axes("max"), row.axes("centre"));
+        let upper = |k: usize| row.get("octant") >> k & 1 == 1;
+        let low = (0..3).map(|k| if upper(k) { centre[k] } else { min[k] });
+        let high = (0..3).map(|k| if upper(k) { max[k] } else { centre[k] });
+        low.chain(high).collect()
+    }),
+    ("near_node", "< for <= at the left", |row, _, _| {
+        let (x, w) = (row.cage("x"), row.cage("w"));
+        vec![i128::from(
+            x.with(1, &w, 1).least() > 0 && x.with(1, &w, -2).greatest() <= 0,
+        )]
+    }),
+    ("margin_gap", "margins towards zero", |row, _, _| {
+        let below = row.get("below");
+        row.cage("w").each(|w| -(w / (1 << below))).0
+    }),
+    ("plane_quadrant", "not doubled", |row, _, _| {
+        let [a, b, c] = row.plane("plane");
+        let quadrant = row.get("quadrant");
+        vec![c + (quadrant & 1) * a + (quadrant >> 1) * b]
+    }),
+    (
+        "plane_quadrant",
+        "columns and rows exchanged",
+        |row, _, _| {
+            let [a, b, c] = row.plane("plane");
+            let quadrant = row.get("quadrant");
+            vec![2 * c + (quadrant >> 1) * a + (quadrant & 1) * b]
+        },
+    ),
+    ("plane_side", "ties not broken", |row, right, _| {
+        let [a, b, c] = row.plane("plane");
+        match row.flag("sample") && 2 * c + a + b == 0 {
+            true => vec![3],
+            false => right.to_vec(),
+        }
+    }),
+    (
+        "plane_side",
+        "ties broken by b before a",
+        |row, right, _| {
+            let [a, b, c] = row.plane("plane");
+            match row.flag("sample") && right[0] != 3 && 2 * c + a + b == 0 && b != 0 {
+                true => vec![if b > 0 { 1 } else { 2 }],
+                false => right.to_vec(),
+            }
+        },
+    ),
+    ("cube_front", "< for <= above", |row, right, _| {
+        let (max, floor) = (row.axes("max"), row.axes("eye_floor"));
+        match (0..3).any(|k| max[k] == floor[k]) {
+            true => vec![0, 0, 0],
+            false => right.to_vec(),
+        }
+    }),
+    ("fill_update", "bits replaced, not added", |row, _, _| {
+        vec![row.get("bits"), i128::from(row.get("bits") == 15)]
+    }),
+    (
+        "node_choice",
+        "full quadrants not left out",
+        |row, right, _| vec![i128::from(row.get("overlapped") == 0), right[1], right[2]],
+    ),
+    ("size_clip", "< for <=", |row, right, _| {
+        let (x, w) = (row.axes("edge_x"), row.axes("edge_w"));
+        let size: i128 = (0..3).map(|k| x[k].abs().max((x[k] - w[k]).abs())).sum();
+        match size == row.get("most") {
+            true => vec![0],
+            false => right.to_vec(),
+        }
+    }),
+    ("blend_way", "the sum without its carry", |row, _, bits| {
+        let centre = wrapped(row.get("min") + row.get("max"), bits) >> 1;
+        vec![((centre >> row.get("shift")) - row.get("eye")).abs()]
+    }),
+    ("blend_way", "halves towards zero", |row, _, _| {
+        let centre = (row.get("min") + row.get("max")) / 2;
+        vec![((centre >> row.get("shift")) - row.get("eye")).abs()]
+    }),
+    ("blend_shares", "rounded down", |row, right, _| {
+        let way = row.axes("way");
+        let all = way.iter().sum::<i128>().max(1);
+        let x = 16 * way[0] / all;
+        let y = (16 * way[1] / all).min(16 - x);
+        [&[x, y, 16 - x - y], &right[3..]].concat()
+    }),
+    ("blend_shares", "the second not limited", |row, right, _| {
+        let way = row.axes("way");
+        let all = way.iter().sum::<i128>().max(1);
+        let y = (32 * way[1] + all) / (2 * all);
+        [&[right[0], y, 16 - right[0] - y], &right[3..]].concat()
+    }),
+    ("blend_counts", "the root rounded down", |row, _, _| {
+        let squares = row.axes("share").map(|share| share * share);
+        let length = squares.iter().sum::<i128>().isqrt();
+        squares
+            .map(|square| (2 * square + length) / (2 * length))
+            .to_vec()
+    }),
+    ("blend_counts", "quotients rounded down", |row, _, _| {
+        let squares = row.axes("share").map(|share| share * share);
+        let length = (squares.iter().sum::<i128>() as f64).sqrt().round() as i128;
+        squares.map(|square| square / length).to_vec()
+    }),
+    (
+        "blend_weight",
+        "7 counts for 8 sixteenths",
+        |row, right, _| {
+            if right[0] == 256 {
+                return right.to_vec();
+            }
+            let (high, count) = (row.axes("high"), row.axes("count"));
+            let of = |k: usize| {
+                let side = ["low", "high"][high[k] as usize];
+                let opacity = row.get(&format!("opacity_{}_{side}", ["x", "y", "z"][k]));
+                (opacity + i128::from(opacity >= 7)) * count[k]
+            };
+            vec![(0..3).map(of).sum()]
+        },
+    ),
+    ("blend_sample", "< for <=", |row, right, _| {
+        let (left, weight) = (row.get("left"), row.get("weight"));
+        let share = (left * weight + 128) >> 8;
+        match left - share == 64 {
+            true => [&[64], &right[1..4], &[right[4], 0]].concat(),
+            false => right.to_vec(),
+        }
+    }),
+    ("blend_sample", "shares rounded down", |row, right, _| {
+        let (left, weight) = (row.get("left"), row.get("weight"));
+        let share = (left * weight) >> 8;
+        match left - share <= 64 {
+            true => right.to_vec(),
+            false => [&[left - share], &right[1..]].concat(),
+        }
+    }),
+];
+
+/// The rows of three frames tell nearly every block from its mutants, and every named fault from the block.
+#[test]
+fn rows_tell_blocks_from_their_mutants() {
+    let (_, graph, camera) = scenes().swap_remove(0);
+    let (mut all, mut alive) = (0, Vec::new());
+    let mut killed = BTreeSet::new();
+    for coverage in [Coverage::Exact, Coverage::Center, Coverage::Alpha] {
+        let shelter = tempfile::tempdir().unwrap();
+        let folder = shelter.path().join("vectors");
+        let request = Request {
+            scene: "a test",
+            records: 100,
+            overflow: Overflow::Trap,
+            folder: &folder,
+            overwrite: false,
+        };
+        let options = options(coverage, CageKind::Frame, 0.125, 32);
+        vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+        let (blocks, constants) = rows_of(&folder);
+        for block in &blocks {
+            let (mutants, left) = stuck_mutants(block, &constants);
+            all += mutants;
+            alive.extend(left);
+            for (at, (name, _, fault)) in FAULTS.iter().enumerate() {
+                let mut rows = block.stimulus.iter().zip(&block.expected);
+                let tells =
+                    |(row, right): (&Row, &Row)| fault(row, &right.values, 32) != right.values;
+                if block.name == *name && rows.any(tells) {
+                    killed.insert(at);
+                }
+            }
+        }
+    }
+    for line in &alive {
+        eprintln!("alive: {line}");
+    }
+    let score = 100.0 * (all - alive.len()) as f64 / all as f64;
+    eprintln!(
+        "{} of {all} stuck bits found: {score:.1} %",
+        all - alive.len()
+    );
+    let missed = FAULTS
+        .iter()
+        .enumerate()
+        .filter(|(at, _)| !killed.contains(at));
+    let missed: Vec<_> = missed
+        .map(|(_, (block, fault, _))| format!("{block}: {fault}"))
+        .collect();
+    assert!(missed.is_empty(), "not found: {missed:?}");
+    assert!(score >= 95.0, "{score}");
+}
