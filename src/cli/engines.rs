@@ -15,7 +15,7 @@ use crate::project::{Coverage, Engine, EngineError, FrameSetup};
 use crate::rays::Rays;
 
 /// What makes the engine that the flags name, as often as one is needed.
-pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine>>;
+pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
 /// Makers of the engines of voxels.
 ///

@@ -17,7 +17,7 @@ use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
 use crate::lab::error::{
-    self as experiment, DrawingMethod, ErrorPlan, PixelStyle, SceneErrors, VoxelMethod,
+    self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, voxel_method,
 };
 use crate::project::{Coverage, SetupOptions};
 use crate::report::html::Page;
@@ -134,8 +134,7 @@ pub(super) fn run(
             references = experiment::References::of_triangles(&mesh.mesh);
         }
         let progress = console.progress();
-        let measured =
-            experiment::measure(&subject, &mut methods, &plan, &mut references, progress)?;
+        let measured = experiment::measure(&subject, &methods, &plan, &mut references, progress)?;
         scenes.push(measured);
     }
     write(args, &scenes, &context, plan.schedule, console)
@@ -162,22 +161,17 @@ fn methods<'s>(
     options: &[SetupOptions],
     subject: &'s Subject,
     style: PixelStyle,
-) -> Vec<Box<dyn DrawingMethod + 's>> {
+) -> Vec<Method<'s>> {
     let asked = |name: &str| match select.engines.as_slice() {
         [] => name == engines::FAST.name,
         given => given.iter().any(|given| given == name),
     };
     let chosen = engines::CANDIDATES.iter().filter(|c| asked(c.name));
-    let mut methods: Vec<Box<dyn DrawingMethod + 's>> = Vec::new();
+    let mut methods: Vec<Method<'s>> = Vec::new();
     for engine in chosen {
         for &options in options {
             let engine = (engine.name, engine.make);
-            methods.push(Box::new(VoxelMethod::new(
-                &subject.graph,
-                engine,
-                options,
-                style,
-            )));
+            methods.push(voxel_method(&subject.graph, engine, options, style));
         }
     }
     methods

@@ -13,7 +13,7 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{DrawingMethod, PixelStyle, References, VoxelMethod};
+use crate::lab::error::{PixelStyle, References, voxel_method};
 use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{Coverage, SetupOptions};
 use crate::report::html::Page;
@@ -130,14 +130,7 @@ pub(super) fn run(
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
-        let method = |options| -> Box<dyn DrawingMethod + '_> {
-            Box::new(VoxelMethod::new(
-                &subject.graph,
-                engine,
-                options,
-                plan.style,
-            ))
-        };
+        let method = |options| voxel_method(&subject.graph, engine, options, plan.style);
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
             let blends = !subject.graph.opacity.is_empty();
@@ -155,7 +148,7 @@ pub(super) fn run(
             films.push(experiment::film(
                 &subject,
                 motion,
-                &mut methods,
+                &methods,
                 &plan,
                 &mut references,
                 console.progress(),

@@ -15,8 +15,8 @@ use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{DrawingMethod, PixelStyle};
-use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
+use crate::lab::error::{Method, PixelStyle};
+use crate::lab::methods::{self, FarSettings};
 use crate::mesh::Mesh;
 
 /// Samples a pixel that triangles are drawn with.
@@ -115,12 +115,12 @@ impl MeshMethodArgs {
         &self,
         scene: &'m MeshScene,
         style: PixelStyle,
-    ) -> Result<Vec<Box<dyn DrawingMethod + 'm>>, CliError> {
-        let mut methods: Vec<Box<dyn DrawingMethod + 'm>> = Vec::new();
+    ) -> Result<Vec<Method<'m>>, CliError> {
+        let mut all: Vec<Method<'m>> = Vec::new();
         if self.has(FamilyName::Triangles) {
             for samples in TRIANGLE_SAMPLES {
-                let method = TrianglesMethod::new(&scene.mesh, samples, style);
-                methods.push(Box::new(method.map_err(|e| CliError::new(Kind::Run, e))?));
+                let method = methods::triangles(&scene.mesh, samples, style);
+                all.push(method.map_err(|e| CliError::new(Kind::Run, e))?);
             }
         }
         for (label, file) in &scene.files {
@@ -131,21 +131,17 @@ impl MeshMethodArgs {
                 &[Opacity::Six]
             };
             for &voxel_px in &self.far_lods {
-                methods.extend(
-                    opacities
-                        .iter()
-                        .map(|&opacity| -> Box<dyn DrawingMethod + 'm> {
-                            let settings = FarSettings {
-                                file: (*label).to_owned(),
-                                opacity,
-                                voxel_px,
-                            };
-                            Box::new(FarMethod::new(file, settings, style))
-                        }),
-                );
+                all.extend(opacities.iter().map(|&opacity| {
+                    let settings = FarSettings {
+                        file: (*label).to_owned(),
+                        opacity,
+                        voxel_px,
+                    };
+                    methods::far(file, settings, style)
+                }));
             }
         }
-        Ok(methods)
+        Ok(all)
     }
 }
 

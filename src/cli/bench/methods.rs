@@ -16,22 +16,20 @@ use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::{engines, report, scenes};
-use crate::drawing::milliseconds_since;
+use crate::drawing::{Erosion, milliseconds_since};
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
-use crate::lab::error::{DrawingMethod, PixelStyle, Refused, VoxelMethod};
+use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
-    TexturedMethod, TrianglesMethod,
+    self as experiment, Distance, Facts, FarSettings, MeshMethods, MethodsPlan,
 };
 use crate::mesh::{Mesh, Surface, mesh_box};
 use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
 use crate::report::plot::Panel;
-use crate::textured::view::Detail;
 use crate::textured::{self, TexturedFile};
 
 /// Pixels a side where nothing is said.
@@ -195,20 +193,20 @@ fn textured_of(
 }
 
 /// A method, and what is known of it.
-type Candidate<'m> = (Facts, Box<dyn DrawingMethod + 'm>);
+type Candidate<'m> = (Facts, Method<'m>);
 
 fn candidate<'m>(
     label: impl Into<String>,
     bytes: u64,
     build_ms: f64,
-    method: impl DrawingMethod + 'm,
+    method: Method<'m>,
 ) -> Candidate<'m> {
     let facts = Facts {
         label: label.into(),
         bytes,
         build_ms,
     };
-    (facts, Box::new(method))
+    (facts, method)
 }
 
 /// All methods that take part. Another one joins here.
@@ -221,7 +219,7 @@ fn methods<'m>(
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
         for samples in TRIANGLE_SAMPLES {
-            let method = TrianglesMethod::new(mesh, samples, style)?;
+            let method = experiment::triangles(mesh, samples, style)?;
             let label = format!("triangles, {samples}");
             all.push(candidate(label, mesh.bytes(), 0.0, method));
         }
@@ -246,7 +244,7 @@ fn methods<'m>(
                 _ => opaque,
             };
             let engine = (engines::FAST.name, engines::FAST.make);
-            let method = VoxelMethod::new(graph, engine, options, style);
+            let method = voxel_method(graph, engine, options, style);
             all.push(candidate(label, graph.bytes(), *ms, method));
         }
     }
@@ -261,19 +259,23 @@ fn methods<'m>(
                 opacity,
                 ..FarSettings::default()
             };
-            let method = FarMethod::new(file, settings, style);
+            let method = experiment::far(file, settings, style);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
     if let Some([(paper, paper_ms), (file, ms)]) = &made.textured {
         for level in 0..2 {
-            let method = TexturedMethod::new(paper, Detail::Level { grid: 0, level }, 1, style)?;
+            let erosion = Erosion::Level {
+                level,
+                cells: Some(paper.grid(0).cell_grid().cells()),
+            };
+            let method = experiment::textured(paper, erosion, 0, style);
             let label = format!("textured 16, eroded {level}");
             all.push(candidate(label, paper.len(), *paper_ms, method));
         }
-        for samples in [1, 4] {
-            let detail = Detail::Auto { texel_px: 1.0 };
-            let method = TexturedMethod::new(file, detail, samples, style)?;
+        for (aa_log2, samples) in [(0, 1), (1, 4)] {
+            let erosion = Erosion::Auto { texel_px: 1.0 };
+            let method = experiment::textured(file, erosion, aa_log2, style);
             let label = format!("textured auto, {samples}");
             all.push(candidate(label, file.len(), *ms, method));
         }
@@ -293,7 +295,7 @@ fn measure(
     let camera = args.camera.camera(&bounds, up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
     let all = methods(args, &mesh, &made, plan.style).map_err(|e| CliError::new(Kind::Run, e))?;
-    let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let (facts, methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let surface: &dyn Surface = &mesh;
     let progress = console.progress();
     let short = Path::new(name).file_stem().map(|s| s.to_string_lossy());
@@ -301,7 +303,7 @@ fn measure(
     Ok(experiment::measure(
         (short, surface),
         &camera,
-        &mut methods,
+        &methods,
         facts,
         plan,
         progress,
