@@ -154,15 +154,6 @@ pub(super) const FAMILIES: &[Family] = &[
     },
 ];
 
-/// The machine without occlusion order, and without the rejection that it
-/// allows: so many of these two.
-pub(super) fn order_family(variants: usize) -> Family {
-    Family {
-        whole: MACHINE,
-        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
-    }
-}
-
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",

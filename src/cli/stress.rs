@@ -66,9 +66,6 @@ pub(super) fn run(
     let seconds = started.elapsed().as_secs_f64();
     let results = Results {
         document: document(&plan, &findings, &context),
-        rows: rows(&plan, &findings),
-        more_tables: Vec::new(),
-        preface: format!("`{}`\n", context.command_line()),
         tables: tables(&plan, &findings),
         panels: panels(&plan, &findings),
     };

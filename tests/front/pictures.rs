@@ -55,16 +55,10 @@ fn errors_in_every_form() {
         "--json",
         "--export-json",
         "r.json",
-        "--export-csv",
-        "r.csv",
-        "--export-markdown",
-        "r.md",
         "--export-svg",
         "r-{scene}.svg",
         "--export-html",
         "r.html",
-        "--strips",
-        "strips",
     ];
     let line = error_line("gen:menger,depth=2", &more);
     let document = document(&bench(folder.path(), &line).success());
@@ -107,23 +101,13 @@ fn errors_in_every_form() {
         serde_json::from_str::<Value>(&file("r.json")).unwrap(),
         document
     );
-    let csv = file("r.csv");
-    assert_eq!(csv.lines().count(), 1 + rows.len());
-    assert!(csv.starts_with("scene,size,method,family,coverage,tolerance,cage,bits,"));
-    assert!(file("r.md").contains("noise floor"));
     let svg = file("r-menger-depth-2.svg");
     assert!(svg.contains("dominated") && svg.contains("operations of the machine"));
     assert!(file("r.html").contains("<svg"));
-    let strips = fs::read_dir(folder.path().join("strips")).unwrap();
-    for strip in strips.map(|entry| entry.unwrap().path()) {
-        let png = fs::read(&strip).unwrap();
-        // Width in the header: three pictures and two gaps.
-        assert_eq!(png[16..20], (3 * 24 + 2 * 4u32).to_be_bytes(), "{strip:?}");
-    }
 
     // Nothing is replaced, and that is said before the work.
     for export in [
-        "--export-csv=r.csv",
+        "--export-json=r.json",
         "--export-html=r.html",
         "--export-svg=r-{scene}.svg",
     ] {
@@ -180,8 +164,6 @@ fn films_are_restless_and_more_samples_calm_them() {
         "--reference-samples",
         "4",
         "--json",
-        "--export-csv",
-        "f.csv",
         "--export-svg",
         "f.svg",
         "--export-html",
@@ -210,7 +192,6 @@ fn films_are_restless_and_more_samples_calm_them() {
         assert!(one["pop"].as_f64().unwrap() >= 0.0);
     }
     let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    assert_eq!(file("f.csv").lines().count(), 1 + 2 * 10);
     assert!(file("f.svg").contains("turntable") && file("f.html").contains("pop"));
 }
 
@@ -224,7 +205,7 @@ fn wrong_lines_exit_with_2_or_5() {
         &["error", scene, "--coverages", "most"],
         &["error", scene, "--engines", "rays"],
         &["error", scene, "--reference-samples", "5"],
-        &["error", scene, "--export-html", "a", "--export-csv", "a"],
+        &["error", scene, "--export-html", "a", "--export-json", "a"],
         &["flicker", scene, "--frames", "1"],
         &["flicker", scene, "--motions", "fly"],
     ];

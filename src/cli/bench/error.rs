@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::args::check_sizes;
 use super::meshes::MeshMethodArgs;
-use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
+use super::picture_export::{self as pictures, PagesArgs};
 use super::select::SelectArgs;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
@@ -68,8 +68,6 @@ pub(super) struct ErrorArgs {
     export: ExportArgs,
     #[command(flatten)]
     page: PagesArgs,
-    #[command(flatten)]
-    strips: StripsArgs,
 }
 
 /// How references are sampled.
@@ -207,20 +205,13 @@ fn write(
         .iter()
         .map(|scene| (scene.scene.clone(), experiment::panels(scene)))
         .collect();
-    if let Some(folder) = &args.strips.strips {
-        write_strips(folder, scenes, args.export.force)?;
-        console.note(format!("{}: strips written", folder.display()));
-    }
     pictures::write_plots(&args.export, &panels, console)?;
     let preface = context.markdown(schedule);
     let page = || page(scenes, &preface);
     pictures::write_page(&args.page, &args.export, page, console)?;
     let results = Results {
-        more_tables: Vec::new(),
         document: report::document("bench error", fields),
-        rows: experiment::rows(scenes),
         tables,
-        preface: preface.clone(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)
@@ -234,21 +225,6 @@ fn worth_a_look(scene: &SceneErrors) -> impl Iterator<Item = (&str, &[[u8; 4]])>
         !picture.is_empty() && (beaten_by.is_none() || is_shown(&row.method))
     })
     .map(|((row, picture), _)| (row.method.as_str(), picture.as_slice()))
-}
-
-fn write_strips(
-    folder: &std::path::Path,
-    scenes: &[SceneErrors],
-    force: bool,
-) -> Result<(), CliError> {
-    for scene in scenes {
-        let size = (scene.width, scene.height);
-        for (method, picture) in worth_a_look(scene) {
-            let png = pictures::strip(size, picture, &scene.reference.rgba)?;
-            pictures::write_strip(folder, &scene.scene, method, &png, force)?;
-        }
-    }
-    Ok(())
 }
 
 fn page(scenes: &[SceneErrors], preface: &str) -> Result<Page, CliError> {

@@ -184,14 +184,10 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
         Ok(page)
     };
     pictures::write_page(&args.page, &args.export, page, console)?;
-    let rows = experiment::table(films);
     let tables = by_scene.iter().map(|films| experiment::table(films));
     let results = Results {
-        more_tables: Vec::new(),
         document: report::document("bench flicker", json!({ "films": films })),
         tables: tables.collect(),
-        rows,
-        preface: "The same in every run.\n".to_owned(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)

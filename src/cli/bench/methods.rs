@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::error::reference_size;
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
-use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
+use super::picture_export::{self as pictures, PagesArgs};
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
@@ -89,8 +89,6 @@ pub(super) struct MethodsArgs {
     export: ExportArgs,
     #[command(flatten)]
     page: PagesArgs,
-    #[command(flatten)]
-    strips: StripsArgs,
 }
 
 pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError> {
@@ -322,14 +320,6 @@ fn write(
         .map(|mesh| (mesh.mesh.clone(), experiment::panels(mesh)))
         .collect();
     pictures::write_plots(&args.export, &panels, console)?;
-    if let Some(folder) = &args.strips.strips {
-        for (mesh, distance) in all(meshes) {
-            let scene = format!("{}-{}", mesh.mesh, distance.size.1);
-            let png = strip(distance)?;
-            pictures::write_strip(folder, &scene, "all methods", &png, args.export.force)?;
-        }
-        console.note(format!("{}: strips written", folder.display()));
-    }
     let preface = context.markdown(schedule);
     let page = || page(meshes, &panels, &preface);
     pictures::write_page(&args.page, &args.export, page, console)?;
@@ -338,10 +328,7 @@ fn write(
     let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));
     let results = Results {
         document: report::document("bench methods", fields),
-        rows: experiment::rows(meshes),
         tables: tables.collect(),
-        more_tables: Vec::new(),
-        preface: preface.clone(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)
@@ -370,13 +357,6 @@ fn enlarged(distance: &Distance) -> impl Iterator<Item = (usize, Vec<[u8; 4]>)> 
         let pixel = |at: usize| picture.get(at).copied().unwrap_or([255; 4]);
         (width * factor, pixels.map(pixel).collect())
     })
-}
-
-/// All pictures of a distance side by side.
-fn strip(distance: &Distance) -> Result<Vec<u8>, CliError> {
-    let pictures: Vec<(usize, Vec<[u8; 4]>)> = enlarged(distance).collect();
-    let shown = pictures.iter().map(|(_, picture)| picture.as_slice());
-    pictures::side_by_side(pictures[0].0, shown)
 }
 
 fn encode(width: usize, height: usize, pixels: &[[u8; 4]]) -> Result<Vec<u8>, CliError> {

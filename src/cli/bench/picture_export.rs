@@ -24,15 +24,6 @@ pub(super) struct PagesArgs {
     pub(super) export_html: Option<PathBuf>,
 }
 
-/// Pictures beside the files of every experiment.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Output")]
-pub(super) struct StripsArgs {
-    /// Folder for strips of pictures: result, reference, and difference four times as bright
-    #[arg(long, value_name = "DIR")]
-    pub(super) strips: Option<PathBuf>,
-}
-
 /// What stands for a scene in the name of a file of plots.
 const SCENE_FIELD: &str = "{scene}";
 
@@ -44,12 +35,7 @@ pub(super) fn check(
 ) -> Result<(), CliError> {
     if let Some(path) = &args.export_html {
         whole::check_free(path, export.force)?;
-        let others = [
-            &export.export_json,
-            &export.export_csv,
-            &export.export_markdown,
-            &export.export_svg,
-        ];
+        let others = [&export.export_json, &export.export_svg];
         if others.into_iter().flatten().any(|other| other == path) {
             let message = format!("{}: two exports to one file", path.display());
             return Err(CliError::usage(message));
@@ -154,17 +140,4 @@ pub(super) fn side_by_side<'p>(
     }
     let across = strip.len() / height.max(1);
     png::encode(across as u32, height as u32, &strip).map_err(|e| CliError::new(Kind::Run, e))
-}
-
-/// Writes a strip into the folder of `--strips`.
-pub(super) fn write_strip(
-    folder: &Path,
-    scene: &str,
-    method: &str,
-    png: &[u8],
-    force: bool,
-) -> Result<(), CliError> {
-    let name = format!("{}--{}.png", file_stem(scene), file_stem(method));
-    whole::write(&folder.join(name), png, force)?;
-    Ok(())
 }

@@ -18,4 +18,4 @@ pub use families::{FarSettings, far, opacity_in_words, textured, triangles};
 pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
 #[cfg(feature = "cli")]
 pub use plots::panels;
-pub use tables::{rows, table};
+pub use tables::table;
