@@ -223,17 +223,8 @@ fn a_dolly_shows_where_levels_change() {
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet_of(48)).unwrap();
     // From one percent nearer to the next, to half the distance.
-    let film = [
-        "bench",
-        "flicker",
-        "sheet.obj",
-        "--families",
-        "far",
-        "--motions",
-        "dolly",
-        "--depth",
-        "3",
-    ];
+    let film = "bench flicker sheet.obj --families far --motions dolly --depth 3";
+    let film: Vec<&str> = film.split(' ').collect();
     let settings = "--frames 70 --size 24 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
         --far-lods 1 --json"
         .split(' ');
@@ -263,14 +254,8 @@ fn what_is_wrong_is_said_with_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let convert = [
-        "convert",
-        "sheet.obj",
-        "a.far",
-        "--leaf-triangles",
-        "100",
-        "-q",
-    ];
+    let convert = "convert sheet.obj a.far --leaf-triangles 100 -q";
+    let convert: Vec<&str> = convert.split(' ').collect();
     shiftvox(at).args(convert).assert().success();
     let sound = fs::read(at.join("a.far")).unwrap();
     let mut version = sound.clone();

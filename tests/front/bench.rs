@@ -1,59 +1,19 @@
 //! The timed experiments as a script meets them: tables, exports, exit codes.
 
 use std::fs;
-use std::path::Path;
 
-use assert_cmd::Command;
 use serde_json::Value;
 
+use crate::program::{bench, folder, json_of, stderr_of, stdout_of};
+
 const SCENE: &str = "gen:menger,depth=2";
-
-fn bench(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder).arg("bench").args(line);
-    command.assert()
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn stdout_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
-}
-
-fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
-}
-
-fn json_of(assert: &assert_cmd::assert::Assert) -> Value {
-    serde_json::from_str(&stdout_of(assert)).unwrap()
-}
 
 #[test]
 fn engines_agree_and_are_told_in_every_form() {
     let folder = folder();
-    let line = [
-        "engines",
-        SCENE,
-        "--size",
-        "48x32",
-        "--lod",
-        "0",
-        "--tolerance",
-        "0",
-        "--warmup",
-        "0",
-        "--runs",
-        "3",
-        "--threads",
-        "1,2",
-        "--json",
-        "--export-json",
-        "a/r.json",
-        "--export-svg",
-        "a/r.svg",
-    ];
+    let line = "engines gen:menger,depth=2 --size 48x32 --lod 0 --tolerance 0 --warmup 0 --runs 3 \
+        --threads 1,2 --json --export-json a/r.json --export-svg a/r.svg";
+    let line: Vec<&str> = line.split(' ').collect();
     let document = json_of(&bench(folder.path(), &line).success());
     assert_eq!(document["schema"], "shiftvox.bench engines");
     assert_eq!(document["schema_version"], 1);
@@ -132,24 +92,9 @@ fn counters_do_not_depend_on_the_run() {
 #[test]
 fn scaling_scans_and_fits() {
     let folder = folder();
-    let line = [
-        "scaling",
-        SCENE,
-        "--scan",
-        "size=16..64*2",
-        "--size",
-        "32",
-        "--max-voxels",
-        "2e4",
-        "--runs",
-        "1",
-        "--engines",
-        "machine,float-rays",
-        "--export-svg",
-        "r.svg",
-        "--export-json",
-        "r.json",
-    ];
+    let line = "scaling gen:menger,depth=2 --scan size=16..64*2 --size 32 --max-voxels 2e4 --runs 1 \
+        --engines machine,float-rays --export-svg r.svg --export-json r.json";
+    let line: Vec<&str> = line.split(' ').collect();
     let assert = bench(folder.path(), &line).success();
     let told = stdout_of(&assert);
     assert!(told.contains("paper table 1 ms") && told.contains("<1"));
@@ -226,17 +171,8 @@ fn ablation_of_the_fast_engine_changes_no_picture() {
         command.assert().success();
     };
     write(&["generate", "gen:terrain,depth=8", "-o", "t.vxg"]);
-    let line = [
-        "ablation",
-        "t.vxg",
-        "--engines",
-        "fast",
-        "--size",
-        "64",
-        "--runs",
-        "1",
-        "--json",
-    ];
+    let line = "ablation t.vxg --engines fast --size 64 --runs 1 --json";
+    let line: Vec<&str> = line.split(' ').collect();
     let document = json_of(&bench(folder.path(), &line).success());
     let results = document["results"].as_array().unwrap();
     let row = |variant: &str| {

@@ -1,24 +1,10 @@
 //! The experiments that compare pictures, as a script meets them.
 
 use std::fs;
-use std::path::Path;
 
-use assert_cmd::Command;
 use serde_json::Value;
 
-fn bench(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder).arg("bench").args(line);
-    command.assert()
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn document(assert: &assert_cmd::assert::Assert) -> Value {
-    serde_json::from_slice(&assert.get_output().stdout).unwrap()
-}
+use crate::program::{bench, folder, json_of};
 
 const SMALL: [&str; 8] = [
     "--size",
@@ -39,29 +25,11 @@ fn error_line<'l>(scene: &'l str, more: &[&'l str]) -> Vec<&'l str> {
 #[test]
 fn errors_in_every_form() {
     let folder = folder();
-    let more = [
-        "--coverages",
-        "exact,any",
-        "--tolerances",
-        "0,inf",
-        "--cages",
-        "frame,corners",
-        "--bits",
-        "64",
-        "--aas",
-        "1,2",
-        "--lods",
-        "0",
-        "--json",
-        "--export-json",
-        "r.json",
-        "--export-svg",
-        "r-{scene}.svg",
-        "--export-html",
-        "r.html",
-    ];
+    let more = "--coverages exact,any --tolerances 0,inf --cages frame,corners --bits 64 --aas 1,2 \
+        --lods 0 --json --export-json r.json --export-svg r-{scene}.svg --export-html r.html";
+    let more: Vec<&str> = more.split(' ').collect();
     let line = error_line("gen:menger,depth=2", &more);
-    let document = document(&bench(folder.path(), &line).success());
+    let document = json_of(&bench(folder.path(), &line).success());
     assert_eq!(document["schema"], "shiftvox.bench error");
     assert_eq!(document["schema_version"], 1);
     let scene = &document["scenes"][0];
@@ -120,7 +88,7 @@ fn a_format_too_narrow_is_a_row_and_not_the_end() {
     let folder = folder();
     let more = ["--bits", "64,16", "--json"];
     let line = error_line("gen:sphere,depth=6", &more);
-    let document = document(&bench(folder.path(), &line).success());
+    let document = json_of(&bench(folder.path(), &line).success());
     let rows = document["scenes"][0]["rows"].as_array().unwrap();
     let worst = |row: &Value| row["outcome"]["vertex_px"]["worst"].as_f64();
     assert!(worst(&rows[0]).unwrap() < 0.01);
@@ -138,7 +106,7 @@ fn errors_do_not_depend_on_the_run() {
             "gen:wires,depth=4",
             &["--coverages", "exact,center", "--json"],
         );
-        let document = document(&bench(folder.path(), &line).success());
+        let document = json_of(&bench(folder.path(), &line).success());
         let rows = document["scenes"][0]["rows"].as_array().unwrap().clone();
         let lasting = |row: &Value| {
             let outcome = &row["outcome"];
@@ -152,24 +120,10 @@ fn errors_do_not_depend_on_the_run() {
 #[test]
 fn films_are_restless_and_more_samples_calm_them() {
     let folder = folder();
-    let line = [
-        "flicker",
-        "gen:sphere,depth=5",
-        "--size",
-        "20",
-        "--frames",
-        "3",
-        "--motions",
-        "turntable,dolly",
-        "--reference-samples",
-        "4",
-        "--json",
-        "--export-svg",
-        "f.svg",
-        "--export-html",
-        "f.html",
-    ];
-    let document = document(&bench(folder.path(), &line).success());
+    let line = "flicker gen:sphere,depth=5 --size 20 --frames 3 --motions turntable,dolly \
+        --reference-samples 4 --json --export-svg f.svg --export-html f.html";
+    let line: Vec<&str> = line.split(' ').collect();
+    let document = json_of(&bench(folder.path(), &line).success());
     assert_eq!(document["schema"], "shiftvox.bench flicker");
     let films = document["films"].as_array().unwrap();
     let motions: Vec<_> = films

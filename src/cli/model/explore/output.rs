@@ -80,7 +80,7 @@ fn unless_none(count: usize, what: &str) -> String {
 }
 
 fn table(of: &Explorations, args: &ModelArgs) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         format!(
             "{}, {} x {}: of {} hardwares {} that no other beats in time, area, energy and wrong samples; of those, {} \
              beside which none is better by a tenth in something and nowhere worse by a tenth{}{}{}",
@@ -94,16 +94,8 @@ fn table(of: &Explorations, args: &ModelArgs) -> Table {
             unless_none(refused(of), "cannot draw the frame"),
             unless_none(too_slow(of), "are too slow for their clock"),
         ),
-        &[
-            "point",
-            "hardware",
-            "time_ms",
-            "area_nand2",
-            "energy_uj",
-            "wrong_samples",
-            "ray_caster_uj",
-            "what_others_have_less_of",
-        ],
+        "point hardware time_ms area_nand2 energy_uj wrong_samples ray_caster_uj \
+         what_others_have_less_of",
     );
     for point in of.front.iter().filter(|point| point.stands_out) {
         let figures = point.figures();
