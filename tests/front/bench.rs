@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use crate::program::{bench, folder, json_of, stderr_of, stdout_of};
+use crate::program::{bench, folder, json_of, shiftvox, stderr_of, stdout_of};
 
 const SCENE: &str = "gen:menger,depth=2";
 
@@ -166,9 +166,7 @@ fn ablation_tells_what_a_technique_changes() {
 fn ablation_of_the_fast_engine_changes_no_picture() {
     let folder = folder();
     let write = |line: &[&str]| {
-        let mut command = Command::cargo_bin("shiftvox").unwrap();
-        command.current_dir(folder.path()).args(line);
-        command.assert().success();
+        shiftvox(folder.path()).args(line).assert().success();
     };
     write(&["generate", "gen:terrain,depth=8", "-o", "t.vxg"]);
     let line = "ablation t.vxg --engines fast --size 64 --runs 1 --json";

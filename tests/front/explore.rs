@@ -186,13 +186,13 @@ fn a_run_is_the_same_on_one_thread_on_two_and_after_an_interruption() {
 }
 
 #[test]
-fn slices_come_together() {
+fn parts_come_together() {
     let folder = Folder::new(SPACE);
     let whole = folder.run(&["--json"]);
     let mut all = String::new();
-    for slice in ["3/3", "1/3", "2/3"] {
-        // A slice's lines, as they are printed, are results too.
-        all += &folder.run(&["--json", "--slice", slice]);
+    for points in ["21..31", "0..9", "10..20"] {
+        // The lines of a part, as they are printed, are results too.
+        all += &folder.run(&["--json", "--points", points]);
     }
     fs::write(folder.path("all.jsonl"), &all).unwrap();
     let merged = folder.run(&["--json", "--results", "all.jsonl"]);
@@ -439,8 +439,6 @@ fn wrong_command_lines() {
     let folder = Folder::new("[ranges]\nbits = [24, 32]\n");
     for (more, expected) in [
         (&["--points", "2"][..], "the space has points 0 to 1"),
-        (&["--points", "1", "--slice", "1/2"], "cannot be used with"),
-        (&["--slice", "3/2"], "expected K/N"),
         (&["--print-hw"], "say which with --points"),
         (&["--bits", "32"], "leave --bits out"),
         (&["--hw", "light"], "cannot be used with"),

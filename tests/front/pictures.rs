@@ -26,7 +26,7 @@ fn error_line<'l>(scene: &'l str, more: &[&'l str]) -> Vec<&'l str> {
 fn errors_in_every_form() {
     let folder = folder();
     let more = "--coverages exact,any --tolerances 0,inf --cages frame,corners --bits 64 --aas 1,2 \
-        --lods 0 --json --export-json r.json --export-svg r-{scene}.svg --export-html r.html";
+        --lods 0 --json --export-json r.json --export-svg r-{scene}.svg";
     let more: Vec<&str> = more.split(' ').collect();
     let line = error_line("gen:menger,depth=2", &more);
     let document = json_of(&bench(folder.path(), &line).success());
@@ -71,14 +71,9 @@ fn errors_in_every_form() {
     );
     let svg = file("r-menger-depth-2.svg");
     assert!(svg.contains("dominated") && svg.contains("operations of the machine"));
-    assert!(file("r.html").contains("<svg"));
 
     // Nothing is replaced, and that is said before the work.
-    for export in [
-        "--export-json=r.json",
-        "--export-html=r.html",
-        "--export-svg=r-{scene}.svg",
-    ] {
+    for export in ["--export-json=r.json", "--export-svg=r-{scene}.svg"] {
         bench(folder.path(), &["error", "gen:menger,depth=2", export]).code(1);
     }
 }
@@ -121,7 +116,7 @@ fn errors_do_not_depend_on_the_run() {
 fn films_are_restless_and_more_samples_calm_them() {
     let folder = folder();
     let line = "flicker gen:sphere,depth=5 --size 20 --frames 3 --motions turntable,dolly \
-        --reference-samples 4 --json --export-svg f.svg --export-html f.html";
+        --reference-samples 4 --json --export-svg f.svg";
     let line: Vec<&str> = line.split(' ').collect();
     let document = json_of(&bench(folder.path(), &line).success());
     assert_eq!(document["schema"], "shiftvox.bench flicker");
@@ -146,7 +141,7 @@ fn films_are_restless_and_more_samples_calm_them() {
         assert!(one["pop"].as_f64().unwrap() >= 0.0);
     }
     let file = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    assert!(file("f.svg").contains("turntable") && file("f.html").contains("pop"));
+    assert!(file("f.svg").contains("turntable"));
 }
 
 #[test]
@@ -159,7 +154,7 @@ fn wrong_lines_exit_with_2_or_5() {
         &["error", scene, "--coverages", "most"],
         &["error", scene, "--engines", "rays"],
         &["error", scene, "--reference-samples", "5"],
-        &["error", scene, "--export-html", "a", "--export-json", "a"],
+        &["error", scene, "--export-svg", "a", "--export-json", "a"],
         &["flicker", scene, "--frames", "1"],
         &["flicker", scene, "--motions", "fly"],
     ];

@@ -47,7 +47,7 @@ const LINES: [&str; 31] = [
     "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",
     "bench vertex-error",
     "bench error gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --lods 0 --aas 1 --bits 32 --json",
-    "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-html f.html --force",
+    "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-svg f.svg --force",
     "bench methods ../in/knot.obj --size 16 --runs 1 --warmup 0 --frames 0 --depth 4 --only triangles,voxels --json",
     "completions bash",
     "man bench error",

@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::error::{SCENES, reference_size};
 use super::meshes::MeshMethodArgs;
-use super::picture_export::{self as pictures, PagesArgs};
+use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
@@ -16,7 +16,6 @@ use crate::cli::{engines, report};
 use crate::lab::error::{PixelStyle, References, voxel_method};
 use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{Coverage, SetupOptions};
-use crate::report::html::Page;
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 128;
@@ -61,8 +60,6 @@ pub(super) struct FlickerArgs {
     scene: SceneArgs,
     #[command(flatten)]
     export: ExportArgs,
-    #[command(flatten)]
-    page: PagesArgs,
 }
 
 impl FlickerArgs {
@@ -117,7 +114,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
-    pictures::check(&args.page, &args.export, &names)?;
+    pictures::check(None, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
     let plan = FilmPlan {
@@ -168,22 +165,6 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
         })
         .collect();
     pictures::write_plots(&args.export, &panels, console)?;
-    let page = || {
-        let mut page = Page::new("Flicker and pop");
-        page.text(
-            "Flicker: root of the mean square, over pixels, channels and frames, of what changes \
-             from frame to frame other than in the reference. Pop: the same camera, drawn with \
-             what level of detail takes for solids now and a frame ago; it has a plot where there \
-             is any. Both in linear light, thousandths of white.",
-        );
-        for (films, (scene, panels)) in by_scene.iter().zip(&panels) {
-            page.chapter(scene);
-            pictures::plots(&mut page, panels, "")?;
-            page.table(&experiment::table(films).without(&["scene"]));
-        }
-        Ok(page)
-    };
-    pictures::write_page(&args.page, &args.export, page, console)?;
     let tables = by_scene.iter().map(|films| experiment::table(films));
     let results = Results {
         document: report::document("bench flicker", json!({ "films": films })),

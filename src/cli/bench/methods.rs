@@ -1,6 +1,6 @@
 //! `bench methods`: all ways to draw a mesh, side by side.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::error::reference_size;
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
-use super::picture_export::{self as pictures, PagesArgs};
+use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
@@ -23,14 +23,13 @@ use crate::graph::Graph;
 use crate::lab::bench::Schedule;
 use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
-use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarSettings, MeshMethods, MethodsPlan,
-};
+use crate::lab::methods::{self as experiment, Distance, Facts, MeshMethods, MethodsPlan};
 use crate::mesh::{Mesh, Surface, mesh_box};
 use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
 use crate::report::plot::Panel;
 use crate::textured::{self, TexturedFile};
+use crate::whole;
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 256;
@@ -87,13 +86,14 @@ pub(super) struct MethodsArgs {
     scene: SceneArgs,
     #[command(flatten)]
     export: ExportArgs,
-    #[command(flatten)]
-    page: PagesArgs,
+    /// One page with tables, plots and pictures, which needs no other file
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    export_html: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError> {
     export::check(&args.export)?;
-    pictures::check(&args.page, &args.export, &args.meshes)?;
+    pictures::check(args.export_html.as_deref(), &args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     if size.0.min(size.1) < args.least {
@@ -253,11 +253,7 @@ fn methods<'m>(
             ("far six", Opacity::Six),
         ];
         for (label, opacity) in opacities {
-            let settings = FarSettings {
-                opacity,
-                ..FarSettings::default()
-            };
-            let method = experiment::far(file, settings, style);
+            let method = experiment::far(file, opacity, 1.0, style);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
@@ -321,8 +317,11 @@ fn write(
         .collect();
     pictures::write_plots(&args.export, &panels, console)?;
     let preface = context.markdown(schedule);
-    let page = || page(meshes, &panels, &preface);
-    pictures::write_page(&args.page, &args.export, page, console)?;
+    if let Some(path) = &args.export_html {
+        let page = page(meshes, &panels, &preface)?.finish();
+        whole::write(path, page.as_bytes(), args.export.force)?;
+        console.note(format!("{}: written", path.display()));
+    }
     let mut fields = context.json(schedule, &SetupOptions::default());
     fields["meshes"] = json!(meshes);
     let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));

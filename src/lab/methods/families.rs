@@ -6,7 +6,7 @@ use crate::drawing::{
     TrianglesStyle,
 };
 use crate::far::FarFile;
-use crate::far::view::{FarViewer, Opacity, ViewOptions};
+use crate::far::view::{FarViewer, Opacity};
 use crate::graph::Silent;
 use crate::lab::error::{Examined, Method, PixelStyle, Refused, Sum, drawn, sums};
 use crate::mesh::Mesh;
@@ -50,34 +50,8 @@ pub fn triangles(mesh: &Mesh, per_pixel: u32, style: PixelStyle) -> Result<Metho
     })
 }
 
-/// What a far voxel method is. By default: the usual file, six opacities, voxels of at most a
-/// pixel.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FarSettings {
-    /// What is unlike other files of the scene, such as `plain cosines`; empty for the usual one.
-    pub file: String,
-    /// What opacities are used for.
-    pub opacity: Opacity,
-    /// Largest projected side of a voxel, pixels.
-    pub voxel_px: f64,
-}
-
-impl Default for FarSettings {
-    fn default() -> Self {
-        let ViewOptions {
-            opacity, voxel_px, ..
-        } = ViewOptions::default();
-        Self {
-            file: String::new(),
-            opacity,
-            voxel_px,
-        }
-    }
-}
-
 /// Opacities in words.
-#[must_use]
-pub fn opacity_in_words(opacity: Opacity) -> &'static str {
+fn opacity_in_words(opacity: Opacity) -> &'static str {
     match opacity {
         Opacity::None => "none",
         Opacity::Scalar => "scalar",
@@ -85,22 +59,19 @@ pub fn opacity_in_words(opacity: Opacity) -> &'static str {
     }
 }
 
-/// Far voxels, drawn with some settings.
+/// Far voxels of at most so many pixels.
 #[must_use]
-pub fn far(file: &FarFile, settings: FarSettings, style: PixelStyle) -> Method<'_> {
-    let opacity = opacity_in_words(settings.opacity);
-    let kind = format!("far {opacity}");
+pub fn far(file: &FarFile, opacity: Opacity, voxel_px: f64, style: PixelStyle) -> Method<'_> {
+    let words = opacity_in_words(opacity);
+    let kind = format!("far {words}");
     let mut name = kind.clone();
-    if settings.voxel_px != 1.0 {
-        name += &format!(" lod {}", settings.voxel_px);
-    }
-    if !settings.file.is_empty() {
-        name += &format!(", {}", settings.file);
+    if voxel_px != 1.0 {
+        name += &format!(" lod {voxel_px}");
     }
     let style = FarStyle {
-        voxel_px: settings.voxel_px,
+        voxel_px,
         aa_log2: 0,
-        opacity: settings.opacity,
+        opacity,
         shading: style.shading,
         background: Background::Color(style.background),
     };
@@ -119,11 +90,7 @@ pub fn far(file: &FarFile, settings: FarSettings, style: PixelStyle) -> Method<'
     Method {
         family: "far voxels",
         name,
-        settings: vec![
-            ("opacity", opacity.to_owned()),
-            ("lod", settings.voxel_px.to_string()),
-            ("file", settings.file),
-        ],
+        settings: vec![("opacity", words.to_owned()), ("lod", voxel_px.to_string())],
         kind,
         drawing: Box::new(move || Box::new(FarDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, solid))),

@@ -14,7 +14,7 @@ mod plots;
 mod tables;
 
 pub use distance::at_distance;
-pub use families::{FarSettings, far, opacity_in_words, textured, triangles};
+pub use families::{far, textured, triangles};
 pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
 #[cfg(feature = "cli")]
 pub use plots::panels;

@@ -25,5 +25,5 @@ pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;
 pub use sweep::{COVERAGES, Failed, Findings, Key, SweepPlan, TOLERANCES, Tally, run_case, sweep};
 #[cfg(feature = "cli")]
-pub use tables::{panels, rows, tables};
+pub use tables::{rows, tables};
 pub use vertex::{Hold, Worst};
