@@ -1,8 +1,9 @@
 //! What a sweep found, as tables.
 
 use super::check::STRICT_TOLERANCE;
+use super::findings::{COVERAGES, Findings, Key, Tally};
 use super::outcome::Check;
-use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
+use super::sweep::{SweepPlan, TOLERANCES};
 use super::vertex::{Hold, Worst};
 use crate::report::{Cell, Table};
 
