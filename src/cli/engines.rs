@@ -15,7 +15,7 @@ use crate::project::{Coverage, Engine, EngineError, FrameSetup};
 use crate::rays::Rays;
 
 /// What makes the engine that the flags name, as often as one is needed.
-pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine>>;
+pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
 
 /// Makers of the engines of voxels.
 ///
@@ -105,11 +105,13 @@ pub(super) const FAST: Candidate = Candidate {
     about: "the machine's bits, sample by sample",
     work: "records",
     parallel: true,
-    make: |threads| fast(threads, Switches::default()),
+    make: |threads| fast(threads, |_| {}),
 };
 
-/// A fast engine on so many threads.
-fn fast(threads: usize, switches: Switches) -> Box<dyn Engine + Send> {
+/// A fast engine on so many threads, with a switch off.
+fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
+    let mut switches = Switches::default();
+    switch(&mut switches);
     let options = FastOptions {
         threads,
         switches,
@@ -154,120 +156,80 @@ pub(super) const FAMILIES: &[Family] = &[
     },
 ];
 
-/// The machine without occlusion order, and without the rejection that it
-/// allows: so many of these two.
-pub(super) fn order_family(variants: usize) -> Family {
-    Family {
-        whole: MACHINE,
-        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
-    }
-}
+/// The fast engine with everything on.
+const WHOLE_FAST: Variant = Variant {
+    name: "",
+    about: "",
+    adjust: |_| {},
+    make: FAST.make,
+    frames: Frames::Drawn,
+};
+/// The machine with everything on.
+const WHOLE_MACHINE: Variant = Variant {
+    make: MACHINE.make,
+    ..WHOLE_FAST
+};
 
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",
         about: "nodes behind what is drawn go on down; the picture must be the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                hidden: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.hidden = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "off-screen nodes looked into",
         about: "nodes beside the picture, or that hold no sample, go on down; the picture must be \
          the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                off_screen: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.off_screen = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "a full picture goes on",
         about: "no stop when every sample is drawn; the picture must be the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                full: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.full = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "bricks off",
         about: "voxel by voxel in the last levels; the picture must be the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                bricks: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.bricks = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "whole blocks off",
         about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles \
          first; the picture must be the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                whole_blocks: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.whole_blocks = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "absent children looked at",
         about: "above bricks all eight children have their windows looked at, whether they exist \
          or not; the picture must be the same",
-        adjust: |_| {},
-        make: |threads| {
-            let switches = Switches {
-                absent_children: false,
-                ..Switches::default()
-            };
-            fast(threads, switches)
-        },
-        frames: Frames::Drawn,
+        make: |threads| fast(threads, |on| on.absent_children = false),
+        ..WHOLE_FAST
     },
     Variant {
         name: "level of detail off",
         about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
          exact one",
         adjust: |options| options.lod_px = 0.0,
-        make: FAST.make,
-        frames: Frames::Drawn,
+        ..WHOLE_FAST
     },
     Variant {
         name: "unchanged frame kept",
         about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are \
          written. All other rows draw every frame",
-        adjust: |_| {},
-        make: FAST.make,
         frames: Frames::Kept,
+        ..WHOLE_FAST
     },
     Variant {
         name: "attributes of all read",
         about: "colour and normal also of each node that the paper's walk fetches, in its order, \
          not of those seen alone; the picture must be the same",
-        adjust: |_| {},
-        make: FAST.make,
         frames: Frames::WithAttributesOf(fetched),
+        ..WHOLE_FAST
     },
 ];
 
@@ -276,34 +238,31 @@ const MACHINE_VARIANTS: &[Variant] = &[
         name: "occlusion order off",
         about: "children in the order 0 to 7 for every eye: the picture is WRONG, far voxels hide \
          near ones",
-        adjust: |_| {},
         make: |_| {
             Box::new(Machine::new(MachineOptions {
                 order: [0, 1, 2, 3, 4, 5, 6, 7],
                 ..MachineOptions::default()
             }))
         },
-        frames: Frames::Drawn,
+        ..WHOLE_MACHINE
     },
     Variant {
         name: "fill-vector rejection off",
         about: "hidden records go on down to their samples; the picture must be the same",
-        adjust: |_| {},
         make: |_| {
             Box::new(Machine::new(MachineOptions {
                 reject_filled: false,
                 ..MachineOptions::default()
             }))
         },
-        frames: Frames::Drawn,
+        ..WHOLE_MACHINE
     },
     Variant {
         name: "level of detail off",
         about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
          exact one",
         adjust: |options| options.lod_px = 0.0,
-        make: MACHINE.make,
-        frames: Frames::Drawn,
+        ..WHOLE_MACHINE
     },
 ];
 

@@ -1,16 +1,17 @@
 //! `stress`: the numerical stability sweep.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use serde_json::json;
 
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::experiment::context::Context;
-use super::experiment::export::{self, ExportArgs, Results};
+use super::experiment::export;
 use super::report;
-use crate::lab::stress::{
-    self, Case, End, Findings, Hold, Outcome, SweepPlan, panels, rows, tables,
-};
+use crate::lab::stress::{self, Case, End, Findings, Hold, Outcome, SweepPlan, rows, tables};
+use crate::whole;
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]
@@ -43,8 +44,12 @@ pub(super) struct StressArgs {
     /// Draw one case alone: a line that a failing sweep prints
     #[arg(long, value_name = "CASE", conflicts_with_all = ["scenes", "thorough", "bits", "size", "rules", "viewpoints"])]
     case: Option<Case>,
-    #[command(flatten)]
-    export: ExportArgs,
+    /// All results, as --json prints them
+    #[arg(long, value_name = "FILE")]
+    export_json: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
 }
 
 /// Failing cases that are printed.
@@ -58,21 +63,23 @@ pub(super) fn run(
     if let Some(case) = &args.case {
         return run_case(case, console);
     }
-    export::check(&args.export)?;
+    if let Some(path) = &args.export_json {
+        whole::check_free(path, args.force)?;
+    }
     let plan = plan(args, &from_config)?;
     let context = Context::now();
     let started = std::time::Instant::now();
     let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
     let seconds = started.elapsed().as_secs_f64();
-    let results = Results {
-        document: document(&plan, &findings, &context),
-        rows: rows(&plan, &findings),
-        more_tables: Vec::new(),
-        preface: format!("`{}`\n", context.command_line()),
-        tables: tables(&plan, &findings),
-        panels: panels(&plan, &findings),
-    };
-    export::write(&results, &args.export, console)?;
+    let document = document(&plan, &findings, &context);
+    if let Some(path) = &args.export_json {
+        whole::write(path, format!("{document:#}\n").as_bytes(), args.force)?;
+        console.note(format!("{}: written", path.display()));
+    }
+    match console.json {
+        true => console.document(&document)?,
+        false => export::print(&tables(&plan, &findings), console)?,
+    }
     let total = findings.total();
     console.note(format!(
         "{} frames in {seconds:.0} s",

@@ -104,7 +104,7 @@ pub(super) fn run(args: &TrianglesArgs, console: &Console) -> Result<(), CliErro
     if args.aov.contains(&BufferName::Coverage) {
         let array = Array {
             shape: vec![size.1 as usize, size.0 as usize],
-            values: Values::F32(drawing.coverage().to_vec()),
+            values: Values::F32(shown.coverage.to_vec()),
         };
         let path = args.output.with_extension("coverage.npy");
         let write = |file: &mut File| file.write_all(&npy::encode(&array));

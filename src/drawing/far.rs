@@ -4,10 +4,12 @@ use serde_json::{Value, json};
 
 use super::mesh_view::{light_of, picture_of_far, view_of};
 use super::{
-    DrawError, Drawable, Figures, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed,
+    DrawError, Drawable, Figures, Frames, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples,
+    timed,
 };
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
+use crate::mesh::raster::RasterCamera;
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 
@@ -24,6 +26,20 @@ pub struct FarStyle {
     pub shading: Shading,
     /// What is behind.
     pub background: Background,
+}
+
+impl FarStyle {
+    /// As a viewer wants it.
+    pub(crate) fn options(&self, view: &RasterCamera) -> ViewOptions {
+        ViewOptions {
+            voxel_px: self.voxel_px,
+            samples_across: 1 << self.aa_log2,
+            opacity: self.opacity,
+            light: light_of(view, self.shading),
+            background: self.background.color(),
+            ..ViewOptions::default()
+        }
+    }
 }
 
 /// A file of far voxels that is drawn, once or from many cameras.
@@ -60,20 +76,15 @@ impl Drawable for FarDrawing<'_> {
         self.kept = None;
         check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
-        let options = ViewOptions {
-            voxel_px: self.style.voxel_px,
-            samples_across: 1 << self.style.aa_log2,
-            opacity: self.style.opacity,
-            light: light_of(&view, self.style.shading),
-            background: self.style.background.color(),
-            ..ViewOptions::default()
-        };
-        let ((picture, counts), times_ms) = timed(runs, || {
-            let (drawn, counts) = self.viewer.draw(&view, &options)?;
-            Ok((picture_of_far(drawn), counts))
+        let options = self.style.options(&view);
+        let ((picture, coverage, counts), times_ms) = timed(runs, || {
+            let (mut drawn, counts) = self.viewer.draw(&view, &options)?;
+            let coverage = std::mem::take(&mut drawn.coverage);
+            Ok((picture_of_far(drawn), coverage, counts))
         })?;
         self.kept = Some(KeptPicture {
             picture,
+            coverage,
             counters: counters(&counts),
             times_ms,
         });
@@ -88,6 +99,16 @@ impl Drawable for FarDrawing<'_> {
             ]
         };
         Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
+        let view = view_of(camera, self.file.bounds())?;
+        let options = self.style.options(&view);
+        let mut viewer = FarViewer::new(self.file);
+        Ok(Box::new(move || {
+            std::hint::black_box(viewer.draw(&view, &options)?);
+            Ok(())
+        }))
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::{
-    Buffers, DrawError, Drawable, Figures, Shown, check_samples, milliseconds_since, timed,
+    Buffers, DrawError, Drawable, Figures, Frames, Shown, check_samples, milliseconds_since, timed,
 };
 use crate::frame::Colors;
 use crate::graph::{Graph, GraphView};
@@ -36,8 +36,8 @@ pub struct GraphDrawing<'g> {
     graph: &'g Graph,
     up: Up,
     style: GraphStyle,
-    engine: Box<dyn Fn() -> Box<dyn Engine> + 'g>,
-    viewer: Viewer<'g, Box<dyn Engine>>,
+    engine: Box<dyn Fn() -> Box<dyn Engine + Send> + 'g>,
+    viewer: Viewer<'g, Box<dyn Engine + Send>>,
     /// What the viewer's frames hold.
     contents: Contents,
     /// What the viewer shows.
@@ -62,7 +62,7 @@ impl<'g> GraphDrawing<'g> {
         graph: &'g Graph,
         up: Up,
         style: GraphStyle,
-        engine: impl Fn() -> Box<dyn Engine> + 'g,
+        engine: impl Fn() -> Box<dyn Engine + Send> + 'g,
     ) -> Self {
         let of_voxels = [Buffer::Depth, Buffer::Normal, Buffer::Voxel];
         let wants = |buffer: &Buffer| style.buffers.contains(buffer);
@@ -115,24 +115,6 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
-    /// Times of drawing a frame so often with an engine for that alone, as experiments time a
-    /// frame: clear, traverse, colours written. Milliseconds.
-    fn measure(&self, setup: &FrameSetup, runs: u32) -> Result<Vec<f64>, DrawError> {
-        let mut engine = (self.engine)();
-        let mut colors = Colors::new(setup.width, setup.height);
-        let light = lights(self.graph, setup, Shading::Flat);
-        let view = GraphView {
-            light: &light,
-            ..self.graph.view()
-        };
-        let (_, times_ms) = timed(runs, || {
-            engine.draw_colors(&view, &self.graph.color, setup, &mut colors)?;
-            std::hint::black_box(&colors);
-            Ok(())
-        })?;
-        Ok(times_ms)
-    }
-
     /// The buffers of what the viewer shows.
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
         // A frame that is not there has no samples.
@@ -173,7 +155,7 @@ impl Drawable for GraphDrawing<'_> {
         let setup = self.setup(camera)?;
         let measured = match runs {
             0 | 1 => None,
-            runs => Some(self.measure(&setup, runs)?),
+            runs => Some(timed(runs, self.frames(camera)?)?.1),
         };
         let mut started = Instant::now();
         let is_shown = self.viewer.shows(&setup);
@@ -233,9 +215,29 @@ impl Drawable for GraphDrawing<'_> {
             pixels: Cow::Borrowed(&last.pixels),
             buffers: Buffers::Resolved(Box::new(self.resolver(&last.setup)?)),
             pixels_drawn: last.pixels_drawn,
+            coverage: &[],
             times_ms: &last.times_ms,
             counters,
             details: vec![("word", word), ("resolve_ms", json!(last.resolve_ms))],
+        }))
+    }
+
+    /// Clear, traverse, colours of the samples without light, as experiments time a frame.
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
+        let (graph, setup) = (self.graph, self.setup(camera)?);
+        let mut engine = (self.engine)();
+        let mut colors = Colors::new(setup.width, setup.height);
+        // Pages are there before the first frame.
+        colors.words.fill(1);
+        let light = lights(graph, &setup, Shading::Flat);
+        Ok(Box::new(move || {
+            let view = GraphView {
+                light: &light,
+                ..graph.view()
+            };
+            engine.draw_colors(&view, &graph.color, &setup, &mut colors)?;
+            std::hint::black_box(&colors);
+            Ok(())
         }))
     }
 }

@@ -49,7 +49,17 @@ pub trait Drawable {
     /// # Errors
     /// When the buffers cannot be made of it.
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError>;
+
+    /// Makes ready what draws the frame of a camera again and again, on an engine of its own: for
+    /// times of frames alone. Nothing is kept.
+    ///
+    /// # Errors
+    /// When the frame cannot be set up.
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError>;
 }
+
+/// Draws a frame each time that it is called.
+pub type Frames<'d> = Box<dyn FnMut() -> Result<(), DrawError> + Send + 'd>;
 
 /// Figures by name, in an order for people.
 pub type Figures = Vec<(&'static str, Value)>;
@@ -62,6 +72,8 @@ pub struct Shown<'d> {
     pub buffers: Buffers<'d>,
     /// Pixels that show something at their middle sample.
     pub pixels_drawn: usize,
+    /// Of each pixel, the share that is covered, as far as the method knows it; else empty.
+    pub coverage: &'d [f32],
     /// Time of each run, milliseconds.
     pub times_ms: &'d [f64],
     /// What was counted of one frame.
@@ -183,6 +195,7 @@ pub fn milliseconds_since(started: Instant) -> f64 {
 #[derive(Debug)]
 struct KeptPicture {
     picture: Picture,
+    coverage: Vec<f32>,
     counters: Figures,
     times_ms: Vec<f64>,
 }
@@ -198,6 +211,7 @@ impl KeptPicture {
             )),
             buffers: Buffers::Whole(picture),
             pixels_drawn: picture.drawn(),
+            coverage: &self.coverage,
             times_ms: &self.times_ms,
             counters: self.counters.clone(),
             details,

@@ -4,9 +4,10 @@ use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{
-    DrawError, Drawable, Figures, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed,
+    DrawError, Drawable, Figures, Frames, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples,
+    timed,
 };
-use crate::mesh::raster::{Pattern, RasterCamera, Samples};
+use crate::mesh::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
 use crate::textured::TexturedFile;
@@ -78,6 +79,17 @@ impl<'f> TexturedDrawing<'f> {
         };
         Ok(Detail::Level { grid, level })
     }
+
+    /// Draws a frame. Which grid fits the view is part of the work.
+    fn drawn(&self, view: &RasterCamera) -> Result<(RasterPicture, TexturedCounts), DrawError> {
+        let options = ViewOptions {
+            detail: self.detail(view)?,
+            samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
+            light: light_of(view, self.style.shading),
+            background: self.style.background.color(),
+        };
+        Ok(draw(self.file, view, &options)?)
+    }
 }
 
 impl Drawable for TexturedDrawing<'_> {
@@ -103,19 +115,11 @@ impl Drawable for TexturedDrawing<'_> {
         self.kept = None;
         check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
-        // Which grid fits the view is part of the work.
-        let ((picture, counts), times_ms) = timed(runs, || {
-            let options = ViewOptions {
-                detail: self.detail(&view)?,
-                samples: Samples::new(1 << (2 * self.style.aa_log2), Pattern::Regular)?,
-                light: light_of(&view, self.style.shading),
-                background: self.style.background.color(),
-            };
-            let (drawn, counts) = draw(self.file, &view, &options)?;
-            Ok((picture_of_triangles(drawn), counts))
-        })?;
+        let ((mut drawn, counts), times_ms) = timed(runs, || self.drawn(&view))?;
+        let coverage = std::mem::take(&mut drawn.coverage);
         self.kept = Some(KeptPicture {
-            picture,
+            picture: picture_of_triangles(drawn),
+            coverage,
             counters: counters(self.file, &counts),
             times_ms,
         });
@@ -125,6 +129,14 @@ impl Drawable for TexturedDrawing<'_> {
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
         let details = || vec![("engine", json!("textured"))];
         Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
+        let view = view_of(camera, self.file.bounds())?;
+        Ok(Box::new(move || {
+            std::hint::black_box(self.drawn(&view)?);
+            Ok(())
+        }))
     }
 }
 

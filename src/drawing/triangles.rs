@@ -4,9 +4,11 @@
 use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
-use super::{DrawError, Drawable, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed};
+use super::{
+    DrawError, Drawable, Frames, KeptPicture, MESH_SAMPLE_BYTES, Shown, check_samples, timed,
+};
 use crate::graph::Progress;
-use crate::mesh::raster::{self, RasterOptions, Samples};
+use crate::mesh::raster::{self, RasterCamera, RasterOptions, RasterPicture, Samples};
 use crate::mesh::{Mesh, mesh_box};
 use crate::picture::{Background, Shading};
 use crate::project::{Bounds, Camera, Up};
@@ -29,7 +31,6 @@ pub struct TrianglesDrawing<'m> {
     style: TrianglesStyle,
     progress: &'m dyn Progress,
     kept: Option<KeptPicture>,
-    coverage: Vec<f32>,
 }
 
 impl<'m> TrianglesDrawing<'m> {
@@ -42,14 +43,16 @@ impl<'m> TrianglesDrawing<'m> {
             style,
             progress,
             kept: None,
-            coverage: Vec::new(),
         }
     }
 
-    /// Of each pixel of what is shown, the share of its samples that see a triangle.
-    #[must_use]
-    pub fn coverage(&self) -> &[f32] {
-        &self.coverage
+    fn drawn(&self, view: &RasterCamera) -> Result<RasterPicture, DrawError> {
+        let options = RasterOptions {
+            samples: self.style.samples,
+            light: light_of(view, self.style.shading),
+            background: self.style.background.color(),
+        };
+        Ok(raster::draw(self.mesh, view, &options, self.progress)?)
     }
 }
 
@@ -66,18 +69,16 @@ impl Drawable for TrianglesDrawing<'_> {
         self.kept = None;
         check_samples(camera, 0, MESH_SAMPLE_BYTES)?;
         let view = view_of(camera, self.mesh.bounds())?;
-        let options = RasterOptions {
-            samples: self.style.samples,
-            light: light_of(&view, self.style.shading),
-            background: self.style.background.color(),
-        };
-        let (mut drawn, times_ms) = timed(runs, || {
-            Ok(raster::draw(self.mesh, &view, &options, self.progress)?)
-        })?;
-        self.coverage = std::mem::take(&mut drawn.coverage);
+        let (mut drawn, times_ms) = timed(runs, || self.drawn(&view))?;
+        let samples = drawn.rgba.len() * self.style.samples.per_pixel();
+        let coverage = std::mem::take(&mut drawn.coverage);
         self.kept = Some(KeptPicture {
             picture: picture_of_triangles(drawn),
-            counters: vec![("triangles", json!(self.mesh.triangles().len()))],
+            coverage,
+            counters: vec![
+                ("triangles", json!(self.mesh.triangles().len())),
+                ("samples", json!(samples)),
+            ],
             times_ms,
         });
         Ok(())
@@ -86,5 +87,13 @@ impl Drawable for TrianglesDrawing<'_> {
     fn shown(&self) -> Result<Option<Shown<'_>>, DrawError> {
         let details = || vec![("engine", json!("triangles"))];
         Ok(self.kept.as_ref().map(|kept| kept.shown(details())))
+    }
+
+    fn frames(&self, camera: &Camera) -> Result<Frames<'_>, DrawError> {
+        let view = view_of(camera, self.mesh.bounds())?;
+        Ok(Box::new(move || {
+            std::hint::black_box(self.drawn(&view)?);
+            Ok(())
+        }))
     }
 }

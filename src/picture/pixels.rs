@@ -44,6 +44,17 @@ impl Pixels {
         }
     }
 
+    /// Red, green, blue and alpha of each pixel.
+    #[must_use]
+    pub fn rgba(&self) -> Vec<[u8; 4]> {
+        let (with_alpha, _) = self.bytes.as_chunks::<4>();
+        let (opaque, _) = self.bytes.as_chunks::<3>();
+        match self.has_alpha {
+            true => with_alpha.to_vec(),
+            false => opaque.iter().map(|&[r, g, b]| [r, g, b, 255]).collect(),
+        }
+    }
+
     /// Pixels across and down.
     #[must_use]
     pub fn size(&self) -> (u32, u32) {

@@ -131,6 +131,12 @@ impl<'f> Resolver<'f> {
         Ok(pixels)
     }
 
+    /// What it is made of.
+    #[must_use]
+    pub fn frame(&self) -> &Frame {
+        self.frame
+    }
+
     /// Whether no pixel can be transparent.
     #[must_use]
     pub fn is_opaque(&self) -> bool {

@@ -153,7 +153,7 @@ fn a_build_that_is_cut_short_leaves_no_file() {
 }
 
 #[test]
-fn copies_budgets_and_walks() {
+fn copies_and_budgets() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
@@ -190,13 +190,6 @@ fn copies_budgets_and_walks() {
                 > 0
         );
     }
-    let walk = json(&["bench", "walk", "four.far", "--frames", "4", "--size", "48"]);
-    let walks = walk["files"][0]["walks"].as_array().unwrap();
-    assert_eq!(
-        (walks.len(), walks[0]["ms"].as_array().unwrap().len()),
-        (2, 4)
-    );
-    assert_eq!(walks[0]["sums"]["transparent_voxels"], 0);
 }
 
 #[test]
@@ -230,17 +223,8 @@ fn a_dolly_shows_where_levels_change() {
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet_of(48)).unwrap();
     // From one percent nearer to the next, to half the distance.
-    let film = [
-        "bench",
-        "flicker",
-        "sheet.obj",
-        "--families",
-        "far",
-        "--motions",
-        "dolly",
-        "--depth",
-        "3",
-    ];
+    let film = "bench flicker sheet.obj --families far --motions dolly --depth 3";
+    let film: Vec<&str> = film.split(' ').collect();
     let settings = "--frames 70 --size 24 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
         --far-lods 1 --json"
         .split(' ');
@@ -270,14 +254,8 @@ fn what_is_wrong_is_said_with_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let convert = [
-        "convert",
-        "sheet.obj",
-        "a.far",
-        "--leaf-triangles",
-        "100",
-        "-q",
-    ];
+    let convert = "convert sheet.obj a.far --leaf-triangles 100 -q";
+    let convert: Vec<&str> = convert.split(' ').collect();
     shiftvox(at).args(convert).assert().success();
     let sound = fs::read(at.join("a.far")).unwrap();
     let mut version = sound.clone();

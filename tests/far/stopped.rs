@@ -30,16 +30,8 @@ fn stl() -> Vec<u8> {
 
 /// Triangles alone, as one leaf: built at once, 100 MB to write.
 fn start(folder: &Path) -> Child {
-    let arguments = [
-        "convert",
-        "sheet.stl",
-        "sheet.far",
-        "--leaf-triangles",
-        "4000000",
-        "--instances",
-        "100",
-        "--force",
-    ];
+    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 100 --force";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
     Command::new(cargo_bin("shiftvox"))
         .current_dir(folder)
         .args(arguments)

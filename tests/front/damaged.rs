@@ -4,19 +4,11 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
 use shiftvox::graph::{Silent, vxg};
 use shiftvox::scene::{OpenOptions, Source, open_source};
 use xxhash_rust::xxh3::xxh3_64;
 
-fn run(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder).args(line).assert()
-}
-
-fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
-}
+use crate::program::{run, stderr_of};
 
 /// Writes a number into a header of so many bytes, whose last eight are its checksum.
 fn patch(bytes: &mut [u8], header: usize, at: usize, number: [u8; 8]) {

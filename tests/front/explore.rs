@@ -186,13 +186,13 @@ fn a_run_is_the_same_on_one_thread_on_two_and_after_an_interruption() {
 }
 
 #[test]
-fn slices_come_together() {
+fn parts_come_together() {
     let folder = Folder::new(SPACE);
     let whole = folder.run(&["--json"]);
     let mut all = String::new();
-    for slice in ["3/3", "1/3", "2/3"] {
-        // A slice's lines, as they are printed, are results too.
-        all += &folder.run(&["--json", "--slice", slice]);
+    for points in ["21..31", "0..9", "10..20"] {
+        // The lines of a part, as they are printed, are results too.
+        all += &folder.run(&["--json", "--points", points]);
     }
     fs::write(folder.path("all.jsonl"), &all).unwrap();
     let merged = folder.run(&["--json", "--results", "all.jsonl"]);
@@ -219,12 +219,8 @@ fn tables_plots_and_a_page() {
         "page.html",
         "--export-svg",
         "front.svg",
-        "--export-csv",
-        "all.csv",
         "--export-json",
         "front.json",
-        "--export-markdown",
-        "front.md",
     ]);
     assert!(told.contains("40 x 40: of 32 hardwares "), "{told}");
     let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
@@ -242,14 +238,7 @@ fn tables_plots_and_a_page() {
         assert_eq!(page.matches(&format!("class=\"words {name}\"")).count(), 1);
         assert_eq!(page.matches(&format!(".{name}:hover")).count(), 1);
     }
-    assert_eq!(read("all.csv").lines().count(), 33);
-    let on_front = read("all.csv")
-        .lines()
-        .filter(|line| line.contains(",yes,,"))
-        .count();
-    assert_eq!(on_front, points.len());
     assert!(read("front.svg").contains("no other is clearly better"));
-    assert!(read("front.md").contains("| point |"));
 }
 
 /// In words of 16 bits a terrain of this depth cannot be set up: a result like others.
@@ -450,8 +439,6 @@ fn wrong_command_lines() {
     let folder = Folder::new("[ranges]\nbits = [24, 32]\n");
     for (more, expected) in [
         (&["--points", "2"][..], "the space has points 0 to 1"),
-        (&["--points", "1", "--slice", "1/2"], "cannot be used with"),
-        (&["--slice", "3/2"], "expected K/N"),
         (&["--print-hw"], "say which with --points"),
         (&["--bits", "32"], "leave --bits out"),
         (&["--hw", "light"], "cannot be used with"),

@@ -237,15 +237,8 @@ fn meshes_of_endless_work_are_refused_with_the_reason() {
         "{}",
         told(&output)
     );
-    let outside = [
-        "convert",
-        "sheet.obj",
-        "a.vxg",
-        "--depth",
-        "20",
-        "--memory",
-        "64M",
-    ];
+    let outside = "convert sheet.obj a.vxg --depth 20 --memory 64M";
+    let outside: Vec<&str> = outside.split(' ').collect();
     let output = patient(folder.path(), &outside);
     assert_eq!(output.status.code(), Some(5), "{}", told(&output));
     // A face that is a fan without end, in both formats that have faces of any length.

@@ -13,6 +13,7 @@ mod model;
 mod one_camera;
 mod pictures;
 mod printed;
+mod program;
 mod refusals;
 mod resolve;
 mod robust;

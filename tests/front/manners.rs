@@ -3,19 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use crate::program::{folder, shiftvox, stderr_of, stdout_of};
 
 const SCENE: &str = "gen:sphere,depth=3";
-
-fn shiftvox(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder);
-    command
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
 
 fn names(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
@@ -24,14 +14,6 @@ fn names(folder: &Path) -> Vec<String> {
         .collect();
     names.sort();
     names
-}
-
-fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
-}
-
-fn stdout_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
 }
 
 #[test]
@@ -291,14 +273,8 @@ fn a_recorded_run_can_be_repeated() {
     let again = stdout_of(&shiftvox(folder.path()).args(line).assert().success());
     assert_eq!(again, hash);
     // The command line comes first.
-    let line = [
-        "render",
-        "--config",
-        "run/config.toml",
-        "--hash",
-        "--size",
-        "8",
-    ];
+    let line = "render --config run/config.toml --hash --size 8";
+    let line: Vec<&str> = line.split(' ').collect();
     let smaller = stdout_of(&shiftvox(folder.path()).args(line).assert().success());
     assert_ne!(smaller, hash);
     shiftvox(folder.path())

@@ -6,28 +6,10 @@ use std::time::{Duration, Instant};
 
 use assert_cmd::Command;
 use assert_cmd::assert::Assert;
-use serde_json::Value;
+
+use crate::program::{folder, json_of, run, stderr_of};
 
 const SCENE: &str = "gen:sphere,depth=3";
-
-fn run(folder: &Path, line: &[&str]) -> Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder).args(line).assert()
-}
-
-fn folder() -> tempfile::TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn stderr_of(assert: &Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
-}
-
-fn json_of(assert: &Assert) -> Value {
-    let text = &assert.get_output().stdout;
-    serde_json::from_slice(text)
-        .unwrap_or_else(|e| panic!("{e}: {}", String::from_utf8_lossy(text)))
-}
 
 #[test]
 fn what_stands_in_the_way_is_told_before_the_work() {
@@ -154,26 +136,6 @@ fn verbs_agree_about_scenes_that_do_not_exist() {
     ] {
         run(folder.path(), line).code(4);
     }
-}
-
-#[test]
-fn a_wrong_name_is_told_before_other_scenes_are_made() {
-    let folder = folder();
-    let line = [
-        "reproduce",
-        "--growing",
-        "gen:terrain,depth=3",
-        "--outdir",
-        "r",
-    ];
-    let started = Instant::now();
-    let assert = run(folder.path(), &line).code(4);
-    assert!(stderr_of(&assert).contains("from 5 to 16"));
-    assert!(
-        started.elapsed() < Duration::from_secs(1),
-        "{:?}",
-        started.elapsed()
-    );
 }
 
 #[test]

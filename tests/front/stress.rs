@@ -1,51 +1,18 @@
-//! `stress` and `reproduce` as a script meets them.
+//! `stress` as a script meets it.
 
 use std::fs;
-use std::path::Path;
 
-use assert_cmd::Command;
 use serde_json::Value;
 
-fn shiftvox(folder: &Path, line: &[&str]) -> assert_cmd::assert::Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
-    command.current_dir(folder).args(line);
-    command.assert()
-}
-
-fn stdout_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
-}
-
-fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
-}
+use crate::program::{run, stderr_of, stdout_of};
 
 #[test]
 fn a_sweep_is_told_in_every_form() {
     let folder = tempfile::tempdir().unwrap();
-    let line = [
-        "stress",
-        "gen:shell,depth=3",
-        "cyclic:4,1",
-        "--bits",
-        "16,32",
-        "--size",
-        "16",
-        "--rules",
-        "1",
-        "--viewpoints",
-        "0",
-        "--json",
-        "--export-json",
-        "s.json",
-        "--export-csv",
-        "s.csv",
-        "--export-markdown",
-        "s.md",
-        "--export-svg",
-        "s.svg",
-    ];
-    let told = shiftvox(folder.path(), &line).success();
+    let line = "stress gen:shell,depth=3 cyclic:4,1 --bits 16,32 --size 16 --rules 1 --viewpoints 0 \
+        --json --export-json s.json";
+    let line: Vec<&str> = line.split(' ').collect();
+    let told = run(folder.path(), &line).success();
     let document: Value = serde_json::from_str(&stdout_of(&told)).unwrap();
     assert_eq!(document["schema"], "shiftvox.stress");
     // Two scenes, thirteen viewpoints, two widths with three fractions each.
@@ -57,10 +24,8 @@ fn a_sweep_is_told_in_every_form() {
         serde_json::from_str::<Value>(&read("s.json")).unwrap(),
         document
     );
-    assert!(read("s.csv").starts_with("scene,bits,coverage,tolerance_px,cases"));
-    assert!(read("s.svg").contains("by bits of a word and scene"));
     // Nothing is replaced unasked.
-    let again = shiftvox(folder.path(), &line).code(1);
+    let again = run(folder.path(), &line).code(1);
     assert!(stderr_of(&again).contains("--force"));
 }
 
@@ -68,51 +33,19 @@ fn a_sweep_is_told_in_every_form() {
 fn one_case_is_told_and_a_wrong_one_refused() {
     let folder = tempfile::tempdir().unwrap();
     let case = "scene=gen:shell,depth=3;eye=20,-9,7;target=4,4,4;bits=32;tolerance=0";
-    let told = shiftvox(folder.path(), &["stress", "--case", case]).success();
+    let told = run(folder.path(), &["stress", "--case", case]).success();
     let text = stdout_of(&told);
     assert!(
         text.contains("drawn with") && text.contains("0 extra, 0 missing"),
         "{text}"
     );
     assert!(text.contains("clip space, both cages"), "{text}");
-    let wrong = shiftvox(folder.path(), &["stress", "--case", "scene=ball"]).code(2);
+    let wrong = run(folder.path(), &["stress", "--case", "scene=ball"]).code(2);
     assert!(
         stderr_of(&wrong).contains("is no scene"),
         "{}",
         stderr_of(&wrong)
     );
-    shiftvox(folder.path(), &["stress", "--case", case, "--thorough"]).code(2);
-    shiftvox(folder.path(), &["stress", "--bits", "65"]).code(2);
-}
-
-#[test]
-fn the_papers_results_are_counted_the_same_in_every_run() {
-    let folder = tempfile::tempdir().unwrap();
-    let line = [
-        "reproduce",
-        "--sides",
-        "16,32",
-        "--object-side",
-        "32",
-        "--runs",
-        "1",
-        "--growing",
-        "gen:terrain,depth=5;gen:terrain,depth=6",
-        "--outdir",
-    ];
-    let run = |outdir: &str| {
-        let assert = shiftvox(folder.path(), &[&line[..], &[outdir]].concat()).success();
-        assert!(stdout_of(&assert).contains("Table I"));
-        let text = fs::read_to_string(folder.path().join(outdir).join("results.json")).unwrap();
-        serde_json::from_str::<Value>(&text).unwrap()
-    };
-    let (one, two) = (run("one"), run("two"));
-    assert!(folder.path().join("two/figures.svg").exists());
-    // A simple scene at two sizes, and six more at one of them; the paper's settings and the default ones.
-    assert_eq!(one["evidence"].as_array().unwrap().len(), 2 * (2 + 6));
-    assert_eq!(one["evidence"], two["evidence"]);
-    let page = fs::read_to_string(folder.path().join("one/report.md")).unwrap();
-    for part in ["Table I", "occlusion order", "Objects at one size"] {
-        assert!(page.contains(part), "{part}");
-    }
+    run(folder.path(), &["stress", "--case", case, "--thorough"]).code(2);
+    run(folder.path(), &["stress", "--bits", "65"]).code(2);
 }

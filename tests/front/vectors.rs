@@ -7,15 +7,13 @@ use std::path::Path;
 use assert_cmd::Command;
 use serde_json::Value;
 
+use crate::program::stderr_of;
+
 fn model(folder: &Path, more: &[&str]) -> assert_cmd::assert::Assert {
     let mut command = Command::cargo_bin("shiftvox").unwrap();
     command.current_dir(folder);
     command.args(["model", "gen:menger,depth=2", "--size", "24"]);
     command.args(more).assert()
-}
-
-fn stderr_of(assert: &assert_cmd::assert::Assert) -> String {
-    String::from_utf8_lossy(&assert.get_output().stderr).into_owned()
 }
 
 /// The files of a folder with their bytes.

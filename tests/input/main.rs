@@ -5,6 +5,7 @@ mod generators;
 mod input_support;
 mod npy;
 mod ply;
+mod vox_damaged;
 mod vox_files;
 mod vox_graphs;
 mod vox_shared;

@@ -214,7 +214,7 @@ fn draw_graph(graph: &Graph, shading: Shading, background: Background) {
         is_hashed: true,
     };
     let up = shiftvox::Up::Z;
-    let engine = || -> Box<dyn shiftvox::project::Engine> {
+    let engine = || -> Box<dyn shiftvox::project::Engine + Send> {
         Box::new(Fast::new(
             FastOptions::default(),
             Box::new(Machine::default()),

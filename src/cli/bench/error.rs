@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::args::check_sizes;
 use super::meshes::MeshMethodArgs;
-use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
+use super::picture_export as pictures;
 use super::select::SelectArgs;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
@@ -17,10 +17,9 @@ use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
 use crate::lab::bench::{Schedule, Subject};
 use crate::lab::error::{
-    self as experiment, DrawingMethod, ErrorPlan, PixelStyle, SceneErrors, VoxelMethod,
+    self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, voxel_method,
 };
 use crate::project::{Coverage, SetupOptions};
-use crate::report::html::Page;
 
 /// Scenes where none is named: a model, a landscape, a sponge, thin things.
 pub(super) const SCENES: [&str; 5] = [
@@ -66,10 +65,6 @@ pub(super) struct ErrorArgs {
     scene: SceneArgs,
     #[command(flatten)]
     export: ExportArgs,
-    #[command(flatten)]
-    page: PagesArgs,
-    #[command(flatten)]
-    strips: StripsArgs,
 }
 
 /// How references are sampled.
@@ -105,7 +100,7 @@ pub(super) fn run(
         ..args.scene.clone()
     };
     export::check(&args.export)?;
-    pictures::check(&args.page, &args.export, &names)?;
+    pictures::check(None, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let context = Context::now();
     context.warn(console);
@@ -134,8 +129,7 @@ pub(super) fn run(
             references = experiment::References::of_triangles(&mesh.mesh);
         }
         let progress = console.progress();
-        let measured =
-            experiment::measure(&subject, &mut methods, &plan, &mut references, progress)?;
+        let measured = experiment::measure(&subject, &methods, &plan, &mut references, progress)?;
         scenes.push(measured);
     }
     write(args, &scenes, &context, plan.schedule, console)
@@ -162,29 +156,24 @@ fn methods<'s>(
     options: &[SetupOptions],
     subject: &'s Subject,
     style: PixelStyle,
-) -> Vec<Box<dyn DrawingMethod + 's>> {
+) -> Vec<Method<'s>> {
     let asked = |name: &str| match select.engines.as_slice() {
         [] => name == engines::FAST.name,
         given => given.iter().any(|given| given == name),
     };
     let chosen = engines::CANDIDATES.iter().filter(|c| asked(c.name));
-    let mut methods: Vec<Box<dyn DrawingMethod + 's>> = Vec::new();
+    let mut methods: Vec<Method<'s>> = Vec::new();
     for engine in chosen {
         for &options in options {
             let engine = (engine.name, engine.make);
-            methods.push(Box::new(VoxelMethod::new(
-                &subject.graph,
-                engine,
-                options,
-                style,
-            )));
+            methods.push(voxel_method(&subject.graph, engine, options, style));
         }
     }
     methods
 }
 
-/// What pages and folders show pictures of: the default, the image-order paper, other
-/// rules, more samples; and whatever nothing beats.
+/// What is shown by octree level: the default, the image-order paper, other rules, more
+/// samples.
 fn is_shown(method: &str) -> bool {
     const SHOWN: [&str; 5] = [
         "exact frame",
@@ -213,88 +202,11 @@ fn write(
         .iter()
         .map(|scene| (scene.scene.clone(), experiment::panels(scene)))
         .collect();
-    if let Some(folder) = &args.strips.strips {
-        write_strips(folder, scenes, args.export.force)?;
-        console.note(format!("{}: strips written", folder.display()));
-    }
     pictures::write_plots(&args.export, &panels, console)?;
-    let preface = context.markdown(schedule);
-    let page = || page(scenes, &preface);
-    pictures::write_page(&args.page, &args.export, page, console)?;
     let results = Results {
-        more_tables: Vec::new(),
         document: report::document("bench error", fields),
-        rows: experiment::rows(scenes),
         tables,
-        preface: preface.clone(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)
-}
-
-/// The methods of a scene that are worth a look: those named, and those that nothing beats.
-fn worth_a_look(scene: &SceneErrors) -> impl Iterator<Item = (&str, &[[u8; 4]])> {
-    let beaten_by = experiment::beaten_by(&scene.rows);
-    let rows = scene.rows.iter().zip(&scene.pictures).zip(beaten_by);
-    rows.filter(|((row, picture), beaten_by)| {
-        !picture.is_empty() && (beaten_by.is_none() || is_shown(&row.method))
-    })
-    .map(|((row, picture), _)| (row.method.as_str(), picture.as_slice()))
-}
-
-fn write_strips(
-    folder: &std::path::Path,
-    scenes: &[SceneErrors],
-    force: bool,
-) -> Result<(), CliError> {
-    for scene in scenes {
-        let size = (scene.width, scene.height);
-        for (method, picture) in worth_a_look(scene) {
-            let png = pictures::strip(size, picture, &scene.reference.rgba)?;
-            pictures::write_strip(folder, &scene.scene, method, &png, force)?;
-        }
-    }
-    Ok(())
-}
-
-fn page(scenes: &[SceneErrors], preface: &str) -> Result<Page, CliError> {
-    let mut page = Page::new("Run time against error");
-    page.lines(preface.trim());
-    page.text(
-        "Times are of one thread, and only as good as the machine was idle; operations are those \
-         of the machine with the same settings, and the same in every run. Extra and missing are \
-         samples against exact rays through the same points; elsewhere: samples that show a voxel \
-         which neither is nor holds the right one; coarser: a voxel that holds it, by level of \
-         detail. The reference has many exact rays a pixel, so one sample a pixel cannot come near \
-         it, however exact. Bias: area covered too much, thin: on pixels of things thinner than a \
-         pixel. A mesh's reference has 256 samples of its triangles a pixel. Beaten by: a method \
-         with no more operations, no more wrong coverage and no greater error, and less of one.",
-    );
-    for scene in scenes {
-        page.chapter(&format!("{}, {} voxels", scene.scene, scene.voxels));
-        let size = (scene.width, scene.height);
-        page.section("Result, reference, difference (four times as bright)");
-        let mut strips = Vec::new();
-        for (method, picture) in worth_a_look(scene).filter(|(method, _)| is_shown(method)) {
-            let png = pictures::strip(size, picture, &scene.reference.rgba)?;
-            strips.push((png, method));
-        }
-        let strips: Vec<(&[u8], &str)> = strips.iter().map(|(p, m)| (p.as_slice(), *m)).collect();
-        for strip in strips {
-            page.pictures(&[strip]);
-        }
-        page.section("What is worth having");
-        pictures::plots(
-            &mut page,
-            &experiment::panels(scene),
-            "Grey: dominated. The line joins what is not.",
-        )?;
-        page.section("Numbers");
-        page.table(&experiment::table(scene));
-        let vertices = experiment::vertex_table(scene, &is_shown);
-        if !vertices.rows.is_empty() {
-            page.table(&vertices);
-        }
-    }
-    Ok(page)
 }

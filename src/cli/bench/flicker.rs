@@ -5,7 +5,7 @@ use serde_json::json;
 
 use super::error::{SCENES, reference_size};
 use super::meshes::MeshMethodArgs;
-use super::picture_export::{self as pictures, PagesArgs};
+use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::CliError;
@@ -13,10 +13,9 @@ use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::experiment::subjects;
 use crate::cli::{engines, report};
-use crate::lab::error::{DrawingMethod, PixelStyle, References, VoxelMethod};
+use crate::lab::error::{PixelStyle, References, voxel_method};
 use crate::lab::flicker::{self as experiment, FilmPlan, Films, Motion};
 use crate::project::{Coverage, SetupOptions};
-use crate::report::html::Page;
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 128;
@@ -61,8 +60,6 @@ pub(super) struct FlickerArgs {
     scene: SceneArgs,
     #[command(flatten)]
     export: ExportArgs,
-    #[command(flatten)]
-    page: PagesArgs,
 }
 
 impl FlickerArgs {
@@ -117,7 +114,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
-    pictures::check(&args.page, &args.export, &names)?;
+    pictures::check(None, &args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
     let plan = FilmPlan {
@@ -130,14 +127,7 @@ pub(super) fn run(
     for name in &names {
         let subject = subjects::open(name, &args.camera, &args.scene, size, console)?;
         let engine = (engines::FAST.name, engines::FAST.make);
-        let method = |options| -> Box<dyn DrawingMethod + '_> {
-            Box::new(VoxelMethod::new(
-                &subject.graph,
-                engine,
-                options,
-                plan.style,
-            ))
-        };
+        let method = |options| voxel_method(&subject.graph, engine, options, plan.style);
         let mesh = args.meshes.open(name, &args.scene, console)?;
         let mut methods: Vec<_> = if args.meshes.has_voxels(mesh.is_some()) {
             let blends = !subject.graph.opacity.is_empty();
@@ -155,7 +145,7 @@ pub(super) fn run(
             films.push(experiment::film(
                 &subject,
                 motion,
-                &mut methods,
+                &methods,
                 &plan,
                 &mut references,
                 console.progress(),
@@ -175,30 +165,10 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
         })
         .collect();
     pictures::write_plots(&args.export, &panels, console)?;
-    let page = || {
-        let mut page = Page::new("Flicker and pop");
-        page.text(
-            "Flicker: root of the mean square, over pixels, channels and frames, of what changes \
-             from frame to frame other than in the reference. Pop: the same camera, drawn with \
-             what level of detail takes for solids now and a frame ago; it has a plot where there \
-             is any. Both in linear light, thousandths of white.",
-        );
-        for (films, (scene, panels)) in by_scene.iter().zip(&panels) {
-            page.chapter(scene);
-            pictures::plots(&mut page, panels, "")?;
-            page.table(&experiment::table(films).without(&["scene"]));
-        }
-        Ok(page)
-    };
-    pictures::write_page(&args.page, &args.export, page, console)?;
-    let rows = experiment::table(films);
     let tables = by_scene.iter().map(|films| experiment::table(films));
     let results = Results {
-        more_tables: Vec::new(),
         document: report::document("bench flicker", json!({ "films": films })),
         tables: tables.collect(),
-        rows,
-        preface: "The same in every run.\n".to_owned(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)

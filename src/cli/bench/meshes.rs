@@ -11,12 +11,11 @@ use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::subjects::BUNDLED;
 use crate::cli::scenes;
 use crate::drawing::milliseconds_since;
-use crate::far::blend::Blend;
 use crate::far::store::encode;
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile, build};
-use crate::lab::error::{DrawingMethod, PixelStyle};
-use crate::lab::methods::{FarMethod, FarSettings, TrianglesMethod};
+use crate::lab::error::{Method, PixelStyle};
+use crate::lab::methods;
 use crate::mesh::Mesh;
 
 /// Samples a pixel that triangles are drawn with.
@@ -51,9 +50,6 @@ pub(super) struct MeshMethodArgs {
         default_value = "1,2"
     )]
     far_lods: Vec<f64>,
-    /// Build far voxels with other blends too
-    #[arg(long)]
-    far_blends: bool,
 }
 
 impl MeshMethodArgs {
@@ -77,34 +73,15 @@ impl MeshMethodArgs {
             return Ok(None);
         }
         let (mesh, _) = scenes::read_mesh(name, args, console.progress())?;
-        let mut files = Vec::new();
+        let mut far = None;
         if self.has(FamilyName::Far) {
-            for (label, options) in self.builds() {
-                files.push((label, far_of(&mesh, &options, console)?.0));
-            }
-        }
-        Ok(Some(MeshScene { mesh, files }))
-    }
-
-    fn builds(&self) -> Vec<(&'static str, BuildOptions)> {
-        let usual = BuildOptions {
-            rays: self.far_rays,
-            ..BuildOptions::default()
-        };
-        let mut builds = vec![("", usual)];
-        if self.far_blends {
-            let squares = BuildOptions {
-                opacity_blend: Blend::Squares,
-                ..usual
+            let options = BuildOptions {
+                rays: self.far_rays,
+                ..BuildOptions::default()
             };
-            let cosines = BuildOptions {
-                shader_blend: Blend::Cosines,
-                ..usual
-            };
-            builds.push(("opacities by squares", squares));
-            builds.push(("shaders by cosines", cosines));
+            far = Some(far_of(&mesh, &options, console)?.0);
         }
-        builds
+        Ok(Some(MeshScene { mesh, far }))
     }
 
     /// The methods of a mesh but for the image-order engine's.
@@ -115,37 +92,21 @@ impl MeshMethodArgs {
         &self,
         scene: &'m MeshScene,
         style: PixelStyle,
-    ) -> Result<Vec<Box<dyn DrawingMethod + 'm>>, CliError> {
-        let mut methods: Vec<Box<dyn DrawingMethod + 'm>> = Vec::new();
+    ) -> Result<Vec<Method<'m>>, CliError> {
+        let mut all: Vec<Method<'m>> = Vec::new();
         if self.has(FamilyName::Triangles) {
             for samples in TRIANGLE_SAMPLES {
-                let method = TrianglesMethod::new(&scene.mesh, samples, style);
-                methods.push(Box::new(method.map_err(|e| CliError::new(Kind::Run, e))?));
+                let method = methods::triangles(&scene.mesh, samples, style);
+                all.push(method.map_err(|e| CliError::new(Kind::Run, e))?);
             }
         }
-        for (label, file) in &scene.files {
-            // Blends are seen where there are six opacities.
-            let opacities: &[Opacity] = if label.is_empty() {
-                &[Opacity::None, Opacity::Scalar, Opacity::Six]
-            } else {
-                &[Opacity::Six]
-            };
+        if let Some(file) = &scene.far {
             for &voxel_px in &self.far_lods {
-                methods.extend(
-                    opacities
-                        .iter()
-                        .map(|&opacity| -> Box<dyn DrawingMethod + 'm> {
-                            let settings = FarSettings {
-                                file: (*label).to_owned(),
-                                opacity,
-                                voxel_px,
-                            };
-                            Box::new(FarMethod::new(file, settings, style))
-                        }),
-                );
+                let opacities = [Opacity::None, Opacity::Scalar, Opacity::Six].into_iter();
+                all.extend(opacities.map(|opacity| methods::far(file, opacity, voxel_px, style)));
             }
         }
-        Ok(methods)
+        Ok(all)
     }
 }
 
@@ -165,5 +126,5 @@ pub(super) fn far_of(
 /// A scene that is a mesh, and its far voxels.
 pub(super) struct MeshScene {
     pub(super) mesh: Mesh,
-    files: Vec<(&'static str, FarFile)>,
+    far: Option<FarFile>,
 }

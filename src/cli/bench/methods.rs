@@ -1,6 +1,6 @@
 //! `bench methods`: all ways to draw a mesh, side by side.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::error::reference_size;
 use super::meshes::{TRIANGLE_SAMPLES, far_of};
-use super::picture_export::{self as pictures, PagesArgs, StripsArgs};
+use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
@@ -16,23 +16,20 @@ use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::{engines, report, scenes};
-use crate::drawing::milliseconds_since;
+use crate::drawing::{Erosion, milliseconds_since};
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
 use crate::lab::bench::Schedule;
-use crate::lab::error::{DrawingMethod, PixelStyle, Refused, VoxelMethod};
+use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
-use crate::lab::methods::{
-    self as experiment, Distance, Facts, FarMethod, FarSettings, MeshMethods, MethodsPlan,
-    TexturedMethod, TrianglesMethod,
-};
+use crate::lab::methods::{self as experiment, Distance, Facts, MeshMethods, MethodsPlan};
 use crate::mesh::{Mesh, Surface, mesh_box};
 use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
 use crate::report::plot::Panel;
-use crate::textured::view::Detail;
 use crate::textured::{self, TexturedFile};
+use crate::whole;
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 256;
@@ -89,15 +86,14 @@ pub(super) struct MethodsArgs {
     scene: SceneArgs,
     #[command(flatten)]
     export: ExportArgs,
-    #[command(flatten)]
-    page: PagesArgs,
-    #[command(flatten)]
-    strips: StripsArgs,
+    /// One page with tables, plots and pictures, which needs no other file
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    export_html: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError> {
     export::check(&args.export)?;
-    pictures::check(&args.page, &args.export, &args.meshes)?;
+    pictures::check(args.export_html.as_deref(), &args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     if size.0.min(size.1) < args.least {
@@ -195,20 +191,20 @@ fn textured_of(
 }
 
 /// A method, and what is known of it.
-type Candidate<'m> = (Facts, Box<dyn DrawingMethod + 'm>);
+type Candidate<'m> = (Facts, Method<'m>);
 
 fn candidate<'m>(
     label: impl Into<String>,
     bytes: u64,
     build_ms: f64,
-    method: impl DrawingMethod + 'm,
+    method: Method<'m>,
 ) -> Candidate<'m> {
     let facts = Facts {
         label: label.into(),
         bytes,
         build_ms,
     };
-    (facts, Box::new(method))
+    (facts, method)
 }
 
 /// All methods that take part. Another one joins here.
@@ -221,7 +217,7 @@ fn methods<'m>(
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
         for samples in TRIANGLE_SAMPLES {
-            let method = TrianglesMethod::new(mesh, samples, style)?;
+            let method = experiment::triangles(mesh, samples, style)?;
             let label = format!("triangles, {samples}");
             all.push(candidate(label, mesh.bytes(), 0.0, method));
         }
@@ -246,7 +242,7 @@ fn methods<'m>(
                 _ => opaque,
             };
             let engine = (engines::FAST.name, engines::FAST.make);
-            let method = VoxelMethod::new(graph, engine, options, style);
+            let method = voxel_method(graph, engine, options, style);
             all.push(candidate(label, graph.bytes(), *ms, method));
         }
     }
@@ -257,23 +253,23 @@ fn methods<'m>(
             ("far six", Opacity::Six),
         ];
         for (label, opacity) in opacities {
-            let settings = FarSettings {
-                opacity,
-                ..FarSettings::default()
-            };
-            let method = FarMethod::new(file, settings, style);
+            let method = experiment::far(file, opacity, 1.0, style);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
     if let Some([(paper, paper_ms), (file, ms)]) = &made.textured {
         for level in 0..2 {
-            let method = TexturedMethod::new(paper, Detail::Level { grid: 0, level }, 1, style)?;
+            let erosion = Erosion::Level {
+                level,
+                cells: Some(paper.grid(0).cell_grid().cells()),
+            };
+            let method = experiment::textured(paper, erosion, 0, style);
             let label = format!("textured 16, eroded {level}");
             all.push(candidate(label, paper.len(), *paper_ms, method));
         }
-        for samples in [1, 4] {
-            let detail = Detail::Auto { texel_px: 1.0 };
-            let method = TexturedMethod::new(file, detail, samples, style)?;
+        for (aa_log2, samples) in [(0, 1), (1, 4)] {
+            let erosion = Erosion::Auto { texel_px: 1.0 };
+            let method = experiment::textured(file, erosion, aa_log2, style);
             let label = format!("textured auto, {samples}");
             all.push(candidate(label, file.len(), *ms, method));
         }
@@ -293,7 +289,7 @@ fn measure(
     let camera = args.camera.camera(&bounds, up, size, 0.0);
     let made = Made::of(args, name, &mesh, console)?;
     let all = methods(args, &mesh, &made, plan.style).map_err(|e| CliError::new(Kind::Run, e))?;
-    let (facts, mut methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    let (facts, methods): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     let surface: &dyn Surface = &mesh;
     let progress = console.progress();
     let short = Path::new(name).file_stem().map(|s| s.to_string_lossy());
@@ -301,7 +297,7 @@ fn measure(
     Ok(experiment::measure(
         (short, surface),
         &camera,
-        &mut methods,
+        &methods,
         facts,
         plan,
         progress,
@@ -320,26 +316,18 @@ fn write(
         .map(|mesh| (mesh.mesh.clone(), experiment::panels(mesh)))
         .collect();
     pictures::write_plots(&args.export, &panels, console)?;
-    if let Some(folder) = &args.strips.strips {
-        for (mesh, distance) in all(meshes) {
-            let scene = format!("{}-{}", mesh.mesh, distance.size.1);
-            let png = strip(distance)?;
-            pictures::write_strip(folder, &scene, "all methods", &png, args.export.force)?;
-        }
-        console.note(format!("{}: strips written", folder.display()));
-    }
     let preface = context.markdown(schedule);
-    let page = || page(meshes, &panels, &preface);
-    pictures::write_page(&args.page, &args.export, page, console)?;
+    if let Some(path) = &args.export_html {
+        let page = page(meshes, &panels, &preface)?.finish();
+        whole::write(path, page.as_bytes(), args.export.force)?;
+        console.note(format!("{}: written", path.display()));
+    }
     let mut fields = context.json(schedule, &SetupOptions::default());
     fields["meshes"] = json!(meshes);
     let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));
     let results = Results {
         document: report::document("bench methods", fields),
-        rows: experiment::rows(meshes),
         tables: tables.collect(),
-        more_tables: Vec::new(),
-        preface: preface.clone(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)
@@ -368,13 +356,6 @@ fn enlarged(distance: &Distance) -> impl Iterator<Item = (usize, Vec<[u8; 4]>)> 
         let pixel = |at: usize| picture.get(at).copied().unwrap_or([255; 4]);
         (width * factor, pixels.map(pixel).collect())
     })
-}
-
-/// All pictures of a distance side by side.
-fn strip(distance: &Distance) -> Result<Vec<u8>, CliError> {
-    let pictures: Vec<(usize, Vec<[u8; 4]>)> = enlarged(distance).collect();
-    let shown = pictures.iter().map(|(_, picture)| picture.as_slice());
-    pictures::side_by_side(pictures[0].0, shown)
 }
 
 fn encode(width: usize, height: usize, pixels: &[[u8; 4]]) -> Result<Vec<u8>, CliError> {

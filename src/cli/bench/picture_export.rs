@@ -2,54 +2,27 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-
 use crate::cli::console::Console;
-use crate::cli::error::{CliError, Kind};
+use crate::cli::error::CliError;
 use crate::cli::experiment::export::ExportArgs;
 use crate::cli::experiment::subjects::file_stem;
 use crate::cli::names;
-use crate::measure::difference;
-use crate::picture::png;
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
 use crate::whole;
-
-/// A page beside the files of every experiment.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Output")]
-pub(super) struct PagesArgs {
-    /// One page with tables, plots and pictures, which needs no other file
-    #[arg(long, value_name = "FILE")]
-    pub(super) export_html: Option<PathBuf>,
-}
-
-/// Pictures beside the files of every experiment.
-#[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Output")]
-pub(super) struct StripsArgs {
-    /// Folder for strips of pictures: result, reference, and difference four times as bright
-    #[arg(long, value_name = "DIR")]
-    pub(super) strips: Option<PathBuf>,
-}
 
 /// What stands for a scene in the name of a file of plots.
 const SCENE_FIELD: &str = "{scene}";
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(
-    args: &PagesArgs,
+    page: Option<&Path>,
     export: &ExportArgs,
     scenes: &[String],
 ) -> Result<(), CliError> {
-    if let Some(path) = &args.export_html {
+    if let Some(path) = page {
         whole::check_free(path, export.force)?;
-        let others = [
-            &export.export_json,
-            &export.export_csv,
-            &export.export_markdown,
-            &export.export_svg,
-        ];
+        let others = [&export.export_json, &export.export_svg];
         if others.into_iter().flatten().any(|other| other == path) {
             let message = format!("{}: two exports to one file", path.display());
             return Err(CliError::usage(message));
@@ -100,71 +73,10 @@ pub(super) fn write_plots(
         .try_for_each(|(path, (_, panels))| write(path, panels))
 }
 
-/// Writes a page, if one is wanted.
-pub(super) fn write_page(
-    args: &PagesArgs,
-    export: &ExportArgs,
-    page: impl FnOnce() -> Result<Page, CliError>,
-    console: &Console,
-) -> Result<(), CliError> {
-    let Some(path) = &args.export_html else {
-        return Ok(());
-    };
-    whole::write(path, page()?.finish().as_bytes(), export.force)?;
-    console.note(format!("{}: written", path.display()));
-    Ok(())
-}
-
 /// The page's mention of a plot: one figure for each panel, drawn alone.
 pub(super) fn plots(page: &mut Page, panels: &[Panel], caption: &str) -> Result<(), CliError> {
     for panel in panels {
         page.plot(&plot::svg(std::slice::from_ref(panel))?, caption);
     }
-    Ok(())
-}
-
-/// Columns between the pictures of a strip.
-const GAP: usize = 4;
-
-/// Result, reference and difference of one size side by side, as a PNG file.
-pub(super) fn strip(
-    (width, height): (u32, u32),
-    result: &[[u8; 4]],
-    reference: &[[u8; 4]],
-) -> Result<Vec<u8>, CliError> {
-    let apart = difference((width, height, result), (width, height, reference));
-    let apart = apart.map_err(|e| CliError::new(Kind::Run, e))?;
-    side_by_side(width as usize, [result, reference, &apart].into_iter())
-}
-
-/// Pictures of one size side by side, as a PNG file. `width`: pixels across of each.
-pub(super) fn side_by_side<'p>(
-    width: usize,
-    pictures: impl Iterator<Item = &'p [[u8; 4]]> + Clone,
-) -> Result<Vec<u8>, CliError> {
-    let height = pictures.clone().next().map_or(0, <[_]>::len) / width.max(1);
-    let mut strip = Vec::new();
-    for y in 0..height {
-        for (place, picture) in pictures.clone().enumerate() {
-            if place > 0 {
-                strip.extend([[255; 4]; GAP]);
-            }
-            strip.extend(&picture[y * width..(y + 1) * width]);
-        }
-    }
-    let across = strip.len() / height.max(1);
-    png::encode(across as u32, height as u32, &strip).map_err(|e| CliError::new(Kind::Run, e))
-}
-
-/// Writes a strip into the folder of `--strips`.
-pub(super) fn write_strip(
-    folder: &Path,
-    scene: &str,
-    method: &str,
-    png: &[u8],
-    force: bool,
-) -> Result<(), CliError> {
-    let name = format!("{}--{}.png", file_stem(scene), file_stem(method));
-    whole::write(&folder.join(name), png, force)?;
     Ok(())
 }

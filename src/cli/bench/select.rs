@@ -10,9 +10,6 @@ use crate::project::{CageKind, Coverage, SetupOptions};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Settings that are measured")]
 pub(super) struct SelectArgs {
-    /// All combinations of all values: thousands, hours
-    #[arg(long)]
-    full: bool,
     /// Drawing rules
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub(super) coverages: Vec<Coverage>,
@@ -101,7 +98,7 @@ impl SelectArgs {
             && self.bits.is_empty()
             && self.lods.is_empty()
             && self.aas.is_empty());
-        let choices = if self.full || listed {
+        let choices = if listed {
             self.combinations()
         } else {
             standard()
@@ -110,36 +107,25 @@ impl SelectArgs {
     }
 
     fn combinations(&self) -> Vec<Choice> {
-        /// What was listed; else, with `--full`, everything; else the default alone.
-        fn list<T: Copy>(given: &[T], full: bool, all: &[T]) -> Vec<T> {
-            match (given, full) {
-                ([], true) => all.to_vec(),
-                ([], false) => all[..1].to_vec(),
-                (given, _) => given.to_vec(),
+        /// What was listed, or else the default alone.
+        fn list<T: Copy>(given: &[T], default: T) -> Vec<T> {
+            match given {
+                [] => vec![default],
+                given => given.to_vec(),
             }
         }
         let tolerances: Vec<f64> = self.tolerances.iter().map(|t| t.0).collect();
-        let inf = f64::INFINITY;
-        let all = [0.125, 0.0, 1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.5, inf];
         let mut choices = Vec::new();
-        for coverage in list(&self.coverages, self.full, &COVERAGES) {
+        for coverage in list(&self.coverages, COVERAGES[0]) {
             let tolerances = match has_tolerances(coverage) {
-                true => list(&tolerances, self.full, &all),
+                true => list(&tolerances, 0.125),
                 false => vec![0.0],
             };
-            // The rule's own default first.
-            let default = Choice::default_with(coverage).lod;
-            let mut lods = vec![default];
-            lods.extend(
-                [0.0, 0.5, 1.0, 2.0]
-                    .into_iter()
-                    .filter(|&lod| lod != default),
-            );
-            let lods = list(&self.lods, self.full, &lods);
-            for cage in list(&self.cages, self.full, &CAGES) {
-                for bits in list(&self.bits, self.full, &[64, 48, 32, 24, 20, 16]) {
+            let lods = list(&self.lods, Choice::default_with(coverage).lod);
+            for cage in list(&self.cages, CAGES[0]) {
+                for bits in list(&self.bits, 64) {
                     for &lod in &lods {
-                        for aa_log2 in list(&self.aas, self.full, &[0, 1, 2]) {
+                        for aa_log2 in list(&self.aas, 0) {
                             choices.extend(tolerances.iter().map(|&tolerance| Choice {
                                 coverage,
                                 tolerance,
@@ -198,7 +184,6 @@ mod tests {
     #[test]
     fn the_standard_settings_are_unlike_each_other_and_begin_with_the_default() {
         let none = SelectArgs {
-            full: false,
             coverages: Vec::new(),
             tolerances: Vec::new(),
             cages: Vec::new(),
@@ -213,11 +198,6 @@ mod tests {
         for (place, options) in standard.iter().enumerate() {
             assert!(!standard[..place].contains(options), "{options:?}");
         }
-        let full = SelectArgs {
-            full: true,
-            ..none.clone()
-        };
-        assert_eq!(full.options().len(), (1 + 2 * 7) * 2 * 6 * 4 * 3);
         let some = SelectArgs {
             bits: vec![24, 32],
             aas: vec![1],

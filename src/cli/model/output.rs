@@ -3,22 +3,20 @@
 use std::path::Path;
 
 use hwmodel::memory::RecordKind;
-use hwmodel::statistics::{Statistics, Value as Figure};
+use hwmodel::statistics::Statistics;
 use serde_json::{Value, json};
 
 use super::args::ModelArgs;
 use super::findings::Findings;
-use super::summary::{long_tables, short_tables, summary};
+use super::summary::{short_tables, summary};
 use super::{page, trace};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
-use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
 use crate::lab::model::{caches, cost, floor, heat, plots, record, statistics};
 use crate::picture::png;
 use crate::report::plot::Panel;
-use crate::report::{Cell, Table};
 use crate::whole;
 
 /// Fails before the work where a file would be replaced without `--force`.
@@ -83,31 +81,10 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
     printed.extend(short_tables(found));
     let results = Results {
         document: document(found, &list),
-        rows: rows(&list),
         tables: printed,
-        more_tables: long_tables(found),
-        preface: Context::now().command_line() + "\n",
         panels,
     };
     export::write(&results, &args.export, console)
-}
-
-/// Statistics as rows.
-fn rows(list: &Statistics) -> Table {
-    let mut table = Table::new("Statistics", &["name", "value", "unit", "description"]);
-    for statistic in list.iter() {
-        let value = match statistic.value {
-            Figure::Count(count) => Cell::from(count),
-            Figure::Measure(measure) => Cell::Number(measure, 6),
-        };
-        table.rows.push(vec![
-            Cell::Text(statistic.name.clone()),
-            value,
-            Cell::Text(statistic.unit.clone()),
-            Cell::Text(statistic.description.clone()),
-        ]);
-    }
-    table
 }
 
 /// All plots.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rayon::ThreadPoolBuilder;
 use serde::{Serialize, Serializer};
 
-use super::method::{DrawingMethod, Refused, Shown, VertexLevel, over_levels};
+use super::method::{Examined, Method, Refused, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::PixelStyle;
@@ -269,7 +269,7 @@ impl Exact {
 /// picture is no error but a row with the reason.
 pub fn measure(
     subject: &Subject,
-    methods: &mut [Box<dyn DrawingMethod + '_>],
+    methods: &[Method<'_>],
     plan: &ErrorPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
@@ -293,22 +293,26 @@ pub fn measure(
         .map_err(mismatch)?;
 
     let mut exact: Vec<Exact> = Vec::new();
-    let mut shown: Vec<Result<(Shown, Judged), Refused>> = Vec::new();
+    let mut shown: Vec<Result<(Vec<[u8; 4]>, Examined, Judged), Refused>> = Vec::new();
     progress.begin("judging pictures", methods.len() as u64);
-    for method in &mut *methods {
-        let drawn = method.begin(&camera).and_then(|()| method.show());
-        method.end();
-        let aa = |shown: &Shown| shown.samples.as_ref().map_or(0, |samples| samples.aa_log2);
-        if let Ok(shown) = &drawn
-            && !exact.iter().any(|exact| exact.aa_log2 == aa(shown))
+    for method in methods {
+        let drawn = method.show(&camera);
+        let aa = |examined: &Examined| {
+            examined
+                .samples
+                .as_ref()
+                .map_or(0, |samples| samples.aa_log2)
+        };
+        if let Ok((_, examined)) = &drawn
+            && !exact.iter().any(|exact| exact.aa_log2 == aa(examined))
         {
-            exact.push(Exact::new(subject, &camera, aa(shown), plan.style)?);
+            exact.push(Exact::new(subject, &camera, aa(examined), plan.style)?);
         }
         shown.push(match drawn {
-            Ok(shown) => {
-                let exact = exact.iter().find(|exact| exact.aa_log2 == aa(&shown));
-                let judged = judged(&shown, exact, &judge, subject).map_err(mismatch)?;
-                Ok((shown, judged))
+            Ok((rgba, examined)) => {
+                let exact = exact.iter().find(|exact| exact.aa_log2 == aa(&examined));
+                let judged = judged(&rgba, &examined, exact, &judge, subject).map_err(mismatch)?;
+                Ok((rgba, examined, judged))
             }
             Err(refused) => Err(refused),
         });
@@ -319,7 +323,7 @@ pub fn measure(
     let taking_part: Vec<bool> = shown.iter().map(Result::is_ok).collect();
     let mut times = Vec::new();
     for (heat, taking_part) in methods
-        .chunks_mut(MOST_IN_TURN)
+        .chunks(MOST_IN_TURN)
         .zip(taking_part.chunks(MOST_IN_TURN))
     {
         times.extend(race(heat, taking_part, &camera, plan.schedule, progress)?);
@@ -327,28 +331,28 @@ pub fn measure(
     let mut rows = Vec::new();
     let mut pictures = Vec::new();
     for ((method, shown), (wall, thread)) in methods.iter().zip(shown).zip(times) {
-        let outcome = shown.map(|(shown, judged)| {
-            pictures.push(shown.picture.rgba);
+        let outcome = shown.map(|(rgba, examined, judged)| {
+            pictures.push(rgba);
             Outcome {
                 samples: judged.samples,
                 depth_voxels: judged.depth_voxels,
-                vertex_px: over_levels(&shown.vertices),
-                vertex_levels: shown.vertices,
+                vertex_px: over_levels(&examined.vertices),
+                vertex_levels: examined.vertices,
                 picture: judged.picture,
                 wall,
                 thread,
-                counters: shown.counters,
-                remark: shown.remark,
+                counters: examined.counters,
+                remark: examined.remark,
             }
         });
         if outcome.is_err() {
             pictures.push(Vec::new());
         }
         rows.push(MethodErrors {
-            method: method.name(),
-            family: method.family(),
-            settings: method.settings(),
-            kind: method.kind(),
+            method: method.name.clone(),
+            family: method.family,
+            settings: method.settings.clone(),
+            kind: method.kind.clone(),
             outcome,
         });
     }
@@ -372,29 +376,24 @@ struct Judged {
 }
 
 fn judged(
-    shown: &Shown,
+    rgba: &[[u8; 4]],
+    examined: &Examined,
     exact: Option<&Exact>,
     judge: &Judge<'_>,
     subject: &Subject,
 ) -> Result<Judged, crate::measure::SizeError> {
     let graph = &subject.graph;
-    let samples = shown
-        .samples
-        .as_ref()
-        .zip(exact)
-        .map(|(samples, exact)| SampleError {
+    // Triangles and far voxels have none: they are elsewhere than the voxels of the graph.
+    let samples = examined.samples.as_ref().zip(exact);
+    let voxel = graph.placement.voxel_size;
+    Ok(Judged {
+        samples: samples.map(|(samples, exact)| SampleError {
             coverage: CoverageError::between(&samples.voxel, &exact.voxel),
             elsewhere: count_elsewhere(&samples.voxel, &exact.voxel, graph.depth),
-        });
-    let voxel = graph.placement.voxel_size;
-    // Triangles and far voxels are elsewhere than the voxels of the graph.
-    let exact = exact.filter(|_| shown.samples.is_some());
-    let depth_voxels =
-        exact.map(|exact| Spread::of_depths(&shown.picture.depth, &exact.picture.depth, voxel));
-    Ok(Judged {
-        samples,
-        depth_voxels,
-        picture: judge.judge(&shown.picture.rgba, &shown.shares)?,
+        }),
+        depth_voxels: samples
+            .map(|(samples, exact)| Spread::of_depths(&samples.depth, &exact.picture.depth, voxel)),
+        picture: judge.judge(rgba, &examined.shares)?,
     })
 }
 
@@ -403,7 +402,7 @@ pub(in crate::lab) type Times = Vec<(Summary, Option<Summary>)>;
 
 /// Lets methods draw in turn from a camera, those that take part.
 pub(in crate::lab) fn race(
-    methods: &mut [Box<dyn DrawingMethod + '_>],
+    methods: &[Method<'_>],
     taking_part: &[bool],
     camera: &Camera,
     schedule: Schedule,
@@ -415,23 +414,25 @@ pub(in crate::lab) fn race(
         reason: e.to_string(),
     })?;
     let rounds = schedule.warmup + schedule.runs.max(1);
-    for method in &mut *methods {
-        // One that refuses has drawn nothing before, and does not take part.
-        let _ = method.begin(camera);
-    }
+    let takes_part = methods.iter().zip(taking_part);
+    let drawings: Vec<_> = takes_part
+        .map(|(method, &takes_part)| takes_part.then(|| (method.drawing)()))
+        .collect();
+    let mut frames: Vec<_> = drawings
+        .iter()
+        .map(|drawing| drawing.as_ref()?.frames(camera).ok())
+        .collect();
     let mut wall: Vec<Vec<f64>> = vec![Vec::new(); methods.len()];
     let mut thread: Vec<Vec<Option<f64>>> = vec![Vec::new(); methods.len()];
     progress.begin("measuring", u64::from(rounds));
     for round in 0..rounds {
-        for (place, method) in methods.iter_mut().enumerate() {
-            if !taking_part[place] {
-                continue;
-            }
+        for (place, draw) in frames.iter_mut().enumerate() {
+            let Some(draw) = draw else { continue };
             let elapsed = pool.install(|| {
                 let clock = Clock::start();
                 // It drew this frame before, so it does not fail now; if it did, there were no
                 // time.
-                let drawn = black_box(method.draw());
+                let drawn = black_box(draw());
                 let elapsed = clock.elapsed();
                 drawn.map(|()| elapsed)
             });
@@ -444,7 +445,6 @@ pub(in crate::lab) fn race(
         progress.advance(1);
     }
     progress.end();
-    methods.iter_mut().for_each(|method| method.end());
     let of = |(wall, thread): (Vec<f64>, Vec<Option<f64>>)| {
         let thread: Option<Vec<f64>> = thread.into_iter().collect();
         (Summary::of(&wall), thread.map(|times| Summary::of(&times)))

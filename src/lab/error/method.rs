@@ -1,62 +1,58 @@
 //! What can be measured: anything that draws a picture from a camera.
 //!
-//! An experiment does not depend on how a picture is made. It asks a
-//! [`DrawingMethod`] what it is called and how it is set, sets it up for a camera,
-//! lets it draw frames, which are timed, and lets it show one, which is not.
+//! An experiment does not depend on how a picture is made. A [`Method`] says what it is called and
+//! how it is set, and makes a [`Drawable`], which draws.
 
+use crate::drawing::{DrawError, Drawable, Figures, Shown};
 use crate::measure::Spread;
-use crate::picture::Picture;
 use crate::project::{Camera, Stats};
 
 /// A way to draw a scene: an engine with its settings, or any other renderer.
-pub trait DrawingMethod: Send {
+pub struct Method<'m> {
     /// Which family it is of, such as `voxels`: methods of one family have the
     /// same settings by name and order.
-    fn family(&self) -> &'static str;
-
+    pub family: &'static str,
     /// Its name, unlike that of every other in the experiment.
-    fn name(&self) -> String;
-
+    pub name: String,
     /// Its settings: names and values.
-    fn settings(&self) -> Vec<(&'static str, String)>;
-
+    pub settings: Vec<(&'static str, String)>,
     /// A word by which plots give it a colour, such as its drawing rule.
-    fn kind(&self) -> String;
+    pub kind: String,
+    /// Makes what draws it, which remembers no other frame.
+    pub drawing: Box<dyn Fn() -> Box<dyn Drawable + 'm> + 'm>,
+    /// Examines a frame that was drawn from a camera.
+    pub examine: Box<Examine<'m>>,
+    /// Draws from a camera with the level of detail that another one would choose; `None` of what
+    /// has no such choice.
+    pub with_cut_of: Option<Box<WithCutOf<'m>>>,
+}
 
-    /// Makes ready for a camera, buffers too: what a frame's time does not contain.
+/// See [`Method::examine`].
+pub type Examine<'m> = dyn Fn(&Shown<'_>, &Camera) -> Result<Examined, Refused> + 'm;
+/// See [`Method::with_cut_of`]: the camera, then the one that chooses. Makes colours.
+pub type WithCutOf<'m> = dyn Fn(&Camera, &Camera) -> Result<Vec<[u8; 4]>, Refused> + 'm;
+
+impl Method<'_> {
+    /// Draws a frame, and examines it.
     ///
     /// # Errors
-    /// When it cannot draw from this camera.
-    fn begin(&mut self, camera: &Camera) -> Result<(), Refused>;
+    /// When the method cannot draw from this camera.
+    pub fn show(&self, camera: &Camera) -> Result<(Vec<[u8; 4]>, Examined), Refused> {
+        let mut drawing = (self.drawing)();
+        let shown = drawn(drawing.as_mut(), camera)?;
+        let examined = (self.examine)(&shown, camera)?;
+        Ok((shown.pixels.rgba(), examined))
+    }
+}
 
-    /// Draws a frame: clear, traverse, colours of the samples. Timed.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished.
-    fn draw(&mut self) -> Result<(), Refused>;
-
-    /// Draws the frame once more, and measures it.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished.
-    fn show(&mut self) -> Result<Shown, Refused>;
-
-    /// Draws the frame once more, and its picture alone.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished.
-    fn picture(&mut self) -> Result<Picture, Refused>;
-
-    /// Draws the picture with the decisions of level of detail that another
-    /// camera would make, from the camera that it is ready for; `None` of what
-    /// has no such decisions.
-    ///
-    /// # Errors
-    /// When the frame cannot be finished.
-    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused>;
-
-    /// Lets go of what was made for a camera.
-    fn end(&mut self);
+/// Draws a frame.
+pub(in crate::lab) fn drawn<'d>(
+    drawing: &'d mut (dyn Drawable + '_),
+    camera: &Camera,
+) -> Result<Shown<'d>, Refused> {
+    drawing.draw(camera, 1)?;
+    let shown = drawing.shown()?;
+    shown.ok_or_else(|| Refused::because("nothing was drawn"))
 }
 
 /// Why a method has no picture: an overflow, a view that collapses.
@@ -71,11 +67,15 @@ impl Refused {
     }
 }
 
-/// A drawn frame and its figures.
-#[derive(Debug, Clone)]
-pub struct Shown {
-    /// The picture, before a background: opaque.
-    pub picture: Picture,
+impl From<DrawError> for Refused {
+    fn from(reason: DrawError) -> Self {
+        Self::because(reason)
+    }
+}
+
+/// What experiments ask of a drawn frame beside its colours.
+#[derive(Debug, Clone, Default)]
+pub struct Examined {
     /// Share of each pixel that shows something, 0 to 1.
     pub shares: Vec<f32>,
     /// What its samples see; `None` for what has no samples of voxels.
@@ -91,12 +91,27 @@ pub struct Shown {
 }
 
 /// What samples see, of a picture with `2^aa_log2` of them along each axis of a pixel.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
     /// Samples a pixel and axis, as a power of two.
     pub aa_log2: u32,
     /// As a frame has them: lowest corner in finest voxels, and level.
     pub voxel: Vec<[i32; 4]>,
+    /// Depth of each pixel.
+    pub depth: Vec<f32>,
+}
+
+/// A counter of a method, as a sum of counters of what draws it; see [`sums`].
+pub type Sum = (&'static str, &'static [&'static str]);
+
+/// Counters as sums of other ones; those that are not there count as 0.
+pub(in crate::lab) fn sums(figures: &Figures, of: &[Sum]) -> Stats {
+    let count = |name: &&str| {
+        let figure = figures.iter().find(|(of, _)| of == name);
+        figure.and_then(|(_, value)| value.as_u64()).unwrap_or(0)
+    };
+    let sum = |&(name, parts): &Sum| (name, parts.iter().map(count).sum());
+    of.iter().map(sum).collect()
 }
 
 /// How far vertices of one octree level are from their exact projections.

@@ -1,6 +1,6 @@
 //! Run time against error.
 //!
-//! A [`DrawingMethod`] draws; a [`Reference`] is what it should have drawn, made of
+//! A [`Method`] draws; a [`Reference`] is what it should have drawn, made of
 //! many exact rays, or of a mesh at 256 samples a pixel; [`measure()`] measures methods on a scene,
 //! error and time; [`beaten_by`] and the plots show which of them are worth having.
 
@@ -19,13 +19,16 @@ pub use measure::{
     ErrorPlan, MethodErrors, Outcome, References, SampleError, SceneErrors, measure,
 };
 pub(in crate::lab) use measure::{as_map, outcome_or_reason, race};
-pub use method::{DrawingMethod, Refused, Samples, Shown, VertexLevel, over_levels};
+pub use method::{
+    Examine, Examined, Method, Refused, Samples, Sum, VertexLevel, WithCutOf, over_levels,
+};
+pub(in crate::lab) use method::{drawn, sums};
 #[cfg(feature = "cli")]
 pub use pareto::panels;
 pub use pareto::{beaten_by, dominated};
 pub use picture_error::{Judge, PictureError};
 pub(in crate::lab) use reference::of_triangles;
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
-pub use tables::{rows, table, vertex_table};
+pub use tables::{table, vertex_table};
 pub use vertices::vertex_levels;
-pub use voxels::{PixelStyle, VoxelMethod, tolerance_in_words};
+pub use voxels::{PixelStyle, tolerance_in_words, voxel_method};

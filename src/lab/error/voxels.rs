@@ -5,15 +5,17 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{Memory, Stage};
 
 use super::cut::cut_at;
-use super::method::{DrawingMethod, Refused, Samples, Shown};
+use super::method::{Examined, Method, Refused, Samples, drawn};
 use super::vertices::vertex_levels;
-use crate::frame::{Colors, Frame, NO_NODE};
-use crate::graph::{Graph, GraphView};
+use crate::drawing::{Buffers, Drawable, GraphDrawing, GraphStyle, Shown};
+use crate::frame::{Frame, NO_NODE};
+use crate::graph::Graph;
 use crate::lab::bench::MakeEngine;
 use crate::lab::model::record::{record_bits, record_fields};
 use crate::machine::Machine;
-use crate::picture::{Background, Picture, Shading, lights, resolve};
-use crate::project::{CageKind, Camera, Coverage, Engine, FrameSetup, SetupOptions, Stats};
+use crate::picture::npy::Values;
+use crate::picture::{Background, Buffer, Rows, Shading};
+use crate::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
 
 /// How samples become colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,28 +39,6 @@ impl Default for PixelStyle {
     }
 }
 
-/// An engine of this project with settings. Times are the engine's; counters
-/// are those of the machine, which draws the same bits, so that methods can be
-/// compared by what the hardware would do.
-pub struct VoxelMethod<'g> {
-    graph: &'g Graph,
-    options: SetupOptions,
-    engine_name: &'static str,
-    make: MakeEngine,
-    engine: Box<dyn Engine + Send>,
-    style: PixelStyle,
-    ready: Option<Ready>,
-}
-
-/// What is made for a camera.
-struct Ready {
-    camera: Camera,
-    setup: FrameSetup,
-    colors: Colors,
-    /// Light of the nodes without a lamp, under the rule that blends.
-    light: Vec<[u16; 3]>,
-}
-
 /// Bytes that an access moves: child mask and list of a node, its colour
 /// and normal, a fill vector (four bits, a byte here), a pixel's node.
 const NODE_BYTES: u64 = 5;
@@ -67,82 +47,132 @@ const FILL_VECTOR_BYTES: u64 = 1;
 const PIXEL_BYTES: u64 = 4;
 const ACCUMULATOR_BYTES: u64 = (hwmodel::memory::ACCUMULATOR_BITS as u64).div_ceil(8);
 
-impl<'g> VoxelMethod<'g> {
-    /// An engine on one thread.
-    pub fn new(
-        graph: &'g Graph,
-        (engine_name, make): (&'static str, MakeEngine),
-        options: SetupOptions,
-        style: PixelStyle,
-    ) -> Self {
-        Self {
-            graph,
-            options,
-            engine_name,
-            make,
-            engine: make(1),
-            style,
-            ready: None,
-        }
+/// An engine of this project with settings, on one thread. Times are the engine's; counters
+/// are those of the machine, which draws the same bits, so that methods can be
+/// compared by what the hardware would do.
+#[must_use]
+pub fn voxel_method<'g>(
+    graph: &'g Graph,
+    (engine, make): (&'static str, MakeEngine),
+    options: SetupOptions,
+    style: PixelStyle,
+) -> Method<'g> {
+    let drawing = move |graph: &'g Graph| of_voxels(graph, make, options, style);
+    let with_cut_of = move |camera: &Camera, other: &Camera| {
+        let cut = cut_at(graph, &setup(graph, other, &options)?);
+        // Solids are exactly the nodes that the cut stops at.
+        let options = SetupOptions {
+            lod_px: 0.0,
+            ..options
+        };
+        let mut on_cut = of_voxels(&cut, make, options, style);
+        Ok(drawn(&mut on_cut, camera)?.pixels.rgba())
+    };
+    Method {
+        family: "voxels",
+        name: name(engine, &options),
+        settings: settings(engine, &options),
+        kind: kind(&options),
+        drawing: Box::new(move || Box::new(drawing(graph)) as Box<dyn Drawable>),
+        examine: Box::new(move |shown, camera| examine(graph, &options, shown, camera)),
+        with_cut_of: (options.lod_px != 0.0).then(|| Box::new(with_cut_of) as _),
     }
+}
 
-    /// The settings that frames are drawn with.
-    #[must_use]
-    pub fn options(&self) -> &SetupOptions {
-        &self.options
-    }
+fn of_voxels(
+    graph: &Graph,
+    make: MakeEngine,
+    options: SetupOptions,
+    style: PixelStyle,
+) -> GraphDrawing<'_> {
+    let style = GraphStyle {
+        options,
+        shading: style.shading,
+        background: Background::Color(style.background),
+        buffers: vec![Buffer::Voxel],
+        is_hashed: false,
+    };
+    // Which axis is up matters to fitted cameras alone.
+    GraphDrawing::new(graph, Up::Z, style, move || make(1))
+}
 
-    /// `handed`: whether the fast engine left the frame to the machine.
-    fn remark(&self, handed: bool) -> Option<String> {
-        let o = &self.options;
-        let is_paper = (o.cage, o.coverage) == (CageKind::Corners, Coverage::Any)
-            && o.tolerance_px.is_infinite();
-        match (is_paper, handed) {
-            (true, true) => Some("the paper's; drawn by the machine".to_owned()),
-            (true, false) => Some("the paper's".to_owned()),
-            (false, true) => Some("drawn by the machine".to_owned()),
-            (false, false) => None,
-        }
-    }
+fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> Result<FrameSetup, Refused> {
+    FrameSetup::new(camera, &graph.placement, graph.depth, options).map_err(Refused::because)
+}
 
-    fn counters(&self, setup: &FrameSetup) -> Result<Stats, Refused> {
-        let mut frame = Frame::nodes_only(setup.width, setup.height);
-        let drawn =
-            Machine::default().render_probed(&self.graph.view(), setup, &mut frame, Counter::new());
-        let (stats, counter) = drawn.map_err(Refused::because)?;
-        let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
-        let at = |stages: &[Stage]| counter.sum(|cell| stages.contains(&cell.stage));
-        let record = u64::from(
-            record_bits(&record_fields(
-                setup,
-                self.graph.len(),
-                Organisation::default(),
-            ))
-            .div_ceil(8),
-        );
-        let bytes = [
-            (Memory::Stack, record),
-            (Memory::Node, NODE_BYTES),
-            (Memory::Attribute, ATTRIBUTE_BYTES),
-            (Memory::FillVector, FILL_VECTOR_BYTES),
-            (Memory::Pixel, PIXEL_BYTES),
-            (Memory::Accumulator, ACCUMULATOR_BYTES),
-        ];
-        let touched = bytes
-            .iter()
-            .map(|&(memory, size)| size * (counter.reads(memory) + counter.writes(memory)));
-        Ok(vec![
-            ("operations", counter.ops()),
-            ("records", stat("records")),
-            (
-                "vertex_operations",
-                at(&[Stage::VertexPool, Stage::ChildBox, Stage::ToScreen]),
-            ),
-            ("quadtree_operations", at(&[Stage::QuadtreeFit])),
-            ("bytes_touched", touched.sum()),
-            ("changed_to_screen", stat("changed_to_screen")),
-        ])
+fn examine(
+    graph: &Graph,
+    options: &SetupOptions,
+    shown: &Shown<'_>,
+    camera: &Camera,
+) -> Result<Examined, Refused> {
+    let Buffers::Resolved(resolver) = &shown.buffers else {
+        return Err(Refused::because("no engine of voxels"));
+    };
+    let (frame, (_, height)) = (resolver.frame(), resolver.size());
+    let depth = shown.buffers.rows(Buffer::Depth, 0..height);
+    let Values::F32(depth) = depth.map_err(Refused::because)? else {
+        return Err(Refused::because("no depths"));
+    };
+    let setup = setup(graph, camera, options)?;
+    let aa_log2 = options.aa_log2;
+    let handed = |(name, _): &(&str, _)| *name == "handed_to_machine";
+    Ok(Examined {
+        shares: shares(frame, aa_log2),
+        vertices: vertex_levels(camera, &setup, &frame.voxel),
+        counters: counters(graph, &setup)?,
+        samples: Some(Samples {
+            aa_log2,
+            voxel: frame.voxel.clone(),
+            depth,
+        }),
+        remark: remark(options, shown.counters.iter().any(handed)),
+    })
+}
+
+/// `handed`: whether the fast engine left the frame to the machine.
+fn remark(o: &SetupOptions, handed: bool) -> Option<String> {
+    let is_paper =
+        (o.cage, o.coverage) == (CageKind::Corners, Coverage::Any) && o.tolerance_px.is_infinite();
+    match (is_paper, handed) {
+        (true, true) => Some("the paper's; drawn by the machine".to_owned()),
+        (true, false) => Some("the paper's".to_owned()),
+        (false, true) => Some("drawn by the machine".to_owned()),
+        (false, false) => None,
     }
+}
+
+fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
+    let mut frame = Frame::nodes_only(setup.width, setup.height);
+    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Counter::new());
+    let (stats, counter) = drawn.map_err(Refused::because)?;
+    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
+    let at = |stages: &[Stage]| counter.sum(|cell| stages.contains(&cell.stage));
+    let record = u64::from(
+        record_bits(&record_fields(setup, graph.len(), Organisation::default())).div_ceil(8),
+    );
+    let bytes = [
+        (Memory::Stack, record),
+        (Memory::Node, NODE_BYTES),
+        (Memory::Attribute, ATTRIBUTE_BYTES),
+        (Memory::FillVector, FILL_VECTOR_BYTES),
+        (Memory::Pixel, PIXEL_BYTES),
+        (Memory::Accumulator, ACCUMULATOR_BYTES),
+    ];
+    let touched = bytes
+        .iter()
+        .map(|&(memory, size)| size * (counter.reads(memory) + counter.writes(memory)));
+    Ok(vec![
+        ("operations", counter.ops()),
+        ("records", stat("records")),
+        (
+            "vertex_operations",
+            at(&[Stage::VertexPool, Stage::ChildBox, Stage::ToScreen]),
+        ),
+        ("quadtree_operations", at(&[Stage::QuadtreeFit])),
+        ("bytes_touched", touched.sum()),
+        ("changed_to_screen", stat("changed_to_screen")),
+    ])
 }
 
 /// A tolerance in words: `1/8`, `0`, `inf`.
@@ -158,166 +188,48 @@ pub fn tolerance_in_words(tolerance_px: f64) -> String {
     tolerance_px.to_string()
 }
 
-impl DrawingMethod for VoxelMethod<'_> {
-    fn family(&self) -> &'static str {
-        "voxels"
+fn name(engine: &str, o: &SetupOptions) -> String {
+    let mut name = o.coverage.name().to_owned();
+    if !o.coverage.draws_outlines() {
+        name += &format!(" {}", tolerance_in_words(o.tolerance_px));
     }
+    name += &format!(" {}", o.cage.name());
+    if o.bits != 64 || o.frac.is_some() {
+        name += &format!(" {} bits", o.bits);
+    }
+    if let Some(frac) = o.frac {
+        name += &format!(" .{frac}");
+    }
+    if o.lod_px != o.coverage.default_lod() {
+        name += &format!(" lod {}", o.lod_px);
+    }
+    if o.aa_log2 > 0 {
+        name += &format!(" aa {}", 1 << o.aa_log2);
+    }
+    if engine != "fast" {
+        name += &format!(", {}", engine);
+    }
+    name
+}
 
-    fn name(&self) -> String {
-        let o = &self.options;
-        let mut name = o.coverage.name().to_owned();
-        if !o.coverage.draws_outlines() {
-            name += &format!(" {}", tolerance_in_words(o.tolerance_px));
-        }
-        name += &format!(" {}", o.cage.name());
-        if o.bits != 64 || o.frac.is_some() {
-            name += &format!(" {} bits", o.bits);
-        }
-        if let Some(frac) = o.frac {
-            name += &format!(" .{frac}");
-        }
-        if o.lod_px != o.coverage.default_lod() {
-            name += &format!(" lod {}", o.lod_px);
-        }
-        if o.aa_log2 > 0 {
-            name += &format!(" aa {}", 1 << o.aa_log2);
-        }
-        if self.engine_name != "fast" {
-            name += &format!(", {}", self.engine_name);
-        }
-        name
-    }
+fn settings(engine: &str, o: &SetupOptions) -> Vec<(&'static str, String)> {
+    vec![
+        ("coverage", o.coverage.name().to_owned()),
+        ("tolerance", tolerance_in_words(o.tolerance_px)),
+        ("cage", o.cage.name().to_owned()),
+        ("bits", o.bits.to_string()),
+        ("lod", o.lod_px.to_string()),
+        ("aa", (1 << o.aa_log2).to_string()),
+        ("engine", engine.to_owned()),
+    ]
+}
 
-    fn settings(&self) -> Vec<(&'static str, String)> {
-        let o = &self.options;
-        vec![
-            ("coverage", o.coverage.name().to_owned()),
-            ("tolerance", tolerance_in_words(o.tolerance_px)),
-            ("cage", o.cage.name().to_owned()),
-            ("bits", o.bits.to_string()),
-            ("lod", o.lod_px.to_string()),
-            ("aa", (1 << o.aa_log2).to_string()),
-            ("engine", self.engine_name.to_owned()),
-        ]
-    }
-
-    fn kind(&self) -> String {
-        let aa = match self.options.aa_log2 {
-            0 => String::new(),
-            aa => format!(", aa {}", 1 << aa),
-        };
-        format!("{}{aa}", self.options.coverage.name())
-    }
-
-    fn begin(&mut self, camera: &Camera) -> Result<(), Refused> {
-        let graph = self.graph;
-        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &self.options);
-        let setup = setup.map_err(Refused::because)?;
-        let mut colors = Colors::new(setup.width, setup.height);
-        // Pages are there before the first frame.
-        colors.words.fill(1);
-        self.ready = Some(Ready {
-            camera: *camera,
-            light: lights(graph, &setup, Shading::Flat),
-            setup,
-            colors,
-        });
-        Ok(())
-    }
-
-    fn draw(&mut self) -> Result<(), Refused> {
-        let Some(Ready {
-            setup,
-            colors,
-            light,
-            ..
-        }) = &mut self.ready
-        else {
-            return Err(Refused::because("no camera yet"));
-        };
-        let graph = self.graph;
-        let view = GraphView {
-            light,
-            ..graph.view()
-        };
-        self.engine
-            .draw_colors(&view, &graph.color, setup, colors)
-            .map_err(Refused::because)
-    }
-
-    fn show(&mut self) -> Result<Shown, Refused> {
-        let Some(Ready { setup, camera, .. }) = &self.ready else {
-            return Err(Refused::because("no camera yet"));
-        };
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let light = lights(self.graph, setup, self.style.shading);
-        let view = GraphView {
-            light: &light,
-            ..self.graph.view()
-        };
-        let drawn = self.engine.render(&view, setup, &mut frame);
-        let stats = drawn.map_err(Refused::because)?;
-        let handed = stats.iter().any(|(name, _)| *name == "handed_to_machine");
-        let background = Background::Color(self.style.background);
-        let picture = resolve(&frame, self.graph, setup, self.style.shading, background)
-            .map_err(Refused::because)?;
-        let aa_log2 = setup.options.aa_log2;
-        Ok(Shown {
-            shares: shares(&frame, aa_log2),
-            vertices: vertex_levels(camera, setup, &frame.voxel),
-            counters: self.counters(setup)?,
-            picture,
-            samples: Some(Samples {
-                aa_log2,
-                voxel: frame.voxel,
-            }),
-            remark: self.remark(handed),
-        })
-    }
-
-    fn picture(&mut self) -> Result<Picture, Refused> {
-        let Some(Ready { setup, .. }) = &self.ready else {
-            return Err(Refused::because("no camera yet"));
-        };
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let light = lights(self.graph, setup, self.style.shading);
-        let view = GraphView {
-            light: &light,
-            ..self.graph.view()
-        };
-        self.engine
-            .draw(&view, setup, &mut frame)
-            .map_err(Refused::because)?;
-        let background = Background::Color(self.style.background);
-        resolve(&frame, self.graph, setup, self.style.shading, background).map_err(Refused::because)
-    }
-
-    fn picture_with_cut_of(&mut self, other: &Camera) -> Result<Option<Picture>, Refused> {
-        let Some(Ready { camera, .. }) = &self.ready else {
-            return Err(Refused::because("no camera yet"));
-        };
-        if self.options.lod_px == 0.0 {
-            return Ok(None);
-        }
-        let (placement, depth) = (&self.graph.placement, self.graph.depth);
-        let setup_of = |camera: &Camera, options: &SetupOptions| {
-            FrameSetup::new(camera, placement, depth, options).map_err(Refused::because)
-        };
-        let cut = cut_at(self.graph, &setup_of(other, &self.options)?);
-        // Solids are exactly the nodes that the cut stops at.
-        let options = SetupOptions {
-            lod_px: 0.0,
-            ..self.options
-        };
-        let mut on_cut = VoxelMethod::new(&cut, (self.engine_name, self.make), options, self.style);
-        on_cut.begin(camera)?;
-        on_cut.picture().map(Some)
-    }
-
-    fn end(&mut self) {
-        self.ready = None;
-        self.engine = (self.make)(1);
-    }
+fn kind(o: &SetupOptions) -> String {
+    let aa = match o.aa_log2 {
+        0 => String::new(),
+        aa => format!(", aa {}", 1 << aa),
+    };
+    format!("{}{aa}", o.coverage.name())
 }
 
 /// The share of each pixel's samples that see something.

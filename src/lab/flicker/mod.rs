@@ -14,9 +14,8 @@ pub use motion::Motion;
 
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Subject};
-use crate::lab::error::{DrawingMethod, PixelStyle, References, Refused, Sampling};
+use crate::lab::error::{Method, PixelStyle, References, Refused, Sampling, drawn};
 use crate::measure::{Flicker, LinearPicture, SizeError};
-use crate::picture::Picture;
 use crate::project::Camera;
 #[cfg(feature = "cli")]
 use crate::report::plot::{Axis, Chart, Panel, Scale, Series};
@@ -98,7 +97,7 @@ pub struct Films {
 pub fn film(
     subject: &Subject,
     motion: Motion,
-    methods: &mut [Box<dyn DrawingMethod + '_>],
+    methods: &[Method<'_>],
     plan: &FilmPlan,
     references: &mut References<'_>,
     progress: &dyn Progress,
@@ -136,12 +135,12 @@ pub fn film(
     let mismatch = |e: SizeError| BenchError::Picture(e.to_string());
     let noise_floor = flicker(&second, &truth).map_err(mismatch)?.rms();
     let films = methods
-        .iter_mut()
+        .iter()
         .map(|method| {
-            let seen = film_flicker(method.as_mut(), &cameras, &truth);
+            let seen = film_flicker(method, &cameras, &truth);
             progress.advance(1);
             Film {
-                method: method.name(),
+                method: method.name.clone(),
                 seen: seen.map_err(|refused| refused.to_string()),
             }
         })
@@ -171,34 +170,27 @@ fn flicker(film: &[LinearPicture], truth: &[LinearPicture]) -> Result<Flicker, S
     Ok(flicker)
 }
 
-fn light_of(picture: &Picture) -> LinearPicture {
-    LinearPicture::of((picture.width, picture.height, &picture.rgba))
-}
-
 /// Films one method.
 pub(in crate::lab) fn film_flicker(
-    method: &mut dyn DrawingMethod,
+    method: &Method<'_>,
     cameras: &[Camera],
     truth: &[LinearPicture],
 ) -> Result<FilmFlicker, Refused> {
     let mut film = Vec::new();
     let mut pops = Vec::new();
-    let cut_of = |method: &mut dyn DrawingMethod, camera: &Camera| {
-        let picture = method.picture_with_cut_of(camera)?;
-        Ok::<_, Refused>(picture.as_ref().map(light_of))
-    };
+    let light =
+        |camera: &Camera, rgba: &[[u8; 4]]| LinearPicture::of((camera.width, camera.height, rgba));
+    let mut drawing = (method.drawing)();
     for (at, camera) in cameras.iter().enumerate() {
-        method.begin(camera)?;
-        film.push(light_of(&method.picture()?));
-        let Some(before) = at.checked_sub(1).map(|before| &cameras[before]) else {
-            continue;
-        };
-        let (own, other) = (cut_of(method, camera)?, cut_of(method, before)?);
-        if let (Some(own), Some(other)) = (own, other) {
+        let shown = drawn(drawing.as_mut(), camera)?;
+        film.push(light(camera, &shown.pixels.rgba()));
+        let before = at.checked_sub(1).map(|before| &cameras[before]);
+        if let (Some(before), Some(with_cut_of)) = (before, &method.with_cut_of) {
+            let [own, other] = [camera, before].map(|chooser| with_cut_of(camera, chooser));
+            let (own, other) = (light(camera, &own?), light(camera, &other?));
             pops.push(own.rms(&other).map_err(Refused::because)?);
         }
     }
-    method.end();
     let flicker = flicker(&film, truth).map_err(Refused::because)?;
     let errors: Vec<f64> = film
         .par_iter()

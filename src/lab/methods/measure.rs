@@ -6,8 +6,8 @@ use super::distance::at_distance;
 use crate::graph::{Progress, Silent};
 use crate::lab::bench::{BenchError, Schedule, Summary};
 use crate::lab::error::{
-    DrawingMethod, Judge, PictureError, PixelStyle, Reference, Refused, Shown, as_map,
-    of_triangles, outcome_or_reason, race,
+    Examined, Judge, Method, PictureError, PixelStyle, Reference, Refused, as_map, of_triangles,
+    outcome_or_reason, race,
 };
 use crate::lab::flicker::{Motion, film_flicker};
 use crate::measure::LinearPicture;
@@ -112,7 +112,7 @@ pub struct MeshMethods {
 pub fn measure(
     (name, mesh): (&str, &dyn Surface),
     camera: &Camera,
-    methods: &mut [Box<dyn DrawingMethod + '_>],
+    methods: &[Method<'_>],
     facts: Vec<Facts>,
     plan: &MethodsPlan,
     progress: &dyn Progress,
@@ -133,7 +133,7 @@ pub fn measure(
 fn at(
     mesh: &dyn Surface,
     camera: &Camera,
-    methods: &mut [Box<dyn DrawingMethod + '_>],
+    methods: &[Method<'_>],
     plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<Distance, BenchError> {
@@ -158,9 +158,8 @@ fn at(
 
     progress.begin("judging pictures", methods.len() as u64);
     let mut shown: Vec<Result<Seen, Refused>> = Vec::new();
-    for method in &mut *methods {
-        shown.push(seen(method.as_mut(), &cameras, &judge, &truth));
-        method.end();
+    for method in methods {
+        shown.push(seen(method, &cameras, &judge, &truth));
         progress.advance(1);
     }
     progress.end();
@@ -170,23 +169,23 @@ fn at(
     let mut rows = Vec::new();
     for ((method, seen), (wall, thread)) in methods.iter().zip(shown).zip(times) {
         let outcome = seen.map(|seen| {
-            pictures.push(seen.shown.picture.rgba);
+            pictures.push(seen.rgba);
             Outcome {
                 wall,
                 thread,
                 picture: seen.picture,
                 flicker: seen.flicker,
                 pop: seen.pop,
-                counters: seen.shown.counters,
-                remark: seen.shown.remark,
+                counters: seen.examined.counters,
+                remark: seen.examined.remark,
             }
         });
         if outcome.is_err() {
             pictures.push(Vec::new());
         }
         rows.push(MethodAtDistance {
-            method: method.name(),
-            family: method.family(),
+            method: method.name.clone(),
+            family: method.family,
             outcome,
         });
     }
@@ -202,28 +201,29 @@ fn at(
 
 /// What was seen of a method, nothing of it timed.
 struct Seen {
-    shown: Shown,
+    rgba: Vec<[u8; 4]>,
+    examined: Examined,
     picture: PictureError,
     flicker: Option<f64>,
     pop: Option<f64>,
 }
 
 fn seen(
-    method: &mut dyn DrawingMethod,
+    method: &Method<'_>,
     cameras: &[Camera],
     judge: &Judge<'_>,
     truth: &[LinearPicture],
 ) -> Result<Seen, Refused> {
-    method.begin(&cameras[0])?;
-    let shown = method.show()?;
-    let picture = judge.judge(&shown.picture.rgba, &shown.shares);
+    let (rgba, examined) = method.show(&cameras[0])?;
+    let picture = judge.judge(&rgba, &examined.shares);
     let picture = picture.map_err(Refused::because)?;
     let film = match cameras.len() {
         0 | 1 => None,
         _ => Some(film_flicker(method, cameras, truth)?),
     };
     Ok(Seen {
-        shown,
+        rgba,
+        examined,
         picture,
         flicker: film.as_ref().map(|film| film.flicker),
         pop: film.and_then(|film| film.pop),

@@ -6,6 +6,7 @@
 
 pub mod case;
 mod check;
+mod findings;
 #[cfg(test)]
 mod mutants;
 mod outcome;
@@ -21,9 +22,10 @@ pub mod viewpoint;
 
 pub use case::Case;
 pub use check::{PATIENCE, STRICT_TOLERANCE};
+pub use findings::{COVERAGES, Failed, Findings, Key, Tally};
 pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;
-pub use sweep::{COVERAGES, Failed, Findings, Key, SweepPlan, TOLERANCES, Tally, run_case, sweep};
+pub use sweep::{SweepPlan, TOLERANCES, run_case, sweep};
 #[cfg(feature = "cli")]
-pub use tables::{panels, rows, tables};
+pub use tables::{rows, tables};
 pub use vertex::{Hold, Worst};

@@ -1,10 +1,10 @@
-//! What a sweep found, as tables and heat maps.
+//! What a sweep found, as tables.
 
 use super::check::STRICT_TOLERANCE;
+use super::findings::{COVERAGES, Findings, Key, Tally};
 use super::outcome::Check;
-use super::sweep::{COVERAGES, Findings, Key, SweepPlan, TOLERANCES, Tally};
+use super::sweep::{SweepPlan, TOLERANCES};
 use super::vertex::{Hold, Worst};
-use crate::report::plot::{HeatCell, HeatMap, Panel};
 use crate::report::{Cell, Table};
 
 /// A tolerance in short.
@@ -205,99 +205,4 @@ fn checks(findings: &Findings) -> Table {
         ]);
     }
     table
-}
-
-/// The heat maps.
-#[must_use]
-pub fn panels(plan: &SweepPlan, findings: &Findings) -> Vec<Panel> {
-    let columns: Vec<String> = plan.bits.iter().map(|bits| format!("{bits}")).collect();
-    let scenes = plan.scenes.iter().enumerate();
-    let outcome = |tally: &Tally| {
-        if tally.cases == 0 {
-            return HeatCell::Empty;
-        }
-        if tally.failed > 0 {
-            return HeatCell::Bad(format!("{} failed", tally.failed));
-        }
-        let share = tally.drawn as f64 / tally.cases as f64;
-        HeatCell::Shade(share, format!("{:.0} %", share * 100.0))
-    };
-    let by_format = HeatMap {
-        title: "Frames drawn, by bits of a word and scene".to_owned(),
-        columns: columns.clone(),
-        rows: scenes
-            .map(|(scene, name)| {
-                let tile =
-                    |&bits: &u32| outcome(&added(findings, |k| (k.scene, k.bits) == (scene, bits)));
-                (name.to_string(), plan.bits.iter().map(tile).collect())
-            })
-            .collect(),
-        legend: "share of frames with a picture; the others were refused or trapped; red: a check \
-         failed"
-            .to_owned(),
-    };
-    let closed = plan
-        .scenes
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| s.is_closed());
-    let holes = |tally: &Tally| {
-        if tally.inside == 0 {
-            return HeatCell::Empty;
-        }
-        let text = format!("{}", tally.holes);
-        // One in ten million is white, one in a hundred dark.
-        let rate = tally.holes as f64 / tally.inside as f64;
-        let shade = if tally.holes == 0 {
-            0.0
-        } else {
-            ((libm::log10(rate) + 7.0) / 5.0).clamp(0.1, 1.0)
-        };
-        HeatCell::Shade(shade, text)
-    };
-    let by_tolerance = HeatMap {
-        title: "Holes in closed surfaces under center, by tolerance (pixels)".to_owned(),
-        columns: TOLERANCES.map(tolerance_name).to_vec(),
-        rows: closed
-            .map(|(scene, name)| {
-                let tiles = (0..TOLERANCES.len()).map(|place| {
-                    let sum = added(findings, |k| {
-                        (k.scene, k.coverage, k.tolerance) == (scene, 1, place)
-                    });
-                    holes(&sum)
-                });
-                (name.to_string(), tiles.collect())
-            })
-            .collect(),
-        legend: "samples, those at the level bound among them; from 1/16 on neighbours that \
-         changed apart leave some"
-            .to_owned(),
-    };
-    let tightness = HeatMap {
-        title: "Vertex error over its bound, by bits of a word".to_owned(),
-        columns,
-        rows: Hold::ALL
-            .iter()
-            .enumerate()
-            .map(|(place, hold)| {
-                let tile = |&bits: &u32| match findings.worst.get(&(place, bits)) {
-                    None => HeatCell::Empty,
-                    Some(worst) if worst.tightest > 1.0 => {
-                        HeatCell::Bad(format!("{:.2}", worst.tightest))
-                    }
-                    Some(worst) => {
-                        HeatCell::Shade(worst.tightest, format!("{:.2}", worst.tightest))
-                    }
-                };
-                (hold.name().to_owned(), plan.bits.iter().map(tile).collect())
-            })
-            .collect(),
-        legend: "greatest quotient of an error and its bound; 1 would be a bound that is reached"
-            .to_owned(),
-    };
-    vec![
-        Panel::Heat(by_format),
-        Panel::Heat(by_tolerance),
-        Panel::Heat(tightness),
-    ]
 }

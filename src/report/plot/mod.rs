@@ -1,15 +1,13 @@
-//! Plots as SVG text: charts, bars and heat maps, below each other.
+//! Plots as SVG text: charts and bars, below each other.
 
 mod bars;
 mod chart;
-mod heat;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
 pub use bars::{Bar, Stack};
 pub use chart::{Axis, Chart, Point, Scale, Series};
-pub use heat::{HeatCell, HeatMap};
 
 /// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,8 +30,6 @@ pub enum Panel {
         /// The bars, from the top.
         stacks: Vec<Stack>,
     },
-    /// Tiles in rows and columns.
-    Heat(HeatMap),
 }
 
 /// A plot that could not be drawn.
@@ -74,7 +70,6 @@ impl Panel {
             Self::Chart(_) => chart::HEIGHT,
             Self::Bars { bars, .. } => bars::height(bars.len()),
             Self::Stacked { stacks, .. } => bars::stacked_height(stacks.len()),
-            Self::Heat(map) => heat::height(map),
         }
     }
 }
@@ -100,7 +95,6 @@ pub fn svg(panels: &[Panel]) -> Result<String, PlotError> {
                     parts,
                     stacks,
                 } => bars::draw_stacked(&area, title, parts, stacks)?,
-                Panel::Heat(map) => heat::draw(&area, map)?,
             }
             rest = below;
         }
@@ -164,18 +158,6 @@ mod tests {
                     values: vec![1.0, 3.0],
                 }],
             },
-            Panel::Heat(HeatMap {
-                title: "Tiles".to_owned(),
-                columns: vec!["16".to_owned(), "24".to_owned()],
-                rows: vec![(
-                    "scene".to_owned(),
-                    vec![
-                        HeatCell::Shade(0.5, "7".to_owned()),
-                        HeatCell::Bad("trap".to_owned()),
-                    ],
-                )],
-                legend: "of nine".to_owned(),
-            }),
         ])
         .unwrap();
         assert!(text.starts_with("<svg") && text.trim_end().ends_with("</svg>"));
@@ -188,9 +170,6 @@ mod tests {
             "12.5",
             "second part",
             "pile",
-            "Tiles",
-            "trap",
-            "of nine",
         ] {
             assert!(text.contains(part), "{part}");
         }

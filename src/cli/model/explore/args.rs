@@ -20,14 +20,6 @@ pub(in crate::cli::model) struct ExploreArgs {
     /// Print the space, and do nothing else
     #[arg(long, requires = "explore")]
     pub(super) print_space: bool,
-    /// Part K of N equal parts of the space's points
-    #[arg(
-        long,
-        value_name = "K/N",
-        requires = "explore",
-        conflicts_with = "points"
-    )]
-    pub(super) slice: Option<Slice>,
     /// Points by number: 7, or 7..12 with both ends; one of them with --print-hw: its hardware
     #[arg(long, value_name = "FROM..TO", requires = "explore")]
     pub(super) points: Option<Points>,
@@ -35,35 +27,6 @@ pub(in crate::cli::model) struct ExploreArgs {
     /// such files, one after the other, are one
     #[arg(long, value_name = "FILE", requires = "explore")]
     pub(super) results: Option<PathBuf>,
-}
-
-/// A part of all points.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Slice {
-    /// Its number, from 1.
-    part: u32,
-    of: u32,
-}
-
-impl Slice {
-    /// Its points, of so many.
-    pub(super) fn points(self, all: usize) -> std::ops::Range<usize> {
-        let end = |part: u32| (all as u64 * u64::from(part) / u64::from(self.of)) as usize;
-        end(self.part - 1)..end(self.part)
-    }
-}
-
-impl FromStr for Slice {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/');
-        let numbers = parts.and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
-        match numbers {
-            Some((part, of)) if (1..=of).contains(&part) => Ok(Self { part, of }),
-            _ => Err("expected K/N, such as 2/8: the second of eight parts".to_owned()),
-        }
-    }
 }
 
 /// Numbers of points, both ends included.
@@ -85,18 +48,6 @@ impl FromStr for Points {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn slices_are_all_points_once() {
-        for (all, of) in [(10, 3), (2, 5), (0, 1), (65_536, 7)] {
-            let parts = (1..=of).map(|part| Slice { part, of }.points(all));
-            let points: Vec<usize> = parts.flatten().collect();
-            assert_eq!(points, (0..all).collect::<Vec<_>>());
-        }
-        for bad in ["", "1", "0/3", "4/3", "1/0", "a/b", "1/2/3"] {
-            assert!(bad.parse::<Slice>().is_err(), "{bad}");
-        }
-    }
 
     #[test]
     fn points_by_number() {

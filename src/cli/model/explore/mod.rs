@@ -140,14 +140,13 @@ fn open_space(name: &str, text: &str) -> Result<Space, CliError> {
 
 /// The points that are asked for, of so many.
 fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
-    match (&args.slice, &args.points) {
-        (Some(slice), _) => Ok(slice.points(all)),
-        (None, Some(points)) if *points.0.end() >= all => Err(CliError::usage(format!(
+    match &args.points {
+        Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
             "--points: the space has points 0 to {}",
             all - 1
         ))),
-        (None, Some(points)) => Ok(*points.0.start()..points.0.end() + 1),
-        (None, None) => Ok(0..all),
+        Some(points) => Ok(*points.0.start()..points.0.end() + 1),
+        None => Ok(0..all),
     }
 }
 

@@ -82,19 +82,9 @@ pub fn area(title: &str, area: &DesignArea) -> Table {
 /// Both designs line by line, with the ends of every range.
 #[must_use]
 pub fn comparison(lines: &[ComparedLine]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Both designs, middle, low and high end; of what leaks nothing is known",
-        &[
-            "what",
-            "unit",
-            "light_hardware",
-            "low",
-            "high",
-            "ray_caster",
-            "its_low",
-            "its_high",
-            "less",
-        ],
+        "what unit light_hardware low high ray_caster its_low its_high less",
     );
     for line in lines {
         let mut row = vec![Cell::from(line.what), Cell::from(line.unit)];
@@ -115,23 +105,13 @@ pub fn comparison(lines: &[ComparedLine]) -> Table {
 /// Units against the clock.
 #[must_use]
 pub fn clock(check: &ClockCheck) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         format!(
             "Units against the clock of {:.2} ns: {}",
             check.period_ps / 1e3,
             check.sentence()
         ),
-        &[
-            "stage",
-            "class",
-            "bits",
-            "delay_ns",
-            "pipeline_depth",
-            "depth_needed",
-            "meets",
-            "rows",
-            "source",
-        ],
+        "stage class bits delay_ns pipeline_depth depth_needed meets rows source",
     );
     for unit in &check.units {
         table.rows.push(vec![

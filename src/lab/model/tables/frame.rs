@@ -14,25 +14,10 @@ use crate::report::{Cell, Table};
 /// Operations and cycles by stage.
 #[must_use]
 pub fn stages(counted: &Counted, cycles: &CycleReport) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "By stage: operations by class, and cycles of its blocks",
-        &[
-            "stage",
-            "visits",
-            "add",
-            "subtract",
-            "compare",
-            "min_max",
-            "select",
-            "shift",
-            "logic",
-            "divide_step",
-            "busy",
-            "held",
-            "used_percent",
-            "stall",
-            "stalls_most_for",
-        ],
+        "stage visits add subtract compare min_max select shift logic divide_step busy held \
+         used_percent stall stalls_most_for",
     );
     let counts = counted.counter.sum_by(|cell| (cell.stage, cell.class));
     // A stage of another drawing rule has no figures.
@@ -82,16 +67,9 @@ pub fn classes(counted: &Counted) -> Table {
 /// Records and operations by octree level.
 #[must_use]
 pub fn levels(counted: &Counted) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "By octree level",
-        &[
-            "level",
-            "records",
-            "operations",
-            "node_reads",
-            "fill_vector_reads",
-            "pixels",
-        ],
+        "level records operations node_reads fill_vector_reads pixels",
     );
     let counter = &counted.counter;
     let operations = counter.sum_by(|cell| cell.level);
@@ -199,18 +177,10 @@ pub fn records_by_kind(counted: &Counted) -> Table {
 /// Traffic by memory.
 #[must_use]
 pub fn memories(counted: &Counted, widths: &Widths, cycles: &CycleReport) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Memories",
-        &[
-            "memory",
-            "reads",
-            "writes",
-            "bits_an_access",
-            "kilobytes",
-            "different_addresses",
-            "cache_hits_percent",
-            "outer_kilobytes",
-        ],
+        "memory reads writes bits_an_access kilobytes different_addresses \
+         cache_hits_percent outer_kilobytes",
     );
     let probe = &counted.memory;
     let kilobytes = |bits: u64| number(bits as f64 / 8192.0, 1);

@@ -15,18 +15,9 @@ use crate::report::{Cell, Table};
 /// Both designs with node caches of growing size; who needs less stands above it.
 #[must_use]
 pub fn caches(rows: &[CacheRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         caches::sentence(rows),
-        &[
-            "node_cache",
-            "design",
-            "energy_uj",
-            "low_uj",
-            "high_uj",
-            "cycles",
-            "node_misses",
-            "needs_less_energy",
-        ],
+        "node_cache design energy_uj low_uj high_uj cycles node_misses needs_less_energy",
     );
     for row in rows {
         for point in std::iter::once(&row.light).chain(&row.ray_caster) {
@@ -56,16 +47,10 @@ pub fn caches(rows: &[CacheRow]) -> Table {
 /// Half of the ray caster's energy, and what every design must move.
 #[must_use]
 pub fn halves(rows: &[HalfRow], floor: &Floor) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         floor::sentence(rows, floor),
-        &[
-            "node_cache",
-            "half_uj",
-            "floor_uj",
-            "light_of_ray_caster_percent",
-            "floor_of_ray_caster_percent",
-            "half_is",
-        ],
+        "node_cache half_uj floor_uj light_of_ray_caster_percent \
+         floor_of_ray_caster_percent half_is",
     );
     for row in rows {
         table.rows.push(vec![
@@ -87,24 +72,11 @@ pub fn halves(rows: &[HalfRow], floor: &Floor) -> Table {
 /// What each setting of an organisation gives.
 #[must_use]
 pub fn steps(rows: &[StepRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "What each setting of the organisation gives: alone, then on top of those before it",
-        &[
-            "setting",
-            "with_those_before",
-            "stack_entry_bits",
-            "node_reads",
-            "node_misses",
-            "fill_kbit",
-            "fill_accesses",
-            "operations_uj",
-            "on_chip_uj",
-            "outer_uj",
-            "all_uj",
-            "ray_caster_uj",
-            "area_nand2",
-            "cycles",
-        ],
+        "setting with_those_before stack_entry_bits node_reads node_misses fill_kbit \
+         fill_accesses operations_uj on_chip_uj outer_uj all_uj ray_caster_uj area_nand2 \
+         cycles",
     );
     for row in rows {
         table.rows.push(vec![
@@ -162,25 +134,10 @@ fn tolerance(px: f64) -> Cell {
 /// Cages, rules and tolerances.
 #[must_use]
 pub fn rules(rows: &[RuleRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Cages, drawing rules and tolerances side by side: operations without shifts, deepest stack of the serial machine",
-        &[
-            "cage",
-            "coverage",
-            "tolerance",
-            "records",
-            "operations",
-            "divide_steps",
-            "cycles",
-            "record_bits",
-            "deepest_stack",
-            "energy_uj",
-            "area_nand2",
-            "extra",
-            "missing",
-            "other_voxel",
-            "note",
-        ],
+        "cage coverage tolerance records operations divide_steps cycles record_bits \
+         deepest_stack energy_uj area_nand2 extra missing other_voxel note",
     );
     let figures: [fn(&Costs) -> Cell; 4] = [
         |c| Cell::from(c.records),
@@ -209,27 +166,11 @@ pub fn rules(rows: &[RuleRow]) -> Table {
 /// Word formats.
 #[must_use]
 pub fn formats(rows: &[FormatRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "Word formats",
-        &[
-            "bits",
-            "fraction_clip",
-            "fraction_screen",
-            "headroom",
-            "rounding_px",
-            "record_bits",
-            "records",
-            "cycles",
-            "energy_uj",
-            "area_nand2",
-            "extra",
-            "missing",
-            "other_voxel",
-            "safe_depth",
-            "safe_picture",
-            "near_voxels",
-            "note",
-        ],
+        "bits fraction_clip fraction_screen headroom rounding_px record_bits records cycles \
+         energy_uj area_nand2 extra missing other_voxel safe_depth safe_picture near_voxels \
+         note",
     );
     let work: [fn(&Costs) -> Cell; 2] = [|c| Cell::from(c.records), |c| Cell::from(c.cycles)];
     for row in rows {
@@ -260,17 +201,9 @@ pub fn formats(rows: &[FormatRow]) -> Table {
 /// Scaling with lanes.
 #[must_use]
 pub fn lanes(rows: &[ScalingRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         "By number of lanes",
-        &[
-            "lanes",
-            "cycles",
-            "speed_up",
-            "efficiency_percent",
-            "records",
-            "work_over_span",
-            "what_limits",
-        ],
+        "lanes cycles speed_up efficiency_percent records work_over_span what_limits",
     );
     for row in rows {
         table.rows.push(vec![
@@ -289,19 +222,10 @@ pub fn lanes(rows: &[ScalingRow]) -> Table {
 /// Growing pictures, or growing objects.
 #[must_use]
 pub fn growth(title: &str, rows: &[GrowthRow]) -> Table {
-    let mut table = Table::new(
+    let mut table = Table::of(
         title,
-        &[
-            "object",
-            "voxels",
-            "pixels",
-            "drawn",
-            "records",
-            "operations",
-            "operations_a_pixel_drawn",
-            "node_reads",
-            "order_operations_a_record",
-        ],
+        "object voxels pixels drawn records operations operations_a_pixel_drawn node_reads \
+         order_operations_a_record",
     );
     for row in rows {
         table.rows.push(vec![

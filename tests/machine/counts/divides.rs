@@ -1,0 +1,77 @@
+//! Where the machine divides: for the change to screen space alone.
+
+use super::*;
+
+/// The one change to screen space, of the object's own record: with an
+/// infinite tolerance it is the first and the only one, and takes one divide
+/// for each vertex and coordinate that the cage has to project.
+#[test]
+fn only_the_change_to_screen_space_divides() {
+    for (cage, vertices) in [(CageKind::Corners, 8), (CageKind::Frame, 4)] {
+        for Scene {
+            name,
+            graph,
+            camera,
+        } in scenes()
+        {
+            let setup = setup(&graph, &camera, &options(cage, f64::INFINITY));
+            let (_, probe) = watch(&graph, &setup, ByRecord::default());
+            for turn in &probe.turns {
+                for stage in Stage::ALL.into_iter().filter(|s| *s != Stage::ToScreen) {
+                    assert_eq!(turn.count(stage, OpClass::DivideStep), 0, "{name}");
+                }
+            }
+            assert_eq!(probe.before.count(Stage::ToScreen, OpClass::DivideStep), 0);
+            // The object lies across the picture's bisectors, so that its node
+            // is the root: 4 integer bits, a bit a level, and the fraction.
+            let steps = 4 + setup.levels + setup.format.frac();
+            let first = &probe.turns[0];
+            let divides = first.count(Stage::ToScreen, OpClass::DivideStep);
+            assert_eq!(divides, 2 * vertices * u64::from(steps), "{name}, {cage:?}");
+            for turn in &probe.turns[1..] {
+                assert_eq!(turn.ops(Stage::ToScreen), ops(&[]), "{name}, {cage:?}");
+            }
+        }
+    }
+}
+
+/// With no tolerance the machine never changes, and never divides.
+#[test]
+fn clip_space_never_divides() {
+    for cage in [CageKind::Corners, CageKind::Frame] {
+        for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+            for scene in scenes() {
+                let options = SetupOptions {
+                    coverage,
+                    ..options(cage, 0.0)
+                };
+                let setup = setup(&scene.graph, &scene.camera, &options);
+                let (_, counter) = watch(&scene.graph, &setup, Counter::new());
+                assert_eq!(counter.ops_of(OpClass::DivideStep), 0);
+                assert_ne!(counter.ops_of(OpClass::Add), 0);
+            }
+        }
+    }
+}
+
+/// Where records change one by one, divides stay in their stage.
+#[test]
+fn divides_stay_in_their_stage() {
+    for coverage in [Coverage::Any, Coverage::Center] {
+        for scene in scenes() {
+            let options = SetupOptions {
+                coverage,
+                lod_px: 1.0,
+                ..options(CageKind::Frame, 0.25)
+            };
+            let setup = setup(&scene.graph, &scene.camera, &options);
+            let (_, counter) = watch(&scene.graph, &setup, Counter::new());
+            assert_eq!(
+                counter.ops_of(OpClass::DivideStep),
+                counter.ops_at(Stage::ToScreen, OpClass::DivideStep),
+                "{}",
+                scene.name
+            );
+        }
+    }
+}

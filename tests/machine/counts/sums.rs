@@ -1,0 +1,197 @@
+//! All counts together: probes that see the same frame agree.
+
+use super::*;
+
+/// Every record that is pushed is popped, and has one turn.
+#[test]
+fn every_record_has_one_turn() {
+    for cage in [CageKind::Corners, CageKind::Frame] {
+        for scene in scenes() {
+            let setup = setup(&scene.graph, &scene.camera, &options(cage, 0.25));
+            let (_, counter) = watch(&scene.graph, &setup, Counter::new());
+            assert_eq!(counter.reads(Memory::Stack), counter.records());
+            assert_eq!(counter.writes(Memory::Stack), counter.records());
+        }
+    }
+}
+
+/// The image-order paper's box of a child takes 7 minima and 7 maxima a coordinate, or 10
+/// compares when the eight vertices are taken in pairs; the frame cage has no
+/// eight vertices to pair.
+#[test]
+fn ten_compares_in_pairs() {
+    let pairs = Costing {
+        min_max: MinMaxUnits::Pairs,
+        ..Costing::default()
+    };
+    let at = |tallies: &[Tally], operation: &str, width| -> u64 {
+        let of = tallies
+            .iter()
+            .filter(|t| t.operation == operation && t.width == width);
+        of.map(|t| t.times).sum()
+    };
+    for tolerance in [0.0, f64::INFINITY] {
+        for scene in scenes() {
+            let setup = setup(
+                &scene.graph,
+                &scene.camera,
+                &options(CageKind::Corners, tolerance),
+            );
+            let bits = setup.format.bits();
+            let (_, counter) = watch(&scene.graph, &setup, Counter::new());
+            let separate = tallies(&counter, Costing::default()).expect("tallies");
+            let paired = tallies(&counter, pairs).expect("spans of eight values");
+            let found = counter.sum(|cell| {
+                let finds_spans = matches!(cell.stage, Stage::ChildBox | Stage::QuadtreeFit);
+                finds_spans && cell.class == OpClass::MinMax
+            });
+            assert_eq!(found % 14, 0);
+            let spans = found / 14;
+            assert!(spans > 20, "{}", scene.name);
+            let fewer = at(&separate, "min", bits) - at(&paired, "min", bits);
+            assert_eq!(fewer, 14 * spans);
+            let more = |operation| at(&paired, operation, bits) - at(&separate, operation, bits);
+            assert_eq!((more("less"), more("select")), (10 * spans, 14 * spans));
+        }
+    }
+    let frame = options(CageKind::Frame, f64::INFINITY);
+    let refused = scenes().into_iter().filter(|scene| {
+        let setup = setup(&scene.graph, &scene.camera, &frame);
+        let (_, counter) = watch(&scene.graph, &setup, Counter::new());
+        tallies(&counter, pairs).is_err()
+    });
+    assert!(refused.count() > 0);
+}
+
+/// The probe of the memories sees what the counter counts, and a stack that
+/// ends empty.
+#[test]
+fn traffic_agrees_with_the_counts() {
+    let widths = Widths {
+        stack_bits: 1000,
+        node_bits: 64,
+        attribute_bits: 56,
+        fill_vector_bits: 4,
+        pixel_bits: 24,
+    };
+    for scene in scenes() {
+        let setup = setup(
+            &scene.graph,
+            &scene.camera,
+            &options(CageKind::Corners, f64::INFINITY),
+        );
+        let memory = MemoryProbe::new(widths).with_curve(Memory::Node, 64);
+        let both = (Counter::new(), memory);
+        let (_, (counter, memory)) = watch(&scene.graph, &setup, both);
+        for kind in Memory::ALL {
+            assert_eq!(memory.reads(kind), counter.reads(kind));
+            assert_eq!(memory.writes(kind), counter.writes(kind));
+        }
+        let pushes: u64 = memory.stack_depths().iter().sum();
+        assert_eq!(pushes, counter.records(), "{}", scene.name);
+        // At each level seven siblings wait, at most, and one has its turn.
+        let lowest = counter.records_by_level().map(|(level, _)| level).max();
+        let most = 1 + 7 * u64::from(lowest.expect("records"));
+        let deepest = memory.deepest_stack();
+        assert!((8..=most).contains(&deepest) || scene.name == "one voxel");
+        assert!(deepest <= most, "{}: {deepest} of {most}", scene.name);
+        let curve = &memory.curves()[0].1;
+        assert_eq!(curve.accesses(), counter.reads(Memory::Node));
+        assert_eq!(curve.misses(1 << 20), curve.distinct_lines());
+        assert!(memory.distinct(Memory::Node) <= scene.graph.len() as u64);
+    }
+}
+
+/// Counter, this test's probe, and the frame's own statistics agree.
+#[test]
+fn counts_agree_and_change_nothing() {
+    for coverage in [Coverage::Any, Coverage::Center, Coverage::Exact] {
+        for cage in [CageKind::Corners, CageKind::Frame] {
+            for tolerance in [0.0, 0.25, f64::INFINITY] {
+                if tolerance != tolerance_of(coverage, tolerance) {
+                    continue;
+                }
+                for scene in scenes() {
+                    let options = SetupOptions {
+                        coverage,
+                        lod_px: 1.0,
+                        ..options(cage, tolerance)
+                    };
+                    let camera = Camera {
+                        width: 16,
+                        height: 11,
+                        ..scene.camera
+                    };
+                    let setup = setup(&scene.graph, &camera, &options);
+                    compare_probes(&scene.graph, &setup);
+                }
+            }
+        }
+    }
+}
+
+fn compare_probes(graph: &Graph, setup: &FrameSetup) {
+    let (frame, counter) = watch(graph, setup, Counter::new());
+    let (unwatched, NoProbe) = watch(graph, setup, NoProbe);
+    assert_eq!(frame.node, unwatched.node);
+    assert_eq!(frame.voxel, unwatched.voxel);
+
+    // The same machine again: nothing is left over from the frame before.
+    let mut machine = Machine::new(MachineOptions::default());
+    for _ in 0..2 {
+        let mut again = Frame::new(setup.width, setup.height, false);
+        let (stats, same) = machine
+            .render_probed(&graph.view(), setup, &mut again, Counter::new())
+            .expect("no overflow");
+        assert_eq!(same, counter, "counts are the same in every run");
+        assert_eq!(again.voxel, frame.voxel);
+        assert_eq!(stat(&stats, "records"), counter.records());
+        assert_eq!(stat(&stats, "samples_drawn"), counter.writes(Memory::Pixel));
+    }
+
+    let (_, log) = watch(graph, setup, ByRecord::default());
+    assert_eq!(log.turns.len() as u64, counter.records());
+    let mut by_hand: BTreeMap<(Stage, OpClass), u64> = BTreeMap::new();
+    let mut cells: BTreeMap<(u32, u32, Stage, OpClass), u64> = BTreeMap::new();
+    let mut reads: BTreeMap<Memory, u64> = BTreeMap::new();
+    let mut writes: BTreeMap<Memory, u64> = BTreeMap::new();
+    let mut widest = 0;
+    for turn in log.turns.iter().chain([&log.before]) {
+        for &(stage, event) in &turn.events {
+            match event {
+                Event::Op(class, bits) => {
+                    *by_hand.entry((stage, class)).or_default() += 1;
+                    *cells.entry((bits, turn.level, stage, class)).or_default() += 1;
+                    widest = widest.max(bits);
+                }
+                Event::Read(memory, _) => *reads.entry(memory).or_default() += 1,
+                Event::Write(memory) => *writes.entry(memory).or_default() += 1,
+            }
+        }
+    }
+    let counted = counter
+        .cells()
+        .map(|cell| ((cell.bits, cell.level, cell.stage, cell.class), cell.times));
+    assert!(counted.eq(cells), "by width, level, stage and class");
+    let mut levels: BTreeMap<u32, u64> = BTreeMap::new();
+    for turn in &log.turns {
+        *levels.entry(turn.level).or_default() += 1;
+    }
+    assert!(counter.records_by_level().eq(levels));
+    let none = 0;
+    for stage in Stage::ALL {
+        for class in OpClass::ALL {
+            let expected = by_hand.get(&(stage, class)).unwrap_or(&none);
+            assert_eq!(counter.ops_at(stage, class), *expected);
+        }
+    }
+    for memory in Memory::ALL {
+        assert_eq!(counter.reads(memory), *reads.get(&memory).unwrap_or(&none));
+        assert_eq!(
+            counter.writes(memory),
+            *writes.get(&memory).unwrap_or(&none)
+        );
+    }
+    assert_eq!(counter.ops(), by_hand.values().sum::<u64>());
+    assert_eq!(counter.widest(), widest);
+}
