@@ -170,6 +170,15 @@ const WHOLE_MACHINE: Variant = Variant {
     ..WHOLE_FAST
 };
 
+/// The machine without occlusion order, and without the rejection that it
+/// allows: so many of these two.
+pub(super) fn order_family(variants: usize) -> Family {
+    Family {
+        whole: MACHINE,
+        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
+    }
+}
+
 const FAST_VARIANTS: &[Variant] = &[
     Variant {
         name: "hidden windows looked into",

@@ -25,6 +25,7 @@ mod names;
 mod outputs;
 pub mod render;
 mod report;
+mod reproduce;
 mod scene_files;
 mod scenes;
 mod signals;
@@ -112,6 +113,11 @@ enum Command {
     /// Every frame is held against the exact ray caster, the specification and bounds on its
     /// vertices' error. What fails is shrunk to one command line; exit code 3.
     Stress(Box<stress::StressArgs>),
+    /// The image-order paper's Table I, claims and figures, beside its numbers
+    ///
+    /// Writes one page, config.toml, results.json, pictures and plots. With DIR a recorded run is
+    /// drawn again and compared: exit code 3 if a picture's hash or a count differs.
+    Reproduce(reproduce::ReproduceArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
     /// Print the manual page
@@ -205,6 +211,7 @@ fn run_command(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), C
             bench::run(&args, scenes, cli.common.threads.as_ref(), console)
         }
         Some(Command::Stress(args)) => stress::run(&args, scenes, console),
+        Some(Command::Reproduce(args)) => reproduce::run(&args, console),
         Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
         Some(Command::Man(args)) => manual::man(&args, Cli::command()),
     }

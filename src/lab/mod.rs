@@ -4,9 +4,11 @@
 pub mod bench;
 pub mod bounds;
 pub mod error;
+pub mod far_path;
 pub mod flicker;
 pub mod float_rays;
 pub mod methods;
 pub mod model;
+pub mod reproduce;
 pub mod stress;
 pub mod vertex_error;

@@ -1,5 +1,7 @@
 //! Results as rows and columns, for people and for programs.
 
+use std::fmt::Write;
+
 use serde::Serialize;
 
 /// One entry.
@@ -45,6 +47,16 @@ impl Cell {
             Self::None => "-".to_owned(),
         }
     }
+
+    /// As programs read it: all digits, nothing for nothing.
+    fn for_programs(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Count(count) => count.to_string(),
+            Self::Number(value, _) => value.to_string(),
+            Self::None => String::new(),
+        }
+    }
 }
 
 impl From<&str> for Cell {
@@ -70,7 +82,7 @@ impl<T: Into<Cell>> From<Option<T>> for Cell {
 pub struct Table {
     /// What it shows.
     pub title: String,
-    /// What the columns hold.
+    /// What the columns hold; in words that CSV readers take as names too.
     pub columns: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<Cell>>,
@@ -115,6 +127,47 @@ impl Table {
                 .map(|row| kept.iter().map(|&column| row[column].clone()).collect())
                 .collect(),
         }
+    }
+
+    /// The table in CSV (RFC 4180): a line of names, then the rows.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = self.columns.join(",") + "\r\n";
+        for row in &self.rows {
+            let fields: Vec<String> = row.iter().map(|c| quoted(&c.for_programs())).collect();
+            text += &fields.join(",");
+            text += "\r\n";
+        }
+        text
+    }
+
+    /// The table in Markdown under its title.
+    #[must_use]
+    pub fn markdown(&self) -> String {
+        let mut text = format!("**{}**\n\n| {} |\n|", self.title, self.columns.join(" | "));
+        for column in 0..self.columns.len() {
+            text += if self.is_of_words(column) {
+                "---|"
+            } else {
+                "--:|"
+            };
+        }
+        text.push('\n');
+        for row in &self.rows {
+            let cells = row.iter().map(|cell| cell.for_people().replace('|', "\\|"));
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "| {} |", cells.collect::<Vec<_>>().join(" | "));
+        }
+        text
+    }
+}
+
+/// A CSV field, in quotes where it must be.
+fn quoted(field: &str) -> String {
+    if field.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
     }
 }
 
@@ -161,9 +214,25 @@ mod tests {
     }
 
     #[test]
+    fn csv_keeps_digits_and_quotes() {
+        let expected = "scene,ms,records\r\n\
+                        \"gen:menger,depth=2\",12.345,1234567\r\n\
+                        \"a \"\"b\"\" | c\",0.5,\r\n";
+        assert_eq!(table().csv(), expected);
+    }
+
+    #[test]
     fn columns_can_be_left_out() {
         let less = table().without(&["ms", "nothing"]);
         assert_eq!(less.columns, ["scene", "records"]);
         assert_eq!(less.rows[1], [Cell::from("a \"b\" | c"), Cell::None]);
+    }
+
+    #[test]
+    fn markdown_is_for_people() {
+        let expected = "**Two scenes**\n\n| scene | ms | records |\n|---|--:|--:|\n\
+                        | gen:menger,depth=2 | 12.3 | 1,234,567 |\n\
+                        | a \"b\" \\| c | 0.500 | - |\n";
+        assert_eq!(table().markdown(), expected);
     }
 }

@@ -153,7 +153,7 @@ fn a_build_that_is_cut_short_leaves_no_file() {
 }
 
 #[test]
-fn copies_and_budgets() {
+fn copies_budgets_and_walks() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
@@ -190,6 +190,13 @@ fn copies_and_budgets() {
                 > 0
         );
     }
+    let walk = json(&["bench", "walk", "four.far", "--frames", "4", "--size", "48"]);
+    let walks = walk["files"][0]["walks"].as_array().unwrap();
+    assert_eq!(
+        (walks.len(), walks[0]["ms"].as_array().unwrap().len()),
+        (2, 4)
+    );
+    assert_eq!(walks[0]["sums"]["transparent_voxels"], 0);
 }
 
 #[test]

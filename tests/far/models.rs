@@ -1,16 +1,14 @@
 //! Models of the shared data: what holds of the city holds of what people made.
 
-use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use glam::{DQuat, DVec3};
 use shiftvox::drawing::mesh_view::view_of;
 use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox::far::{BuildOptions, FarFile, build};
 use shiftvox::graph::Silent;
+use shiftvox::lab::far_path::{FarPathPlan, camera};
 use shiftvox::mesh::LoadOptions;
-use shiftvox::project::Camera;
 use shiftvox::scene;
 
 use super::city::on_threads;
@@ -25,28 +23,6 @@ fn model(name: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: mesh/{name} is not among the shared data");
     None
-}
-
-const FRAMES: u32 = 24;
-
-/// Once around, from two and a half sizes away to a third of one and back, from a little above.
-fn camera(file: &FarFile, frame: u32) -> Camera {
-    let (low, high) = file.bounds();
-    let target = (low + high) / 2.0;
-    let way = TAU * f64::from(frame) / f64::from(FRAMES);
-    let near = 0.5 - 0.5 * way.cos();
-    let distance = (high - low).length() * (2.5 + (0.33 - 2.5) * near);
-    let up = if file.y_up() { DVec3::Y } else { DVec3::Z };
-    let side = if file.y_up() { DVec3::Z } else { DVec3::X };
-    let turned = DQuat::from_axis_angle(up, way) * side;
-    Camera {
-        eye: target + (turned + up * 0.3).normalize() * distance,
-        target,
-        up,
-        fov_degrees: 50.0,
-        width: 160,
-        height: 90,
-    }
 }
 
 /// One and two threads build the same bytes; along a walk up to the model and away, what is left out
@@ -73,13 +49,21 @@ fn nothing_but_time_changes_on_a_walk() {
         let file = FarFile::open(&path).unwrap();
         let budget = bytes[0].len() as u64 / 4;
         let within = FarFile::open_within(&path, budget);
+        let plan = FarPathPlan {
+            frames: 24,
+            size: (160, 90),
+            voxel_px: 1.0,
+            opacities: Vec::new(),
+            culling: true,
+            runs: 1,
+        };
         let mut hidden = 0;
         for opacity in [Opacity::None, Opacity::Six] {
             let mut viewers: Vec<(usize, FarViewer<'_>)> =
                 [0, 1, 4].map(|late| (late, FarViewer::new(&file))).into();
             viewers.extend(within.iter().map(|file| (0, FarViewer::new(file))));
-            for frame in 0..FRAMES {
-                let view = view_of(&camera(&file, frame), file.bounds()).unwrap();
+            for frame in 0..plan.frames {
+                let view = view_of(&camera(&file, frame, &plan), file.bounds()).unwrap();
                 let all = ViewOptions {
                     opacity,
                     culling: false,

@@ -219,8 +219,12 @@ fn tables_plots_and_a_page() {
         "page.html",
         "--export-svg",
         "front.svg",
+        "--export-csv",
+        "all.csv",
         "--export-json",
         "front.json",
+        "--export-markdown",
+        "front.md",
     ]);
     assert!(told.contains("40 x 40: of 32 hardwares "), "{told}");
     let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
@@ -238,7 +242,14 @@ fn tables_plots_and_a_page() {
         assert_eq!(page.matches(&format!("class=\"words {name}\"")).count(), 1);
         assert_eq!(page.matches(&format!(".{name}:hover")).count(), 1);
     }
+    assert_eq!(read("all.csv").lines().count(), 33);
+    let on_front = read("all.csv")
+        .lines()
+        .filter(|line| line.contains(",yes,,"))
+        .count();
+    assert_eq!(on_front, points.len());
     assert!(read("front.svg").contains("no other is clearly better"));
+    assert!(read("front.md").contains("| point |"));
 }
 
 /// In words of 16 bits a terrain of this depth cannot be set up: a result like others.

@@ -236,6 +236,8 @@ fn files_are_written_once() {
         "stats.txt",
         "heat.png",
         "t.json",
+        "r.md",
+        "r.csv",
         "r.svg",
         "r.json",
     ];
@@ -244,6 +246,8 @@ fn files_are_written_once() {
         "--stats",
         "--heat",
         "--trace",
+        "--export-markdown",
+        "--export-csv",
         "--export-svg",
         "--export-json",
     ];
@@ -260,7 +264,8 @@ fn files_are_written_once() {
         html.contains("<svg") && !html.contains("http://localhost") && !html.contains("<script")
     );
     assert!(text("stats.txt").contains("Begin Simulation Statistics"));
-    assert!(html.contains("Area of the light hardware"));
+    assert!(text("r.csv").lines().count() > 100);
+    assert!(text("r.md").contains("Area of the light hardware"));
     let trace: Value = serde_json::from_str(&text("t.json")).expect("trace events");
     assert!(
         trace["traceEvents"]

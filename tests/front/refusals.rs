@@ -139,6 +139,26 @@ fn verbs_agree_about_scenes_that_do_not_exist() {
 }
 
 #[test]
+fn a_wrong_name_is_told_before_other_scenes_are_made() {
+    let folder = folder();
+    let line = [
+        "reproduce",
+        "--growing",
+        "gen:terrain,depth=3",
+        "--outdir",
+        "r",
+    ];
+    let started = Instant::now();
+    let assert = run(folder.path(), &line).code(4);
+    assert!(stderr_of(&assert).contains("from 5 to 16"));
+    assert!(
+        started.elapsed() < Duration::from_secs(1),
+        "{:?}",
+        started.elapsed()
+    );
+}
+
+#[test]
 fn experiments_have_manual_pages() {
     let folder = folder();
     let page = run(folder.path(), &["man", "bench", "error"]).success();

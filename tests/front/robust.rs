@@ -20,7 +20,7 @@ use shiftvox::split_mix::SplitMix;
 use shiftvox::textured::TexturedFile;
 
 /// What is run: every command, on inputs from `../in`.
-const LINES: [&str; 31] = [
+const LINES: [&str; 33] = [
     "",
     "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
     "render ../in/knot.obj --depth 6 --size 200 -o k.png --outdir run --force",
@@ -42,13 +42,15 @@ const LINES: [&str; 31] = [
     "model gen:menger,depth=2 --size 48 --json",
     "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
     "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-svg s.svg --force",
+    "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
     "bench engines gen:menger,depth=2 --size 64 --runs 1 --export-json engines.json --force",
-    "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-json e.json --force",
+    "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-csv e.csv --force",
     "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",
     "bench vertex-error",
     "bench error gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --lods 0 --aas 1 --bits 32 --json",
     "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-svg f.svg --force",
     "bench methods ../in/knot.obj --size 16 --runs 1 --warmup 0 --frames 0 --depth 4 --only triangles,voxels --json",
+    "bench walk ../in/knot.far --size 32 --frames 2 --export-json walk.json --force",
     "completions bash",
     "man bench error",
     "render --help",

@@ -39,7 +39,8 @@ fn all_methods_in_all_forms() {
     let at = folder.path();
     fs::write(at.join("blades.obj"), blades()).unwrap();
     let command = "bench methods blades.obj --size 64 --least 16 --depth 6 --runs 1 --frames 2 \
-        --json --export-svg m.svg --export-html m.html"
+        --json --export-csv m.csv --export-svg m.svg --export-html m.html --strips \
+        strips"
         .split(' ');
     let output = shiftvox(at).args(command).assert().success();
     let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
@@ -86,12 +87,15 @@ fn all_methods_in_all_forms() {
             0
         );
     }
+    let csv = fs::read_to_string(at.join("m.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 1 + 3 * labels.len());
     let svg = fs::read_to_string(at.join("m.svg")).unwrap();
     assert!(svg.contains("noise floor") && svg.contains("textured"));
     let html = fs::read_to_string(at.join("m.html")).unwrap();
     assert_eq!(html.matches("<img").count(), 3 * (1 + labels.len()));
     assert_eq!(html.matches("<svg").count(), 3 + 3);
     assert!(!html.contains("http://") || !html.contains("src=\"http"));
+    assert_eq!(fs::read_dir(at.join("strips")).unwrap().count(), 3);
 }
 
 #[test]

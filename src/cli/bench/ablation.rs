@@ -51,7 +51,10 @@ pub(super) fn run(
     let table = experiment::table(&rows);
     let results = Results {
         document: report::document("bench ablation", fields),
-        tables: vec![table, experiment::legend(&families)],
+        tables: vec![table.clone(), experiment::legend(&families)],
+        rows: table,
+        more_tables: Vec::new(),
+        preface: context.markdown(schedule),
         panels: experiment::panels(&rows),
     };
     export::write(&results, &args.export, console)

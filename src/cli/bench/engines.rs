@@ -42,9 +42,13 @@ pub(super) fn run(
     }
     let mut fields = context.json(schedule, &options);
     fields["results"] = json!(timings);
+    let rows = experiment::table(&timings);
     let results = Results {
         document: report::document("bench engines", fields),
-        tables: vec![experiment::table(&timings)],
+        tables: vec![rows.clone()],
+        rows,
+        more_tables: Vec::new(),
+        preface: context.markdown(schedule),
         panels: experiment::panels(&timings),
     };
     export::write(&results, &args.export, console)

@@ -100,7 +100,7 @@ pub(super) fn run(
         ..args.scene.clone()
     };
     export::check(&args.export)?;
-    pictures::check(None, &args.export, &names)?;
+    pictures::check(&args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let context = Context::now();
     context.warn(console);
@@ -205,7 +205,10 @@ fn write(
     pictures::write_plots(&args.export, &panels, console)?;
     let results = Results {
         document: report::document("bench error", fields),
+        rows: experiment::rows(scenes),
         tables,
+        more_tables: Vec::new(),
+        preface: context.markdown(schedule),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)

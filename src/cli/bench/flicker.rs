@@ -114,7 +114,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     export::check(&args.export)?;
-    pictures::check(None, &args.export, &names)?;
+    pictures::check(&args.export, &names)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     let samples: u32 = args.reference_samples.parse().unwrap_or(8);
     let plan = FilmPlan {
@@ -168,7 +168,10 @@ fn write(args: &FlickerArgs, films: &[Films], console: &Console) -> Result<(), C
     let tables = by_scene.iter().map(|films| experiment::table(films));
     let results = Results {
         document: report::document("bench flicker", json!({ "films": films })),
+        rows: experiment::table(films),
         tables: tables.collect(),
+        more_tables: Vec::new(),
+        preface: "The same in every run.\n".to_owned(),
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)

@@ -92,8 +92,8 @@ pub(super) struct MethodsArgs {
 }
 
 pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError> {
-    export::check(&args.export)?;
-    pictures::check(args.export_html.as_deref(), &args.export, &args.meshes)?;
+    export::check_with(&args.export, &args.export_html)?;
+    pictures::check(&args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
     let size = reference_size(args.size, DEFAULT_SIDE)?;
     if size.0.min(size.1) < args.least {
@@ -327,7 +327,10 @@ fn write(
     let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));
     let results = Results {
         document: report::document("bench methods", fields),
+        rows: experiment::rows(meshes),
         tables: tables.collect(),
+        more_tables: Vec::new(),
+        preface,
         panels: Vec::new(),
     };
     export::write_without_plots(&results, &args.export, console)

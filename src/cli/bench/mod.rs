@@ -11,6 +11,7 @@ mod picture_export;
 mod scaling;
 mod select;
 mod vertex_error;
+mod walk;
 
 use clap::{Args, Subcommand};
 
@@ -63,6 +64,8 @@ enum Experiment {
     /// From where the mesh fills the picture to where it is 8 pixels high: time, error against
     /// triangles with 256 samples a pixel, flicker, bytes, build time, counters.
     Methods(Box<methods::MethodsArgs>),
+    /// Frame times of far voxels along a walk, with and without opacities (.far files; see convert)
+    Walk(Box<walk::WalkArgs>),
     /// How far the image-order paper's screen-space midpoints are from exact projection
     VertexError,
 }
@@ -93,6 +96,7 @@ pub(super) fn run(
         Experiment::Error(args) => error::run(args, scenes, console),
         Experiment::Flicker(args) => flicker::run(args, scenes, console),
         Experiment::Methods(args) => methods::run(args, console),
+        Experiment::Walk(args) => walk::run(args, console),
         Experiment::VertexError => vertex_error::run(console),
     }
 }

@@ -15,19 +15,7 @@ use crate::whole;
 const SCENE_FIELD: &str = "{scene}";
 
 /// Fails before the work where a file would be replaced without `--force`.
-pub(super) fn check(
-    page: Option<&Path>,
-    export: &ExportArgs,
-    scenes: &[String],
-) -> Result<(), CliError> {
-    if let Some(path) = page {
-        whole::check_free(path, export.force)?;
-        let others = [&export.export_json, &export.export_svg];
-        if others.into_iter().flatten().any(|other| other == path) {
-            let message = format!("{}: two exports to one file", path.display());
-            return Err(CliError::usage(message));
-        }
-    }
+pub(super) fn check(export: &ExportArgs, scenes: &[String]) -> Result<(), CliError> {
     for path in svg_paths(export, scenes) {
         whole::check_free(&path, export.force)?;
     }

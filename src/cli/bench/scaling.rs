@@ -129,12 +129,13 @@ pub(super) fn run(
     fields["paper_table_1"] = paper
         .map(|(side, time)| json!({ "side": side, "ms": time }))
         .collect();
+    let rows = experiment::points_table(&growths);
     let results = Results {
         document: report::document("bench scaling", fields),
-        tables: vec![
-            experiment::points_table(&growths),
-            experiment::laws_table(&growths),
-        ],
+        tables: vec![rows.without(&["pixels"]), experiment::laws_table(&growths)],
+        rows,
+        more_tables: Vec::new(),
+        preface: context.markdown(schedule),
         panels: experiment::panels(&growths),
     };
     export::write(&results, &args.export, console)

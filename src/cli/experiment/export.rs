@@ -20,6 +20,12 @@ pub(in crate::cli) struct ExportArgs {
     /// All results, as --json prints them
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) export_json: Option<PathBuf>,
+    /// A row for each measurement
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_csv: Option<PathBuf>,
+    /// The tables, with machine and command
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) export_markdown: Option<PathBuf>,
     /// A plot
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) export_svg: Option<PathBuf>,
@@ -32,23 +38,47 @@ pub(in crate::cli) struct ExportArgs {
 pub(in crate::cli) struct Results {
     /// The JSON document.
     pub(in crate::cli) document: Value,
-    /// What people read.
+    /// The measurements, one a row: CSV.
+    pub(in crate::cli) rows: Table,
+    /// What people read: stdout and Markdown.
     pub(in crate::cli) tables: Vec<Table>,
+    /// What Markdown has beside those.
+    pub(in crate::cli) more_tables: Vec<Table>,
+    /// What stands above the tables in Markdown.
+    pub(in crate::cli) preface: String,
     /// The plot.
     pub(in crate::cli) panels: Vec<Panel>,
 }
 
+impl ExportArgs {
+    /// All files.
+    fn paths(&self) -> impl Iterator<Item = &PathBuf> {
+        let all = [
+            &self.export_json,
+            &self.export_csv,
+            &self.export_markdown,
+            &self.export_svg,
+        ];
+        all.into_iter().flatten()
+    }
+}
+
 /// Fails before the work where a file would be replaced without `--force`, or two be one.
 pub(in crate::cli) fn check(args: &ExportArgs) -> Result<(), CliError> {
-    let paths: Vec<&PathBuf> = [&args.export_json, &args.export_svg]
-        .into_iter()
-        .flatten()
-        .collect();
+    check_with(args, [])
+}
+
+/// [`check`], with files that are written beside these.
+pub(in crate::cli) fn check_with<'p>(
+    args: &'p ExportArgs,
+    others: impl IntoIterator<Item = &'p PathBuf>,
+) -> Result<(), CliError> {
+    let paths: Vec<&PathBuf> = args.paths().chain(others).collect();
     for (place, path) in paths.iter().enumerate() {
         whole::check_free(path, args.force)?;
         if paths[..place].contains(path) {
             return Err(CliError::usage(format!(
-                "{}: two exports to one file",
+                "{}: two outputs to one file",
                 path.display()
             )));
         }
@@ -83,6 +113,13 @@ pub(in crate::cli) fn write_files(
     };
     file(&args.export_json, &|| {
         Ok(format!("{:#}\n", results.document))
+    })?;
+    file(&args.export_csv, &|| Ok(results.rows.csv()))?;
+    file(&args.export_markdown, &|| {
+        let tables = results.tables.iter().chain(&results.more_tables);
+        let tables = tables.map(Table::markdown);
+        let tables: Vec<String> = tables.collect();
+        Ok(format!("{}\n{}", results.preface, tables.join("\n")))
     })?;
     file(&args.export_svg, &|| Ok(plot::svg(&results.panels)?))
 }

@@ -3,44 +3,29 @@
 use std::path::Path;
 
 use hwmodel::memory::RecordKind;
-use hwmodel::statistics::Statistics;
+use hwmodel::statistics::{Statistics, Value as Figure};
 use serde_json::{Value, json};
 
 use super::args::ModelArgs;
 use super::findings::Findings;
-use super::summary::{short_tables, summary};
+use super::summary::{long_tables, short_tables, summary};
 use super::{page, trace};
 use crate::cli::console::Console;
 use crate::cli::error::{CliError, Kind};
+use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
 use crate::lab::model::{caches, cost, floor, heat, plots, record, statistics};
 use crate::picture::png;
 use crate::report::plot::Panel;
+use crate::report::{Cell, Table};
 use crate::whole;
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
-    export::check(&args.export)?;
     let files = &args.files;
-    for path in [&files.html, &files.stats, &files.heat, &files.trace]
-        .into_iter()
-        .flatten()
-    {
-        whole::check_free(path, args.export.force)?;
-        let others = [&files.html, &files.stats, &files.heat, &files.trace];
-        if others
-            .iter()
-            .filter(|other| other.as_ref() == Some(path))
-            .count()
-            > 1
-        {
-            return Err(CliError::usage(format!(
-                "{}: two outputs to one file",
-                path.display()
-            )));
-        }
-    }
+    let others = [&files.html, &files.stats, &files.heat, &files.trace];
+    export::check_with(&args.export, others.into_iter().flatten())?;
     if let Some(trace) = &files.trace {
         trace::kind(trace)?;
     }
@@ -81,10 +66,31 @@ pub(super) fn write(found: &Findings, args: &ModelArgs, console: &Console) -> Re
     printed.extend(short_tables(found));
     let results = Results {
         document: document(found, &list),
+        rows: rows(&list),
         tables: printed,
+        more_tables: long_tables(found),
+        preface: Context::now().command_line() + "\n",
         panels,
     };
     export::write(&results, &args.export, console)
+}
+
+/// Statistics as rows.
+fn rows(list: &Statistics) -> Table {
+    let mut table = Table::new("Statistics", &["name", "value", "unit", "description"]);
+    for statistic in list.iter() {
+        let value = match statistic.value {
+            Figure::Count(count) => Cell::from(count),
+            Figure::Measure(measure) => Cell::Number(measure, 6),
+        };
+        table.rows.push(vec![
+            Cell::Text(statistic.name.clone()),
+            value,
+            Cell::Text(statistic.unit.clone()),
+            Cell::Text(statistic.description.clone()),
+        ]);
+    }
+    table
 }
 
 /// All plots.

@@ -29,6 +29,6 @@ pub use pareto::{beaten_by, dominated};
 pub use picture_error::{Judge, PictureError};
 pub(in crate::lab) use reference::of_triangles;
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
-pub use tables::{table, vertex_table};
+pub use tables::{rows, table, vertex_table};
 pub use vertices::vertex_levels;
 pub use voxels::{PixelStyle, tolerance_in_words, voxel_method};

@@ -126,6 +126,81 @@ pub fn table(scene: &SceneErrors) -> Table {
     table
 }
 
+/// Everything, a row for each method and scene: CSV.
+#[must_use]
+pub fn rows(scenes: &[SceneErrors]) -> Table {
+    // Of all families, each name once.
+    let (mut settings, mut counters) = (Vec::new(), Vec::new());
+    for row in scenes.iter().flat_map(|scene| &scene.rows) {
+        add_new(&mut settings, row.settings.iter().map(|s| s.0));
+        let counted = row.outcome.iter().flat_map(|outcome| &outcome.counters);
+        add_new(&mut counters, counted.map(|c| c.0));
+    }
+    let mut columns = vec!["scene", "size", "method", "family"];
+    columns.extend(&settings);
+    columns.extend(["median_ms", "min_ms", "deviation_ms", "thread_median_ms"]);
+    columns.extend(&counters);
+    columns.extend(["pixels", "covered"]);
+    columns.extend(SAMPLE_COLUMNS);
+    columns.extend(["depth_mean", "depth_p999", "depth_worst"]);
+    columns.extend(["vertex_mean", "vertex_p999", "vertex_worst"]);
+    columns.push("rms_linear");
+    columns.extend(PICTURE_COLUMNS);
+    columns.extend(["beaten_by", "remark"]);
+    let mut table = Table::new("Run time against error", &columns);
+    for scene in scenes {
+        for (row, beaten_by) in scene.rows.iter().zip(beaten_by(&scene.rows)) {
+            let outcome = row.outcome.as_ref().ok();
+            let mut cells = vec![
+                Cell::Text(scene.scene.clone()),
+                Cell::Text(format!("{}x{}", scene.width, scene.height)),
+                Cell::Text(row.method.clone()),
+                row.family.into(),
+            ];
+            let setting = |name: &&str| row.settings.iter().find(|(found, _)| found == name);
+            let setting = |name| setting(name).map_or(Cell::None, |s| Cell::Text(s.1.clone()));
+            cells.extend(settings.iter().map(setting));
+            let time = |value: Option<f64>| value.map_or(Cell::None, |value| number(value, 3));
+            cells.push(time(outcome.map(|o| o.wall.median_ms)));
+            cells.push(time(outcome.map(|o| o.wall.min_ms)));
+            cells.push(time(outcome.map(|o| o.wall.deviation_ms)));
+            cells.push(time(outcome.and_then(|o| o.thread).map(|t| t.median_ms)));
+            cells.extend(counters.iter().map(|name| counter(row, name)));
+            let samples = outcome.and_then(|o| o.samples);
+            cells.push(samples.map(|s| s.coverage.pixels).into());
+            cells.push(samples.map(|s| s.coverage.covered).into());
+            cells.extend(sample_cells(outcome));
+            for spread in [
+                outcome.and_then(|o| o.depth_voxels),
+                outcome.and_then(|o| o.vertex_px),
+            ] {
+                let of = |value: fn(&Spread) -> f64| {
+                    spread.map_or(Cell::None, |spread| number(value(&spread), 5))
+                };
+                cells.extend([of(|s| s.mean), of(|s| s.percentile_99_9), of(|s| s.worst)]);
+            }
+            cells.push(outcome.map_or(Cell::None, |o| number(o.picture.rms_linear, 5)));
+            cells.extend(match outcome {
+                Some(outcome) => picture_cells(&outcome.picture),
+                None => vec![Cell::None; PICTURE_COLUMNS.len()],
+            });
+            cells.push(beaten_by.map_or(Cell::None, Cell::Text));
+            cells.push(remark(row));
+            table.rows.push(cells);
+        }
+    }
+    table
+}
+
+/// Appends the names that are not there yet.
+fn add_new(names: &mut Vec<&'static str>, more: impl Iterator<Item = &'static str>) {
+    for name in more {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+}
+
 /// Vertex errors by octree level of some methods of a scene.
 #[must_use]
 pub fn vertex_table(scene: &SceneErrors, wanted: &dyn Fn(&str) -> bool) -> Table {

@@ -50,8 +50,9 @@ pub fn triangles(mesh: &Mesh, per_pixel: u32, style: PixelStyle) -> Result<Metho
     })
 }
 
-/// Opacities in words.
-fn opacity_in_words(opacity: Opacity) -> &'static str {
+/// The name of an opacity, as the command line has it.
+#[must_use]
+pub fn opacity_in_words(opacity: Opacity) -> &'static str {
     match opacity {
         Opacity::None => "none",
         Opacity::Scalar => "scalar",

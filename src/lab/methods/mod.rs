@@ -14,8 +14,8 @@ mod plots;
 mod tables;
 
 pub use distance::at_distance;
-pub use families::{far, textured, triangles};
+pub use families::{far, opacity_in_words, textured, triangles};
 pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
 #[cfg(feature = "cli")]
 pub use plots::panels;
-pub use tables::table;
+pub use tables::{rows, table};

@@ -3,11 +3,15 @@
 use super::measure::{Distance, Facts, MeshMethods, MethodAtDistance};
 use crate::report::{Cell, Table};
 
-/// Columns of a table.
-const COLUMNS: [&str; 13] = [
+/// Columns of every table.
+const COLUMNS: [&str; 17] = [
+    "mesh",
+    "pixels",
     "method",
     "ms",
+    "wall_ms",
     "rms",
+    "psnr",
     "flip",
     "bias",
     "wrong_share",
@@ -19,6 +23,18 @@ const COLUMNS: [&str; 13] = [
     "build_ms",
     "remark",
 ];
+
+/// A row for each mesh, distance and method.
+#[must_use]
+pub fn rows(meshes: &[MeshMethods]) -> Table {
+    let mut table = Table::new("All methods", &COLUMNS);
+    for mesh in meshes {
+        for distance in &mesh.distances {
+            table.rows.extend(cells(mesh, distance));
+        }
+    }
+    table
+}
 
 /// What people read of a mesh at a distance.
 #[must_use]
@@ -37,12 +53,16 @@ pub fn table(mesh: &MeshMethods, distance: &Distance) -> Table {
         &COLUMNS,
     );
     table.rows = cells(mesh, distance);
-    table
+    table.without(&["mesh", "pixels", "wall_ms", "psnr"])
 }
 
 fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {
     let cells = |(row, facts): (&MethodAtDistance, &Facts)| {
-        let mut cells = vec![Cell::Text(facts.label.clone())];
+        let mut cells = vec![
+            Cell::Text(mesh.mesh.clone()),
+            Cell::Count(u64::from(distance.size.1)),
+            Cell::Text(facts.label.clone()),
+        ];
         let outcome = match &row.outcome {
             Ok(outcome) => outcome,
             Err(reason) => {
@@ -59,7 +79,9 @@ fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {
         let (work_of, work) = outcome.counters.first().copied().unwrap_or(("", 0));
         cells.extend([
             Cell::ms(time.median_ms),
+            Cell::ms(outcome.wall.median_ms),
             thousandths(outcome.picture.rms_linear),
+            Cell::Number(outcome.picture.psnr_linear, 1),
             Cell::Number(outcome.picture.flip, 4),
             Cell::Number(bias.bias(), 3),
             Cell::Number(bias.relative(), 3),

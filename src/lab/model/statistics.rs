@@ -1,4 +1,4 @@
-//! The model's results as a list of statistics, for `stats.txt` and JSON.
+//! The model's results as a list of statistics, for `stats.txt` and CSV.
 
 use hwmodel::cycles::Cause;
 use hwmodel::statistics::Statistics;

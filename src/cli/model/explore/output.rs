@@ -31,7 +31,10 @@ pub(super) fn write(
     let fronts: Vec<Value> = found.iter().map(front_json).collect();
     let results = Results {
         document: document::document("explore", json!({ "scenes": fronts })),
+        rows: rows(found),
         tables,
+        more_tables: Vec::new(),
+        preface: format!("`{command}`\n"),
         panels: found.iter().map(panel).collect(),
     };
     export::write_files(&results, &args.export, console)?;
@@ -136,6 +139,69 @@ pub(super) fn values(line: &PointLine, points: &[PointLine]) -> String {
         }
     }
     words.join(", ")
+}
+
+/// All points as rows.
+fn rows(found: &[Explorations]) -> Table {
+    let mut table = Table::new(
+        "Points",
+        &[
+            "scene",
+            "point",
+            "values",
+            "on_front",
+            "reason",
+            "cycles",
+            "time_ms",
+            "area_nand2",
+            "area_low",
+            "area_high",
+            "energy_pj",
+            "energy_low",
+            "energy_high",
+            "wrong_samples",
+            "meets_clock",
+            "limits",
+            "ray_caster_cycles",
+            "ray_caster_energy_pj",
+            "ray_caster_area_nand2",
+        ],
+    );
+    let number = |value: f64| Cell::Number(value, 3);
+    let yes = |is: bool| Cell::from(if is { "yes" } else { "no" });
+    for of in found {
+        for line in &of.points {
+            let on_front = of.front.iter().any(|on| on.line.point == line.point);
+            let mut row = vec![
+                Cell::Text(of.scene.clone()),
+                Cell::from(line.point as u64),
+                Cell::Text(values(line, &of.points)),
+                yes(on_front),
+            ];
+            match &line.outcome {
+                crate::lab::model::explore::PointOutcome::Refused { reason } => {
+                    row.push(Cell::Text(reason.clone()));
+                    row.resize(table.columns.len(), Cell::None);
+                }
+                crate::lab::model::explore::PointOutcome::Drawn(figures) => {
+                    let (area, energy) = (figures.area_nand2, figures.energy_pj);
+                    row.extend([Cell::None, Cell::from(figures.cycles)]);
+                    row.push(number(figures.time_ms));
+                    row.extend([area.value, area.low, area.high].map(number));
+                    row.extend([energy.value, energy.low, energy.high].map(number));
+                    row.push(Cell::from(figures.wrong_samples));
+                    row.push(yes(figures.meets_clock));
+                    row.push(Cell::Text(figures.limits.clone()));
+                    let rays = &figures.ray_caster;
+                    row.push(Cell::from(rays.cycles));
+                    row.push(number(rays.energy_pj.value));
+                    row.push(number(rays.area_nand2.value));
+                }
+            }
+            table.rows.push(row);
+        }
+    }
+    table
 }
 
 /// Energy over time: all points by the description that they begin with, the front's best with their numbers, and the
