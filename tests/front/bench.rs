@@ -233,3 +233,49 @@ fn wrong_experiments_exit_with_2() {
     bench(folder.path(), &["engines", "missing.vox"]).code(4);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
 }
+
+/// A row and a table for everything that is measured, in the same order.
+#[test]
+fn tables_go_to_files_too() {
+    let folder = folder();
+    for (what, line, head, rows) in [
+        (
+            "engines",
+            "engines gen:menger,depth=2 --size 16 --runs 1",
+            "scene,size,engine",
+            4,
+        ),
+        (
+            "error",
+            "error gen:menger,depth=2 --size 16 --families voxels --runs 1",
+            "scene,size,method",
+            4,
+        ),
+        (
+            "flicker",
+            "flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan",
+            "scene",
+            4,
+        ),
+        (
+            "scaling",
+            "scaling --sides 16 --object-side 16 --runs 1 --growing gen:menger,depth=2",
+            "growing",
+            1,
+        ),
+    ] {
+        let (csv, markdown) = (format!("{what}.csv"), format!("{what}.md"));
+        let exports = ["--export-csv", &csv, "--export-markdown", &markdown];
+        let line: Vec<&str> = line.split(' ').chain(exports).collect();
+        bench(folder.path(), &line).success();
+        let text = fs::read_to_string(folder.path().join(&csv)).unwrap();
+        assert!(
+            text.starts_with(head) && text.lines().count() > rows,
+            "{text}"
+        );
+        let text = fs::read_to_string(folder.path().join(&markdown)).unwrap();
+        assert!(text.contains("|---"), "{text}");
+    }
+    let same = ["engines", SCENE, "--export-csv", "a", "--export-json", "a"];
+    bench(folder.path(), &same).code(2);
+}

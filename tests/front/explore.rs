@@ -402,6 +402,12 @@ fn results_of_something_else_are_refused_by_name() {
         &["--eye", "9,9,9", "--target", "0,0,0"],
         "`scene` is",
     );
+    // What could not have become a line of results is nobody's to cut off.
+    let notes = "precious notes without an end of line";
+    fs::write(folder.path("notes.txt"), notes).unwrap();
+    let (code, told) = folder.refusal(SCENE, &["--results", "notes.txt"]);
+    assert_eq!(code, 4, "{told}");
+    assert_eq!(fs::read_to_string(folder.path("notes.txt")).unwrap(), notes);
     fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 16]\n").unwrap();
     refused(SCENE, &[], "`space` is");
     fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 8]\n").unwrap();

@@ -218,7 +218,10 @@ fn a_mapped_file_that_is_cut_short_is_told() {
     let told = told(&output);
     assert_eq!(output.status.signal(), None, "{told}");
     assert_eq!(output.status.code(), Some(4), "{told}");
-    assert!(told.contains("cut short"), "{told}");
+    assert!(
+        told.contains("a.vxg: ") && told.contains("cut short"),
+        "{told}"
+    );
     let document: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(document["exit_code"], 4);
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -269,4 +272,62 @@ fn meshes_of_endless_work_are_refused_with_the_reason() {
     fs::write(at("same.obj"), sheet.to_owned() + &three.repeat(40_000)).unwrap();
     let output = patient(folder.path(), &["info", "same.obj"]);
     assert!(output.status.success(), "{}", told(&output));
+}
+
+/// What does not fit is a limit (exit code 5) and no fault of the file.
+#[test]
+fn want_of_memory_is_no_fault_of_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let make = |line: &str| {
+        let line: Vec<&str> = line.split(' ').collect();
+        let output = patient(folder.path(), &line);
+        assert!(output.status.success(), "{}", told(&output));
+    };
+    make("render gen:sphere,depth=2 --size 3000 --aov depth -o a.png");
+    make("convert gen:terrain,depth=9 a.vxg");
+    let mut refused = [0; 3];
+    for megabytes in (90..=210).step_by(15) {
+        for (refused, line) in refused.iter_mut().zip([
+            &["compare", "a.png", "a.png"],
+            &["compare", "a.depth.npy", "a.depth.npy"],
+            &["render", "a.vxg", "--hash"],
+        ]) {
+            let output = within(megabytes, folder.path(), line);
+            match output.status.code() {
+                Some(0) => {}
+                Some(5) => *refused += 1,
+                other => panic!("{megabytes} MB, {line:?}: {other:?}, {}", told(&output)),
+            }
+        }
+    }
+    // A picture of nine million pixels takes more than any of these limits.
+    assert_eq!(refused[0], 9, "{refused:?}");
+}
+
+/// 60,000 nodes that show 45 triangles each: refused before they are made, with figures.
+#[test]
+fn the_triangles_of_a_gltf_are_counted_before_they_are_made() {
+    let folder = tempfile::tempdir().unwrap();
+    let primitives = vec![r#"{"attributes":{"POSITION":0}}"#; 45].join(",");
+    let nodes = vec![r#"{"mesh":0}"#; 60_000].join(",");
+    // Corners of a triangle: nine floats.
+    let corners: Vec<u8> = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        .into_iter()
+        .flat_map(f32::to_le_bytes)
+        .collect();
+    fs::write(folder.path().join("a.bin"), &corners).unwrap();
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"buffers":[{{"uri":"a.bin","byteLength":36}}],
+        "bufferViews":[{{"buffer":0,"byteLength":36}}],
+        "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}],
+        "meshes":[{{"primitives":[{primitives}]}}],"nodes":[{nodes}]}}"#
+    );
+    fs::write(folder.path().join("a.gltf"), text).unwrap();
+    let output = within(200, folder.path(), &["info", "a.gltf", "--depth", "4"]);
+    let told = told(&output);
+    assert_eq!(output.status.code(), Some(5), "{told}");
+    assert!(
+        told.contains("a.gltf: nodes") && told.contains("bytes of memory"),
+        "{told}"
+    );
 }

@@ -228,6 +228,22 @@ fn threads_change_no_table() {
 }
 
 #[test]
+fn two_outputs_are_two_files() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("r.html").display().to_string();
+    for other in ["--export-json", "--export-csv", "--stats"] {
+        let mut command = shiftvox();
+        command.args(SCENE);
+        let assert = command
+            .args(["--html", &path, other, &path])
+            .assert()
+            .code(2);
+        let told = String::from_utf8_lossy(&assert.get_output().stderr).into_owned();
+        assert!(told.contains("two outputs to one file"), "{told}");
+    }
+}
+
+#[test]
 fn files_are_written_once() {
     let folder = TempDir::new().expect("a folder");
     let path = |name: &str| folder.path().join(name).display().to_string();

@@ -35,6 +35,24 @@ fn what_stands_in_the_way_is_told_before_the_work() {
     run(folder.path(), &["generate", big, "-o", "a.xyz"]).code(2);
     let outside = ["convert", big, "a.vxg", "--memory", "64M", "--temp", "no"];
     run(folder.path(), &outside).code(1);
+    let wide = ["render", big, "-o", "b.png", "--size", "16384"];
+    run(folder.path(), &wide).code(5);
+    let long = "n".repeat(250) + ".png";
+    run(
+        folder.path(),
+        &["render", big, "-o", &long, "--aov", "depth"],
+    )
+    .code(1);
+    #[cfg(target_os = "linux")]
+    run(folder.path(), &["render", big, "-o", "/proc/b.png"]).code(1);
+    let assert = run(folder.path(), &["convert", big, "a.far"]).code(4);
+    assert!(stderr_of(&assert).contains("a mesh is needed"));
+    let rays = u64::MAX.to_string();
+    run(
+        folder.path(),
+        &["convert", "a.obj", "a.far", "--rays", &rays],
+    )
+    .code(2);
     assert!(
         started.elapsed() < Duration::from_secs(4),
         "{:?}",
@@ -260,6 +278,10 @@ mod unix {
         let draw = "exec \"$0\" render gen:sphere,depth=3 --size 512 --aov depth -o a.png --force";
         let script = format!("trap '' XFSZ; ulimit -f 256; {draw}");
         sh(folder.path(), &script).code(1);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        // The signal of a file that is too large ends nothing either.
+        let assert = sh(folder.path(), &format!("ulimit -f 256; {draw}")).code(1);
+        assert!(stderr_of(&assert).contains("a."), "{}", stderr_of(&assert));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         fs::write(folder.path().join("a.png"), b"old").unwrap();
         fs::write(folder.path().join("a.depth.npy"), b"old").unwrap();

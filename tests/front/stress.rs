@@ -1,4 +1,4 @@
-//! `stress` as a script meets it.
+//! `stress` and `reproduce` as a script meets it.
 
 use std::fs;
 
@@ -48,4 +48,36 @@ fn one_case_is_told_and_a_wrong_one_refused() {
     );
     run(folder.path(), &["stress", "--case", case, "--thorough"]).code(2);
     run(folder.path(), &["stress", "--bits", "65"]).code(2);
+}
+
+#[test]
+fn the_papers_results_are_counted_the_same_in_every_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = [
+        "reproduce",
+        "--sides",
+        "16,32",
+        "--object-side",
+        "32",
+        "--runs",
+        "1",
+        "--growing",
+        "gen:terrain,depth=5;gen:terrain,depth=6",
+        "--outdir",
+    ];
+    let reproduced = |outdir: &str| {
+        let assert = run(folder.path(), &[&line[..], &[outdir]].concat()).success();
+        assert!(stdout_of(&assert).contains("Table I"));
+        let text = fs::read_to_string(folder.path().join(outdir).join("results.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    };
+    let (one, two) = (reproduced("one"), reproduced("two"));
+    assert!(folder.path().join("two/figures.svg").exists());
+    // A simple scene at two sizes, and six more at one of them; the paper's settings and the default ones.
+    assert_eq!(one["evidence"].as_array().unwrap().len(), 2 * (2 + 6));
+    assert_eq!(one["evidence"], two["evidence"]);
+    let page = fs::read_to_string(folder.path().join("one/report.md")).unwrap();
+    for part in ["Table I", "occlusion order", "Objects at one size"] {
+        assert!(page.contains(part), "{part}");
+    }
 }
