@@ -160,7 +160,7 @@ mod tests {
     use super::*;
     use crate::graph::Placement;
     use crate::machine::cages_along;
-    use crate::project::{Camera, Coverage, SetupOptions};
+    use crate::project::{CageKind, Camera, Coverage, SetupOptions};
 
     const DEPTH: u32 = 4;
 
