@@ -4,115 +4,24 @@
 //! Every input is such that no result leaves its word: where a block adds, numbers keep some bits' distance from
 //! the ends of the format; where it does not, they do not.
 
-use hwmodel::{Narrow, Probe, Stage, WideWord, Word};
+use hwmodel::{Probe, Stage, WideWord, Word};
 
-use crate::frame::{Blend, Frame, QuadNode};
-use crate::graph::{GraphView, Opacity};
+use super::directed_blending::{all_shares, blending};
+use super::inputs::{Inputs, SPARE};
+use crate::frame::{Frame, QuadNode};
+use crate::graph::GraphView;
 use crate::machine::MachineOptions;
-use crate::machine::alpha::BlendColor;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::children::{child_span, pool};
-use crate::machine::constants::BlendEye;
 use crate::machine::engine::Machine;
 use crate::machine::planes::{self, Silhouette};
 use crate::machine::quadrants::{self, Halves};
-use crate::machine::record::{Clip, Cube, ImagePlace, Planes, Pose, Record, Screen};
+use crate::machine::record::{Cube, ImagePlace, Planes, Pose, Record, Screen};
 use crate::machine::smallest_node::{self, Fill};
 use crate::machine::state::State;
 use crate::machine::{size, to_screen};
 use crate::project::options::SCREEN_GUARD_SHIFT;
-use crate::project::{ALL_LEFT, Coverage, FrameSetup, OPAQUE_ENOUGH, SHARES};
-use crate::split_mix::SplitMix;
-
-/// Bits that words keep from the ends of the format where they are added, doubled or halved a few times.
-const SPARE: u32 = 8;
-
-/// Numbers at the ends of ranges, and random ones.
-struct Inputs {
-    dice: SplitMix,
-    bits: u32,
-    wide_bits: u32,
-}
-
-impl Inputs {
-    /// A number of at most `bits` bits with its sign: an end of the range, next to nothing, or any.
-    fn number(&mut self, bits: u32) -> i64 {
-        let most = i64::MAX >> (64 - bits);
-        let ends = [-most - 1, -most, most, most - 1, -2, -1, 0, 1, 2];
-        // Every third is one of these.
-        let choice = self.dice.below(27) as usize;
-        if let Some(&end) = ends.get(choice) {
-            return end;
-        }
-        // As many bits as any other number of bits.
-        let length = 1 + self.dice.below(u64::from(bits)) as u32;
-        (self.dice.bits() as i64) >> (64 - length)
-    }
-
-    fn word(&mut self, spare: u32) -> Word {
-        Word::from_host(self.number(self.bits - spare))
-    }
-
-    fn words<const N: usize>(&mut self, spare: u32) -> [Word; N] {
-        std::array::from_fn(|_| self.word(spare))
-    }
-
-    fn flag(&mut self) -> bool {
-        self.dice.below(2) == 1
-    }
-
-    /// -1, 0 or 1.
-    fn step(&mut self) -> Word {
-        Word::from_host(self.dice.below(3) as i64 - 1)
-    }
-
-    fn level(&mut self, most: u32) -> u32 {
-        self.dice.below(u64::from(most) + 1) as u32
-    }
-
-    /// A coordinate whose numbers are independent of one another.
-    fn cage<P: Probe, L: CageCoordinate>(&mut self, state: &mut State<'_, P, L, ()>) -> L {
-        let any = L::from_frame(&mut state.dp, Word::ZERO, [Word::ZERO; 3]);
-        any.map(|_| self.word(SPARE))
-    }
-
-    fn clip<P: Probe, L: CageCoordinate>(&mut self, state: &mut State<'_, P, L, ()>) -> Clip<L> {
-        let [x, y, w] = [(); 3].map(|()| self.cage(state));
-        let (w_min, _) = w.span(&mut state.dp);
-        Clip { x, y, w, w_min }
-    }
-
-    /// Planes of small coefficients, which have ties, or of large ones.
-    fn planes(&mut self) -> Planes {
-        let bits = if self.flag() { 2 } else { self.wide_bits >> 1 };
-        let mut number = || WideWord::from_host(self.number(bits));
-        Planes {
-            edge: std::array::from_fn(|_| std::array::from_fn(|_| number())),
-            axis_c: std::array::from_fn(|_| number()),
-        }
-    }
-
-    fn cube(&mut self, level: u32) -> Cube {
-        Cube {
-            min: self.words(0),
-            max: self.words(0),
-            node: 0,
-            level,
-            voxel_level: level,
-            solid: true,
-        }
-    }
-
-    fn quad(&mut self, levels: u32) -> QuadNode {
-        let level = self.level(levels);
-        let mut place = || self.dice.below(1 << level) as u32;
-        QuadNode {
-            level,
-            x: place(),
-            y: place(),
-        }
-    }
-}
+use crate::project::{Coverage, FrameSetup};
 
 impl Machine {
     /// Gives inputs of `rounds` rounds to the blocks of a frame.
@@ -137,11 +46,7 @@ impl Machine {
         let canvas = (self.emptied(setup, &mut frame), &mut frame);
         let options = MachineOptions::default();
         let mut state = State::<P, L, ()>::new(options, graph, setup, canvas, probe, ());
-        let mut inputs = Inputs {
-            dice: SplitMix::new(0),
-            bits: setup.format.bits(),
-            wide_bits: setup.format.wide().bits(),
-        };
+        let mut inputs = Inputs::new(setup);
         all_vectors(&mut state);
         let blends = setup.options.coverage == Coverage::Alpha;
         if blends {
@@ -374,99 +279,6 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
         silhouette.in_quadrant(&mut state.dp, quadrant);
     }
     state.constants.axis_ab = kept;
-}
-
-/// A voxel of any opacities that is seen along ways, from an eye beside its centre; `shift`: of the eye.
-fn blend_voxel<P: Probe, L: CageCoordinate>(
-    state: &mut State<'_, P, L, ()>,
-    inputs: &mut Inputs,
-    (ways, shift): ([Word; 3], u32),
-) {
-    let mut cube = inputs.cube(0);
-    let dp = &mut state.dp;
-    for k in 0..3 {
-        // The sum of both ends may have a carry; an odd one loses its half.
-        let [a, b] = inputs.words(SPARE);
-        (cube.min[k], cube.max[k]) = (a, if inputs.flag() { a } else { b });
-    }
-    let centre: [Word; 3] = std::array::from_fn(|k| dp.midpoint(cube.min[k], cube.max[k]));
-    let eye = BlendEye {
-        shift,
-        at: std::array::from_fn(|k| {
-            let centre = dp.shr(centre[k], shift);
-            match inputs.flag() {
-                true => dp.add(centre, ways[k]),
-                false => dp.sub(centre, ways[k]),
-            }
-        }),
-    };
-    // Any side of each voxel, also with the eye in its centre.
-    let eye_floor = std::array::from_fn(|k| {
-        let step = inputs.step();
-        dp.add(centre[k], step)
-    });
-    // Full, just not, half, or any.
-    let mut side = || match inputs.dice.below(6) {
-        0..=2 => 15,
-        3 => [14, 8, 7][inputs.dice.below(3) as usize],
-        _ => inputs.dice.below(16) as u8,
-    };
-    let opacity = Opacity::new(std::array::from_fn(|_| [side(), side()]));
-    BlendColor::of_voxel(dp, &eye, &eye_floor, &cube, opacity, [0; 3]);
-}
-
-/// All shares of the three sides: ways whose sum is 16 are shares.
-fn all_shares<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    for x in 0..=SHARES {
-        for y in 0..=SHARES - x {
-            let ways = [x, y, SHARES - x - y].map(Word::from_host);
-            blend_voxel(state, inputs, (ways, 0));
-        }
-    }
-}
-
-/// Blending: ways with ties of their shares or of any size, and samples of which a part of the light is left.
-fn blending<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    let bits = if inputs.flag() {
-        6
-    } else {
-        inputs.bits - SPARE
-    };
-    let ways = std::array::from_fn(|_| Word::from_host(inputs.number(bits)));
-    let shift = inputs.level(3);
-    blend_voxel(state, inputs, (ways, shift));
-
-    let all = u64::from(ALL_LEFT);
-    let left = match inputs.flag() {
-        true => all,
-        false => inputs.dice.below(all + 1),
-    };
-    // As much as leaves a sample just open or just full; all; any.
-    let enough = left.saturating_sub(u64::from(OPAQUE_ENOUGH)) * all / left.max(1);
-    let weight = match inputs.dice.below(4) {
-        0 => inputs.dice.below(all + 1),
-        1 => all,
-        _ => (enough + inputs.dice.below(3)).min(all),
-    };
-    let light = [(); 3].map(|()| match inputs.dice.below(3) {
-        0 => u64::from(u16::MAX),
-        _ => inputs.dice.below(1 << 16),
-    });
-    // What a sample has is no more than what it took of the light.
-    let most = (all - left) * u64::from(u16::MAX);
-    let sums = [(); 3].map(|()| match inputs.dice.below(3) {
-        0 => most,
-        _ => inputs.dice.below(most + 1),
-    });
-    let color = BlendColor {
-        weight: Narrow::from_host(weight as u32),
-        light: light.map(|channel| Narrow::from_host(channel as u32)),
-    };
-    let mut sample = Blend {
-        left: left as u16,
-        light: sums.map(|sum| sum as u32),
-    };
-    color.add_to(&mut state.dp, 0, &mut sample);
 }
 
 /// Boxes and centres in screen space, and the way there.

@@ -4,6 +4,8 @@
 
 mod descent;
 mod directed;
+mod directed_blending;
+mod inputs;
 #[cfg(test)]
 pub(crate) mod mutants;
 mod positions;
