@@ -175,7 +175,7 @@ impl Graph {
 }
 
 /// Borrowed shape of a graph, with what a rule needs that blends: opacities, and light.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct GraphView<'g> {
     /// Levels below the root.
     pub depth: u32,

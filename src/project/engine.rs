@@ -132,15 +132,7 @@ mod tests {
 
     #[test]
     fn a_boxed_engine_draws_as_it_does_unboxed() {
-        let graph = GraphView {
-            depth: 0,
-            root: 0,
-            mask: &[],
-            first: &[],
-            links: &[],
-            opacity: &[],
-            light: &[],
-        };
+        let graph = GraphView::default();
         let camera = Camera {
             eye: glam::DVec3::splat(3.0),
             target: glam::DVec3::ZERO,

@@ -191,9 +191,7 @@ fn a_mapped_file_that_is_cut_short_is_told() {
     let made = patient(folder.path(), &["convert", "gen:terrain,depth=7", "a.vxg"]);
     assert!(made.status.success(), "{}", told(&made));
     let child = Command::new(cargo_bin("shiftvox"))
-        .args([
-            "render", "a.vxg", "--repeat", "1000000", "--size", "128", "-o", "a.png", "--json",
-        ])
+        .args("render a.vxg --repeat 1000000 --size 128 -o a.png --json".split(' '))
         .current_dir(folder.path())
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

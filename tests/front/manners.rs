@@ -66,16 +66,8 @@ fn exact_pictures_have_no_tolerance() {
         }
     }
     assert!(names(folder.path()).is_empty());
-    let line = [
-        "render",
-        SCENE,
-        "--size",
-        "16",
-        "--tolerance",
-        "0",
-        "-o",
-        "a.png",
-    ];
+    let line = format!("render {SCENE} --size 16 --tolerance 0 -o a.png");
+    let line: Vec<&str> = line.split(' ').collect();
     shiftvox(folder.path()).args(line).assert().success();
 }
 
@@ -163,15 +155,8 @@ fn hashes_are_printed_and_expected() {
     assert!(stderr_of(&assert).contains(hash));
     expect("abc").code(2);
     // Threads never change a bit.
-    let line = [
-        "render",
-        SCENE,
-        "--size",
-        "24x16",
-        "--hash",
-        "--threads",
-        "1",
-    ];
+    let line = format!("render {SCENE} --size 24x16 --hash --threads 1");
+    let line: Vec<&str> = line.split(' ').collect();
     let one = stdout_of(&shiftvox(folder.path()).args(line).assert().success());
     assert_eq!(one.trim(), hash);
 }
@@ -249,20 +234,11 @@ fn the_printed_camera_draws_the_same_picture() {
 #[test]
 fn a_recorded_run_can_be_repeated() {
     let folder = folder();
-    let line = [
-        "render",
-        SCENE,
-        "--size",
-        "20x16",
-        "--paper",
-        "--view",
-        "left",
-        "--background",
-        "none",
-        "--outdir",
-        "run",
-        "--hash",
-    ];
+    let line = format!(
+        "render {SCENE} --size 20x16 --paper --view left --background none --outdir run \
+        --hash"
+    );
+    let line: Vec<&str> = line.split(' ').collect();
     let hash = stdout_of(&shiftvox(folder.path()).args(line).assert().success());
     let run = folder.path().join("run");
     let pictures = names(&run).into_iter().filter(|n| n.ends_with(".png"));
@@ -286,17 +262,8 @@ fn a_recorded_run_can_be_repeated() {
 #[test]
 fn a_turntable_numbers_its_frames() {
     let folder = folder();
-    let line = [
-        "turntable",
-        SCENE,
-        "-o",
-        "t/##.png",
-        "--frames",
-        "3",
-        "--size",
-        "8",
-        "--json",
-    ];
+    let line = format!("turntable {SCENE} -o t/##.png --frames 3 --size 8 --json");
+    let line: Vec<&str> = line.split(' ').collect();
     let assert = shiftvox(folder.path()).args(line).assert().success();
     let document: serde_json::Value = serde_json::from_slice(&assert.get_output().stdout).unwrap();
     let frames = document["frames"].as_array().unwrap();

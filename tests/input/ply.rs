@@ -2,12 +2,12 @@
 
 use std::io::Cursor;
 
-use crate::input_support::{damage, message, read, read_plain};
+use crate::input_support::{message, read, read_damaged, read_plain};
 use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 use proptest::prelude::*;
-use shiftvox::graph::{Silent, Voxel};
-use shiftvox::scene::{FileKind, ReadOptions, SceneError, read_voxels_from, write_ply};
+use shiftvox::graph::Voxel;
+use shiftvox::scene::{FileKind, ReadOptions, SceneError, write_ply};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Encoding {
@@ -325,17 +325,7 @@ fn binary_truncations_are_errors_and_damage_never_panics() {
                 "{encoding:?} {length}"
             );
         }
-        for seed in 0..20_000 {
-            let mut damaged = bytes.clone();
-            damage(&mut damaged, seed);
-            let _ = read_voxels_from(
-                &damaged,
-                "damaged",
-                &ReadOptions::default(),
-                &mut |_| (),
-                &Silent,
-            );
-        }
+        read_damaged(&bytes, 20_000);
     }
 }
 

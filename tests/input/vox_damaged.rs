@@ -1,9 +1,8 @@
 //! `.vox` files that are wrong, too large or cut short: messages say where, and nothing panics.
 
-use crate::input_support::{VoxFile, damage, message, read, read_plain, shipped};
+use crate::input_support::{VoxFile, message, read, read_damaged, read_plain, shipped};
 use crate::vox_written::{THREE, places, two_places};
-use shiftvox::graph::Silent;
-use shiftvox::scene::{ReadOptions, read_voxels_from};
+use shiftvox::scene::ReadOptions;
 
 #[test]
 fn messages_say_where_and_what() {
@@ -186,16 +185,6 @@ fn damage_never_panics() {
         (&seeds[1], 4_000),
         (&seed_of_nodes, 4_000),
     ] {
-        for seed in 0..rounds {
-            let mut bytes = file.clone();
-            damage(&mut bytes, seed);
-            let _ = read_voxels_from(
-                &bytes,
-                "damaged",
-                &ReadOptions::default(),
-                &mut |_| (),
-                &Silent,
-            );
-        }
+        read_damaged(file, rounds);
     }
 }

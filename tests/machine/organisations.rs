@@ -3,6 +3,8 @@
 //! simulated hardware. Tiles are for the rules that draw outlines: where a box or a centre claims a
 //! sample, it may be one beside the tile.
 
+use std::ops::Range;
+
 use hwmodel::count::Counter;
 use hwmodel::cycles::{
     Hardware, Independence, MAX_TILE_LEVELS, NoObserver, Organisation, StackHolds,
@@ -10,12 +12,12 @@ use hwmodel::cycles::{
 use hwmodel::{Memory, OpClass, Probe, StageLevel};
 use rayon::prelude::*;
 use shiftvox::frame::Frame;
-use shiftvox::graph::GraphView;
+use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{MOST_OPEN_TILES, Machine, MachineOptions, narrowed};
 use shiftvox::project::{CageKind, Coverage, FrameSetup, SetupOptions};
 
-use crate::common::{lights, times, with_opacities};
-use crate::scene_table::SCENES;
+use crate::common::{lights, octree, times, with_opacities};
+use crate::scene_table::{SCENES, TestScene};
 use crate::scenes::*;
 
 /// Cameras of a scene.
@@ -91,90 +93,104 @@ fn hardware(organisation: Organisation, contexts: u32, independence: Independenc
     hardware
 }
 
+/// Draws a graph for some cameras with every organisation, serially and simulated; how many frames were the same.
+fn same_frames(name: &str, graph: &Graph, cameras: Range<usize>) -> u64 {
+    let airy = with_opacities(graph);
+    let light = lights(graph);
+    let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(name.as_bytes()));
+    let mut frames = 0;
+    for number in cameras.clone() {
+        let place = PLACES[number % PLACES.len()];
+        let camera = camera_at(place, graph, (33, 41), &mut dice);
+        let options = rules()[number % 5];
+        let graph = match options.coverage {
+            Coverage::Alpha => &airy,
+            _ => graph,
+        };
+        let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options) else {
+            continue;
+        };
+        let view = GraphView {
+            light: &light,
+            ..graph.view()
+        };
+        let draw = |organisation: Organisation| {
+            let mut frame = Frame::new(setup.width, setup.height, false);
+            let setup = in_words(&setup, organisation);
+            let stats = machine(organisation)
+                .render_within(&view, &setup, &mut frame, MOST_RECORDS)
+                .unwrap();
+            stats.map(|_| frame)
+        };
+        let Some(right) = draw(Organisation::default()) else {
+            continue;
+        };
+        for (turn, organisation) in organisations().into_iter().enumerate() {
+            // Tiles leave a picture as it is where samples are claimed by rays.
+            if organisation.tile_levels > 0 && !options.coverage.draws_outlines() {
+                continue;
+            }
+            // One walk a sample is slow, and says no more than one for a few.
+            if organisation.tile_levels == MAX_TILE_LEVELS && number % 4 != 0 {
+                continue;
+            }
+            let what = || format!("{}, {organisation:?}, {options:?}, {camera:?}", name);
+            if let Some(frame) = draw(organisation) {
+                assert!(frame == right, "{}", what());
+                frames += 1;
+            }
+            // A third of them, in turn: simulated frames take many times as long.
+            if !(turn + number + graph.depth as usize).is_multiple_of(3) && times() == 1 {
+                continue;
+            }
+            let serial = [Independence::None, Independence::Image];
+            // Children of one class may claim the same sample under other rules.
+            let independent = match options.coverage {
+                Coverage::Exact => Independence::Both,
+                _ => serial[number % 2],
+            };
+            for (contexts, independence) in [(1, serial[number % 2]), (8, independent)] {
+                let hardware = hardware(organisation, contexts, independence);
+                let mut frame = Frame::new(setup.width, setup.height, false);
+                let setup = in_words(&setup, organisation);
+                let simulated = machine(Organisation::default())
+                    .simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver)
+                    .unwrap();
+                assert!(frame == right, "{independence:?}, {contexts}: {}", what());
+                // A lane takes up a tile only where no record of another one is ready.
+                let mut counts = simulated.counts.iter();
+                let open = counts.find(|(name, _)| *name == MOST_OPEN_TILES).unwrap().1;
+                let is_enough = open <= hardware.all_contexts() || hardware.lanes > 1;
+                assert!(is_enough, "{open} tiles at once: {}", what());
+                frames += 1;
+            }
+        }
+    }
+    frames
+}
+
 #[test]
 fn every_organisation_draws_every_scene_alike() {
-    let frames: u64 = SCENES
-        .par_iter()
-        .map(|scene| {
-            let graph = scene.graph();
-            let airy = with_opacities(graph);
-            let light = lights(graph);
-            let mut dice = Dice::new(xxhash_rust::xxh3::xxh3_64(scene.name.as_bytes()));
-            let mut frames = 0;
-            for number in 0..CAMERAS {
-                let place = PLACES[number % PLACES.len()];
-                let camera = camera_at(place, graph, (33, 41), &mut dice);
-                let options = rules()[number % 5];
-                let graph = match options.coverage {
-                    Coverage::Alpha => &airy,
-                    _ => graph,
-                };
-                let Ok(setup) = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)
-                else {
-                    continue;
-                };
-                let view = GraphView {
-                    light: &light,
-                    ..graph.view()
-                };
-                let draw = |organisation: Organisation| {
-                    let mut frame = Frame::new(setup.width, setup.height, false);
-                    let setup = in_words(&setup, organisation);
-                    let stats = machine(organisation)
-                        .render_within(&view, &setup, &mut frame, MOST_RECORDS)
-                        .unwrap();
-                    stats.map(|_| frame)
-                };
-                let Some(right) = draw(Organisation::default()) else {
-                    continue;
-                };
-                for (turn, organisation) in organisations().into_iter().enumerate() {
-                    // Tiles leave a picture as it is where samples are claimed by rays.
-                    if organisation.tile_levels > 0 && !options.coverage.draws_outlines() {
-                        continue;
-                    }
-                    // One walk a sample is slow, and says no more than one for a few.
-                    if organisation.tile_levels == MAX_TILE_LEVELS && number % 4 != 0 {
-                        continue;
-                    }
-                    let what =
-                        || format!("{}, {organisation:?}, {options:?}, {camera:?}", scene.name);
-                    if let Some(frame) = draw(organisation) {
-                        assert!(frame == right, "{}", what());
-                        frames += 1;
-                    }
-                    // A third of them, in turn: simulated frames take many times as long.
-                    if !(turn + number + graph.depth as usize).is_multiple_of(3) && times() == 1 {
-                        continue;
-                    }
-                    let serial = [Independence::None, Independence::Image];
-                    // Children of one class may claim the same sample under other rules.
-                    let independent = match options.coverage {
-                        Coverage::Exact => Independence::Both,
-                        _ => serial[number % 2],
-                    };
-                    for (contexts, independence) in [(1, serial[number % 2]), (8, independent)] {
-                        let hardware = hardware(organisation, contexts, independence);
-                        let mut frame = Frame::new(setup.width, setup.height, false);
-                        let setup = in_words(&setup, organisation);
-                        let simulated = machine(Organisation::default())
-                            .simulate(&view, &setup, &mut frame, &hardware, &mut NoObserver)
-                            .unwrap();
-                        assert!(frame == right, "{independence:?}, {contexts}: {}", what());
-                        // A lane takes up a tile only where no record of another one is ready.
-                        let mut counts = simulated.counts.iter();
-                        let open = counts.find(|(name, _)| *name == MOST_OPEN_TILES).unwrap().1;
-                        let is_enough = open <= hardware.all_contexts() || hardware.lanes > 1;
-                        assert!(is_enough, "{open} tiles at once: {}", what());
-                        frames += 1;
-                    }
-                }
-            }
-            frames
-        })
-        .sum();
+    let of_scene = |scene: &TestScene| same_frames(scene.name, scene.graph(), 0..CAMERAS);
+    let frames: u64 = SCENES.par_iter().map(of_scene).sum();
     eprintln!("{frames} frames compared");
     assert!(frames > 500, "{frames}");
+}
+
+/// Twenty random scenes and cameras.
+#[test]
+fn every_organisation_draws_random_scenes_alike() {
+    let of_seed = |seed: usize| {
+        let is_filled = |[x, y, z]: [i32; 3]| {
+            let key = [seed as i32, x, y, z].map(i32::to_le_bytes).concat();
+            xxhash_rust::xxh3::xxh3_64(&key).is_multiple_of(1 + 7 * (seed as u64 % 3))
+        };
+        let graph = octree(2 + seed as u32 % 3, &is_filled);
+        same_frames(&format!("random voxels {seed}"), &graph, seed..seed + CAMERAS)
+    };
+    let frames: Vec<u64> = (0..20).into_par_iter().map(of_seed).collect();
+    eprintln!("{frames:?} frames compared");
+    assert!(frames.iter().all(|&of_scene| of_scene >= 10), "{frames:?}");
 }
 
 /// What the organisation is for: fewer reads and writes of the same picture.

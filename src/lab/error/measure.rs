@@ -293,7 +293,7 @@ pub fn measure(
         .map_err(mismatch)?;
 
     let mut exact: Vec<Exact> = Vec::new();
-    let mut shown: Vec<Result<(Vec<[u8; 4]>, Examined, Judged), Refused>> = Vec::new();
+    let mut shown: Vec<Result<Shown, Refused>> = Vec::new();
     progress.begin("judging pictures", methods.len() as u64);
     for method in methods {
         let drawn = method.show(&camera);
@@ -368,6 +368,9 @@ pub fn measure(
         pictures,
     })
 }
+
+/// A method's colours, and what is known of them.
+type Shown = (Vec<[u8; 4]>, Examined, Judged);
 
 struct Judged {
     samples: Option<SampleError>,

@@ -248,15 +248,7 @@ mod tests {
         let mut frame = Frame::new(17, 17, false);
         FloatRays.render(&graph.view(), &setup, &mut frame).unwrap();
         assert_ne!(frame.node[8 * 17 + 8], NO_NODE);
-        let leaf = GraphView {
-            depth: 0,
-            root: 0,
-            mask: &[],
-            first: &[],
-            links: &[],
-            opacity: &[],
-            light: &[],
-        };
+        let leaf = GraphView::default();
         let setup = FrameSetup::new(&camera, &graph.placement, 0, &options).unwrap();
         FloatRays.render(&leaf, &setup, &mut frame).unwrap();
         assert_eq!(frame.voxel[8 * 17 + 8], [0; 4]);

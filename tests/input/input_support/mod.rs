@@ -167,6 +167,16 @@ fn dict(attributes: Attributes<'_>) -> Vec<u8> {
     bytes
 }
 
+/// Reads bytes with so many different damages: whatever comes of that, it does not panic.
+pub fn read_damaged(bytes: &[u8], rounds: u64) {
+    for seed in 0..rounds {
+        let mut damaged = bytes.to_vec();
+        damage(&mut damaged, seed);
+        let options = ReadOptions::default();
+        let _ = read_voxels_from(&damaged, "damaged", &options, &mut |_| (), &Silent);
+    }
+}
+
 /// Damages bytes in a way that depends on `seed` alone.
 pub fn damage(bytes: &mut [u8], seed: u64) {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
