@@ -41,12 +41,8 @@ const LINES: [&str; 33] = [
     "compare ../in/a.png ../in/b.png --threshold ssim=0 --diff d.png --force",
     "model gen:menger,depth=2 --size 48 --json",
     "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
-<<<<<<< HEAD
-    "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-svg s.svg --force",
-    "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
-=======
     "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-json s.json --force",
->>>>>>> w-house
+    "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
     "bench engines gen:menger,depth=2 --size 64 --runs 1 --export-json engines.json --force",
     "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-csv e.csv --force",
     "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",

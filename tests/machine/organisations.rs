@@ -186,7 +186,11 @@ fn every_organisation_draws_random_scenes_alike() {
             xxhash_rust::xxh3::xxh3_64(&key).is_multiple_of(1 + 7 * (seed as u64 % 3))
         };
         let graph = octree(2 + seed as u32 % 3, &is_filled);
-        same_frames(&format!("random voxels {seed}"), &graph, seed..seed + CAMERAS)
+        same_frames(
+            &format!("random voxels {seed}"),
+            &graph,
+            seed..seed + CAMERAS,
+        )
     };
     let frames: Vec<u64> = (0..20).into_par_iter().map(of_seed).collect();
     eprintln!("{frames:?} frames compared");
