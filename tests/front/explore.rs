@@ -226,7 +226,7 @@ fn tables_plots_and_a_page() {
         "--export-markdown",
         "front.md",
     ]);
-    assert!(told.contains("40 x 40: of 32 hardwares "), "{told}");
+    assert!(told.contains("40 x 40: of 32 hardware designs "), "{told}");
     let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
     let page = read("page.html");
     assert!(!page.contains("<script"));
@@ -473,7 +473,7 @@ fn wrong_command_lines() {
         .code(2);
 }
 
-/// The space that ships holds two hardwares that ship, and is what `--print-space` prints.
+/// The space that ships holds two designs that ship, and is what `--print-space` prints.
 #[test]
 fn the_bundled_space_holds_paper_and_light() {
     let mut print = Command::cargo_bin("shiftvox").unwrap();

@@ -7,6 +7,7 @@ mod certified;
 mod common;
 mod counts;
 mod cycles;
+mod cycles_by_hand;
 mod engines;
 mod exact;
 mod fast;

@@ -20,8 +20,7 @@ use serde::Serialize;
 
 use super::cost::{Prices, accumulator_bits, fill_store_bits, stack_bits};
 use super::range::Range;
-use super::ray_caster;
-use super::ray_cycles::RayHardware;
+use super::ray_cycles::{self, RayHardware};
 use super::record::context_bits;
 use crate::project::FrameSetup;
 
@@ -259,7 +258,7 @@ pub fn of_rays(
     let mut area = DesignArea::default();
     let lanes = u64::from(hardware.lanes);
     for (&step, unit) in &rays.units {
-        let Some((operation, _)) = ray_caster::operation(step) else {
+        let Some((operation, _)) = ray_cycles::operation(step) else {
             continue;
         };
         let of = Units {
@@ -284,7 +283,7 @@ pub fn of_rays(
     )?;
     area.memory(
         "stacks of rays",
-        lanes * ray_caster::stack_bits(rays),
+        lanes * ray_cycles::stack_bits(rays),
         prices,
     )?;
     caches(area, hardware, prices)

@@ -6,7 +6,7 @@
 //! units with the clock, [`design`] does all of that; [`rules`],
 //! [`sweep`], [`caches`] and [`growth`] repeat that over cages and drawing rules, over word
 //! formats, over sizes of the node cache, and over pictures and objects; [`steps`] over the settings
-//! of a hardware's organisation; [`mod@explore`] over many hardwares; [`floor`] says what every
+//! of a hardware's organisation; [`mod@explore`] over many designs; [`floor`] says what every
 //! design must move; [`claims`] compares the image-order
 //! paper's statements with the counts. The other files present it: as tables, as statistics, as a page.
 

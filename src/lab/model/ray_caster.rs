@@ -18,11 +18,6 @@ use crate::lab::float_rays::{self, FloatRayCounts, FloatStep, RayOrder, RayRead}
 use crate::measure::CoverageError;
 use crate::project::FrameSetup;
 
-/// Bits of an entry of the ray's stack: a node and where the ray leaves it.
-pub const ASIDE_BITS: u32 = 64;
-/// Entries of a ray's stack: one a level.
-pub const ASIDE_ENTRIES: u64 = 24;
-
 /// What the ray caster took, its rays in one order.
 #[derive(Debug, Clone, Serialize)]
 pub struct RayCasterReport {
@@ -62,26 +57,6 @@ impl RayCasterReport {
     #[must_use]
     pub fn bottleneck(&self) -> Option<&Bound> {
         self.cycles.bounds.first()
-    }
-}
-
-/// The operation of the cost tables that a step is, and its width.
-#[must_use]
-pub fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
-    match step {
-        FloatStep::FloatAdd => Some(("float_add", 32)),
-        FloatStep::FloatMultiply => Some(("float_multiply", 32)),
-        FloatStep::FloatDivide => Some(("float_divide", 32)),
-        // A minimum is a comparison; its multiplexer is not charged to the ray caster.
-        FloatStep::FloatCompare | FloatStep::FloatMinMax => Some(("float_compare", 32)),
-        FloatStep::IntegerAdd => Some(("add", 32)),
-        FloatStep::Logic => Some(("xor", 32)),
-        FloatStep::Shift => Some(("shift_var", 32)),
-        FloatStep::NodeRead
-        | FloatStep::AttributeRead
-        | FloatStep::StackRead
-        | FloatStep::StackWrite
-        | FloatStep::PixelWrite => None,
     }
 }
 
@@ -254,12 +229,6 @@ pub fn cheapest(
     Ok(RayCasterReport { orders, ..best })
 }
 
-/// Bits of a lane's stacks: one for each context.
-#[must_use]
-pub fn stack_bits(rays: &RayHardware) -> u64 {
-    u64::from(rays.contexts) * ASIDE_ENTRIES * u64::from(ASIDE_BITS)
-}
-
 fn cost_of(
     counts: &FloatRayCounts,
     traffic: &OuterTraffic,
@@ -270,7 +239,7 @@ fn cost_of(
     let operations: Vec<Tally> = FloatStep::ALL
         .iter()
         .filter_map(|&step| {
-            let (name, width) = operation(step)?;
+            let (name, width) = ray_cycles::operation(step)?;
             Some(Tally {
                 operation: name.to_owned(),
                 width,
@@ -284,7 +253,7 @@ fn cost_of(
     let node_bits = 8 * hardware.node_cache.entry_bytes;
     let attributes = sram(u64::from(hardware.attribute_cache.bytes));
     let attribute_bits = 8 * hardware.attribute_cache.entry_bytes;
-    let stack = sram(stack_bits(rays) / 8);
+    let stack = sram(ray_cycles::stack_bits(rays) / 8);
     let (read, write) = ("sram_read", "sram_write");
     let accesses = [
         (Memory::Node, read, nodes, node_bits, FloatStep::NodeRead),
@@ -295,12 +264,18 @@ fn cost_of(
             attribute_bits,
             FloatStep::AttributeRead,
         ),
-        (Memory::Stack, read, stack, ASIDE_BITS, FloatStep::StackRead),
+        (
+            Memory::Stack,
+            read,
+            stack,
+            ray_cycles::ASIDE_BITS,
+            FloatStep::StackRead,
+        ),
         (
             Memory::Stack,
             write,
             stack,
-            ASIDE_BITS,
+            ray_cycles::ASIDE_BITS,
             FloatStep::StackWrite,
         ),
     ];

@@ -23,6 +23,11 @@ use serde::{Deserialize, Serialize};
 use super::cost::OuterTraffic;
 use crate::lab::float_rays::{FloatRayCounts, FloatStep};
 
+/// Bits of an entry of the ray's stack: a node and where the ray leaves it.
+pub const ASIDE_BITS: u32 = 64;
+/// Entries of a ray's stack: one a level.
+const ASIDE_ENTRIES: u64 = 24;
+
 /// The ray caster's parts, a lane.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -177,6 +182,32 @@ fn latency(step: FloatStep, rays: &RayHardware, hardware: &Hardware) -> u64 {
             .unit(step)
             .map_or(0, |unit| u64::from(unit.latency) + 1),
     }
+}
+
+/// The operation of the cost tables that a step is, and its width.
+#[must_use]
+pub fn operation(step: FloatStep) -> Option<(&'static str, u32)> {
+    match step {
+        FloatStep::FloatAdd => Some(("float_add", 32)),
+        FloatStep::FloatMultiply => Some(("float_multiply", 32)),
+        FloatStep::FloatDivide => Some(("float_divide", 32)),
+        // A minimum is a comparison; its multiplexer is not charged to the ray caster.
+        FloatStep::FloatCompare | FloatStep::FloatMinMax => Some(("float_compare", 32)),
+        FloatStep::IntegerAdd => Some(("add", 32)),
+        FloatStep::Logic => Some(("xor", 32)),
+        FloatStep::Shift => Some(("shift_var", 32)),
+        FloatStep::NodeRead
+        | FloatStep::AttributeRead
+        | FloatStep::StackRead
+        | FloatStep::StackWrite
+        | FloatStep::PixelWrite => None,
+    }
+}
+
+/// Bits of a lane's stacks: one for each context.
+#[must_use]
+pub fn stack_bits(rays: &RayHardware) -> u64 {
+    u64::from(rays.contexts) * ASIDE_ENTRIES * u64::from(ASIDE_BITS)
 }
 
 #[cfg(test)]

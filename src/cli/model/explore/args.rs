@@ -10,7 +10,7 @@ use clap::Args;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Explore")]
 pub(in crate::cli::model) struct ExploreArgs {
-    /// Many hardwares, and which of them no other beats in time, area, energy and wrong samples: a TOML file of
+    /// Many hardware designs, and which of them no other beats in time, area, energy and wrong samples: a TOML file of
     /// ranges, or bundled (--print-space shows it). Takes several scenes; --json prints a line for each point as soon
     /// as it is there
     #[arg(long, value_name = "SPACE|bundled", conflicts_with_all = [

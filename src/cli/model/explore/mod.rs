@@ -1,4 +1,4 @@
-//! `model --explore`: which of many hardwares are worth building.
+//! `model --explore`: which of many designs are worth building.
 
 mod args;
 mod output;

@@ -85,7 +85,7 @@ fn unless_none(count: usize, what: &str) -> String {
 fn table(of: &Explorations, args: &ModelArgs) -> Table {
     let mut table = Table::of(
         format!(
-            "{}, {} x {}: of {} hardwares {} that no other beats in time, area, energy and wrong samples; of those, {} \
+            "{}, {} x {}: of {} hardware designs {} that no other beats in time, area, energy and wrong samples; of those, {} \
              beside which none is better by a tenth in something and nowhere worse by a tenth{}{}{}",
             of.scene,
             args.size.width,

@@ -1,6 +1,6 @@
-//! Many hardwares on one frame: which are worth building.
+//! Many hardware designs on one frame: which are worth building.
 //!
-//! [`space`] says which hardwares there are, [`explore`] measures them, [`mod@front`] finds those that
+//! [`space`] says which designs there are, [`explore`] measures them, [`mod@front`] finds those that
 //! no other beats in time, area, energy and wrong samples; [`lines`] is how results are written,
 //! one a line, so that a run can be gone on with, or shared among computers.
 //!

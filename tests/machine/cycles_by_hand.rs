@@ -1,0 +1,200 @@
+//! A tiny scene on simulated hardware, worked out by hand from the rules of `hwmodel::cycles` for each organisation.
+//!
+//! Three voxels of a cube of 4 x 4 x 4, seen from the front at 4 x 4 samples: the root A has one child B, and this the
+//! voxels C and D, seen at samples (0, 2) and (0, 3), and E behind D. Every operation is a wire and there is one context,
+//! so a visit takes a cycle, and:
+//!
+//! - one more for each further access at the port of a memory that is read or written several times;
+//! - 11 where a line of nodes (A's, which holds all) or of attributes (C's, which holds all) is missed;
+//! - 21 where the picture's fill vectors are cleared, 1 + 4 + 16, and 6 for a tile of 2 x 2: root, tile, four samples.
+//!
+//! With children on the stack every child is stored, read and tested when its turn comes. With parents there the child
+//! that is made goes on at once; only B's parent part is stored, E is made after D is drawn, and hidden. Leaf masks save
+//! the nodes' reads of C, D and E. What is hidden is not read: one more look at the fill vectors before a node is. Joined
+//! fill vectors are one word for two levels: every pair of reads or writes is one, and clearing is one word. By tiles A
+//! is walked four times, and B is in one of them.
+
+use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};
+use shiftvox::frame::Frame;
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::SetupOptions;
+
+use crate::common::{camera, octree, setup};
+
+const HARDWARE: &str = r#"
+name = "by hand"
+clock_mhz = 1.0
+lanes = 1
+contexts = 1
+independence = "none"
+steal_cycles = 0
+wires = ["add", "sub", "compare", "min_max", "select", "shift", "logic", "divide_step"]
+[units]
+[stack]
+entries = 16
+ports = 1
+latency = 1
+overflow = "error"
+spill_cycles = 5
+[node_cache]
+bytes = 4096
+ways = 1
+line_bytes = 64
+entry_bytes = 8
+ports = 1
+hit_latency = 1
+miss_latency = 10
+misses = 1
+[attribute_cache]
+bytes = 4096
+ways = 1
+line_bytes = 64
+entry_bytes = 4
+ports = 1
+hit_latency = 1
+miss_latency = 10
+misses = 1
+[fill_vectors]
+banks = 1
+read_ports = 1
+write_ports = 1
+latency = 1
+[pixels]
+write_ports = 1
+buffer = 16
+drain_interval = 1
+"#;
+
+/// Turns, a line each: stages in order, with their cycles where these are not 1.
+const CHILDREN: &str = "
+    ChildBox QuadtreeFit Push FillUpdate:21
+    Pop Filled OnePixel:11 Centre Order VertexPool ChildBox QuadtreeFit:2 Push
+    Pop Filled OnePixel Centre Order VertexPool ChildBox QuadtreeFit:6 Push:3
+    Pop Filled OnePixel Draw:11 FillUpdate:2
+    Pop Filled OnePixel Draw FillUpdate:2
+    Pop Filled";
+const PARENTS: &str = "
+    OnePixel:11 ChildBox QuadtreeFit Push FillUpdate:21
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit:2 Push
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit:2 Draw:11 FillUpdate:2
+    OnePixel ChildBox QuadtreeFit:2 Draw FillUpdate:2
+    VertexPool ChildBox QuadtreeFit
+    Pop Filled Centre Order VertexPool";
+const LEAF_MASKS: &str = "
+    OnePixel:11 ChildBox QuadtreeFit Push FillUpdate:21
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit:2 Push
+    Centre Order VertexPool ChildBox QuadtreeFit:2 Draw:11 FillUpdate:2
+    ChildBox QuadtreeFit:2 Draw FillUpdate:2
+    VertexPool ChildBox QuadtreeFit
+    Pop Filled Centre Order VertexPool";
+const HIDDEN_UNREAD: &str = "
+    OnePixel:11 ChildBox QuadtreeFit Push Draw:2 FillUpdate:21
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit:2 Push Draw
+    Centre Order VertexPool ChildBox QuadtreeFit:2 Draw:11 FillUpdate:2
+    ChildBox QuadtreeFit:2 Draw FillUpdate:2
+    VertexPool ChildBox QuadtreeFit
+    Pop Filled Centre Order VertexPool";
+const JOINED_FILL: &str = "
+    OnePixel:11 ChildBox QuadtreeFit Push Draw FillUpdate
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit Push Draw
+    Centre Order VertexPool ChildBox QuadtreeFit Draw:11 FillUpdate
+    ChildBox QuadtreeFit Draw FillUpdate
+    VertexPool ChildBox QuadtreeFit
+    Pop Filled Centre Order VertexPool";
+const TILES: &str = "
+    OnePixel:11 ChildBox QuadtreeFit Push Draw:2 FillUpdate:6
+    Centre Order VertexPool ChildBox QuadtreeFit
+    OnePixel ChildBox QuadtreeFit Push Draw:2 FillUpdate:6
+    Centre Order VertexPool ChildBox QuadtreeFit
+    OnePixel ChildBox QuadtreeFit Push Draw:2 FillUpdate:6
+    OnePixel Centre Order VertexPool ChildBox QuadtreeFit:2 Push Draw
+    Centre Order VertexPool ChildBox QuadtreeFit:2 Draw:11 FillUpdate:2
+    ChildBox QuadtreeFit:2 Draw FillUpdate:2
+    VertexPool ChildBox QuadtreeFit
+    Pop Filled Centre Order VertexPool
+    OnePixel ChildBox QuadtreeFit Push Draw:2 FillUpdate:6
+    Centre Order VertexPool ChildBox QuadtreeFit";
+
+#[test]
+fn a_tiny_scene_in_each_organisation() {
+    let graph = octree(2, &|at| [[0, 0, 0], [0, 0, 1], [0, 1, 0]].contains(&at));
+    let mut camera = camera([2.0, -8.0, 2.0], [2.0, 0.0, 2.0], 4);
+    camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
+    let setup = setup(&graph, &camera, &SetupOptions::default());
+    let paper = Organisation::default();
+    let parents = Organisation {
+        stack: StackHolds::Parents,
+        ..paper
+    };
+    let leaf_masks = Organisation {
+        leaf_masks: true,
+        ..parents
+    };
+    let path = Organisation {
+        stack: StackHolds::Path,
+        ..leaf_masks
+    };
+    let hidden_unread = Organisation {
+        hidden_unread: true,
+        ..path
+    };
+    let bricks = Organisation {
+        bricks: true,
+        ..hidden_unread
+    };
+    let joined_fill = Organisation {
+        joined_fill: true,
+        ..bricks
+    };
+    let tiles = Organisation {
+        tile_levels: 1,
+        ..bricks
+    };
+    for (organisation, turns, cycles) in [
+        (paper, CHILDREN, 84),
+        (parents, PARENTS, 78),
+        (leaf_masks, LEAF_MASKS, 76),
+        (path, LEAF_MASKS, 76),
+        (hidden_unread, HIDDEN_UNREAD, 79),
+        // B's voxels are in its own mask: a brick of one level.
+        (bricks, HIDDEN_UNREAD, 79),
+        (joined_fill, JOINED_FILL, 53),
+        (tiles, TILES, 115),
+    ] {
+        let mut hardware = Hardware::from_toml(HARDWARE).unwrap();
+        hardware.organisation = organisation;
+        let mut frame = Frame::new(4, 4, false);
+        let mut recorder = Recorder::new(TraceLimit::default());
+        let simulated = Machine::new(MachineOptions::default())
+            .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
+            .unwrap();
+        let drawn = [frame.voxel[8], frame.voxel[12]];
+        assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
+        assert_eq!(simulated.cycles.cycles, cycles, "{organisation:?}");
+        // What the visits should be, from the lists.
+        let starts = organisation.tile_levels == 0;
+        let lines = turns.lines().skip(1).enumerate();
+        let listed = lines.flat_map(|(number, line)| {
+            let record = match starts {
+                true => (number as u64).checked_sub(1).unwrap_or(START),
+                false => number as u64,
+            };
+            line.split_whitespace().map(move |visit| (record, visit))
+        });
+        let mut now = 0;
+        let mut visits = recorder.visits().iter();
+        for (record, visit) in listed {
+            let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
+            let found = visits.next().unwrap();
+            assert_eq!(
+                (found.record, format!("{:?}", found.stage)),
+                (record, stage.to_owned())
+            );
+            assert_eq!(found.begins, now, "{stage} of {record}, {organisation:?}");
+            now += takes.parse::<u64>().unwrap();
+            assert_eq!(found.ends, now, "{stage} of {record}, {organisation:?}");
+        }
+        assert!(visits.next().is_none());
+        assert_eq!(now, cycles);
+    }
+}
