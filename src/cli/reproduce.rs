@@ -36,7 +36,7 @@ pub(super) struct ReproduceArgs {
     /// Frames of each contender that count [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     runs: Option<u32>,
-    /// Folder for all of it: results.json, report.md and figures.svg
+    /// Folder for all of it: results.json, results.csv, report.md and figures.svg
     #[arg(long, value_name = "DIR")]
     outdir: Option<PathBuf>,
     #[command(flatten)]
@@ -76,6 +76,7 @@ fn exports(args: &ReproduceArgs) -> ExportArgs {
             path.get_or_insert_with(|| folder.join(name));
         };
         place(&mut export.export_json, "results.json");
+        place(&mut export.export_csv, "results.csv");
         place(&mut export.export_markdown, "report.md");
         place(&mut export.export_svg, "figures.svg");
     }

@@ -141,7 +141,7 @@ impl Port {
 
     /// Shows what crosses the port.
     #[inline(always)]
-    pub(super) fn show<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
+    pub(super) fn tap<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
         let number = Block::ALL.len() as u32 + self as u32;
         dp.tap(number, &Short::unsigned(address as u32, ADDRESS_BITS), data);
     }

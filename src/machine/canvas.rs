@@ -62,7 +62,7 @@ impl<'f> Canvas<'f> {
         } else {
             let node = u64::from(paint.node);
             dp.read(Memory::Attribute, node);
-            Port::AttributeRead.show(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
+            Port::AttributeRead.tap(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
             self.put(dp, at, paint);
         }
         self.fill.mark(dp, sample);
@@ -73,7 +73,7 @@ impl<'f> Canvas<'f> {
     fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, paint: &Paint) {
         dp.write(Memory::Pixel, at as u64);
         let shown = Short::unsigned(paint.node, ADDRESS_BITS);
-        Port::PixelWrite.show(dp, at as u64, &shown);
+        Port::PixelWrite.tap(dp, at as u64, &shown);
         self.frame.node[at] = paint.node;
         // Empty in a frame of nodes alone.
         if let Some(to) = self.frame.voxel.get_mut(at) {

@@ -57,7 +57,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                         Short::unsigned(self.graph.mask(cube.node), 8),
                         Short::unsigned(self.graph.first(cube.node), ADDRESS_BITS),
                     );
-                    Port::NodeRead.show(&mut self.dp, word, &data);
+                    Port::NodeRead.tap(&mut self.dp, word, &data);
                 }
             }
             cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;

@@ -74,7 +74,7 @@ impl<'f> FillStore<'f> {
                 level.saturating_sub(tile.level),
                 tile.level.saturating_sub(level),
             );
-            for at in 0..1u64 << (2 * below) {
+            for at in 0..1u64 << below << below {
                 let (x, y) = (at as u32 & ((1 << below) - 1), (at >> below) as u32);
                 let node = QuadNode {
                     level,
@@ -142,7 +142,7 @@ impl<'f> FillStore<'f> {
                 &(Short::unsigned(vector, 4), vector == FULL),
             );
             let written = Short::unsigned(vector, 4);
-            Port::FillWrite.show(dp, quad.address() as u64, &written);
+            Port::FillWrite.tap(dp, quad.address() as u64, &written);
             if dp.and_bits(4, vector, FULL) != FULL || quad.level == 0 {
                 break;
             }
@@ -178,7 +178,7 @@ impl<'f> FillStore<'f> {
     fn read_vector<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) -> u8 {
         let (address, vector) = (node.address() as u64, self.vectors.vector(node));
         dp.read(Memory::FillVector, address);
-        Port::FillRead.show(dp, address, &Short::unsigned(vector, 4));
+        Port::FillRead.tap(dp, address, &Short::unsigned(vector, 4));
         vector
     }
 

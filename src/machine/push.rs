@@ -117,7 +117,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         if self.options.organisation.stack == StackHolds::Children {
             let address = self.stack.len() as u64;
             self.dp.write(Memory::Stack, address);
-            Port::Push.show(&mut self.dp, address, &record);
+            Port::Push.tap(&mut self.dp, address, &record);
         }
         self.watch.made(&record);
         self.stack.push(record);

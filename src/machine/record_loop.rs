@@ -72,7 +72,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.watch.turn(record.place.quad);
         self.dp.stage(Stage::Pop);
         self.dp.read(Memory::Stack, address);
-        Port::Pop.show(&mut self.dp, address, record);
+        Port::Pop.tap(&mut self.dp, address, record);
 
         if self.is_full(record.place.quad) {
             self.counts.already_full += 1;

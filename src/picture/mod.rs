@@ -5,6 +5,7 @@
 //! the voxels agree on every byte of the picture. Rules: `spec/picture.md`.
 
 mod color;
+mod error;
 mod hash;
 mod lights;
 mod linear;
@@ -20,11 +21,12 @@ mod shares;
 mod sight;
 
 pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
+pub use error::ResolveError;
 pub use hash::{hash, hash_rows};
 pub use lights::lights;
 pub(crate) use linear::Linear;
 pub use pixels::Pixels;
-pub use resolve::{ResolveError, Resolver, resolve};
+pub use resolve::{Resolver, resolve};
 pub use rows::{Buffer, Rows};
 pub use shade::Shader;
 

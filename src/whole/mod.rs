@@ -32,7 +32,8 @@ pub fn check_free(path: &Path, overwrite: bool) -> Result<(), WholeError> {
     let path = &check_place(path, overwrite)?;
     let folder = folder_of(path);
     if folder.is_dir() {
-        temporary(folder, path).map_err(|e| failed(path, e))?;
+        // One without a name, where the system has such.
+        tempfile::tempfile_in(folder).map_err(|e| failed(path, e))?;
     }
     Ok(())
 }

@@ -259,7 +259,7 @@ fn tables_go_to_files_too() {
         ),
         (
             "scaling",
-            "scaling --sides 16 --object-side 16 --runs 1 --growing gen:menger,depth=2",
+            "scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3",
             "growing",
             1,
         ),
@@ -270,7 +270,7 @@ fn tables_go_to_files_too() {
         bench(folder.path(), &line).success();
         let text = fs::read_to_string(folder.path().join(&csv)).unwrap();
         assert!(
-            text.starts_with(head) && text.lines().count() > rows,
+            text.lines().next().unwrap().contains(head) && text.lines().count() > rows,
             "{text}"
         );
         let text = fs::read_to_string(folder.path().join(&markdown)).unwrap();

@@ -39,8 +39,7 @@ fn all_methods_in_all_forms() {
     let at = folder.path();
     fs::write(at.join("blades.obj"), blades()).unwrap();
     let command = "bench methods blades.obj --size 64 --least 16 --depth 6 --runs 1 --frames 2 \
-        --json --export-csv m.csv --export-svg m.svg --export-html m.html --strips \
-        strips"
+        --json --export-csv m.csv --export-svg m.svg --export-html m.html"
         .split(' ');
     let output = shiftvox(at).args(command).assert().success();
     let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
@@ -95,7 +94,6 @@ fn all_methods_in_all_forms() {
     assert_eq!(html.matches("<img").count(), 3 * (1 + labels.len()));
     assert_eq!(html.matches("<svg").count(), 3 + 3);
     assert!(!html.contains("http://") || !html.contains("src=\"http"));
-    assert_eq!(fs::read_dir(at.join("strips")).unwrap().count(), 3);
 }
 
 #[test]

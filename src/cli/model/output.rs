@@ -15,7 +15,7 @@ use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::context::Context;
 use crate::cli::experiment::export::{self, Results};
 use crate::cli::report;
-use crate::lab::model::{caches, cost, floor, heat, plots, record, statistics};
+use crate::lab::model::{caches, cost, fill_bits, floor, heat, plots, record, statistics};
 use crate::picture::png;
 use crate::report::plot::Panel;
 use crate::report::{Cell, Table};
@@ -160,7 +160,7 @@ fn document(found: &Findings, list: &Statistics) -> Value {
             "record": record,
             "records_by_kind": by_kind,
             "stack_bits": cost::stack_bits(&found.hardware, found.counted.record_bits()),
-            "fill_vector_bits": cost::fill_store_bits(&found.setup, &found.hardware),
+            "fill_vector_bits": fill_bits::fill_store_bits(&found.setup, &found.hardware),
             "accumulator_bits": cost::accumulator_bits(&found.setup),
             "operations": cells,
             "miss_curves": curve,

@@ -4,7 +4,7 @@ use super::findings::Findings;
 use super::summary;
 use crate::cli::error::{CliError, Kind};
 use crate::cli::experiment::context::Context;
-use crate::lab::model::cost;
+use crate::lab::model::fill_bits;
 use crate::picture::{Background, Shading, png, resolve};
 use crate::report::html::Page;
 use crate::report::plot::{self, Panel};
@@ -52,7 +52,7 @@ pub(super) fn html(
         figure(
             format!(
                 "{}",
-                cost::fill_store_bits(&found.setup, &found.hardware) / 8192
+                fill_bits::fill_store_bits(&found.setup, &found.hardware) / 8192
             ),
             "kilobytes of fill vectors",
         ),

@@ -2,7 +2,7 @@
 
 use super::findings::Findings;
 use crate::lab::model::range::{Range, Winner};
-use crate::lab::model::{cost, tables};
+use crate::lab::model::{cost, fill_bits, tables};
 use crate::report::{Cell, Table, grouped};
 
 /// What matters most, in words.
@@ -87,7 +87,7 @@ pub(super) fn summary(found: &Findings) -> Table {
         "fill vectors",
         format!(
             "{} kbit",
-            grouped(cost::fill_store_bits(&found.setup, &found.hardware) / 1024)
+            grouped(fill_bits::fill_store_bits(&found.setup, &found.hardware) / 1024)
         ),
     );
     let accumulators = cost::accumulator_bits(&found.setup);

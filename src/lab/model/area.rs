@@ -18,7 +18,8 @@ use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
 
-use super::cost::{Prices, accumulator_bits, fill_store_bits, stack_bits};
+use super::cost::{Prices, accumulator_bits, stack_bits};
+use super::fill_bits::fill_store_bits;
 use super::range::Range;
 use super::ray_cycles::{self, RayHardware};
 use super::record::context_bits;

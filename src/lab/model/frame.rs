@@ -10,7 +10,7 @@ use hwmodel::memory::{MemoryProbe, PIXEL_BITS, RecordProbe, Widths};
 use hwmodel::shifts::ShiftProbe;
 
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
-use super::{ModelError, cost};
+use super::{ModelError, fill_bits};
 use crate::frame::Frame;
 use crate::graph::{Graph, GraphView};
 use crate::machine::{Machine, MachineOptions, SimulateError, Simulated, narrowed};
@@ -73,7 +73,7 @@ pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths 
         stack_bits: record_bits(&record_fields(setup, graph.len(), hardware.organisation)),
         node_bits: 8 * hardware.node_cache.entry_bytes,
         attribute_bits: 8 * hardware.attribute_cache.entry_bytes,
-        fill_vector_bits: cost::fill_access_bits(setup, hardware.organisation),
+        fill_vector_bits: fill_bits::fill_access_bits(setup, hardware.organisation),
         pixel_bits: PIXEL_BITS,
     }
 }

@@ -18,6 +18,7 @@ pub mod compare;
 pub mod cost;
 pub mod design;
 pub mod explore;
+pub mod fill_bits;
 pub mod floor;
 pub mod frame;
 pub mod growth;

@@ -6,8 +6,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::ModelError;
-use super::cost::{self, Prices};
+use super::cost::Prices;
 use super::design::LightDesign;
+use super::fill_bits;
 use super::frame;
 use super::range::Range;
 use super::ray_caster;
@@ -135,7 +136,7 @@ pub fn table(
             stack_entry_bits: counted.record_bits(),
             node_reads: nodes.map_or(0, |of| of.reads),
             node_misses: cycles.node_cache.misses,
-            fill_bits: cost::fill_store_bits(setup, &hardware),
+            fill_bits: fill_bits::fill_store_bits(setup, &hardware),
             fill_accesses: fill.map_or(0, |of| of.reads + of.writes),
             operations_pj: Range::from(&cost.operations),
             on_chip_pj: Range::from(&cost.on_chip),

@@ -4,6 +4,7 @@ mod args;
 mod output;
 mod page;
 mod results;
+mod words;
 
 use std::collections::BTreeMap;
 use std::ops::Range;

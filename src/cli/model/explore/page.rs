@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use super::Explorations;
-use super::output::{given_up, values};
+use super::words::{given_up, values};
 use crate::lab::model::explore::PointFigures;
 use crate::lab::model::explore::lines::PointLine;
 use crate::report::Table;

@@ -1,0 +1,16 @@
+//! Why a picture is not made.
+
+/// Why a frame and its set-up make no picture.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum ResolveError {
+    /// Frame and set-up differ in size.
+    #[error("the frame has {0} x {1} samples, its set-up {2} x {3}")]
+    Size(u32, u32, u32, u32),
+    /// A voxel's index, counted from the file's origin, leaves the range of `i32`.
+    #[error("the file index of a voxel is beyond 32 bits")]
+    Index,
+    /// A frame of nodes alone does not say which voxel of a node is seen, and
+    /// neither does the graph.
+    #[error("the frame does not tell which voxels are seen")]
+    Voxel,
+}
