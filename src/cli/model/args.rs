@@ -6,7 +6,7 @@ use clap::Args;
 use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
-use super::explore::ExploreArgs;
+use super::explore::args::ExploreArgs;
 use crate::bounded;
 use crate::cli::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::cli::error::{CliError, Kind};

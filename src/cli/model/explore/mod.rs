@@ -1,6 +1,6 @@
 //! `model --explore`: which of many designs are worth building.
 
-mod args;
+pub(super) mod args;
 mod output;
 mod page;
 mod results;
@@ -13,7 +13,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 use xxhash_rust::xxh3::xxh3_64;
 
-pub(super) use args::ExploreArgs;
+use args::ExploreArgs;
 
 use super::args::{ModelArgs, hardware_named, read};
 use super::findings::setup_options;
