@@ -200,10 +200,14 @@ const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const INDEX: &str = "which wire, known when the machine is built";
 const HEAT: &str = "the heat map: measured by the host after the last record";
 
-/// The only files that compute with the machine's numbers in another way, for
-/// measurements. Nothing of them may reach the machine: see
+/// The only files that compute with the machine's numbers in another way: for measurements, and for
+/// inputs of blocks. Nothing of them may reach the machine: see
 /// `the_machine_does_not_know_its_instruments`.
-const MEASURES: [&str; 2] = ["instruments/positions.rs", "instruments/widths.rs"];
+const MEASURES: [&str; 3] = [
+    "instruments/directed_blending.rs",
+    "instruments/positions.rs",
+    "instruments/widths.rs",
+];
 
 /// The machine's sources and its instruments', without [`MEASURES`].
 fn sources() -> Vec<(String, String)> {
