@@ -14,7 +14,7 @@ use shiftvox::project::{CageKind, Coverage, Engine, FrameSetup};
 
 use super::rows::{Row, read};
 use super::{options, scenes};
-use crate::common::setup;
+use crate::common::{setup, times};
 
 /// The memories, as the ports show them.
 #[derive(Default)]
@@ -144,7 +144,7 @@ fn turns_follow_from_one_another_and_make_the_picture() {
                 (0, graph.root.into())
             );
             // Without any one pop, push, write or pixel it is all found to be wrong.
-            for lost in (0..events.len()).step_by(events.len().div_ceil(40)) {
+            for lost in (0..events.len()).step_by(events.len().div_ceil(8 * times() as usize)) {
                 if ["fill_read", "node_read", "attribute_read"]
                     .contains(&names[events[lost].get("port") as usize])
                 {
