@@ -101,7 +101,7 @@ pub struct Samples {
     pub depth: Vec<f32>,
 }
 
-/// A counter of a method, as a sum of counters of what draws it; see [`sums`].
+/// A counter of a method, as a sum of counters of what draws it; see `sums`.
 pub type Sum = (&'static str, &'static [&'static str]);
 
 /// Counters as sums of other ones; those that are not there count as 0.
