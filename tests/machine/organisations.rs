@@ -24,7 +24,7 @@ use crate::scenes::*;
 const CAMERAS: usize = 5;
 
 /// Most records of a frame: each is drawn dozens of times.
-const MOST_RECORDS: u64 = 5_000;
+const MOST_RECORDS: u64 = 2_500;
 
 fn machine(organisation: Organisation) -> Machine {
     Machine::new(MachineOptions {
