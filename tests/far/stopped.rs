@@ -67,6 +67,7 @@ fn stop_while_writing(folder: &Path, signal: (&str, i32)) {
                 started.elapsed() < Duration::from_secs(120),
                 "nothing is written"
             );
+            std::thread::sleep(Duration::from_millis(2));
         }
         send(&child, signal);
         let status = child.wait().unwrap();

@@ -4,9 +4,13 @@
 //! it is long: it is run only where `SHIFTVOX_PRINTED` is `all`; `<!-- forms -->` says that it has placeholders.
 #![cfg(unix)]
 
+use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
+
+use rayon::prelude::*;
 
 /// What is said of a block of code.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,54 +85,62 @@ fn files(folder: &Path) -> usize {
     counts.sum()
 }
 
-#[test]
-fn printed_commands_run_and_run_again() {
+/// Runs the commands of a page in a folder of its own, and once more those that wrote something
+/// and that `again` does not hold yet. Tells how many ran, and which failed.
+fn run_page(page: &Path, again: &Mutex<HashSet<String>>) -> (usize, Vec<String>) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = assert_cmd::cargo::cargo_bin("shiftvox");
     let path = std::env::var("PATH").unwrap_or_default();
     let path = format!("{}:{path}", program.parent().unwrap().display());
     let all = std::env::var_os("SHIFTVOX_PRINTED").is_some_and(|what| what == "all");
+    let folder = tempfile::tempdir().unwrap();
+    for (from, to) in [("assets", "assets"), ("tests/data", "tests/data")] {
+        fs::create_dir_all(folder.path().join(to).parent().unwrap()).unwrap();
+        std::os::unix::fs::symlink(root.join(from), folder.path().join(to)).unwrap();
+    }
+    let commands = commands(&fs::read_to_string(page).unwrap());
+    let mut writes = HashSet::new();
     let (mut ran, mut failed) = (0, Vec::new());
-    // What wrote something runs again, on the first page that prints it.
-    let mut again = std::collections::HashSet::new();
-    for page in pages() {
-        let folder = tempfile::tempdir().unwrap();
-        for (from, to) in [("assets", "assets"), ("tests/data", "tests/data")] {
-            fs::create_dir_all(folder.path().join(to).parent().unwrap()).unwrap();
-            std::os::unix::fs::symlink(root.join(from), folder.path().join(to)).unwrap();
-        }
-        let commands = commands(&fs::read_to_string(&page).unwrap());
-        let mut writes = std::collections::HashSet::new();
-        for round in 1..=2 {
-            for (command, mark) in &commands {
-                if *mark == Mark::Forms || (*mark == Mark::Long && !all) {
-                    continue;
-                }
-                let mut is_wanted = || writes.contains(command) && again.insert(command.clone());
-                if round == 2 && !is_wanted() {
-                    continue;
-                }
-                let before = files(folder.path());
-                let output = Command::new("sh")
-                    .args(["-c", command])
-                    .current_dir(folder.path())
-                    .env("PATH", &path)
-                    .output()
-                    .unwrap();
-                ran += 1;
-                if files(folder.path()) > before {
-                    writes.insert(command);
-                }
-                if !output.status.success() {
-                    let told = String::from_utf8_lossy(&output.stderr);
-                    failed.push(format!(
-                        "{}, round {round}: {command}\n{told}",
-                        page.display()
-                    ));
-                }
+    for round in 1..=2 {
+        for (command, mark) in &commands {
+            if *mark == Mark::Forms || (*mark == Mark::Long && !all) {
+                continue;
+            }
+            let is_wanted =
+                || writes.contains(command) && again.lock().unwrap().insert(command.clone());
+            if round == 2 && !is_wanted() {
+                continue;
+            }
+            let before = files(folder.path());
+            let output = Command::new("sh")
+                .args(["-c", command])
+                .current_dir(folder.path())
+                .env("PATH", &path)
+                .output()
+                .unwrap();
+            ran += 1;
+            if files(folder.path()) > before {
+                writes.insert(command);
+            }
+            if !output.status.success() {
+                let told = String::from_utf8_lossy(&output.stderr);
+                let at = page.display();
+                failed.push(format!("{at}, round {round}: {command}\n{told}"));
             }
         }
     }
+    (ran, failed)
+}
+
+#[test]
+fn printed_commands_run_and_run_again() {
+    let again = Mutex::default();
+    let pages: Vec<_> = pages()
+        .into_par_iter()
+        .map(|page| run_page(&page, &again))
+        .collect();
+    let ran: usize = pages.iter().map(|(ran, _)| ran).sum();
+    let failed: Vec<String> = pages.into_iter().flat_map(|(_, failed)| failed).collect();
     assert!(failed.is_empty(), "{}", failed.join("\n"));
     assert!(ran > 40, "{ran} commands run");
 }

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::PathBuf;
 use std::process::Command;
 
+use rayon::prelude::*;
 use shiftvox::graph::{Silent, Voxel};
 use shiftvox::scene::generate::{GENERATORS, Spec};
 use xxhash_rust::xxh3::Xxh3;
@@ -93,43 +94,46 @@ fn benchmark_scenes_are_the_reference_programs() {
         eprintln!("skipped: g++ does not compile {}", source.display());
         return;
     }
-    for (name, depth, _, digest_stored) in REFERENCE {
-        let output = room.path().join("scene.bin");
-        let side = if name == "menger" {
-            3u32.pow(depth)
-        } else {
-            1 << depth
-        };
-        let mut run = Command::new(&program);
-        run.arg(name)
-            .arg(side.to_string())
-            .arg(&output)
-            .arg(depth.to_string());
-        assert!(run.output().expect("the reference runs").status.success());
-        let bytes = std::fs::read(&output).expect("the reference's output");
-        let mut expected: Vec<Colored> = bytes[8..]
-            .chunks_exact(12)
-            .map(|record| {
-                let at =
-                    |k: usize| i32::from(u16::from_le_bytes([record[2 * k], record[2 * k + 1]]));
-                // Its y is up, as our z is.
-                ([at(0), at(2), at(1)], [record[6], record[7], record[8]])
-            })
-            .collect();
-        expected.sort_unstable();
-        let ours = scene(&format!("gen:{name},depth={depth}"));
-        assert!(
-            ours == expected,
-            "{name} {depth}: {} voxels, not {}",
-            ours.len(),
-            expected.len()
-        );
-        assert_eq!(
-            digest(&expected),
-            digest_stored,
-            "{name} {depth}: the stored digest"
-        );
-    }
+    REFERENCE
+        .into_par_iter()
+        .for_each(|(name, depth, _, digest_stored)| {
+            let output = room.path().join(format!("{name}-{depth}.bin"));
+            let side = if name == "menger" {
+                3u32.pow(depth)
+            } else {
+                1 << depth
+            };
+            let mut run = Command::new(&program);
+            run.arg(name)
+                .arg(side.to_string())
+                .arg(&output)
+                .arg(depth.to_string());
+            assert!(run.output().expect("the reference runs").status.success());
+            let bytes = std::fs::read(&output).expect("the reference's output");
+            let mut expected: Vec<Colored> = bytes[8..]
+                .chunks_exact(12)
+                .map(|record| {
+                    let at = |k: usize| {
+                        i32::from(u16::from_le_bytes([record[2 * k], record[2 * k + 1]]))
+                    };
+                    // Its y is up, as our z is.
+                    ([at(0), at(2), at(1)], [record[6], record[7], record[8]])
+                })
+                .collect();
+            expected.sort_unstable();
+            let ours = scene(&format!("gen:{name},depth={depth}"));
+            assert!(
+                ours == expected,
+                "{name} {depth}: {} voxels, not {}",
+                ours.len(),
+                expected.len()
+            );
+            assert_eq!(
+                digest(&expected),
+                digest_stored,
+                "{name} {depth}: the stored digest"
+            );
+        });
 }
 
 /// The other scenes at a small depth: nothing changes them unnoticed.

@@ -22,13 +22,13 @@ use crate::scenes::*;
 
 /// Pictures: pixels across and down, samples per pixel and axis as a power of two.
 const SIZES: [(u32, u32, u32); 7] = [
-    (160, 160, 0),
-    (200, 113, 0),
-    (75, 160, 0),
-    (160, 120, 0),
-    (80, 64, 1),
+    (112, 112, 0),
+    (140, 79, 0),
+    (53, 112, 0),
+    (112, 84, 0),
+    (56, 45, 1),
     (1, 160, 0),
-    (43, 39, 2),
+    (30, 27, 2),
 ];
 
 /// The size for rules under which the machine draws sample by sample.
