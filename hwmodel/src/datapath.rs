@@ -355,31 +355,6 @@ impl<P: Probe> Datapath<P> {
         Word(a.0 & !(1 << place.min(63)))
     }
 
-    /// A word as a wide word: wires that repeat the sign.
-    #[inline(always)]
-    #[must_use]
-    pub fn widen(&self, a: Word) -> WideWord {
-        WideWord(a.0)
-    }
-
-    /// Bits that a word's magnitude takes, 0 for zero: a priority encoder.
-    #[inline(always)]
-    pub fn bit_length(&mut self, a: Word) -> u32 {
-        self.note::<Word>(OpClass::Logic);
-        64 - a.0.unsigned_abs().leading_zeros()
-    }
-
-    /// The longer of two bit lengths: a comparison of short numbers.
-    #[inline(always)]
-    pub fn longer(&mut self, a: u32, b: u32) -> u32 {
-        if P::ENABLED {
-            // Lengths run to 64: seven bits.
-            self.probe
-                .op_on(Operand::Short, OpClass::MinMax, 7, self.place);
-        }
-        a.max(b)
-    }
-
     /// Bitwise and of two short vectors of `bits` bits.
     #[inline(always)]
     pub fn and_bits(&mut self, bits: u32, a: u8, b: u8) -> u8 {

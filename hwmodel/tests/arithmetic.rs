@@ -124,10 +124,6 @@ fn words_only(bits: u32, a: i64) {
             dp.shift_in(x, bit)
         });
     }
-    check("widen", bits, exact, |dp| dp.widen(x));
-    let mut dp = datapath(bits, Overflow::Trap);
-    let length = (0..).find(|&n| exact.abs() < 1i128 << n).unwrap_or(0);
-    assert_eq!(dp.bit_length(x), length, "bit length of {a}");
 }
 
 #[test]

@@ -1,19 +1,10 @@
 //! Cost tables: shipped figures, what lies between them, a user's own, and
 //! what is refused.
 
+mod costs_common;
+
+use costs_common::{near, shipped};
 use hwmodel::cost::{CostError, CostTable, Fit, Goal, Quantity};
-
-fn shipped() -> CostTable {
-    CostTable::load_shipped().expect("well-formed tables")
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-9 * expected.abs().max(1.0),
-        "{found} is not {expected}"
-    );
-}
 
 #[test]
 fn figures_of_the_shipped_rows() {

@@ -1,24 +1,15 @@
 //! Energy and area by the shipped tables: operations line by line, accesses, bills.
 
+mod costs_common;
+
+use costs_common::{near, shipped};
 use hwmodel::cost::{
-    CostTable, Costing, Goal, MinMaxUnits, ShiftUnits, Store, Stores, Tally, Unit, area_of,
-    energy_of, energy_of_tallies, memory_energy_of, operation_of,
+    Costing, Goal, MinMaxUnits, ShiftUnits, Store, Stores, Tally, Unit, area_of, energy_of,
+    energy_of_tallies, memory_energy_of, operation_of,
 };
 use hwmodel::count::Counter;
 use hwmodel::memory::Widths;
 use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
-
-fn shipped() -> CostTable {
-    CostTable::load_shipped().expect("well-formed tables")
-}
-
-#[track_caller]
-fn near(found: f64, expected: f64) {
-    assert!(
-        (found - expected).abs() <= 1e-9 * expected.abs().max(1.0),
-        "{found} is not {expected}"
-    );
-}
 
 const PLACE: StageLevel = StageLevel {
     stage: Stage::ChildBox,

@@ -86,8 +86,6 @@ fn operations_of_words_alone() {
             let step = ops(bits, |dp| _ = dp.divide_integer_step(a, b, place));
             assert_eq!(step, [(OpClass::DivideStep, bits + place, 1)]);
         }
-        let length = ops(bits, |dp| _ = dp.bit_length(a));
-        assert_eq!(length, [(OpClass::Logic, bits, 1)]);
         for width in [3, 4, 8] {
             let one = [(OpClass::Logic, width, 1)];
             assert_eq!(ops(bits, |dp| _ = dp.and_bits(width, 6, 3)), one);
@@ -96,7 +94,6 @@ fn operations_of_words_alone() {
         }
         // Wires, and constants that the host hands over.
         assert_eq!(ops(bits, |dp| _ = dp.shift_in(a, true)), []);
-        assert_eq!(ops(bits, |dp| _ = dp.widen(a)), []);
         assert_eq!(ops(bits, |dp| _ = dp.load(1 << 20)), []);
         assert_eq!(ops(bits, |dp| _ = dp.load_wide(1 << 20)), []);
     }
@@ -157,13 +154,11 @@ fn everything<P: Probe>(dp: &mut Datapath<P>) -> Vec<i64> {
         dp.or_bits(4, 5, 6),
         dp.xor_bits(4, 5, 6),
     ];
-    let length = dp.bit_length(b);
     let numbers = words.map(Word::to_host);
     numbers
         .into_iter()
         .chain(bits.map(i64::from))
         .chain(short.map(i64::from))
-        .chain([i64::from(length)])
         .collect()
 }
 
@@ -231,8 +226,8 @@ fn a_counter_adds_up_what_a_log_holds() {
     assert_eq!(counter.reads(Memory::Node), 2);
     assert_eq!(counter.writes(Memory::Pixel), 2);
     // By hand: each round has 12 calls that give words (a shift-in counts
-    // nothing, a midpoint twice), 6 compares, 3 logic and a bit length.
-    assert_eq!(counter.ops(), 2 * (12 - 1 + 1 + 6 + 3 + 1));
+    // nothing, a midpoint twice), 6 compares and 3 logic.
+    assert_eq!(counter.ops(), 2 * (12 - 1 + 1 + 6 + 3));
     assert_eq!(counter.records(), 2);
     assert_eq!(counter.widest(), 26, "the integer step at place 2");
 }

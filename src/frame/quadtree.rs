@@ -149,33 +149,31 @@ impl FillVectors {
     pub fn replace(&mut self, node: QuadNode, vector: u8) -> u8 {
         std::mem::replace(&mut self.vectors[node.address()], vector)
     }
-
-    /// Whether every invariant holds: a bit is set exactly where the quadrant is full.
-    #[must_use]
-    pub fn is_consistent(&self) -> bool {
-        (0..self.levels).all(|level| {
-            let side = 1u32 << level;
-            (0..side).all(|y| {
-                (0..side).all(|x| {
-                    let node = QuadNode { level, x, y };
-                    (0..4).all(|quadrant| {
-                        let full = self.vector(node.quadrant(quadrant)) == FULL;
-                        full == (self.vector(node) >> quadrant & 1 != 0)
-                    })
-                })
-            })
-        })
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// Whether every invariant holds: a bit is set exactly where the quadrant is full.
+    fn is_consistent(fill: &FillVectors) -> bool {
+        let is_right = |node: QuadNode, quadrant| {
+            let full = fill.vector(node.quadrant(quadrant)) == FULL;
+            full == (fill.vector(node) >> quadrant & 1 != 0)
+        };
+        let of = |level: u32| {
+            (0..1 << level).flat_map(move |y| (0..1 << level).map(move |x| (level, x, y)))
+        };
+        let mut nodes = (0..fill.levels).flat_map(of);
+        nodes.all(|(level, x, y)| {
+            (0..4).all(|quadrant| is_right(QuadNode { level, x, y }, quadrant))
+        })
+    }
+
     #[test]
     fn outside_the_picture_is_full_from_the_start() {
         let fill = FillVectors::new(3, 5, 2);
-        assert!(fill.is_consistent());
+        assert!(is_consistent(&fill));
         // Rows 4..8 are outside: both lower quadrants of the root.
         assert_eq!(fill.vector(QuadNode::ROOT), 0b1100);
         // Column 4 alone is inside the upper right quadrant.

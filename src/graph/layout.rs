@@ -52,12 +52,6 @@ impl NodeLayout {
             _ => at..at + 1,
         }
     }
-
-    /// Whether there are bricks.
-    #[must_use]
-    pub fn has_bricks(&self) -> bool {
-        self.bricks.is_some()
-    }
 }
 
 /// The first node of a level, in a tree that is stored level by level.
@@ -104,6 +98,6 @@ mod tests {
             links: &[1, 2],
             ..graph
         };
-        assert!(!NodeLayout::new(&linked, true, true).has_bricks());
+        assert!(NodeLayout::new(&linked, true, true).bricks.is_none());
     }
 }

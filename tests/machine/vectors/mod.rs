@@ -10,14 +10,15 @@ mod turns;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hwmodel::Overflow;
 use serde_json::Value;
 use shiftvox::graph::{Graph, GraphView, Opacity};
-use shiftvox::lab::model::vectors::{self, Request};
-use shiftvox::project::{CageKind, Camera, Coverage, SetupOptions};
+use shiftvox::lab::model::vectors::{self, Recorded, Request};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
+use tempfile::TempDir;
 
 use self::replay::replay;
 use self::rows::{Row, constants_of, read};
@@ -161,13 +162,12 @@ fn options(coverage: Coverage, cage: CageKind, tolerance_px: f64, bits: u32) -> 
     }
 }
 
-/// Records a frame and replays it.
-fn round_trip(
-    graph: &Graph,
-    camera: &Camera,
-    options: &SetupOptions,
+/// A folder that holds `vectors`: at most so many records of a frame, as they are written.
+fn written(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
     records: u64,
-) -> (Option<String>, BTreeMap<String, usize>) {
+) -> (TempDir, PathBuf, Recorded) {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("vectors");
     let request = Request {
@@ -177,6 +177,17 @@ fn round_trip(
         folder: &folder,
         overwrite: false,
     };
+    let recorded = vectors::write(graph, setup, &request).unwrap();
+    (shelter, folder, recorded)
+}
+
+/// Records a frame and replays it.
+fn round_trip(
+    graph: &Graph,
+    camera: &Camera,
+    options: &SetupOptions,
+    records: u64,
+) -> (Option<String>, BTreeMap<String, usize>) {
     // A colour for each node.
     let light: Vec<[u16; 3]> = (0..graph.len() as u16)
         .map(|i| [0, 1, 2].map(|c| i.wrapping_mul(40_503).rotate_left(5 * c) ^ 0x9e37))
@@ -185,7 +196,7 @@ fn round_trip(
         light: &light,
         ..graph.view()
     };
-    let recorded = vectors::write(&lit, &setup(graph, camera, options), &request).unwrap();
+    let (_shelter, folder, recorded) = written(&lit, &setup(graph, camera, options), records);
     let (wrong, counts) = replay_folder(&folder);
     let rows: usize = counts.values().sum();
     assert_eq!(rows as u64, recorded.rows);
@@ -362,16 +373,8 @@ fn a_wrong_bit_of_blending_is_found() {
 /// Changes the second lowest bit of the last row of each file, one after the other.
 fn changed_bits_are_found(options: &SetupOptions, files: &[&str]) {
     let (_, graph, camera) = scenes().swap_remove(0);
-    let shelter = tempfile::tempdir().unwrap();
-    let folder = shelter.path().join("vectors");
-    let request = Request {
-        scene: "a test",
-        records: 20,
-        overflow: Overflow::Trap,
-        folder: &folder,
-        overwrite: false,
-    };
-    vectors::write(&graph.view(), &setup(&graph, &camera, options), &request).unwrap();
+    let setup = setup(&graph, &camera, options);
+    let (_shelter, folder, _) = written(&graph.view(), &setup, 20);
     assert_eq!(replay_folder(&folder).0, None);
     for file in files {
         let path = folder.join(format!("{file}.hex"));

@@ -2,13 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use hwmodel::Overflow;
-use shiftvox::lab::model::vectors::{self, Request};
 use shiftvox::project::{CageKind, Coverage};
 
 use super::replay::replay;
 use super::rows::{BlockRows, Constants, Row, rows_of};
-use super::{options, scenes};
+use super::{options, scenes, written};
 use crate::common::setup;
 
 /// A number with one of its bits stuck.
@@ -297,17 +295,9 @@ fn rows_tell_blocks_from_their_mutants() {
     let (mut all, mut alive) = (0, Vec::new());
     let mut killed = BTreeSet::new();
     for coverage in [Coverage::Exact, Coverage::Center, Coverage::Alpha] {
-        let shelter = tempfile::tempdir().unwrap();
-        let folder = shelter.path().join("vectors");
-        let request = Request {
-            scene: "a test",
-            records: 100,
-            overflow: Overflow::Trap,
-            folder: &folder,
-            overwrite: false,
-        };
         let options = options(coverage, CageKind::Frame, 0.125, 32);
-        vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+        let setup = setup(&graph, &camera, &options);
+        let (_shelter, folder, _) = written(&graph.view(), &setup, 100);
         let (blocks, constants) = rows_of(&folder);
         for block in &blocks {
             let (mutants, left) = stuck_mutants(block, &constants);

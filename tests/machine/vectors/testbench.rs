@@ -4,11 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use hwmodel::Overflow;
-use shiftvox::lab::model::vectors::{self, Request};
 use shiftvox::project::{CageKind, Coverage};
 
-use super::{options, scenes};
+use super::{options, scenes, written};
 use crate::common::setup;
 
 /// The octant and the order of the children, by hand.
@@ -52,17 +50,9 @@ fn testbenches_pass_blocks_that_are_right_and_no_others() {
         return;
     }
     let (_, graph, camera) = scenes().swap_remove(0);
-    let shelter = tempfile::tempdir().unwrap();
-    let folder = shelter.path().join("vectors");
-    let request = Request {
-        scene: "a test",
-        records: 100,
-        overflow: Overflow::Trap,
-        folder: &folder,
-        overwrite: false,
-    };
     let options = options(Coverage::Exact, CageKind::Frame, 0.0, 24);
-    vectors::write(&graph.view(), &setup(&graph, &camera, &options), &request).unwrap();
+    let setup = setup(&graph, &camera, &options);
+    let (shelter, folder, _) = written(&graph.view(), &setup, 100);
     let source = shelter.path().join("source.v");
     let wrong_rows_with = |text: &str, more: &[&Path]| {
         fs::write(&source, text).unwrap();

@@ -4,16 +4,14 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use hwmodel::Overflow;
 use serde_json::Value;
 use shiftvox::frame::{Frame, NO_NODE};
 use shiftvox::graph::Graph;
-use shiftvox::lab::model::vectors::{self, Request};
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Coverage, Engine, FrameSetup};
 
 use super::rows::{Row, read};
-use super::{options, scenes};
+use super::{options, scenes, written};
 use crate::common::{setup, times};
 
 /// The memories, as the ports show them.
@@ -108,16 +106,7 @@ fn turns_follow_from_one_another_and_make_the_picture() {
         let rules = FRAMES.iter().cycle().skip(number);
         for &(coverage, cage) in rules.take(FRAMES.len().min(times() as usize)) {
             let setup = setup(&graph, &camera, &options(coverage, cage, 0.125, 32));
-            let shelter = tempfile::tempdir().unwrap();
-            let folder = shelter.path().join("vectors");
-            let request = Request {
-                scene: name,
-                records: u64::MAX,
-                overflow: Overflow::Trap,
-                folder: &folder,
-                overwrite: false,
-            };
-            vectors::write(&graph.view(), &setup, &request).unwrap();
+            let (_shelter, folder, _) = written(&graph.view(), &setup, u64::MAX);
             let text = fs::read_to_string(folder.join("manifest.json")).unwrap();
             let manifest: Value = serde_json::from_str(&text).unwrap();
             let turns = &manifest["turns"];
