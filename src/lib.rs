@@ -128,3 +128,8 @@ pub mod report;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod cli;
+
+/// Runs the programs of a tutorial as tests.
+#[cfg(all(doctest, feature = "png"))]
+#[doc = include_str!("../docs/tutorial-library.md")]
+struct TutorialLibrary;
