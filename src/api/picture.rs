@@ -119,6 +119,13 @@ impl Picture {
         self.operations.as_ref()
     }
 
+    /// The buffers themselves, for bindings to other languages.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn into_buffers(self) -> picture::Picture {
+        self.buffers
+    }
+
     /// A hash of all buffers, 32 hexadecimal digits: the same on every platform.
     #[must_use]
     pub fn hash(&self) -> String {

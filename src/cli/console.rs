@@ -27,6 +27,8 @@ pub(super) struct Console {
     held: Mutex<Option<Value>>,
     /// Whether documents are printed a line each.
     in_lines: AtomicBool,
+    /// What is printed, where it is not for stdout.
+    kept: Option<Mutex<String>>,
 }
 
 impl Console {
@@ -43,7 +45,32 @@ impl Console {
             progress,
             held: Mutex::default(),
             in_lines: AtomicBool::new(false),
+            kept: None,
         }
+    }
+
+    /// Keeps JSON documents for a caller in this process; says nothing.
+    pub(super) fn keeping() -> Self {
+        Self {
+            kept: Some(Mutex::default()),
+            ..Self::new(true, 0, true)
+        }
+    }
+
+    /// What was printed on a console that keeps it.
+    pub(super) fn kept(self) -> String {
+        let kept = self.kept.unwrap_or_default();
+        kept.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn print(&self, text: &str) -> Result<(), CliError> {
+        let Some(kept) = &self.kept else {
+            return print(text);
+        };
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.push_str(text);
+        kept.push('\n');
+        Ok(())
     }
 
     /// Receives the progress of long work.
@@ -53,7 +80,7 @@ impl Console {
 
     /// Prints data, with a line's end.
     pub(super) fn data(&self, text: impl AsRef<str>) -> Result<(), CliError> {
-        print(&harmless(text.as_ref()))
+        self.print(&harmless(text.as_ref()))
     }
 
     /// Prints a line of JSON at once, where results are JSON: of what comes bit by bit.
@@ -62,14 +89,14 @@ impl Console {
             return Ok(());
         }
         self.in_lines.store(true, Ordering::Relaxed);
-        print(&json_text(text))
+        self.print(&json_text(text))
     }
 
     /// Prints a JSON document: at the next one, or at the end of the run.
     pub(super) fn document(&self, value: &Value) -> Result<(), CliError> {
         let before = self.held().replace(value.clone());
         match before {
-            Some(before) => print(&as_json(&before)),
+            Some(before) => self.print(&as_json(&before)),
             None => Ok(()),
         }
     }
@@ -88,11 +115,11 @@ impl Console {
             (Err(error), held) if self.json || held.is_some() => {
                 let document = document::failed(held, error);
                 match self.in_lines.load(Ordering::Relaxed) {
-                    true => print(&json_text(&document.to_string())),
-                    false => print(&as_json(&document)),
+                    true => self.print(&json_text(&document.to_string())),
+                    false => self.print(&as_json(&document)),
                 }
             }
-            (_, Some(held)) => print(&as_json(&held)),
+            (_, Some(held)) => self.print(&as_json(&held)),
             (_, None) => Ok(()),
         };
         result.and(printed)

@@ -188,15 +188,45 @@ fn run(command_line: Vec<OsString>) -> Result<(), CliError> {
         }
     };
     let console = Console::new(cli.common.quiet, cli.common.verbose, cli.common.json);
-    let result = run_command(cli, expanded.scenes, &console);
+    let result = cli
+        .threads()
+        .and_then(|threads| pool(threads).build_global().map_err(no_threads))
+        .and_then(|()| run_command(cli, expanded.scenes, &console));
     console.end(result)
 }
 
+/// Runs a command in this process, for bindings to other languages: returns what it prints with
+/// `--json`, one document or a line for each. Nothing is printed but errors after which the work
+/// goes on.
+///
+/// # Errors
+/// As the program fails.
+pub fn documents(words: impl IntoIterator<Item = OsString>) -> Result<String, CliError> {
+    let line = [OsString::from("shiftvox")].into_iter().chain(words);
+    let cli = Cli::try_parse_from(line).map_err(|error| {
+        let message = error.render().to_string();
+        CliError::usage(message.trim_end().trim_start_matches("error: "))
+    })?;
+    let threads = cli.threads()?;
+    let console = Console::keeping();
+    let run = || run_command(cli, Vec::new(), &console);
+    match threads {
+        0 => run(),
+        threads => pool(threads).build().map_err(no_threads)?.install(run),
+    }?;
+    console.end(Ok(()))?;
+    Ok(console.kept())
+}
+
+fn pool(threads: usize) -> rayon::ThreadPoolBuilder {
+    rayon::ThreadPoolBuilder::new().num_threads(threads)
+}
+
+fn no_threads(error: rayon::ThreadPoolBuildError) -> CliError {
+    CliError::new(Kind::Limit, format!("cannot start the threads: {error}"))
+}
+
 fn run_command(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), CliError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(cli.threads()?)
-        .build_global()
-        .map_err(|e| CliError::new(Kind::Limit, format!("cannot start the threads: {e}")))?;
     match cli.command {
         None => demo::run(console),
         Some(Command::Render(args)) => render::run(&args, scenes, console),
