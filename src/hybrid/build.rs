@@ -1,6 +1,7 @@
 //! Levels of detail of a mesh.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::parts::widths;
 use super::{Hybrid, Level};
@@ -58,6 +59,10 @@ pub enum HybridError {
     Levels,
 }
 
+/// What bytes weigh beside the error: a level of sixteen times the bytes has to have half of it.
+const BYTES_WEIGH: f64 = 0.25;
+/// Bytes of the smallest voxel's record.
+const LEAST_VOXEL_BYTES: f64 = 12.0;
 /// Least distance of the eye in voxels: that of wide fields of view.
 const DISTANCE_VOXELS: f64 = 8.0;
 /// Light that comes from everywhere, as the engines have it: 0 to 256.
@@ -91,18 +96,19 @@ pub fn build(
     let mut levels = vec![Level::new(0.0, Some(compact(mesh)), None)];
     let count = (finest / coarsest).ilog2() + 1;
     progress.begin("levels of detail", u64::from(count));
-    for halvings in 0..count {
-        let pixels = finest >> halvings;
-        let pixel = extent / f64::from(pixels);
-        levels.push(level(mesh, &widths, pixel, options)?);
+    let coarser = (0..count).into_par_iter().map(|halvings| {
+        let pixel = extent / f64::from(finest >> halvings);
+        let level = level(mesh, &widths, pixel, options);
         progress.advance(1);
-    }
+        level
+    });
+    levels.extend(coarser.collect::<Result<Vec<Level>, HybridError>>()?);
     progress.end();
     Ok(Hybrid { levels, low, high })
 }
 
 /// The level of a size of pixel: of several ways to make it the one with the least error times
-/// the root of its bytes.
+/// a power of its bytes.
 fn level(
     mesh: &Mesh,
     widths: &[f64],
@@ -122,13 +128,18 @@ fn level(
     let mut candidates = vec![Level::new(pixel, decimated(mesh, true)?, None)];
     // One triangle has no hierarchy.
     if thin.len() >= 2 {
-        candidates.push(Level::new(pixel, decimated(mesh, false)?, None));
-        let surface = match wide.is_empty() {
-            true => None,
-            false => decimated(&mesh.part(&wide), true)?,
-        };
-        let voxels = voxels(&mesh.part(&thin), pixel)?;
-        candidates.push(Level::new(pixel, surface, Some(voxels)));
+        let whole = Level::new(pixel, decimated(mesh, false)?, None);
+        let thin = mesh.part(&thin);
+        // There is a voxel at the least for each square of a pixel.
+        let least = area(&thin) / (pixel * pixel) * LEAST_VOXEL_BYTES;
+        if least < whole.bytes as f64 {
+            let surface = match wide.is_empty() {
+                true => None,
+                false => decimated(&mesh.part(&wide), true)?,
+            };
+            candidates.push(Level::new(pixel, surface, Some(voxels(&thin, pixel)?)));
+        }
+        candidates.push(whole);
     }
     if candidates.len() == 1 {
         return Ok(candidates.swap_remove(0));
@@ -137,10 +148,18 @@ fn level(
     let mut costs = Vec::new();
     for candidate in &candidates {
         let square = view.square_error(candidate)?;
-        costs.push(libm::sqrt(square * candidate.bytes as f64));
+        costs.push(libm::sqrt(square) * libm::pow(candidate.bytes as f64, BYTES_WEIGH));
     }
     let least = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
     Ok(candidates.swap_remove(least.unwrap_or(0)))
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let triangle = |number| {
+        let [a, b, c] = Surface::corners(mesh, number);
+        (b - a).cross(c - a).length() / 2.0
+    };
+    (0..mesh.len()).map(triangle).sum()
 }
 
 /// Voxels of one grid around triangles, of a size.

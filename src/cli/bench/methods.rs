@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::error::reference_size;
+use super::error::{MOST_SIDE, reference_size};
 use super::meshes::{BUDGETS, Decimated, TRIANGLE_SAMPLES, decimated_of, far_of};
 use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
@@ -25,6 +25,7 @@ use crate::lab::bench::Schedule;
 use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{self as experiment, Distance, Facts, MeshMethods, MethodsPlan};
+use crate::mesh::decimate::compact;
 use crate::mesh::{Mesh, Surface, mesh_box};
 use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
@@ -70,6 +71,10 @@ pub(super) struct MethodsArgs {
     #[arg(long, value_name = "PX", default_value_t = 8,
           value_parser = clap::value_parser!(u32).range(4..=4096))]
     least: u32,
+    /// Pixels down the pictures, instead of halves of the first; the width follows
+    #[arg(long, value_name = "PX,...", value_delimiter = ',', conflicts_with_all = ["size", "least"],
+          value_parser = clap::value_parser!(u32).range(4..=i64::from(MOST_SIDE)))]
+    heights: Vec<u32>,
     /// Frames of each method before those that count
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(0..=1000))]
@@ -104,8 +109,9 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     export::check_with(&args.export, &args.export_html)?;
     pictures::check(&args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
-    let size = reference_size(args.size, DEFAULT_SIDE)?;
-    if size.0.min(size.1) < args.least {
+    let first = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
+    let size = reference_size(args.size, first)?;
+    if args.heights.is_empty() && size.0.min(size.1) < args.least {
         return Err(CliError::usage(format!(
             "a picture of {}x{} has less than --least {} pixels",
             size.0, size.1, args.least
@@ -114,7 +120,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     let context = Context::now();
     context.warn(console);
     let plan = MethodsPlan {
-        halvings: (size.0.min(size.1) / args.least).ilog2(),
+        heights: args.heights(size),
         schedule: Schedule {
             warmup: args.warmup,
             runs: args.runs,
@@ -131,6 +137,15 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
 }
 
 impl MethodsArgs {
+    /// Pixels down the pictures: those asked for, or halved again and again.
+    fn heights(&self, size: (u32, u32)) -> Vec<u32> {
+        if !self.heights.is_empty() {
+            return self.heights.clone();
+        }
+        let halvings = (size.0.min(size.1) / self.least).ilog2();
+        (0..=halvings).map(|times| size.1 >> times).collect()
+    }
+
     fn takes(&self, family: Family) -> bool {
         self.only.is_empty() || self.only.contains(&family)
     }
@@ -238,10 +253,11 @@ fn methods<'m>(
 ) -> Result<Vec<Candidate<'m>>, Refused> {
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
+        let (_, bytes) = compact(mesh);
         for samples in TRIANGLE_SAMPLES {
             let method = experiment::triangles(mesh, samples, style)?;
             let label = format!("triangles, {samples}");
-            all.push(candidate(label, mesh.bytes(), 0.0, method));
+            all.push(candidate(label, bytes, 0.0, method));
         }
     }
     for decimated in &made.decimated {
@@ -373,8 +389,9 @@ fn write(
     fields["meshes"] = json!(meshes);
     for (mesh, of) in meshes.iter().enumerate() {
         for (distance, at) in of.distances.iter().enumerate() {
-            let answers = json!(experiment::answers(&of.facts, at));
-            fields["meshes"][mesh]["distances"][distance]["answers"] = answers;
+            let field = &mut fields["meshes"][mesh]["distances"][distance];
+            field["answers"] = json!(experiment::answers(&of.facts, at));
+            field["rivals"] = json!(experiment::rivals(&of.facts, at));
         }
     }
     let tables = all(meshes).flat_map(|(mesh, distance)| {
@@ -434,7 +451,8 @@ fn page(
          by its rules center and exact, and exact with 16 samples; far voxels opaque, with one \
          opacity and with six, at 1, 4 and 16 samples; textured voxels, level of detail chosen by \
          texels of a pixel or given; decimated triangles, one of so many left; the hybrid of both. \
-         Read bytes: what the frame is made of, without other levels of detail. Each distance is twice the one before, and the picture half as large, so that the \
+         Read bytes: what the frame is made of, without other levels of detail; meshes as they would \
+         be stored, with indices and rounded. Each distance is twice the one before, and the picture half as large, so that the \
          mesh always fills it. ms: processor time of one thread; a frame of voxels is clear, \
          traverse, colours without light, that of other methods has the light in it. Error: \
          against the triangles with 256 samples; bias: area covered too much; wrong share: too \
@@ -454,7 +472,7 @@ fn page(
             pictures::plots(
                 &mut page,
                 std::slice::from_ref(panel),
-                "Grey: dominated. The line joins what is not. Numbers without a name: see the table.",
+                "Grey: dominated. The line joins what is not. Numbers are those of the table below.",
             )?;
             for table in experiment::answer_tables(mesh, distance) {
                 page.table(&table);

@@ -72,6 +72,66 @@ pub fn answers(facts: &[Facts], distance: &Distance) -> Vec<Answer> {
     answers
 }
 
+/// A hybrid, and the best of what it is made of in no more bytes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Rivals {
+    /// Which hybrid.
+    pub method: String,
+    /// Bytes that its frame is made of.
+    pub read_bytes: u64,
+    /// Decibel.
+    pub psnr: f64,
+    /// Mean FLIP.
+    pub flip: f64,
+    /// The best decimated mesh, or the whole one, if any takes no more bytes.
+    pub triangles: Option<Answer>,
+    /// The best far voxels, if any take no more bytes.
+    pub far: Option<Answer>,
+    /// PSNR above that of the better of both.
+    pub ahead: Option<f64>,
+}
+
+/// Each hybrid beside its parts in no more bytes, with any number of samples.
+#[must_use]
+pub fn rivals(facts: &[Facts], distance: &Distance) -> Vec<Rivals> {
+    let outcomes = || {
+        let rows = distance.rows.iter().zip(facts);
+        rows.filter_map(|(row, facts)| Some((row.family, facts, row.outcome.as_ref().ok()?)))
+    };
+    let hybrids = outcomes().filter(|(family, ..)| *family == "hybrid");
+    let rivals = hybrids.map(|(_, facts, hybrid)| {
+        let best = |families: &[&str]| {
+            let able = outcomes().filter(|(family, _, outcome)| {
+                families.contains(family) && outcome.read_bytes <= hybrid.read_bytes
+            });
+            let error = |outcome: &Outcome| outcome.picture.rms_linear;
+            let best = able.min_by(|(.., a), (.., b)| error(a).total_cmp(&error(b)));
+            best.map(|(family, facts, outcome)| Answer {
+                criterion: "kB of a frame",
+                limit: hybrid.read_bytes as f64 / 1024.0,
+                family,
+                method: facts.label.clone(),
+                psnr: outcome.picture.psnr_linear,
+                flip: outcome.picture.flip,
+            })
+        };
+        let (triangles, far) = (best(&["triangles", "decimated"]), best(&["far voxels"]));
+        let psnr = |answer: &Option<Answer>| answer.as_ref().map(|answer| answer.psnr);
+        let better = [psnr(&triangles), psnr(&far)].into_iter().flatten();
+        let better = better.reduce(f64::max);
+        Rivals {
+            method: facts.label.clone(),
+            read_bytes: hybrid.read_bytes,
+            psnr: hybrid.picture.psnr_linear,
+            flip: hybrid.picture.flip,
+            ahead: better.map(|better| hybrid.picture.psnr_linear - better),
+            triangles,
+            far,
+        }
+    });
+    rivals.collect()
+}
+
 /// The families, in the order of their methods.
 fn families(distance: &Distance) -> Vec<&'static str> {
     let mut families: Vec<&'static str> = distance.rows.iter().map(|row| row.family).collect();

@@ -15,10 +15,10 @@ use crate::mesh::Surface;
 use crate::project::{Camera, Stats};
 
 /// What is measured, and how.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct MethodsPlan {
-    /// Halvings of the picture: so many distances, and the first.
-    pub halvings: u32,
+    /// Pixels down the picture at each distance.
+    pub heights: Vec<u32>,
     /// How often each method draws.
     pub schedule: Schedule,
     /// Frames of the film in which flicker is searched for; below 2: none.
@@ -120,8 +120,8 @@ pub fn measure(
     progress: &dyn Progress,
 ) -> Result<MeshMethods, BenchError> {
     let mut distances = Vec::new();
-    for halvings in 0..=plan.halvings {
-        let camera = at_distance(camera, halvings);
+    for &height in &plan.heights {
+        let camera = at_distance(camera, height);
         distances.push(at(mesh, &camera, (methods, &facts), plan, progress)?);
     }
     Ok(MeshMethods {

@@ -14,7 +14,7 @@ mod measure;
 mod plots;
 mod tables;
 
-pub use answers::{Answer, answers, tables as answer_tables};
+pub use answers::{Answer, Rivals, answers, rivals, tables as answer_tables};
 pub use distance::at_distance;
 pub use families::{decimated, far, hybrid, opacity_in_words, textured, triangles};
 pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};

@@ -52,7 +52,18 @@ pub fn table(mesh: &MeshMethods, distance: &Distance) -> Table {
         &COLUMNS,
     );
     table.rows = cells(mesh, distance);
-    table.without(&["mesh", "pixels", "wall_ms", "rms", "ssim"])
+    for (number, row) in (1..).zip(&mut table.rows) {
+        row[2] = Cell::Text(format!("{number} {}", row[2].for_people()));
+    }
+    table.without(&[
+        "mesh",
+        "pixels",
+        "wall_ms",
+        "rms",
+        "ssim",
+        "wrong_share",
+        "work_of",
+    ])
 }
 
 fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {

@@ -108,8 +108,8 @@ pub(super) fn wheel(maker: &mut Maker) {
     }
 }
 
-/// A trunk, three times forked branches, and leaves around the last ones.
-pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64) {
+/// A trunk, branches that fork so many times, and leaves around the last ones.
+pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64, forks: u32) {
     let bark = maker.material([95, 70, 50]);
     let leaves = [[70, 120, 40], [95, 140, 50], [60, 100, 45]].map(|c| maker.material(c));
     let foot = DVec3::new(x, 0.0, z);
@@ -117,7 +117,7 @@ pub(super) fn tree(maker: &mut Maker, [x, z]: [f64; 2], height: f64) {
     while let Some((from, towards, length, radius, fork)) = growing.pop() {
         let to = from + towards * length;
         maker.tube([from, to], [radius, radius * 0.65], 8, bark);
-        if fork == 4 {
+        if fork == forks {
             for _ in 0..22 {
                 let mut offset = || maker.between(-0.5, 0.5) * height * 0.11;
                 let middle = to + DVec3::new(offset(), offset(), offset());
@@ -318,7 +318,7 @@ pub(super) fn garden(maker: &mut Maker) {
     for [x, z] in [[-5.0, -4.0], [12.0, -5.0], [12.0, 12.0], [-5.0, 13.0]] {
         let place = [x + maker.between(-1.0, 1.0), z + maker.between(-1.0, 1.0)];
         let height = maker.between(5.0, 8.0);
-        tree(maker, place, height);
+        tree(maker, place, height, 3);
     }
     for side in [-8.5, 16.5] {
         for picket in 0..100 {

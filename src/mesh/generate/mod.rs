@@ -75,7 +75,7 @@ pub fn generate(kind: Kind, seed: u64) -> Mesh {
         Kind::Scan => kinds::scan(&mut maker),
         Kind::Machine => kinds::machine(&mut maker),
         Kind::Wheel => kinds::wheel(&mut maker),
-        Kind::Tree => kinds::tree(&mut maker, [0.0; 2], 6.0),
+        Kind::Tree => kinds::tree(&mut maker, [0.0; 2], 6.0, 4),
         Kind::Stadium => kinds::stadium(&mut maker),
         Kind::Village => kinds::village(&mut maker),
         Kind::Garden => kinds::garden(&mut maker),
