@@ -47,7 +47,7 @@ pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError
 
 /// Writes a mesh.
 fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
-    let (kind, seed) = generate::parse(&args.spec).map_err(CliError::usage)?;
+    let (kind, seed) = generate::parse(&args.spec).map_err(CliError::input)?;
     let output = &args.output;
     if output.extension().and_then(|e| e.to_str()) != Some("ply") {
         let message = format!("{}: a mesh is written as .ply", output.display());

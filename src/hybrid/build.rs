@@ -1,12 +1,12 @@
 //! Levels of detail of a mesh.
 
-use glam::DVec3;
+use glam::{DVec3, DVec4};
 use rayon::prelude::*;
 
 use super::parts::widths;
 use super::{Hybrid, Level};
 use crate::far::store::{FarError, encode};
-use crate::far::view::{ViewError, ViewOptions};
+use crate::far::view::{FarPicture, ViewError, ViewOptions};
 use crate::far::{self, BuildError, FarFile};
 use crate::graph::{Progress, Silent};
 use crate::mesh::decimate::{DecimateError, Decimation, compact, decimate};
@@ -59,8 +59,11 @@ pub enum HybridError {
     Levels,
 }
 
-/// What bytes weigh beside the error: a level of sixteen times the bytes has to have half of it.
-const BYTES_WEIGH: f64 = 0.25;
+/// What bytes weigh beside the error: a level of 32 times the bytes has to have half of it.
+const BYTES_WEIGH: f64 = 0.2;
+/// Shares of the greatest error at which small parts are kept, and thin ones.
+const FINER: f64 = 1.0 / 3.0;
+const FINEST: f64 = 0.1;
 /// Bytes of the smallest voxel's record.
 const LEAST_VOXEL_BYTES: f64 = 12.0;
 /// Least distance of the eye in voxels: that of wide fields of view.
@@ -115,31 +118,38 @@ fn level(
     pixel: f64,
     options: &HybridOptions,
 ) -> Result<Level, HybridError> {
-    let decimated = |part: &Mesh, prunes: bool| {
+    let within = |pixels: f64, part: &Mesh, prunes: bool| {
         let how = Decimation {
             triangles: 0,
-            error: Some(options.error_pixels * pixel),
+            error: Some(pixels * pixel),
             prunes,
         };
-        Ok::<_, HybridError>(decimate(part, &how)?.map(|mesh| compact(&mesh)))
+        decimate(part, &how)
     };
+    let error = options.error_pixels;
+    let of =
+        |surface: Option<Mesh>, thin| Level::new(pixel, surface.map(|mesh| compact(&mesh)), thin);
+    let mut candidates = vec![of(within(error, mesh, true)?, None)];
     let is_thin = |&number: &usize| widths[number] < options.thin_pixels * pixel;
     let (thin, wide): (Vec<usize>, Vec<usize>) = (0..mesh.len()).partition(is_thin);
-    let mut candidates = vec![Level::new(pixel, decimated(mesh, true)?, None)];
     // One triangle has no hierarchy.
     if thin.len() >= 2 {
-        let whole = Level::new(pixel, decimated(mesh, false)?, None);
+        // Small parts may matter.
+        candidates.push(of(within(error * FINER, mesh, true)?, None));
+        let wide = match wide.is_empty() {
+            true => None,
+            false => within(error, &mesh.part(&wide), true)?,
+        };
         let thin = mesh.part(&thin);
+        let lines = within(error * FINEST, &thin, false)?;
+        let both = Mesh::of_parts([wide.clone(), lines].into_iter().flatten());
+        let both = of(both, None);
         // There is a voxel at the least for each square of a pixel.
         let least = area(&thin) / (pixel * pixel) * LEAST_VOXEL_BYTES;
-        if least < whole.bytes as f64 {
-            let surface = match wide.is_empty() {
-                true => None,
-                false => decimated(&mesh.part(&wide), true)?,
-            };
-            candidates.push(Level::new(pixel, surface, Some(voxels(&thin, pixel)?)));
+        if least < both.bytes as f64 {
+            candidates.push(of(wide, Some(voxels(&thin, pixel)?)));
         }
-        candidates.push(whole);
+        candidates.push(both);
     }
     if candidates.len() == 1 {
         return Ok(candidates.swap_remove(0));
@@ -185,7 +195,7 @@ fn voxels(part: &Mesh, voxel: f64) -> Result<FarFile, HybridError> {
 
 /// Cameras from which candidates are compared with the mesh.
 struct Comparison {
-    views: Vec<(RasterCamera, Light, Vec<DVec3>)>,
+    views: Vec<(RasterCamera, Light, Vec<DVec4>)>,
 }
 
 /// Samples along each axis of a pixel: of the mesh, which is right, and of candidates.
@@ -225,7 +235,7 @@ impl Comparison {
                 ambient: AMBIENT,
             };
             let (picture, _) = whole.draw(&view, &drawn_with(light, SAMPLES_ACROSS[0]))?;
-            views.push((view, light, linear(&picture.rgba)));
+            views.push((view, light, light_and_cover(&picture)));
         }
         Ok(Self { views })
     }
@@ -235,7 +245,7 @@ impl Comparison {
         let mut sum = 0.0;
         for (view, light, truth) in &self.views {
             let (picture, _) = level.draw(view, &drawn_with(*light, SAMPLES_ACROSS[1]))?;
-            let errors = linear(&picture.rgba).into_iter().zip(truth);
+            let errors = light_and_cover(&picture).into_iter().zip(truth);
             let errors = errors.map(|(seen, right)| (seen - *right).length_squared());
             sum += errors.sum::<f64>() / truth.len() as f64;
         }
@@ -243,20 +253,23 @@ impl Comparison {
     }
 }
 
-/// Before a middle grey, from which light and dark parts stand out.
 fn drawn_with(light: Light, samples_across: u32) -> ViewOptions {
     ViewOptions {
         samples_across,
         light: Some(light),
-        background: Some([128; 3]),
+        background: Some([0; 3]),
         ..ViewOptions::default()
     }
 }
 
-fn linear(rgba: &[[u8; 4]]) -> Vec<DVec3> {
-    let light =
-        |&[r, g, b, _]: &[u8; 4]| DVec3::from_array([r, g, b].map(|c| srgb_to_linear(c).into()));
-    rgba.iter().map(light).collect()
+/// Light before black, and how much of each pixel is covered, which light or dark grounds show.
+fn light_and_cover(picture: &FarPicture) -> Vec<DVec4> {
+    let pixels = picture.rgba.iter().zip(&picture.coverage);
+    let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {
+        let [r, g, b] = [r, g, b].map(|byte| f64::from(srgb_to_linear(byte)));
+        DVec4::new(r, g, b, f64::from(cover))
+    };
+    pixels.map(pixel).collect()
 }
 
 #[cfg(test)]

@@ -268,6 +268,24 @@ impl Mesh {
         part
     }
 
+    /// Parts of one mesh as one; `None` of none.
+    pub(crate) fn of_parts(parts: impl IntoIterator<Item = Self>) -> Option<Self> {
+        let mut parts = parts.into_iter();
+        let mut all = parts.next()?;
+        for part in parts {
+            // Both have fewer than 2^32.
+            let first = all.positions.len() as u32;
+            all.positions.extend(part.positions);
+            let moved = |corners: [u32; 3]| corners.map(|corner| corner + first);
+            all.triangles.extend(part.triangles.into_iter().map(moved));
+            all.material_of.extend(part.material_of);
+            all.corner_normals.extend(part.corner_normals);
+            all.vertex_colors.extend(part.vertex_colors);
+        }
+        all.find_bounds();
+        Some(all)
+    }
+
     fn find_bounds(&mut self) {
         let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
         for &corner in self.triangles.iter().flatten() {

@@ -83,10 +83,14 @@ pub struct Rivals {
     pub psnr: f64,
     /// Mean FLIP.
     pub flip: f64,
-    /// The best decimated mesh, or the whole one, if any takes no more bytes.
-    pub triangles: Option<Answer>,
-    /// The best far voxels, if any take no more bytes.
-    pub far: Option<Answer>,
+    /// The best mesh, decimated or not, if any takes no more bytes; and its PSNR.
+    pub triangles: Option<String>,
+    /// See `triangles`.
+    pub triangles_psnr: Option<f64>,
+    /// The best far voxels, if any take no more bytes; and their PSNR.
+    pub far: Option<String>,
+    /// See `far`.
+    pub far_psnr: Option<f64>,
     /// PSNR above that of the better of both.
     pub ahead: Option<f64>,
 }
@@ -106,18 +110,12 @@ pub fn rivals(facts: &[Facts], distance: &Distance) -> Vec<Rivals> {
             });
             let error = |outcome: &Outcome| outcome.picture.rms_linear;
             let best = able.min_by(|(.., a), (.., b)| error(a).total_cmp(&error(b)));
-            best.map(|(family, facts, outcome)| Answer {
-                criterion: "kB of a frame",
-                limit: hybrid.read_bytes as f64 / 1024.0,
-                family,
-                method: facts.label.clone(),
-                psnr: outcome.picture.psnr_linear,
-                flip: outcome.picture.flip,
-            })
+            best.map(|(_, facts, outcome)| (facts.label.clone(), outcome.picture.psnr_linear))
         };
         let (triangles, far) = (best(&["triangles", "decimated"]), best(&["far voxels"]));
-        let psnr = |answer: &Option<Answer>| answer.as_ref().map(|answer| answer.psnr);
-        let better = [psnr(&triangles), psnr(&far)].into_iter().flatten();
+        let (triangles, triangles_psnr) = triangles.unzip();
+        let (far, far_psnr) = far.unzip();
+        let better = [triangles_psnr, far_psnr].into_iter().flatten();
         let better = better.reduce(f64::max);
         Rivals {
             method: facts.label.clone(),
@@ -126,7 +124,9 @@ pub fn rivals(facts: &[Facts], distance: &Distance) -> Vec<Rivals> {
             flip: hybrid.picture.flip,
             ahead: better.map(|better| hybrid.picture.psnr_linear - better),
             triangles,
+            triangles_psnr,
             far,
+            far_psnr,
         }
     });
     rivals.collect()
@@ -177,4 +177,103 @@ pub fn tables(mesh: &MeshMethods, distance: &Distance) -> Vec<Table> {
         table
     };
     CRITERIA.iter().map(table).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lab::bench::Summary;
+    use crate::lab::error::{PictureError, Reference};
+    use crate::lab::methods::MethodAtDistance;
+    use crate::measure::{CoverageBias, ShareError};
+
+    fn error(rms: f64) -> PictureError {
+        PictureError {
+            rms_linear: rms,
+            psnr_linear: -20.0 * libm::log10(rms),
+            ssim: 1.0,
+            flip: rms,
+            coverage: CoverageBias {
+                all: ShareError::default(),
+                thin: ShareError::default(),
+            },
+        }
+    }
+
+    /// A method's label and family, its bytes, build time and error; times are 1, 2, 3 ms.
+    fn distance(methods: &[(&str, &'static str, u64, f64, f64)]) -> (Vec<Facts>, Distance) {
+        let facts = methods.iter().map(|(label, _, _, build_ms, _)| Facts {
+            label: (*label).to_owned(),
+            bytes: 1 << 20,
+            build_ms: *build_ms,
+        });
+        let row = |(number, method): (usize, &(&str, &'static str, u64, f64, f64))| {
+            let (label, family, read_bytes, _, rms) = *method;
+            MethodAtDistance {
+                method: label.to_owned(),
+                family,
+                outcome: Ok(Outcome {
+                    wall: Summary::of(&[number as f64 + 1.0]),
+                    thread: None,
+                    picture: error(rms),
+                    flicker: None,
+                    pop: None,
+                    counters: Vec::new(),
+                    read_bytes,
+                    remark: None,
+                }),
+            }
+        };
+        let distance = Distance {
+            size: (1, 1),
+            distance_world: 1.0,
+            noise_floor: error(0.001),
+            rows: methods.iter().enumerate().map(row).collect(),
+            reference: Reference {
+                width: 1,
+                height: 1,
+                rgba: Vec::new(),
+                shares: Vec::new(),
+            },
+            pictures: Vec::new(),
+        };
+        (facts.collect(), distance)
+    }
+
+    #[test]
+    fn the_best_within_each_limit_is_found() {
+        let (facts, distance) = distance(&[
+            ("few", "decimated", 3000, 50.0, 0.1),
+            ("many", "decimated", 30_000, 50.0, 0.01),
+            ("far", "far voxels", 9000, 5000.0, 0.05),
+        ]);
+        let answers = answers(&facts, &distance);
+        let find = |criterion: &str, limit: f64, family: &str| {
+            let is = |a: &&Answer| (a.criterion, a.limit, a.family) == (criterion, limit, family);
+            answers.iter().find(is).map(|answer| answer.method.as_str())
+        };
+        assert_eq!(find("kB of a frame", 4.0, "decimated"), Some("few"));
+        assert_eq!(find("kB of a frame", 8.0, "far voxels"), None);
+        assert_eq!(find("kB of a frame", 32.0, "decimated"), Some("many"));
+        assert_eq!(find("ms a frame", 1.0, "decimated"), Some("few"));
+        assert_eq!(find("ms a frame", 3.0, "decimated"), Some("many"));
+        assert_eq!(find("s to build", 1.0, "far voxels"), None);
+        assert_eq!(find("s to build", 10.0, "far voxels"), Some("far"));
+    }
+
+    #[test]
+    fn rivals_take_no_more_bytes() {
+        let (facts, distance) = distance(&[
+            ("few", "decimated", 3000, 0.0, 0.1),
+            ("many", "decimated", 30_000, 0.0, 0.01),
+            ("far", "far voxels", 9000, 0.0, 0.05),
+            ("both", "hybrid", 10_000, 0.0, 0.025),
+        ]);
+        let rivals = rivals(&facts, &distance);
+        assert_eq!(rivals.len(), 1);
+        assert_eq!(rivals[0].triangles.as_deref(), Some("few"));
+        assert_eq!(rivals[0].far.as_deref(), Some("far"));
+        // Half of the error.
+        assert!((rivals[0].ahead.unwrap() - 6.02).abs() < 0.01);
+    }
 }

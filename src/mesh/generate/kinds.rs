@@ -251,8 +251,7 @@ fn house(maker: &mut Maker, [x, z]: [f64; 2], size: DVec3) {
             at(size.x, size.y, dz),
             at(size.x / 2.0, ridge, dz),
         ];
-        let middle = (gable[0] + gable[1]) / 2.0;
-        maker.quad([gable[0], middle, gable[1], gable[2]], wall);
+        maker.triangle(gable, None, wall);
     }
     let storeys = (size.y / 2.6) as u32;
     let windows = (size.z / 1.8) as u32;

@@ -37,7 +37,12 @@ impl Maker {
     }
 
     /// A triangle with the normals of its corners, or its plane's.
-    fn triangle(&mut self, points: [DVec3; 3], normals: Option<[DVec3; 3]>, material: u32) {
+    pub(super) fn triangle(
+        &mut self,
+        points: [DVec3; 3],
+        normals: Option<[DVec3; 3]>,
+        material: u32,
+    ) {
         let corners = points.map(|p| self.builder.position(p.as_vec3().to_array()));
         let normals = normals.map(|normals| normals.map(|n| n.as_vec3().to_array()));
         // The positions were added just now.

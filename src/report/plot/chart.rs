@@ -218,7 +218,7 @@ fn free_place(
     // A label is a line.
     let width = letter * letters as i32;
     let sides = [6, -width - 4, -width / 2];
-    let heights = [-6, -18, 5];
+    let heights = [-6, -20, 8];
     let offsets = heights
         .iter()
         .flat_map(|&y| sides.iter().map(move |&x| (x, y)));
