@@ -135,7 +135,7 @@ fn heights_are_those_asked_for_on_a_generated_mesh() {
         ("mesh:bush", "b.ply", 4),
         ("mesh:tree,seed=x", "b.ply", 4),
         ("mesh:tree", "b.obj", 2),
-        ("mesh:tree", "wheel.ply", 2),
+        ("mesh:tree", "wheel.ply", 1),
     ] {
         let refused = shiftvox(at).args(["generate", spec, "-o", output]).assert();
         refused.code(code);
