@@ -53,6 +53,7 @@ fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
         let message = format!("{}: a mesh is written as .ply", output.display());
         return Err(CliError::usage(message).advise("end the name in .ply"));
     }
+    whole::check_free(output, args.force)?;
     let mesh = generate::generate(kind, seed);
     let bytes = generate::ply(&mesh);
     whole::write(output, &bytes, args.force)?;

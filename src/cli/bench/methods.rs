@@ -465,7 +465,11 @@ fn page(
         page.chapter(&format!("{}, {} triangles", mesh.mesh, mesh.triangles));
         // The last ones are over all distances.
         let (by_distance, over_all) = panels.split_at(mesh.distances.len());
-        pictures::plots(&mut page, over_all, "Over the distances.")?;
+        pictures::plots(
+            &mut page,
+            over_all,
+            "Of each family the method with the least error over all distances.",
+        )?;
         for (distance, panel) in mesh.distances.iter().zip(by_distance) {
             let (width, height) = distance.size;
             page.section(&format!("{width} x {height} pixels"));

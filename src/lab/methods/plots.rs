@@ -4,7 +4,8 @@ use super::measure::{Distance, MeshMethods, Outcome};
 use crate::lab::error::dominated;
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
-/// For each distance time against error; then error, time and flicker over distances.
+/// For each distance time against error; then error, time and flicker over distances, of the
+/// method of each family that has the least error.
 #[must_use]
 pub fn panels(mesh: &MeshMethods) -> Vec<Panel> {
     let mut panels: Vec<Panel> = mesh.distances.iter().map(|d| pareto(mesh, d)).collect();
@@ -82,12 +83,36 @@ fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     })
 }
 
+/// Of each family the method with the least error, all distances together.
+fn leaders(mesh: &MeshMethods) -> Vec<usize> {
+    let Some(first) = mesh.distances.first() else {
+        return Vec::new();
+    };
+    let error = |place: usize| -> f64 {
+        let outcomes = mesh.distances.iter().map(|d| &d.rows[place].outcome);
+        outcomes
+            .map(|outcome| outcome.as_ref().map_or(1.0, |outcome| outcome.picture.flip))
+            .sum()
+    };
+    let mut leaders: Vec<usize> = Vec::new();
+    for (place, row) in first.rows.iter().enumerate() {
+        let family = |at: &&mut usize| first.rows[**at].family == row.family;
+        match leaders.iter_mut().find(family) {
+            None => leaders.push(place),
+            Some(leader) if error(place) < error(*leader) => *leader = place,
+            Some(_) => {}
+        }
+    }
+    leaders
+}
+
 fn over_distances(
     mesh: &MeshMethods,
     label: &str,
     value: impl Fn(&Outcome) -> Option<f64>,
 ) -> Panel {
-    let points = mesh.facts.iter().enumerate().flat_map(|(place, facts)| {
+    let points = leaders(mesh).into_iter().flat_map(|place| {
+        let facts = &mesh.facts[place];
         let value = &value;
         mesh.distances.iter().filter_map(move |distance| {
             let outcome = distance.rows[place].outcome.as_ref().ok()?;

@@ -207,10 +207,12 @@ type Room = [i32; 4];
 const LETTER: (i32, i32) = (13, 7);
 
 /// Where a label of so many letters stands beside its point, from the point: the first place that
-/// no other label takes and no dot is in, or at least no other label; `None` where there is none.
+/// no other label takes and no dot is in, or at least no other label; `None` where there is none
+/// between the ends of the plot.
 fn free_place(
     at: (i32, i32),
     letters: usize,
+    across: &std::ops::Range<i32>,
     labels: &mut Vec<Room>,
     dots: &[(i32, i32)],
 ) -> Option<(i32, i32)> {
@@ -238,7 +240,10 @@ fn free_place(
     };
     // Over its own dot there is no place.
     let own = |&(x, y): &(i32, i32)| y == -6 && x == -width / 2;
-    let able: Vec<(i32, i32)> = offsets.filter(|o| !own(o) && is_apart(room(*o))).collect();
+    let is_within = |[l, r, ..]: Room| across.start <= l && r <= across.end;
+    let able: Vec<(i32, i32)> = offsets
+        .filter(|o| !own(o) && is_within(room(*o)) && is_apart(room(*o)))
+        .collect();
     let free = able.iter().find(|o| !has_dot(room(**o)));
     let chosen = *free.or(able.first())?;
     labels.push(room(chosen));
@@ -288,6 +293,7 @@ where
     }
     let mut colored = 0;
     let mut labels: Vec<Room> = Vec::new();
+    let (across_px, _) = drawing.plotting_area().get_pixel_range();
     let dots: Vec<(i32, i32)> = shown
         .iter()
         .filter(|(series, _)| series.dots)
@@ -322,7 +328,7 @@ where
             .filter_map(|p| {
                 let label = p.label.clone()?;
                 let at = drawing.backend_coord(&(p.x, p.y));
-                let offset = free_place(at, label.chars().count(), &mut labels, &dots)?;
+                let offset = free_place(at, label.chars().count(), &across_px, &mut labels, &dots)?;
                 let text = Text::new(label, offset, ("sans-serif", 12).into_font());
                 Some(EmptyElement::at((p.x, p.y)) + text)
             })
@@ -394,13 +400,16 @@ mod tests {
         let mut labels = Vec::new();
         let dots = [(100, 100), (120, 98)];
         // A dot is on its right: it goes left; the next one above; then each where it has room.
-        let first = free_place((100, 100), 3, &mut labels, &dots);
+        let first = free_place((100, 100), 3, &(0..900), &mut labels, &dots);
         assert_eq!(first, Some((-25, -6)));
         let places: Vec<_> = (0..8)
-            .map(|_| free_place((100, 100), 3, &mut labels, &dots))
+            .map(|_| free_place((100, 100), 3, &(0..900), &mut labels, &dots))
             .collect();
         assert!(places.iter().flatten().count() >= 4, "{places:?}");
         assert_eq!(places.last(), Some(&None));
+        // At the end of the plot there is room on the left alone.
+        let at_end = free_place((100, 300), 3, &(0..110), &mut labels, &[]);
+        assert_eq!(at_end, Some((-25, -6)));
         for (i, a) in labels.iter().enumerate() {
             for b in &labels[..i] {
                 assert!(a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2]);
