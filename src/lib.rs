@@ -110,6 +110,9 @@ pub mod drawing;
 pub mod far;
 #[cfg(feature = "mesh")]
 #[doc(hidden)]
+pub mod hybrid;
+#[cfg(feature = "mesh")]
+#[doc(hidden)]
 pub mod mesh;
 #[cfg(feature = "mesh")]
 #[doc(hidden)]

@@ -135,6 +135,7 @@ fn counters(counts: &FarCounts) -> Figures {
         ("transparent_voxels", counts.transparent_voxels),
         ("triangles", counts.triangles),
         ("drawn_twice", counts.drawn_twice),
+        ("bytes", counts.bytes),
     ];
     counters.map(|(name, count)| (name, count.into())).to_vec()
 }

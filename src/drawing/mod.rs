@@ -1,5 +1,5 @@
 //! Everything that can be drawn, behind one trait: voxel graphs, far voxels, textured voxels,
-//! triangles.
+//! triangles, the hybrid.
 //!
 //! A [`Drawable`] is data, an engine and its options. It draws a picture from a camera, and what it
 //! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and
@@ -7,6 +7,7 @@
 
 mod far;
 mod graph;
+mod hybrid;
 pub mod mesh_view;
 mod textured;
 mod triangles;
@@ -26,6 +27,7 @@ use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
 pub use far::{FarDrawing, FarStyle, resident};
 pub use graph::{GraphDrawing, GraphStyle};
+pub use hybrid::{HybridDrawing, HybridStyle};
 pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
 pub use triangles::{TrianglesDrawing, TrianglesStyle};
 

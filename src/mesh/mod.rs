@@ -7,7 +7,9 @@
 //! `spec/mesh.md`.
 
 mod builder;
+pub mod decimate;
 mod error;
+pub mod generate;
 mod load;
 mod material;
 pub mod raster;

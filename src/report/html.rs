@@ -23,25 +23,26 @@ const STYLE: &str = "\
 @media(prefers-color-scheme:dark){:root{--ink:#e6e8eb;--soft:#a0a8b2;--line:#3a4048;--page:#16181b;--band:#1f2226;--link:#7cc0f5}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--page);color:var(--ink);font:16px/1.55 system-ui,-apple-system,Segoe UI,sans-serif}
-main{max-width:1080px;margin:0 auto;padding:2rem 1.25rem 5rem}
+main{max-width:min(1800px,100%);margin:0 auto;padding:2rem 1.25rem 5rem}
 h1{font-size:1.9rem;line-height:1.2;margin:.2em 0 .4em}
 h2{font-size:1.35rem;margin:2.4em 0 .5em;padding-top:.5em;border-top:1px solid var(--line)}
 h3{font-size:1.05rem;margin:1.6em 0 .4em}
 p,li{max-width:76ch}
 a{color:var(--link)}
-nav ul{columns:3 16rem;padding-left:1.1rem;margin:.6rem 0 1rem}
+nav ul{max-width:76rem;columns:3 16rem;padding-left:1.1rem;margin:.6rem 0 1rem}
 .scroll{overflow-x:auto;margin:.6rem 0 1.2rem}
 table{border-collapse:collapse;font-size:.86rem;font-variant-numeric:tabular-nums}
 caption{caption-side:top;text-align:left;color:var(--soft);padding:.2rem 0 .4rem}
-th,td{padding:.28rem .7rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{position:sticky;top:0;background:var(--page);border-bottom:2px solid var(--line)}
+th,td{padding:.25rem .45rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
+th{white-space:normal;vertical-align:bottom;position:sticky;top:0;background:var(--page);border-bottom:2px solid var(--line)}
 td.w,th.w{text-align:left}
-td.long{white-space:normal;min-width:26rem}
+td.w{white-space:normal;min-width:7.5rem}
+td.long{min-width:20rem}
 tbody tr:nth-child(even){background:var(--band)}
 pre{background:var(--band);padding:.7rem .9rem;overflow-x:auto;font-size:.84rem;border-radius:6px}
 figure{margin:1rem 0}
 figure img{max-width:100%;height:auto;image-rendering:pixelated;border:1px solid var(--line);background:#000}
-figure svg{max-width:100%;height:auto;background:#fff}
+figure svg{max-width:min(900px,100%);height:auto;background:#fff}
 figcaption{color:var(--soft);font-size:.88rem;margin-top:.3rem}
 .row{display:flex;flex-wrap:wrap;gap:1rem}
 .row figure{flex:1 1 300px;margin:.4rem 0}

@@ -39,7 +39,7 @@ fn all_methods_in_all_forms() {
     let at = folder.path();
     fs::write(at.join("blades.obj"), blades()).unwrap();
     let command = "bench methods blades.obj --size 64 --least 16 --depth 6 --runs 1 --frames 2 \
-        --json --export-csv m.csv --export-svg m.svg --export-html m.html"
+        --budgets 4 --json --export-csv m.csv --export-svg m.svg --export-html m.html"
         .split(' ');
     let output = shiftvox(at).args(command).assert().success();
     let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
@@ -51,7 +51,7 @@ fn all_methods_in_all_forms() {
         .iter()
         .map(|f| f["label"].as_str().unwrap())
         .collect();
-    assert_eq!(labels.len(), 16);
+    assert_eq!(labels.len(), 26);
     let blended = labels.iter().filter(|label| label.contains("alpha"));
     assert_eq!(blended.count(), 3, "{labels:?}");
     let distances = mesh["distances"].as_array().unwrap();
@@ -79,6 +79,13 @@ fn all_methods_in_all_forms() {
             assert!(outcome(label)["flicker"].as_f64().unwrap() > 0.0, "{label}");
             assert!(!outcome(label)["counters"].as_object().unwrap().is_empty());
         }
+        assert!(error("decimated 1/4, 16") > error("triangles, 16"));
+        assert!((error("hybrid, 16") / error("triangles, 16") - 1.0).abs() < 0.1);
+        assert!((error("far six aa 4") / error("triangles, 16") - 1.0).abs() < 0.1);
+        let rivals = &distance["rivals"];
+        assert_eq!(rivals[2]["method"], "hybrid, 16");
+        assert!(rivals[2]["ahead"].as_f64().unwrap() > -0.5);
+        assert!(distance["answers"].as_array().unwrap().len() > 30);
         // So few triangles are one leaf, which far voxels draw as they are.
         assert!((error("far six") / error("triangles, 1") - 1.0).abs() < 0.01);
         assert_eq!(
@@ -93,7 +100,46 @@ fn all_methods_in_all_forms() {
     let html = fs::read_to_string(at.join("m.html")).unwrap();
     assert_eq!(html.matches("<img").count(), 3 * (1 + labels.len()));
     assert_eq!(html.matches("<svg").count(), 3 + 3);
+    // A distance's plot stands before its pictures, its answers between.
+    let first = |what: &str| html.find(what).unwrap();
+    assert!(first("<svg") < first("<img") && first("at equal ms") < first("<img"));
     assert!(!html.contains("http://") || !html.contains("src=\"http"));
+}
+
+#[test]
+fn heights_are_those_asked_for_on_a_generated_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let make = ["generate", "mesh:wheel,seed=3", "-o", "wheel.ply", "--json"];
+    let made = shiftvox(at).args(make).assert().success();
+    let made: Value = serde_json::from_slice(&made.get_output().stdout).unwrap();
+    let command = "bench methods wheel.ply --heights 40,22 --frames 0 --runs 1 --warmup 0 --json \
+        --only triangles,decimated,hybrid"
+        .split(' ');
+    let output = shiftvox(at).args(command).assert().success();
+    let document: Value = serde_json::from_slice(&output.get_output().stdout).unwrap();
+    let mesh = &document["meshes"][0];
+    assert_eq!(mesh["triangles"], made["triangles"]);
+    for (distance, height) in mesh["distances"].as_array().unwrap().iter().zip([40, 22]) {
+        assert_eq!(distance["size"], serde_json::json!([height, height]));
+        let bytes = |of: &str| {
+            let mut rows = distance["rows"].as_array().unwrap().iter();
+            let row = rows.find(|row| row["method"] == of).unwrap();
+            row["outcome"]["read_bytes"].as_u64().unwrap()
+        };
+        assert!(bytes("decimated 1/4, 4") * 2 < bytes("triangles 4"));
+        assert!(bytes("hybrid 16") < bytes("triangles 16"));
+        assert!(distance["rivals"][2]["ahead"].as_f64().unwrap() > -0.5);
+    }
+    for (spec, output, code) in [
+        ("mesh:bush", "b.ply", 4),
+        ("mesh:tree,seed=x", "b.ply", 4),
+        ("mesh:tree", "b.obj", 2),
+        ("mesh:tree", "wheel.ply", 1),
+    ] {
+        let refused = shiftvox(at).args(["generate", spec, "-o", output]).assert();
+        refused.code(code);
+    }
 }
 
 #[test]

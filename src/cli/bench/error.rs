@@ -33,7 +33,7 @@ pub(super) const SCENES: [&str; 5] = [
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 256;
 /// Most pixels a side: references are 512 times the work of a picture.
-const MOST_SIDE: u32 = 4096;
+pub(super) const MOST_SIDE: u32 = 4096;
 
 /// Arguments of `bench error`.
 #[derive(Debug, Args)]

@@ -1,5 +1,5 @@
-//! The methods of meshes in `bench error` and `bench flicker`: triangles, and
-//! far voxels; and how far voxels are made for an experiment.
+//! The methods of meshes in `bench error` and `bench flicker`: triangles, whole and decimated, and
+//! far voxels; and how these are made for an experiment.
 
 use std::time::Instant;
 
@@ -17,6 +17,7 @@ use crate::far::{BuildOptions, FarFile, build};
 use crate::lab::error::{Method, PixelStyle};
 use crate::lab::methods;
 use crate::mesh::Mesh;
+use crate::mesh::decimate::{Decimation, compact, decimate};
 
 /// Samples a pixel that triangles are drawn with.
 pub(super) const TRIANGLE_SAMPLES: [u32; 3] = [1, 4, 16];
@@ -28,6 +29,8 @@ enum FamilyName {
     Voxels,
     /// The triangle rasteriser at 1, 4 and 16 samples a pixel.
     Triangles,
+    /// Decimated triangles at as many samples.
+    Decimated,
     /// Far voxels, built of the mesh.
     Far,
 }
@@ -73,6 +76,10 @@ impl MeshMethodArgs {
             return Ok(None);
         }
         let (mesh, _) = scenes::read_mesh(name, args, console.progress())?;
+        let mut decimated = Vec::new();
+        if self.has(FamilyName::Decimated) {
+            decimated = decimated_of(&mesh, &BUDGETS)?;
+        }
         let mut far = None;
         if self.has(FamilyName::Far) {
             let options = BuildOptions {
@@ -81,7 +88,11 @@ impl MeshMethodArgs {
             };
             far = Some(far_of(&mesh, &options, console)?.0);
         }
-        Ok(Some(MeshScene { mesh, far }))
+        Ok(Some(MeshScene {
+            mesh,
+            decimated,
+            far,
+        }))
     }
 
     /// The methods of a mesh but for the image-order engine's.
@@ -100,10 +111,18 @@ impl MeshMethodArgs {
                 all.push(method.map_err(|e| CliError::new(Kind::Run, e))?);
             }
         }
+        for decimated in &scene.decimated {
+            for samples in TRIANGLE_SAMPLES {
+                let method = methods::decimated(&decimated.mesh, decimated.one_of, samples, style);
+                all.push(method.map_err(|e| CliError::new(Kind::Run, e))?);
+            }
+        }
         if let Some(file) = &scene.far {
             for &voxel_px in &self.far_lods {
                 let opacities = [Opacity::None, Opacity::Scalar, Opacity::Six].into_iter();
-                all.extend(opacities.map(|opacity| methods::far(file, opacity, voxel_px, style)));
+                all.extend(
+                    opacities.map(|opacity| methods::far(file, opacity, voxel_px, 0, style)),
+                );
             }
         }
         Ok(all)
@@ -123,8 +142,47 @@ pub(super) fn far_of(
     Ok((FarFile::from_bytes(&bytes)?, ms))
 }
 
-/// A scene that is a mesh, and its far voxels.
+/// Of how many triangles a decimated mesh keeps one.
+pub(super) const BUDGETS: [u32; 4] = [4, 16, 64, 256];
+
+/// A decimated mesh.
+pub(super) struct Decimated {
+    pub(super) mesh: Mesh,
+    pub(super) one_of: u32,
+    /// As a compact mesh.
+    pub(super) bytes: u64,
+    /// What making it took, milliseconds.
+    pub(super) ms: f64,
+}
+
+/// Meshes of ever fewer triangles, as far as any are left.
+pub(super) fn decimated_of(mesh: &Mesh, budgets: &[u32]) -> Result<Vec<Decimated>, CliError> {
+    let mut all = Vec::new();
+    for &one_of in budgets {
+        let started = Instant::now();
+        let how = Decimation {
+            triangles: mesh.triangles().len() / one_of as usize,
+            error: None,
+            prunes: true,
+        };
+        let left = decimate(mesh, &how).map_err(|e| CliError::new(Kind::Limit, e))?;
+        let ms = milliseconds_since(started);
+        if let Some(left) = left {
+            let (mesh, bytes) = compact(&left);
+            all.push(Decimated {
+                mesh,
+                one_of,
+                bytes,
+                ms,
+            });
+        }
+    }
+    Ok(all)
+}
+
+/// A scene that is a mesh, and what was made of it.
 pub(super) struct MeshScene {
     pub(super) mesh: Mesh,
+    decimated: Vec<Decimated>,
     far: Option<FarFile>,
 }

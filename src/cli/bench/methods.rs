@@ -6,8 +6,8 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
-use super::error::reference_size;
-use super::meshes::{TRIANGLE_SAMPLES, far_of};
+use super::error::{MOST_SIDE, reference_size};
+use super::meshes::{BUDGETS, Decimated, TRIANGLE_SAMPLES, decimated_of, far_of};
 use super::picture_export as pictures;
 use crate::cli::args::{CameraArgs, SceneArgs, Size};
 use crate::cli::console::Console;
@@ -20,10 +20,12 @@ use crate::drawing::{Erosion, milliseconds_since};
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
+use crate::hybrid::{self, Hybrid, HybridOptions};
 use crate::lab::bench::Schedule;
 use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
 use crate::lab::methods::{self as experiment, Distance, Facts, MeshMethods, MethodsPlan};
+use crate::mesh::decimate::compact;
 use crate::mesh::{Mesh, Surface, mesh_box};
 use crate::project::{Bounds, Coverage, SetupOptions, Up};
 use crate::report::html::Page;
@@ -50,6 +52,10 @@ enum Family {
     Far,
     /// Textured voxels.
     Textured,
+    /// Decimated triangles, 1, 4 and 16 samples a pixel.
+    Decimated,
+    /// Decimated triangles, and far voxels for what is thinner than a pixel.
+    Hybrid,
 }
 
 /// Arguments of `bench methods`.
@@ -65,6 +71,10 @@ pub(super) struct MethodsArgs {
     #[arg(long, value_name = "PX", default_value_t = 8,
           value_parser = clap::value_parser!(u32).range(4..=4096))]
     least: u32,
+    /// Pixels down the pictures, instead of halves of the first; the width follows
+    #[arg(long, value_name = "PX,...", value_delimiter = ',', conflicts_with_all = ["size", "least"],
+          value_parser = clap::value_parser!(u32).range(4..=i64::from(MOST_SIDE)))]
+    heights: Vec<u32>,
     /// Frames of each method before those that count
     #[arg(long, value_name = "N", default_value_t = 1,
           value_parser = clap::value_parser!(u32).range(0..=1000))]
@@ -80,6 +90,10 @@ pub(super) struct MethodsArgs {
     /// Methods to measure [default: all]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     only: Vec<Family>,
+    /// Decimated meshes keep one triangle of so many
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_values_t = BUDGETS,
+          value_parser = clap::value_parser!(u32).range(1..))]
+    budgets: Vec<u32>,
     #[command(flatten)]
     camera: CameraArgs,
     #[command(flatten)]
@@ -95,8 +109,9 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     export::check_with(&args.export, &args.export_html)?;
     pictures::check(&args.export, &args.meshes)?;
     args.camera.check().map_err(CliError::usage)?;
-    let size = reference_size(args.size, DEFAULT_SIDE)?;
-    if size.0.min(size.1) < args.least {
+    let first = args.heights.first().copied().unwrap_or(DEFAULT_SIDE);
+    let size = reference_size(args.size, first)?;
+    if args.heights.is_empty() && size.0.min(size.1) < args.least {
         return Err(CliError::usage(format!(
             "a picture of {}x{} has less than --least {} pixels",
             size.0, size.1, args.least
@@ -105,7 +120,7 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
     let context = Context::now();
     context.warn(console);
     let plan = MethodsPlan {
-        halvings: (size.0.min(size.1) / args.least).ilog2(),
+        heights: args.heights(size),
         schedule: Schedule {
             warmup: args.warmup,
             runs: args.runs,
@@ -122,6 +137,15 @@ pub(super) fn run(args: &MethodsArgs, console: &Console) -> Result<(), CliError>
 }
 
 impl MethodsArgs {
+    /// Pixels down the pictures: those asked for, or halved again and again.
+    fn heights(&self, size: (u32, u32)) -> Vec<u32> {
+        if !self.heights.is_empty() {
+            return self.heights.clone();
+        }
+        let halvings = (size.0.min(size.1) / self.least).ilog2();
+        (0..=halvings).map(|times| size.1 >> times).collect()
+    }
+
     fn takes(&self, family: Family) -> bool {
         self.only.is_empty() || self.only.contains(&family)
     }
@@ -134,6 +158,8 @@ struct Made {
     far: Option<(FarFile, f64)>,
     /// The image-order paper's grid, and those that a level is chosen from by distance.
     textured: Option<[(TexturedFile, f64); 2]>,
+    decimated: Vec<Decimated>,
+    hybrid: Option<(Hybrid, f64)>,
 }
 
 impl Made {
@@ -147,7 +173,18 @@ impl Made {
             voxels: Vec::new(),
             far: None,
             textured: None,
+            decimated: Vec::new(),
+            hybrid: None,
         };
+        if args.takes(Family::Decimated) {
+            made.decimated = decimated_of(mesh, &args.budgets)?;
+        }
+        if args.takes(Family::Hybrid) {
+            let started = Instant::now();
+            let built = hybrid::build(mesh, &HybridOptions::default(), console.progress());
+            let built = built.map_err(|e| CliError::new(Kind::Run, e))?;
+            made.hybrid = Some((built, milliseconds_since(started)));
+        }
         if args.takes(Family::Voxels) {
             // Opaque, as the other rules want them, and with opacities.
             for opacities in [false, true] {
@@ -216,11 +253,34 @@ fn methods<'m>(
 ) -> Result<Vec<Candidate<'m>>, Refused> {
     let mut all = Vec::new();
     if args.takes(Family::Triangles) {
+        let (_, bytes) = compact(mesh);
         for samples in TRIANGLE_SAMPLES {
             let method = experiment::triangles(mesh, samples, style)?;
             let label = format!("triangles, {samples}");
-            all.push(candidate(label, mesh.bytes(), 0.0, method));
+            all.push(candidate(label, bytes, 0.0, method));
         }
+    }
+    for decimated in &made.decimated {
+        let Decimated {
+            mesh,
+            one_of,
+            bytes,
+            ms,
+        } = decimated;
+        for samples in TRIANGLE_SAMPLES {
+            let method = experiment::decimated(mesh, *one_of, samples, style)?;
+            let label = format!("decimated 1/{one_of}, {samples}");
+            all.push(candidate(label, *bytes, *ms, method));
+        }
+    }
+    if let Some((hybrid, ms)) = &made.hybrid {
+        for aa_log2 in 0..3 {
+            let method = experiment::hybrid(hybrid, 1.0, aa_log2, style);
+            let label = format!("hybrid, {}", 1 << (2 * aa_log2));
+            all.push(candidate(label, hybrid.bytes(), *ms, method));
+        }
+        let method = experiment::hybrid(hybrid, 2.0, 1, style);
+        all.push(candidate("hybrid, 4, lod 2", hybrid.bytes(), *ms, method));
     }
     if let [opaque, airy] = made.voxels.as_slice() {
         let rules = [
@@ -248,12 +308,15 @@ fn methods<'m>(
     }
     if let Some((file, ms)) = &made.far {
         let opacities = [
-            ("far none", Opacity::None),
-            ("far scalar", Opacity::Scalar),
-            ("far six", Opacity::Six),
+            ("far none", Opacity::None, 0),
+            ("far scalar", Opacity::Scalar, 0),
+            ("far scalar aa 2", Opacity::Scalar, 1),
+            ("far six", Opacity::Six, 0),
+            ("far six aa 2", Opacity::Six, 1),
+            ("far six aa 4", Opacity::Six, 2),
         ];
-        for (label, opacity) in opacities {
-            let method = experiment::far(file, opacity, 1.0, style);
+        for (label, opacity, aa_log2) in opacities {
+            let method = experiment::far(file, opacity, 1.0, aa_log2, style);
             all.push(candidate(label, file.len(), *ms, method));
         }
     }
@@ -324,7 +387,17 @@ fn write(
     }
     let mut fields = context.json(schedule, &SetupOptions::default());
     fields["meshes"] = json!(meshes);
-    let tables = all(meshes).map(|(mesh, distance)| experiment::table(mesh, distance));
+    for (mesh, of) in meshes.iter().enumerate() {
+        for (distance, at) in of.distances.iter().enumerate() {
+            let field = &mut fields["meshes"][mesh]["distances"][distance];
+            field["answers"] = json!(experiment::answers(&of.facts, at));
+            field["rivals"] = json!(experiment::rivals(&of.facts, at));
+        }
+    }
+    let tables = all(meshes).flat_map(|(mesh, distance)| {
+        let whole = std::iter::once(experiment::table(mesh, distance));
+        whole.chain(experiment::answer_tables(mesh, distance))
+    });
     let results = Results {
         document: report::document("bench methods", fields),
         rows: experiment::rows(meshes),
@@ -376,8 +449,10 @@ fn page(
     page.text(
         "Triangles with 1, 4 and 16 samples a pixel; the image-order engine on the voxelised mesh \
          by its rules center and exact, and exact with 16 samples; far voxels opaque, with one \
-         opacity and with six; textured voxels, level of detail chosen by texels of a pixel or \
-         given. Each distance is twice the one before, and the picture half as large, so that the \
+         opacity and with six, at 1, 4 and 16 samples; textured voxels, level of detail chosen by \
+         texels of a pixel or given; decimated triangles, one of so many left; the hybrid of both. \
+         Read bytes: what the frame is made of, without other levels of detail; meshes as they would \
+         be stored, with indices and rounded. Each distance is twice the one before, and the picture half as large, so that the \
          mesh always fills it. ms: processor time of one thread; a frame of voxels is clear, \
          traverse, colours without light, that of other methods has the light in it. Error: \
          against the triangles with 256 samples; bias: area covered too much; wrong share: too \
@@ -388,9 +463,24 @@ fn page(
     );
     for (mesh, (_, panels)) in meshes.iter().zip(panels) {
         page.chapter(&format!("{}, {} triangles", mesh.mesh, mesh.triangles));
-        for distance in &mesh.distances {
+        // The last ones are over all distances.
+        let (by_distance, over_all) = panels.split_at(mesh.distances.len());
+        pictures::plots(
+            &mut page,
+            over_all,
+            "Of each family the method with the least error over all distances.",
+        )?;
+        for (distance, panel) in mesh.distances.iter().zip(by_distance) {
             let (width, height) = distance.size;
             page.section(&format!("{width} x {height} pixels"));
+            pictures::plots(
+                &mut page,
+                std::slice::from_ref(panel),
+                "Grey: dominated. The line joins what is not. Numbers are those of the table below.",
+            )?;
+            for table in experiment::answer_tables(mesh, distance) {
+                page.table(&table);
+            }
             let labels = std::iter::once("reference, 256 samples");
             let labels = labels.chain(mesh.facts.iter().map(|facts| facts.label.as_str()));
             let mut shown = Vec::new();
@@ -401,12 +491,6 @@ fn page(
             page.pictures(&shown);
             page.table(&experiment::table(mesh, distance));
         }
-        page.section("Plots");
-        pictures::plots(
-            &mut page,
-            panels,
-            "Grey: dominated. The line joins what is not.",
-        )?;
     }
     Ok(page)
 }

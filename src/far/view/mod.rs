@@ -20,9 +20,13 @@ mod visible;
 use glam::DVec3;
 
 pub use super::record::Opacity;
+use super::record::TRIANGLE_BYTES;
 use super::store::{FarError, FarFile};
-use crate::mesh::raster::{Light, RasterCamera, RasterError};
-use crate::mesh::{linear_to_srgb, srgb_to_linear};
+use crate::graph::Silent;
+use crate::mesh::raster::{
+    self, Light, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
+};
+use crate::mesh::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
@@ -125,6 +129,8 @@ pub struct FarCounts {
     /// Whether two triangles of different batches were equally deep somewhere
     /// and the frame was drawn again in one.
     pub drawn_twice: u64,
+    /// Bytes of what the drawn nodes have in the file.
+    pub bytes: u64,
 }
 
 /// Draws one file, frame after frame, and remembers what was visible.
@@ -159,7 +165,20 @@ impl<'f> FarViewer<'f> {
         view: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<(FarPicture, FarCounts), ViewError> {
-        self.draw_with_cut_of(view, view, options)
+        self.draw_all(view, view, None, options)
+    }
+
+    /// Draws a frame with triangles beside those of the file.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn draw_with(
+        &mut self,
+        view: &RasterCamera,
+        beside: Option<&dyn Surface>,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
+        self.draw_all(view, view, beside, options)
     }
 
     /// Draws a frame with the nodes that would be drawn from elsewhere: what of
@@ -171,6 +190,16 @@ impl<'f> FarViewer<'f> {
         &mut self,
         view: &RasterCamera,
         cut_of: &RasterCamera,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
+        self.draw_all(view, cut_of, None, options)
+    }
+
+    fn draw_all(
+        &mut self,
+        view: &RasterCamera,
+        cut_of: &RasterCamera,
+        beside: Option<&dyn Surface>,
         options: &ViewOptions,
     ) -> Result<(FarPicture, FarCounts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
@@ -190,6 +219,9 @@ impl<'f> FarViewer<'f> {
             voxel_px: options.voxel_px * f64::from(across),
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
+        if let Some(surface) = beside {
+            counts.triangles += opaque.beside(surface)?;
+        }
         let walked = if options.culling {
             visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
         } else {
@@ -206,11 +238,23 @@ impl<'f> FarViewer<'f> {
             counts.opaque_voxels = 0;
             counts.triangles = 0;
             opaque = Opaque::new(self.file, view, options)?;
+            if let Some(surface) = beside {
+                counts.triangles += opaque.beside(surface)?;
+            }
             opaque.draw(&walked.drawn, &mut counts)?;
         }
         let is_leaf = |node: &&Chosen| self.file.nodes()[node.number].is_leaf();
         counts.leaves = walked.drawn.iter().filter(is_leaf).count() as u64;
         counts.voxel_nodes = walked.drawn.len() as u64 - counts.leaves;
+        let drawn = walked
+            .drawn
+            .iter()
+            .map(|node| &self.file.nodes()[node.number]);
+        let bytes = drawn.map(|node| match node.is_leaf() {
+            true => u64::from(node.triangles) * TRIANGLE_BYTES as u64,
+            false => node.voxel_bytes(),
+        });
+        counts.bytes = bytes.sum();
         let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
         if options.culling {
             let fill = Fill::of(&opaque.depths(), view);
@@ -239,6 +283,42 @@ impl<'f> FarViewer<'f> {
             counts,
         ))
     }
+}
+
+/// Draws triangles alone as [`FarViewer::draw_with`] does beside a file.
+///
+/// # Errors
+/// See [`ViewError`].
+pub fn draw_surface(
+    view: &RasterCamera,
+    surface: Option<&dyn Surface>,
+    options: &ViewOptions,
+) -> Result<(FarPicture, FarCounts), ViewError> {
+    let across = options.samples_across;
+    let samples = Samples::new(across * across, Pattern::Regular);
+    let with = RasterOptions {
+        samples: samples.map_err(|_| ViewError::Samples(across))?,
+        light: options.light,
+        background: options.background,
+    };
+    let drawn = match surface {
+        Some(surface) => raster::draw(surface, view, &with, &Silent)?,
+        None => raster::draw(&Mesh::default(), view, &with, &Silent)?,
+    };
+    let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
+    let counts = FarCounts {
+        triangles: surface.map_or(0, |surface| surface.len() as u64),
+        ..FarCounts::default()
+    };
+    let picture = FarPicture {
+        width: drawn.width,
+        height: drawn.height,
+        node: drawn.triangle.iter().map(node).collect(),
+        rgba: drawn.rgba,
+        coverage: drawn.coverage,
+        depth: drawn.depth,
+    };
+    Ok((picture, counts))
 }
 
 /// Linear light, premultiplied, and coverage.

@@ -132,26 +132,42 @@ impl<'f> Opaque<'f> {
             file: self.file,
             numbers,
         };
+        self.rasterize(&surface, surface.numbers.clone())
+    }
+
+    /// Draws triangles that are not of the file. They are numbered after those of the file.
+    pub(super) fn beside(&mut self, surface: &dyn Surface) -> Result<u64, ViewError> {
+        let first = self.file.nodes()[0].triangles;
+        // As many as the rasteriser takes, in 32 bits.
+        let numbers = (0..surface.len() as u32).map(|number| first.saturating_add(number));
+        self.rasterize(surface, numbers.collect())
+    }
+
+    fn rasterize<S: Surface + ?Sized>(
+        &mut self,
+        surface: &S,
+        numbers: Vec<u32>,
+    ) -> Result<u64, ViewError> {
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
             background: None,
         };
-        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let picture = raster::draw(surface, &self.view, &options, &Silent)?;
         let voxels = self.file.voxels();
         for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
             if at == NO_TRIANGLE {
                 continue;
             }
-            let id = voxels + surface.numbers[at as usize];
+            let id = voxels + numbers[at as usize];
             let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
             let there = self.words[pixel].load(Ordering::Relaxed);
             let is_triangle = there as u32 >= voxels && there != EMPTY;
             self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
             self.put(pixel, word);
         }
-        let drawn = surface.numbers.len() as u64;
-        self.pictures.push((picture, surface.numbers));
+        let drawn = numbers.len() as u64;
+        self.pictures.push((picture, numbers));
         Ok(drawn)
     }
 
@@ -181,6 +197,9 @@ impl<'f> Opaque<'f> {
                     return -1;
                 } else if id < voxels {
                     self.node_of(id)
+                } else if id - voxels >= nodes[0].triangles {
+                    // Beside the file.
+                    return -1;
                 } else {
                     let is_before = |&leaf: &usize| nodes[leaf].first_triangle <= id - voxels;
                     leaves[leaves.partition_point(is_before) - 1]

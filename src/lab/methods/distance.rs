@@ -2,20 +2,19 @@
 
 use crate::project::Camera;
 
-/// The camera `2^halvings` times as far from its target, whose picture is as
-/// many times smaller: what is around the target, at the same pixels per unit of slope.
+/// The camera so much farther from its target that its picture is so many pixels high: what is
+/// around the target, at the same pixels per unit of slope.
 #[must_use]
-pub fn at_distance(camera: &Camera, halvings: u32) -> Camera {
-    let factor = f64::from(1u32 << halvings.min(31));
+pub fn at_distance(camera: &Camera, height: u32) -> Camera {
+    let share = f64::from(height) / f64::from(camera.height);
     let tangent = libm::tan(camera.fov_degrees.to_radians() / 2.0);
-    let side = |pixels: u32| (pixels >> halvings.min(31)).max(1);
-    // The height may have been rounded down.
-    let share = f64::from(side(camera.height)) / f64::from(camera.height);
+    let width = libm::round(f64::from(camera.width) * share).max(1.0);
     Camera {
-        eye: camera.target + (camera.eye - camera.target) * factor,
+        eye: camera.target + (camera.eye - camera.target) / share,
         fov_degrees: 2.0 * libm::atan(tangent * share).to_degrees(),
-        width: side(camera.width),
-        height: side(camera.height),
+        // No larger than the picture that was given, or not much.
+        width: width as u32,
+        height,
         ..*camera
     }
 }
@@ -36,10 +35,12 @@ mod tests {
             width: 256,
             height: 250,
         };
-        let far = at_distance(&camera, 3);
+        let far = at_distance(&camera, 31);
         assert_eq!((far.width, far.height), (32, 31));
-        assert_eq!(far.eye, DVec3::new(0.0, -80.0, 0.0));
+        assert!((far.eye.y + 10.0 * 250.0 / 31.0).abs() < 1e-9);
         let focal = |camera: &Camera| camera.axes().unwrap().focal_px;
         assert!((focal(&far) - focal(&camera)).abs() < 1e-9);
+        let same = at_distance(&camera, 250);
+        assert_eq!((same.width, same.eye), (256, camera.eye));
     }
 }

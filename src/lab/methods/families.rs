@@ -1,13 +1,15 @@
-//! The methods of meshes: triangles, which the others have to beat, far voxels, textured voxels.
+//! The methods of meshes: triangles, which the others have to beat, and decimated; far voxels,
+//! textured voxels, the hybrid.
 
 use crate::drawing::mesh_view::view_of;
 use crate::drawing::{
-    Erosion, FarDrawing, FarStyle, Shown, TexturedDrawing, TexturedStyle, TrianglesDrawing,
-    TrianglesStyle,
+    Erosion, FarDrawing, FarStyle, HybridDrawing, HybridStyle, Shown, TexturedDrawing,
+    TexturedStyle, TrianglesDrawing, TrianglesStyle,
 };
 use crate::far::FarFile;
 use crate::far::view::{FarViewer, Opacity};
 use crate::graph::Silent;
+use crate::hybrid::Hybrid;
 use crate::lab::error::{Examined, Method, PixelStyle, Refused, Sum, drawn, sums};
 use crate::mesh::Mesh;
 use crate::mesh::raster::{Pattern, Samples};
@@ -32,6 +34,38 @@ fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str])
 /// # Errors
 /// With another number.
 pub fn triangles(mesh: &Mesh, per_pixel: u32, style: PixelStyle) -> Result<Method<'_>, Refused> {
+    of_triangles(
+        ("triangles", "triangles".to_owned()),
+        mesh,
+        per_pixel,
+        style,
+    )
+}
+
+/// Triangles of a decimated mesh, of which one was left of so many.
+///
+/// # Errors
+/// As [`triangles`].
+pub fn decimated(
+    mesh: &Mesh,
+    one_of: u32,
+    per_pixel: u32,
+    style: PixelStyle,
+) -> Result<Method<'_>, Refused> {
+    of_triangles(
+        ("decimated", format!("decimated 1/{one_of},")),
+        mesh,
+        per_pixel,
+        style,
+    )
+}
+
+fn of_triangles<'m>(
+    (family, name): (&'static str, String),
+    mesh: &'m Mesh,
+    per_pixel: u32,
+    style: PixelStyle,
+) -> Result<Method<'m>, Refused> {
     let style = TrianglesStyle {
         samples: Samples::new(per_pixel, Pattern::Regular).map_err(Refused::because)?,
         shading: style.shading,
@@ -39,10 +73,10 @@ pub fn triangles(mesh: &Mesh, per_pixel: u32, style: PixelStyle) -> Result<Metho
     };
     let counters: &[Sum] = &[("triangles", &["triangles"]), ("samples", &["samples"])];
     Ok(Method {
-        family: "triangles",
-        name: format!("triangles {per_pixel}"),
+        family,
+        name: format!("{name} {per_pixel}"),
         settings: vec![("samples", per_pixel.to_string())],
-        kind: "triangles".to_owned(),
+        kind: family.to_owned(),
         // Which axis is up matters to fitted cameras alone.
         drawing: Box::new(move || Box::new(TrianglesDrawing::new(mesh, Up::Z, style, &Silent))),
         examine: Box::new(|shown, _| Ok(examined(shown, counters, &[]))),
@@ -60,18 +94,61 @@ pub fn opacity_in_words(opacity: Opacity) -> &'static str {
     }
 }
 
-/// Far voxels of at most so many pixels.
+/// A hybrid whose pixels are of at most so many, with `4^aa_log2` samples a pixel.
 #[must_use]
-pub fn far(file: &FarFile, opacity: Opacity, voxel_px: f64, style: PixelStyle) -> Method<'_> {
+pub fn hybrid(hybrid: &Hybrid, level_px: f64, aa_log2: u32, style: PixelStyle) -> Method<'_> {
+    let samples = 1 << (2 * aa_log2);
+    let mut name = format!("hybrid {samples}");
+    if level_px != 1.0 {
+        name += &format!(" lod {level_px}");
+    }
+    let style = HybridStyle {
+        level_px,
+        aa_log2,
+        shading: style.shading,
+        background: Background::Color(style.background),
+    };
+    let counters: &[Sum] = &[
+        ("triangles_and_voxels", &["triangles", "voxels"]),
+        ("triangles", &["triangles"]),
+        ("voxels", &["voxels"]),
+        ("bytes", &["bytes"]),
+    ];
+    Method {
+        family: "hybrid",
+        name,
+        settings: vec![
+            ("samples", samples.to_string()),
+            ("lod", level_px.to_string()),
+        ],
+        kind: "hybrid".to_owned(),
+        drawing: Box::new(move || Box::new(HybridDrawing::new(hybrid, style))),
+        examine: Box::new(|shown, _| Ok(examined(shown, counters, &["voxels"]))),
+        with_cut_of: None,
+    }
+}
+
+/// Far voxels of at most so many pixels, with `4^aa_log2` samples a pixel.
+#[must_use]
+pub fn far(
+    file: &FarFile,
+    opacity: Opacity,
+    voxel_px: f64,
+    aa_log2: u32,
+    style: PixelStyle,
+) -> Method<'_> {
     let words = opacity_in_words(opacity);
     let kind = format!("far {words}");
     let mut name = kind.clone();
     if voxel_px != 1.0 {
         name += &format!(" lod {voxel_px}");
     }
+    if aa_log2 > 0 {
+        name += &format!(" aa {}", 1 << aa_log2);
+    }
     let style = FarStyle {
         voxel_px,
-        aa_log2: 0,
+        aa_log2,
         opacity,
         shading: style.shading,
         background: Background::Color(style.background),
@@ -86,12 +163,17 @@ pub fn far(file: &FarFile, opacity: Opacity, voxel_px: f64, style: PixelStyle) -
         ("triangles", &["triangles"]),
         ("nodes_visited", &["nodes_visited"]),
         ("nodes_hidden", &["nodes_hidden"]),
+        ("bytes", &["bytes"]),
     ];
     let solid = &["opaque_voxels", "transparent_voxels"];
     Method {
         family: "far voxels",
         name,
-        settings: vec![("opacity", words.to_owned()), ("lod", voxel_px.to_string())],
+        settings: vec![
+            ("opacity", words.to_owned()),
+            ("lod", voxel_px.to_string()),
+            ("aa", (1 << aa_log2).to_string()),
+        ],
         kind,
         drawing: Box::new(move || Box::new(FarDrawing::new(file, style))),
         examine: Box::new(move |shown, _| Ok(examined(shown, counters, solid))),

@@ -15,10 +15,10 @@ use crate::mesh::Surface;
 use crate::project::{Camera, Stats};
 
 /// What is measured, and how.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct MethodsPlan {
-    /// Halvings of the picture: so many distances, and the first.
-    pub halvings: u32,
+    /// Pixels down the picture at each distance.
+    pub heights: Vec<u32>,
     /// How often each method draws.
     pub schedule: Schedule,
     /// Frames of the film in which flicker is searched for; below 2: none.
@@ -68,6 +68,8 @@ pub struct Outcome {
     /// What it counted; the first is its work.
     #[serde(serialize_with = "as_map")]
     pub counters: Stats,
+    /// Bytes that the frame is made of: those of the level of detail, where there are levels.
+    pub read_bytes: u64,
     /// Anything else.
     pub remark: Option<String>,
 }
@@ -118,9 +120,9 @@ pub fn measure(
     progress: &dyn Progress,
 ) -> Result<MeshMethods, BenchError> {
     let mut distances = Vec::new();
-    for halvings in 0..=plan.halvings {
-        let camera = at_distance(camera, halvings);
-        distances.push(at(mesh, &camera, methods, plan, progress)?);
+    for &height in &plan.heights {
+        let camera = at_distance(camera, height);
+        distances.push(at(mesh, &camera, (methods, &facts), plan, progress)?);
     }
     Ok(MeshMethods {
         mesh: name.to_owned(),
@@ -133,7 +135,7 @@ pub fn measure(
 fn at(
     mesh: &dyn Surface,
     camera: &Camera,
-    methods: &[Method<'_>],
+    (methods, facts): (&[Method<'_>], &[Facts]),
     plan: &MethodsPlan,
     progress: &dyn Progress,
 ) -> Result<Distance, BenchError> {
@@ -167,7 +169,8 @@ fn at(
     let times = race(methods, &taking_part, camera, plan.schedule, progress)?;
     let mut pictures = Vec::new();
     let mut rows = Vec::new();
-    for ((method, seen), (wall, thread)) in methods.iter().zip(shown).zip(times) {
+    let made = methods.iter().zip(facts);
+    for (((method, facts), seen), (wall, thread)) in made.zip(shown).zip(times) {
         let outcome = seen.map(|seen| {
             pictures.push(seen.rgba);
             Outcome {
@@ -176,6 +179,7 @@ fn at(
                 picture: seen.picture,
                 flicker: seen.flicker,
                 pop: seen.pop,
+                read_bytes: read_bytes(&seen.examined.counters).unwrap_or(facts.bytes),
                 counters: seen.examined.counters,
                 remark: seen.examined.remark,
             }
@@ -197,6 +201,12 @@ fn at(
         reference: films.swap_remove(0),
         pictures,
     })
+}
+
+/// Bytes of what a level of detail is drawn from.
+fn read_bytes(counters: &Stats) -> Option<u64> {
+    let found = counters.iter().find(|(name, _)| *name == "bytes");
+    found.map(|(_, bytes)| *bytes)
 }
 
 /// What was seen of a method, nothing of it timed.

@@ -1,11 +1,12 @@
 //! All methods on a mesh, side by side, from full screen to a few pixels.
 //!
-//! Each method is a [`Method`](crate::lab::error::Method): triangles, the
-//! image-order engine on the voxelised mesh, far voxels, textured voxels;
-//! another joins as one more function. They take part in [`error`](crate::lab::error)
+//! Each method is a [`Method`](crate::lab::error::Method): triangles, decimated
+//! triangles, the image-order engine on the voxelised mesh, far voxels, textured
+//! voxels, the hybrid; another joins as one more function. They take part in [`error`](crate::lab::error)
 //! and [`flicker`](crate::lab::flicker) too. The truth is the mesh's triangles with
 //! 256 samples a pixel.
 
+mod answers;
 mod distance;
 mod families;
 mod measure;
@@ -13,8 +14,9 @@ mod measure;
 mod plots;
 mod tables;
 
+pub use answers::{Answer, Rivals, answers, rivals, tables as answer_tables};
 pub use distance::at_distance;
-pub use families::{far, opacity_in_words, textured, triangles};
+pub use families::{decimated, far, hybrid, opacity_in_words, textured, triangles};
 pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
 #[cfg(feature = "cli")]
 pub use plots::panels;

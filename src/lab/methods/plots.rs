@@ -4,7 +4,8 @@ use super::measure::{Distance, MeshMethods, Outcome};
 use crate::lab::error::dominated;
 use crate::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 
-/// For each distance time against error; then error, time and flicker over distances.
+/// For each distance time against error; then error, time and flicker over distances, of the
+/// method of each family that has the least error.
 #[must_use]
 pub fn panels(mesh: &MeshMethods) -> Vec<Panel> {
     let mut panels: Vec<Panel> = mesh.distances.iter().map(|d| pareto(mesh, d)).collect();
@@ -28,22 +29,17 @@ fn axis(label: &str) -> Axis {
     }
 }
 
-/// Whether two names would be on top of each other, on axes of two to four decades.
-fn covers(a: &[f64; 2], b: &[f64; 2]) -> bool {
-    let apart = |k: usize| libm::log10(a[k] / b[k]).abs();
-    apart(0) < 0.45 && apart(1) < 0.06
-}
-
 fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
-    let done: Vec<(&str, &str, [f64; 2])> = distance
+    let done: Vec<(usize, &str, &str, [f64; 2])> = distance
         .rows
         .iter()
         .zip(&mesh.facts)
-        .filter_map(|(row, facts)| {
+        .enumerate()
+        .filter_map(|(number, (row, facts))| {
             let outcome = row.outcome.as_ref().ok()?;
             let time = outcome.thread.as_ref().unwrap_or(&outcome.wall);
             let place = [time.median_ms, outcome.picture.flip];
-            Some((facts.label.as_str(), row.family, place))
+            Some((number + 1, facts.label.as_str(), row.family, place))
         })
         .collect();
     let places: Vec<[f64; 2]> = done.iter().map(|(.., place)| *place).collect();
@@ -51,26 +47,20 @@ fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     let mut families: Vec<Series> = Vec::new();
     let mut grey = Series::dots("dominated", Vec::new());
     grey.grey = true;
-    // Those that nothing beats come first: they keep their names.
-    let mut points: Vec<_> = done.iter().zip(dominated(&places)).collect();
-    points.sort_by_key(|(_, is_dominated)| *is_dominated);
-    let mut named: Vec<[f64; 2]> = Vec::new();
-    for ((label, family, place), is_dominated) in points {
-        let [x, y] = place;
-        let is_covered = named.iter().any(|other| covers(other, place));
-        if !is_covered {
-            named.push(*place);
-        }
-        let point = Point {
-            x: *x,
-            y: *y,
-            label: (!is_covered).then(|| (*label).to_owned()),
+    for ((number, label, family, [x, y]), is_dominated) in done.iter().zip(dominated(&places)) {
+        let (x, y) = (*x, *y);
+        let named = |label: String| Point {
+            x,
+            y,
+            label: Some(label),
         };
         if is_dominated {
-            grey.points.push(point);
+            // The table has its name.
+            grey.points.push(named(number.to_string()));
             continue;
         }
-        front.push((*x, *y));
+        let point = named(format!("{number} {label}"));
+        front.push((x, y));
         match families.iter_mut().find(|series| series.name == *family) {
             Some(series) => series.points.push(point),
             None => families.push(Series::dots(*family, vec![point])),
@@ -79,8 +69,10 @@ fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut line = Series::curve("", front);
     (line.dots, line.grey) = (false, true);
-    let mut series = vec![grey, line];
+    // Names before numbers: what has no room is left out.
+    let mut series = vec![line];
     series.extend(families);
+    series.push(grey);
     let (width, height) = distance.size;
     Panel::Chart(Chart {
         title: format!("{}, {width} x {height} pixels", mesh.mesh),
@@ -91,12 +83,36 @@ fn pareto(mesh: &MeshMethods, distance: &Distance) -> Panel {
     })
 }
 
+/// Of each family the method with the least error, all distances together.
+fn leaders(mesh: &MeshMethods) -> Vec<usize> {
+    let Some(first) = mesh.distances.first() else {
+        return Vec::new();
+    };
+    let error = |place: usize| -> f64 {
+        let outcomes = mesh.distances.iter().map(|d| &d.rows[place].outcome);
+        outcomes
+            .map(|outcome| outcome.as_ref().map_or(1.0, |outcome| outcome.picture.flip))
+            .sum()
+    };
+    let mut leaders: Vec<usize> = Vec::new();
+    for (place, row) in first.rows.iter().enumerate() {
+        let family = |at: &&mut usize| first.rows[**at].family == row.family;
+        match leaders.iter_mut().find(family) {
+            None => leaders.push(place),
+            Some(leader) if error(place) < error(*leader) => *leader = place,
+            Some(_) => {}
+        }
+    }
+    leaders
+}
+
 fn over_distances(
     mesh: &MeshMethods,
     label: &str,
     value: impl Fn(&Outcome) -> Option<f64>,
 ) -> Panel {
-    let points = mesh.facts.iter().enumerate().flat_map(|(place, facts)| {
+    let points = leaders(mesh).into_iter().flat_map(|place| {
+        let facts = &mesh.facts[place];
         let value = &value;
         mesh.distances.iter().filter_map(move |distance| {
             let outcome = distance.rows[place].outcome.as_ref().ok()?;

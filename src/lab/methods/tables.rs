@@ -4,7 +4,7 @@ use super::measure::{Distance, Facts, MeshMethods, MethodAtDistance};
 use crate::report::{Cell, Table};
 
 /// Columns of every table.
-const COLUMNS: [&str; 17] = [
+const COLUMNS: [&str; 19] = [
     "mesh",
     "pixels",
     "method",
@@ -13,12 +13,14 @@ const COLUMNS: [&str; 17] = [
     "rms",
     "psnr",
     "flip",
+    "ssim",
     "bias",
     "wrong_share",
     "flicker",
     "pop",
     "work",
     "work_of",
+    "read_bytes",
     "bytes",
     "build_ms",
     "remark",
@@ -43,17 +45,25 @@ pub fn table(mesh: &MeshMethods, distance: &Distance) -> Table {
     let floor = &distance.noise_floor;
     let mut table = Table::new(
         format!(
-            "{}, {} triangles, {width} x {height} pixels; rms, flicker, pop in thousandths of \
-             white; noise floor: rms {:.2}, FLIP {:.4}",
-            mesh.mesh,
-            mesh.triangles,
-            1e3 * floor.rms_linear,
-            floor.flip
+            "{}, {} triangles, {width} x {height} pixels; psnr in decibel; flicker, pop in \
+             thousandths of white; noise floor: psnr {:.1}, FLIP {:.4}",
+            mesh.mesh, mesh.triangles, floor.psnr_linear, floor.flip
         ),
         &COLUMNS,
     );
     table.rows = cells(mesh, distance);
-    table.without(&["mesh", "pixels", "wall_ms", "psnr"])
+    for (number, row) in (1..).zip(&mut table.rows) {
+        row[2] = Cell::Text(format!("{number} {}", row[2].for_people()));
+    }
+    table.without(&[
+        "mesh",
+        "pixels",
+        "wall_ms",
+        "rms",
+        "ssim",
+        "wrong_share",
+        "work_of",
+    ])
 }
 
 fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {
@@ -83,12 +93,14 @@ fn cells<'m>(mesh: &'m MeshMethods, distance: &'m Distance) -> Vec<Vec<Cell>> {
             thousandths(outcome.picture.rms_linear),
             Cell::Number(outcome.picture.psnr_linear, 1),
             Cell::Number(outcome.picture.flip, 4),
+            Cell::Number(outcome.picture.ssim, 3),
             Cell::Number(bias.bias(), 3),
             Cell::Number(bias.relative(), 3),
             outcome.flicker.map_or(Cell::None, thousandths),
             outcome.pop.map_or(Cell::None, thousandths),
             work.into(),
             work_of.into(),
+            outcome.read_bytes.into(),
             facts.bytes.into(),
             Cell::ms(facts.build_ms),
             outcome.remark.as_deref().map_or(Cell::None, Cell::from),

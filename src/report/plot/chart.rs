@@ -200,8 +200,55 @@ fn has_place(chart: &Chart, point: &Point) -> bool {
     on(&chart.x, point.x) && on(&chart.y, point.y)
 }
 
-/// Room of a label, pixels across and down.
-const LABEL: (i32, i32) = (30, 13);
+/// What a label takes, pixels: left, right, top, bottom.
+type Room = [i32; 4];
+
+/// Height of a label, and width of one of its letters, pixels.
+const LETTER: (i32, i32) = (13, 7);
+
+/// Where a label of so many letters stands beside its point, from the point: the first place that
+/// no other label takes and no dot is in, or at least no other label; `None` where there is none
+/// between the ends of the plot.
+fn free_place(
+    at: (i32, i32),
+    letters: usize,
+    across: &std::ops::Range<i32>,
+    labels: &mut Vec<Room>,
+    dots: &[(i32, i32)],
+) -> Option<(i32, i32)> {
+    let (height, letter) = LETTER;
+    // A label is a line.
+    let width = letter * letters as i32;
+    let sides = [6, -width - 4, -width / 2];
+    let heights = [-6, -20, 8];
+    let offsets = heights
+        .iter()
+        .flat_map(|&y| sides.iter().map(move |&x| (x, y)));
+    let room = |(x, y): (i32, i32)| {
+        let (left, top) = (at.0 + x, at.1 + y);
+        [left, left + width, top, top + height]
+    };
+    let is_apart = |[l, r, t, b]: Room| {
+        let others = labels.iter();
+        others
+            .into_iter()
+            .all(|o| r <= o[0] || o[1] <= l || b <= o[2] || o[3] <= t)
+    };
+    let has_dot = |[l, r, t, b]: Room| {
+        let mut dots = dots.iter().filter(|dot| **dot != at);
+        dots.any(|&(x, y)| l - 3 < x && x < r + 3 && t - 3 < y && y < b + 3)
+    };
+    // Over its own dot there is no place.
+    let own = |&(x, y): &(i32, i32)| y == -6 && x == -width / 2;
+    let is_within = |[l, r, ..]: Room| across.start <= l && r <= across.end;
+    let able: Vec<(i32, i32)> = offsets
+        .filter(|o| !own(o) && is_within(room(*o)) && is_apart(room(*o)))
+        .collect();
+    let free = able.iter().find(|o| !has_dot(room(**o)));
+    let chosen = *free.or(able.first())?;
+    labels.push(room(chosen));
+    Some(chosen)
+}
 
 /// Draws on axes of any kind. `across`: the ends of the axis across.
 fn on_axes<X, Y>(
@@ -245,7 +292,13 @@ where
             .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY));
     }
     let mut colored = 0;
-    let mut labels: Vec<(i32, i32)> = Vec::new();
+    let mut labels: Vec<Room> = Vec::new();
+    let (across_px, _) = drawing.plotting_area().get_pixel_range();
+    let dots: Vec<(i32, i32)> = shown
+        .iter()
+        .filter(|(series, _)| series.dots)
+        .flat_map(|(_, points)| points.iter().map(|p| drawing.backend_coord(&(p.x, p.y))))
+        .collect();
     for (series, points) in shown {
         let (color, stroke) = if series.grey {
             (GREY, 1)
@@ -270,24 +323,16 @@ where
                 .map(|p| Circle::new((p.x, p.y), 3, color.filled()));
             drawing.draw_series(dots).map_err(PlotError::of)?;
         }
-        // Of labels that would lie on one another, the first.
-        let mut is_free = |p: &Point| {
-            let at = drawing.backend_coord(&(p.x, p.y));
-            let is_apart = |of: &(i32, i32)| {
-                let (x, y) = ((of.0 - at.0).abs(), (of.1 - at.1).abs());
-                x >= LABEL.0 || y >= LABEL.1
-            };
-            let is_free = labels.iter().all(is_apart);
-            labels.extend(is_free.then_some(at));
-            is_free
-        };
-        let labelled = points.iter().copied().filter(|p| p.label.is_some());
-        let labelled: Vec<&Point> = labelled.filter(|p| is_free(p)).collect();
-        let labelled = labelled.into_iter().filter_map(|p| {
-            let label = p.label.clone()?;
-            let text = Text::new(label, (6, -6), ("sans-serif", 12).into_font());
-            Some(EmptyElement::at((p.x, p.y)) + text)
-        });
+        let labelled: Vec<_> = points
+            .iter()
+            .filter_map(|p| {
+                let label = p.label.clone()?;
+                let at = drawing.backend_coord(&(p.x, p.y));
+                let offset = free_place(at, label.chars().count(), &across_px, &mut labels, &dots)?;
+                let text = Text::new(label, offset, ("sans-serif", 12).into_font());
+                Some(EmptyElement::at((p.x, p.y)) + text)
+            })
+            .collect();
         drawing.draw_series(labelled).map_err(PlotError::of)?;
     }
     let places: Vec<(i32, i32)> = shown
@@ -348,6 +393,28 @@ mod tests {
         let upper = [(100, 60), (800, 60)];
         assert_eq!(corner(&upper[..1]), is(SeriesLabelPosition::UpperRight));
         assert_eq!(corner(&upper), is(SeriesLabelPosition::LowerLeft));
+    }
+
+    #[test]
+    fn labels_move_aside_for_each_other_and_for_dots() {
+        let mut labels = Vec::new();
+        let dots = [(100, 100), (120, 98)];
+        // A dot is on its right: it goes left; the next one above; then each where it has room.
+        let first = free_place((100, 100), 3, &(0..900), &mut labels, &dots);
+        assert_eq!(first, Some((-25, -6)));
+        let places: Vec<_> = (0..8)
+            .map(|_| free_place((100, 100), 3, &(0..900), &mut labels, &dots))
+            .collect();
+        assert!(places.iter().flatten().count() >= 4, "{places:?}");
+        assert_eq!(places.last(), Some(&None));
+        // At the end of the plot there is room on the left alone.
+        let at_end = free_place((100, 300), 3, &(0..110), &mut labels, &[]);
+        assert_eq!(at_end, Some((-25, -6)));
+        for (i, a) in labels.iter().enumerate() {
+            for b in &labels[..i] {
+                assert!(a[1] <= b[0] || b[1] <= a[0] || a[3] <= b[2] || b[3] <= a[2]);
+            }
+        }
     }
 
     #[test]
