@@ -90,24 +90,24 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
     // Two layers thick, but for so little that its faces are within them.
     let slab = boxes(&[(DVec3::new(0.3, 0.3, 2.001), DVec3::new(7.7, 7.7, 3.999))]);
     let sampled = all(&slab, unit([8, 8, 6]), 100_000);
-    let (mut inner, mut opaque) = (0, 0);
+    let mut inner = 0;
     for (seen, shown) in &sampled.seen {
         let [x, y, _] = seen.place;
         // The rim's voxels are filled in part.
         if (1..7).contains(&x) && (1..7).contains(&y) {
             let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
             inner += 1;
-            opaque += u32::from(voxel.opacity_kind == OpacityKind::Opaque);
-            let opacity = six(seen);
-            assert!(
-                opacity.iter().all(|&a| a > 0.98),
-                "{:?} {opacity:?}",
-                seen.place
-            );
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                for eye in [axis, -axis] {
+                    let blends = [Blend::Cosines, Blend::Squares];
+                    let opacity = voxel.opacity_from(eye, blends, Opacity::Six);
+                    let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
+                    assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
+                }
+            }
         }
     }
     assert_eq!(inner, 2 * 6 * 6);
-    assert_eq!(opaque, inner, "all are opaque from all six");
 }
 
 #[test]
@@ -241,18 +241,20 @@ fn a_thin_floor_has_no_holes() {
     }
     let floor = builder.finish("floor").unwrap();
     let sampled = all(&floor, unit([8, 4, 8]), 100_000);
-    for (seen, shown) in &sampled.seen {
-        let [x, _, z] = seen.place;
-        if (1..7).contains(&x) && (1..7).contains(&z) {
-            // A corner of the floor in a voxel is distinguished from a thin thing.
-            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-            for mode in [Opacity::Scalar, Opacity::Six] {
-                for eye in [DVec3::Y, DVec3::NEG_Y] {
-                    let blends = [Blend::Cosines, Blend::Squares];
-                    let opacity = voxel.opacity_from(eye, blends, mode);
-                    assert!(opacity > 0.99, "{:?} {mode:?} {opacity}", seen.place);
-                }
+    // A corner of the floor in a voxel is distinguished from a thin thing: one sees through
+    // no column, from above or below.
+    let blends = [Blend::Cosines, Blend::Squares];
+    for mode in [Opacity::Scalar, Opacity::Six] {
+        for eye in [DVec3::Y, DVec3::NEG_Y] {
+            let mut through = [[1.0; 8]; 8];
+            for (seen, shown) in &sampled.seen {
+                let [x, _, z] = seen.place.map(usize::from);
+                let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
+                through[z][x] *= 1.0 - voxel.opacity_from(eye, blends, mode);
             }
+            let inner = through[1..7].iter().flat_map(|row| &row[1..7]);
+            let most = inner.copied().fold(0.0, f64::max);
+            assert!(most < 0.02, "{mode:?} {eye}: {through:?}");
         }
     }
 }
@@ -279,8 +281,10 @@ fn what_was_not_tested_is_kept_and_looks_like_its_triangles() {
     for (seen, shown) in &few.seen {
         let (normal, color) = shown.shader.seen_from(DVec3::X, Blend::Squares);
         assert!(normal.x.abs() > 0.99 && color.x > 0.9 && color.y < 0.1);
-        let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
-        assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
+        if seen.crossings == 0 {
+            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
+            assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
+        }
     }
     // With enough of them all is tested, and what is between walls is hidden.
     let enough = all(&walls, unit([16, 8, 8]), 100_000);
