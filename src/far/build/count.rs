@@ -14,7 +14,7 @@
 use glam::DVec3;
 
 use super::shot::{NOWHERE, Shot, Target};
-use crate::far::blend::{Blend, DIRECTIONS, Fit};
+use crate::far::blend::{DIRECTIONS, Fit};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
 /// A probe is stopped right behind a voxel if what stops it is so near that the surface may be the
@@ -172,7 +172,6 @@ impl Target<'_> {
         &self,
         shots: &[Shot],
         marks: &Marks<'_>,
-        shader_blend: Blend,
         shaders: &[Shader],
         seen: &mut [Seen],
     ) {
@@ -200,7 +199,7 @@ impl Target<'_> {
                 if kept != NOWHERE {
                     let shader = &shaders[kept as usize];
                     let seen = &mut seen[kept as usize];
-                    let cosine = shader.cosine(-shot.direction, shader_blend);
+                    let cosine = shader.cosine(-shot.direction, self.shader_blend);
                     let past = shot.end - leave;
                     seen.crossings += 1;
                     let side = usize::from(cosine < 0.0);

@@ -58,6 +58,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         own: 0..own,
         distance: 64.0,
         opacity_blend,
+        shader_blend: Blend::Squares,
     };
     let plane = |i: usize| {
         let [a, b, c] = corners(i);
@@ -67,7 +68,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         surface_sample(&mesh.triangle(i), point, eye, plane(i))
     };
     let rays = Rays::InAll(rays);
-    target.sample(rays, u32::MAX, 7, Blend::Squares, corners, sample_at, plane)
+    target.sample(rays, u32::MAX, 7, corners, sample_at, plane)
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {

@@ -115,6 +115,7 @@ pub fn build<S: Surface + ?Sized>(
         own: branch.first..branch.first + branch.count,
         distance: options.distance_voxels,
         opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
     };
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
@@ -158,16 +159,7 @@ pub fn build<S: Surface + ?Sized>(
             }
             let target = target(branch);
             let seed = number as u64;
-            let blend = options.shader_blend;
-            let sampled = target.sample(
-                rays[number],
-                MOST_RAYS,
-                seed,
-                blend,
-                corners,
-                sample_at,
-                plane,
-            );
+            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, sample_at, plane);
             let lists = keep(&mut node, &target.grid, &sampled, options);
             (node, pack_voxels(&lists))
         })

@@ -16,7 +16,6 @@ use super::count::{FOLLOWED, Marks, Seen, SurfaceSample, main_normal};
 use super::shader_fit::{ShaderFit, fit_shader};
 use super::shot::{NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
-use crate::far::blend::Blend;
 use crate::far::record::Shader;
 
 /// Most visibility rays from random directions at a voxel that none reached yet.
@@ -64,7 +63,6 @@ impl Target<'_> {
         rays: Rays,
         most: u32,
         seed: u64,
-        shader_blend: Blend,
         corners: impl Fn(usize) -> [DVec3; 3],
         sample_at: impl Fn(usize, DVec3, DVec3) -> SurfaceSample,
         plane: impl Fn(usize) -> DVec3,
@@ -151,7 +149,7 @@ impl Target<'_> {
             .iter()
             .map(|seen| {
                 let normal = main_normal(&seen.samples);
-                let fit = fit_shader(&seen.samples, normal, shader_blend);
+                let fit = fit_shader(&seen.samples, normal, self.shader_blend);
                 (fit, fit.shader)
             })
             .unzip();
@@ -161,7 +159,7 @@ impl Target<'_> {
             aimed: &aimed,
         };
         let probes = &shots[visibility_rays..];
-        self.count(probes, &marks, shader_blend, &shaders, &mut seen);
+        self.count(probes, &marks, &shaders, &mut seen);
         Sampled {
             seen: seen.into_iter().zip(fits).collect(),
             touched: touched.len() as u32,

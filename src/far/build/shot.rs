@@ -23,6 +23,7 @@ pub(super) struct Target<'t> {
     /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
     pub(super) opacity_blend: Blend,
+    pub(super) shader_blend: Blend,
 }
 
 /// A ray that ended, in voxels of the grid.
