@@ -13,7 +13,7 @@ use super::scene_files::Conversion;
 use super::scenes;
 use crate::budget;
 use crate::drawing::milliseconds_since;
-use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
+use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind, TRIANGLE_BYTES};
 use crate::far::store::write_to;
 use crate::far::{BuildError, BuildOptions, FarFile, build};
 use crate::mesh::Instances;
@@ -55,6 +55,16 @@ pub(super) fn convert(
         grouped(file.len()),
         build_ms / 1e3
     ));
+    if facts.rays_per_voxel() < LEAST_RAYS_PER_VOXEL {
+        console.note(format!(
+            "warning: {}: only {:.1} rays passed through a voxel that is kept, and {LEAST_RAYS_PER_VOXEL} \
+             are too few for opacities; {} voxels were not tested and are kept: ask for more \
+             --rays, or leave it out",
+            of.output.display(),
+            facts.rays_per_voxel(),
+            grouped(facts.untested)
+        ));
+    }
     if console.json {
         let mut fields = facts.describe(&file, of.input);
         fields["input"] = json!(of.input);
@@ -64,6 +74,9 @@ pub(super) fn convert(
     }
     Ok(())
 }
+
+/// Fewer rays through a voxel are warned of.
+const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 
 /// Bytes a triangle that a build takes at the least, in memory; measured are 283
 /// (`docs/far-voxels.md`).
@@ -148,6 +161,7 @@ struct Facts {
     lists: [u64; 6],
     touched: u64,
     kept: u64,
+    untested: u64,
     rays: u64,
     hits: u64,
     crossings: u64,
@@ -162,6 +176,7 @@ impl Facts {
             lists: [0; 6],
             touched: 0,
             kept: 0,
+            untested: 0,
             rays: 0,
             hits: 0,
             crossings: 0,
@@ -186,6 +201,7 @@ impl Facts {
             }
             facts.touched += u64::from(node.touched);
             facts.kept += node.voxels();
+            facts.untested += u64::from(node.untested);
             facts.rays += u64::from(node.rays);
             facts.hits += u64::from(node.hits);
             facts.crossings += u64::from(node.crossings);
@@ -194,8 +210,14 @@ impl Facts {
         facts
     }
 
+    /// Voxels that rays were aimed at and that all these were stopped before: they are dropped.
+    fn occluded(&self) -> u64 {
+        // A file is opened only if it keeps no more than triangles touch.
+        self.touched - self.kept
+    }
+
     fn dropped_share(&self) -> f64 {
-        1.0 - (self.kept as f64 / self.touched.max(1) as f64).min(1.0)
+        self.occluded() as f64 / self.touched.max(1) as f64
     }
 
     fn rays_per_voxel(&self) -> f64 {
@@ -238,7 +260,11 @@ impl Facts {
             "grid": file.grid(),
             "distance_voxels": file.distance_voxels(),
             "voxels_touched": self.touched,
+            "voxels_seen": self.kept - self.untested,
+            "voxels_untested": self.untested,
+            "voxels_occluded": self.occluded(),
             "voxels_kept": self.kept,
+            "voxels_dropped": self.occluded(),
             "voxels_dropped_share": self.dropped_share(),
             "rays": self.rays,
             "rays_hit": self.hits,
@@ -264,9 +290,12 @@ impl Facts {
             (
                 "voxels",
                 format!(
-                    "{} kept of {} that triangles touch: {} dropped, no ray hit them",
-                    grouped(self.kept),
+                    "{} that triangles touch: {} seen, {} not tested and kept, {} occluded and \
+                     dropped ({})",
                     grouped(self.touched),
+                    grouped(self.kept - self.untested),
+                    grouped(self.untested),
+                    grouped(self.occluded()),
                     percent(self.dropped_share())
                 ),
             ),
@@ -298,11 +327,13 @@ impl Facts {
             (
                 "bytes",
                 format!(
-                    "{}: voxels {}, of which opacities {}; triangles {}",
+                    "{}, {:.1} a triangle; unpacked voxels {}, of which opacities {}, and \
+                     triangles {}",
                     grouped(file.len()),
+                    file.len() as f64 / f64::from(file.nodes()[0].triangles),
                     grouped(self.voxel_bytes),
                     grouped(self.opacity_bytes),
-                    grouped(u64::from(file.nodes()[0].triangles) * 52)
+                    grouped(u64::from(file.nodes()[0].triangles) * TRIANGLE_BYTES as u64)
                 ),
             ),
         ];

@@ -50,8 +50,10 @@ pub(super) struct Fit<const N: usize> {
     right: [[f32; N]; DIRECTIONS],
 }
 
-/// Turns of the relaxation; the matrix has at most 3 of 6 entries in a row.
+/// Most turns of the relaxation.
 const TURNS: usize = 30;
+/// It ends where no value moves by more than this: finer than what is stored.
+const STEADY: f64 = 1e-4;
 
 impl<const N: usize> Fit<N> {
     pub(super) fn new() -> Self {
@@ -70,6 +72,18 @@ impl<const N: usize> Fit<N> {
             for (sum, &v) in self.right[i].iter_mut().zip(value) {
                 *sum += (weight * share_i * v) as f32;
             }
+        }
+    }
+
+    /// Adds all observations of another.
+    pub(super) fn merge(&mut self, other: &Self) {
+        let rows = self.matrix.iter_mut().zip(&other.matrix);
+        for (sum, &value) in rows.flat_map(|(row, more)| row.iter_mut().zip(more)) {
+            *sum += value;
+        }
+        let rows = self.right.iter_mut().zip(&other.right);
+        for (sum, &value) in rows.flat_map(|(row, more)| row.iter_mut().zip(more)) {
+            *sum += value;
         }
     }
 
@@ -95,6 +109,7 @@ impl<const N: usize> Fit<N> {
         let mut values = [*prior; DIRECTIONS];
         for k in 0..N {
             for _ in 0..TURNS {
+                let mut most = 0.0f64;
                 for i in 0..DIRECTIONS {
                     let mut rest = f64::from(self.right[i][k]) + pull * prior[k];
                     for j in 0..DIRECTIONS {
@@ -103,7 +118,12 @@ impl<const N: usize> Fit<N> {
                         }
                     }
                     let weight = f64::from(self.matrix[i][i]) + pull;
-                    values[i][k] = (rest / weight).clamp(low, high);
+                    let value = (rest / weight).clamp(low, high);
+                    most = most.max((value - values[i][k]).abs());
+                    values[i][k] = value;
+                }
+                if most < STEADY {
+                    break;
                 }
             }
         }

@@ -13,7 +13,7 @@ pub mod store;
 pub mod view;
 
 use blend::Blend;
-use record::{LeafTriangle, Node};
+use record::Node;
 
 pub use build::{BuildError, BuildOptions, build};
 pub use store::{FarError, FarFile};
@@ -39,8 +39,14 @@ pub struct FarData {
     pub bevels: [u8; 8],
     /// The hierarchy, parents before children, a node's first child right after it.
     pub nodes: Vec<Node>,
-    /// Records of the voxels, node by node, list by list.
-    pub voxels: Vec<u8>,
-    /// Triangles, leaf by leaf.
-    pub triangles: Vec<LeafTriangle>,
+    /// The nodes' data, node by node, as it is stored.
+    pub packed: Vec<u8>,
+}
+
+impl FarData {
+    /// Triangles of all leaves.
+    #[must_use]
+    pub fn triangles(&self) -> u64 {
+        self.nodes.first().map_or(0, |root| root.triangles.into())
+    }
 }

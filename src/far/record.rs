@@ -21,7 +21,7 @@ pub enum ShaderKind {
 pub enum OpacityKind {
     /// It hides what is behind it, from everywhere.
     Opaque,
-    /// One number.
+    /// One number for each side of its surface.
     Scalar,
     /// One number for each main direction.
     Six,
@@ -33,7 +33,7 @@ pub enum OpacityKind {
 pub enum Opacity {
     /// Every voxel is opaque: without anti-aliasing.
     None,
-    /// One number a voxel: hits over rays, of all directions.
+    /// One number for each side of a voxel's surface: hits over rays, of all directions.
     ///
     /// Rays that hit, over rays that hit or pass.
     Scalar,
@@ -54,14 +54,27 @@ pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
     (ShaderKind::Complex, OpacityKind::Six),
 ];
 
-/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 1 or 4.
-pub const RECORD_BYTES: [usize; 6] = [11, 12, 15, 33, 34, 37];
+/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 2 or 5.
+pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
 
-/// Bytes of the opacities in a voxel of each list: the scalar, and six of four bits.
-pub const OPACITY_BYTES: [usize; 6] = [0, 1, 4, 0, 1, 4];
+/// Bytes of the opacities in a voxel of each list: one number for each side, and six of four bits.
+pub const OPACITY_BYTES: [usize; 6] = [0, 2, 5, 0, 2, 5];
+
+/// Area of a unit cube's outline, mean over all directions.
+const MEAN_OUTLINE: f64 = 1.5;
 
 /// Steps of an opacity of a main direction: four bits, finer than tens of rays can measure.
 const SIX_STEPS: f64 = 15.0;
+
+/// How steeply one looks upon a surface: four equal ranges of the cosine to its normal.
+pub const STEEPNESSES: usize = 4;
+
+/// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
+#[must_use]
+pub fn steepness(cosine: f64) -> usize {
+    // 0 to 4.
+    ((cosine * STEEPNESSES as f64) as usize).min(STEEPNESSES - 1)
+}
 
 /// A voxel's colours and normals.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,6 +100,16 @@ pub enum Shader {
 }
 
 impl Shader {
+    /// How steeply one looks upon it from a direction: the cosine to its normal, negative from
+    /// behind a flat one.
+    #[must_use]
+    pub fn cosine(&self, towards_eye: DVec3, blend: Blend) -> f64 {
+        match self {
+            Self::Flat { normal, .. } => normal.dot(towards_eye),
+            Self::Complex { .. } => self.seen_from(towards_eye, blend).0.dot(towards_eye),
+        }
+    }
+
     /// Unit normal on the eye's side, and colour in linear light, as seen from a direction.
     #[must_use]
     pub fn seen_from(&self, towards_eye: DVec3, blend: Blend) -> (DVec3, DVec3) {
@@ -110,6 +133,45 @@ impl Shader {
     }
 }
 
+/// The opacity of a voxel seen from one side of its surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideOpacity {
+    /// Over all directions, 0 to 1.
+    pub scalar: f64,
+    /// The steepness from which on it is opaque, whatever its opacities are: it is part of a large
+    /// object. [`STEEPNESSES`]: none; 0: it is opaque from everywhere.
+    pub solid_from: u8,
+}
+
+impl SideOpacity {
+    /// It hides what is behind it.
+    pub const OPAQUE: Self = Self {
+        scalar: 1.0,
+        solid_from: 0,
+    };
+
+    /// A byte: opacity, and in the two high bits from which steepness on it is 1.
+    fn byte(self) -> u8 {
+        let solid = match self.solid_from {
+            0 => return u8::MAX,
+            solid => solid.min(STEEPNESSES as u8),
+        };
+        // 0 to 63, and of what is solid from 1 on at most 62: that byte is another's.
+        let steps = (self.scalar.clamp(0.0, 1.0) * SCALAR_STEPS + 0.5) as u8;
+        ((STEEPNESSES as u8 - solid) << 6 | steps).min(u8::MAX - 1)
+    }
+
+    fn of(byte: u8) -> Self {
+        if byte == u8::MAX {
+            return Self::OPAQUE;
+        }
+        Self {
+            scalar: f64::from(byte & 63) / SCALAR_STEPS,
+            solid_from: STEEPNESSES as u8 - (byte >> 6),
+        }
+    }
+}
+
 /// A voxel, decoded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Voxel {
@@ -117,10 +179,10 @@ pub struct Voxel {
     pub place: [u8; 3],
     /// Its colours and normals.
     pub shader: Shader,
-    /// Opacity seen from each main direction, 0 to 1.
+    /// Opacity seen from each main direction, 0 to 1; 1 where it is not stored.
     pub opacity: [f64; DIRECTIONS],
-    /// Opacity over all directions, 0 to 1.
-    pub scalar: f64,
+    /// Opacity over all directions from before its surface, and from behind it.
+    pub sides: [SideOpacity; 2],
     /// How they are stored.
     pub opacity_kind: OpacityKind,
 }
@@ -146,10 +208,8 @@ fn normal_of(bytes: &[u8]) -> DVec3 {
     packed.decode().unwrap_or(DVec3::Z)
 }
 
-fn opacity_byte(opacity: f64) -> u8 {
-    // 0 to 255.
-    (opacity.clamp(0.0, 1.0) * 255.0 + 0.5) as u8
-}
+/// Steps of an opacity over all directions: six bits.
+const SCALAR_STEPS: f64 = 63.0;
 
 /// Six opacities in four bits each, lowest first, rounded up or down by lot, so
 /// that the mean over many voxels is kept: thin things do not vanish. The lot
@@ -199,9 +259,9 @@ impl Voxel {
         }
         match self.opacity_kind {
             OpacityKind::Opaque => {}
-            OpacityKind::Scalar => out.push(opacity_byte(self.scalar)),
+            OpacityKind::Scalar => out.extend(self.sides.map(SideOpacity::byte)),
             OpacityKind::Six => {
-                out.push(opacity_byte(self.scalar));
+                out.extend(self.sides.map(SideOpacity::byte));
                 out.extend(six_bytes(&self.opacity, self.place));
             }
         }
@@ -227,27 +287,56 @@ impl Voxel {
                 (shader, 33)
             }
         };
-        let (scalar, opacity) = opacity_of(opacity_kind, &bytes[end..]);
+        let (sides, opacity) = opacity_of(opacity_kind, &bytes[end..]);
         Self {
             place: [bytes[0], bytes[1], bytes[2]],
             shader,
             opacity,
-            scalar,
+            sides,
             opacity_kind,
         }
+    }
+
+    /// Its opacity as seen from a direction, as it is stored or as one number.
+    #[must_use]
+    pub fn opacity_from(&self, towards_eye: DVec3, blends: [Blend; 2], mode: Opacity) -> f64 {
+        if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
+            return 1.0;
+        }
+        let cosine = self.shader.cosine(towards_eye, blends[1]);
+        let side = self.sides[usize::from(cosine < 0.0)];
+        if steepness(cosine.abs()) >= usize::from(side.solid_from) {
+            return 1.0;
+        }
+        if mode == Opacity::Scalar || self.opacity_kind == OpacityKind::Scalar {
+            // As of a mist in its cube: through its greater outlines one sees through less of it.
+            let outline = towards_eye.abs().element_sum();
+            return 1.0 - libm::pow(1.0 - side.scalar, MEAN_OUTLINE / outline);
+        }
+        let shares = blends[0].shares(towards_eye).into_iter();
+        shares.map(|(k, share)| self.opacity[k] * share).sum()
+    }
+
+    /// Whether a record of a list is of a voxel that is opaque from some directions and not from
+    /// all.
+    #[must_use]
+    pub fn is_partly_solid(list: usize, bytes: &[u8]) -> bool {
+        let end = RECORD_BYTES[list] - OPACITY_BYTES[list];
+        let is_solid = |&byte: &u8| usize::from(SideOpacity::of(byte).solid_from) < STEEPNESSES;
+        OPACITY_BYTES[list] > 0 && bytes[end..end + 2].iter().any(is_solid)
     }
 }
 
 /// The opacities at the end of a record: over all directions, and of each.
-fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> (f64, [f64; DIRECTIONS]) {
-    let scalar = |byte: u8| f64::from(byte) / 255.0;
+fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> ([SideOpacity; 2], [f64; DIRECTIONS]) {
+    let sides = || [0, 1].map(|side| SideOpacity::of(bytes[side]));
     match kind {
-        OpacityKind::Opaque => (1.0, [1.0; DIRECTIONS]),
-        OpacityKind::Scalar => (scalar(bytes[0]), [scalar(bytes[0]); DIRECTIONS]),
+        OpacityKind::Opaque => ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]),
+        OpacityKind::Scalar => (sides(), [1.0; DIRECTIONS]),
         OpacityKind::Six => {
-            let steps = |k: usize| bytes[1 + k / 2] >> (4 * (k % 2)) & 15;
+            let steps = |k: usize| bytes[2 + k / 2] >> (4 * (k % 2)) & 15;
             let six = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
-            (scalar(bytes[0]), six)
+            (sides(), six)
         }
     }
 }
@@ -299,12 +388,14 @@ pub struct Node {
     pub first_triangle: u32,
     /// How many it has: those of all leaves below.
     pub triangles: u32,
-    /// Where its voxels begin in their section, bytes.
-    pub voxels_at: u64,
+    /// Where its data begins in its section, bytes; it ends where that of the next node begins.
+    pub data_at: u64,
     /// Voxels of each of the six lists; zero in a leaf.
     pub counts: [u32; 6],
-    /// Voxels that triangles touch (a little too many): those kept and those dropped.
+    /// Voxels that triangles touch: those kept and those dropped.
     pub touched: u32,
+    /// Voxels of those kept that too few rays were aimed at to tell whether they are hidden.
+    pub untested: u32,
     /// Rays that were shot for it.
     pub rays: u32,
     /// Those that hit one of its triangles.
@@ -313,9 +404,7 @@ pub struct Node {
     pub crossings: u32,
     /// Root mean square error of the fitted shaders: 0 to about 1.
     pub error: f32,
-    /// Zero.
-    pub spare: u32,
-    /// xxh3-64 of its voxels' bytes, or, of a leaf, of its triangles'.
+    /// xxh3-64 of its data as it is stored.
     pub checksum: u64,
 }
 
@@ -335,7 +424,7 @@ impl Node {
         self.counts.iter().map(|&n| u64::from(n)).sum()
     }
 
-    /// Bytes of its voxels.
+    /// Bytes of its voxels, unpacked.
     #[must_use]
     pub fn voxel_bytes(&self) -> u64 {
         let lists = self.counts.iter().zip(RECORD_BYTES);
@@ -383,17 +472,21 @@ mod tests {
             },
         ];
         let opacities = [
-            (OpacityKind::Opaque, 1.0, [1.0; 6]),
-            (OpacityKind::Scalar, 0.2, [0.2; 6]),
-            (OpacityKind::Six, 0.6, [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
+            (OpacityKind::Opaque, [0, 0], [1.0; 6]),
+            (OpacityKind::Scalar, [3, 0], [1.0; 6]),
+            (OpacityKind::Six, [4, 1], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
         ];
         for shader in shaders {
-            for (opacity_kind, scalar, opacity) in opacities {
+            for (opacity_kind, solid, opacity) in opacities {
+                let sides = solid.map(|solid_from| SideOpacity {
+                    scalar: if solid_from == 0 { 1.0 } else { 1.0 / 3.0 },
+                    solid_from,
+                });
                 let voxel = Voxel {
                     place: [1, 2, 255],
                     shader,
                     opacity,
-                    scalar,
+                    sides,
                     opacity_kind,
                 };
                 let mut bytes = Vec::new();
@@ -411,7 +504,7 @@ mod tests {
             for place in 0..4096u32 {
                 let place = [place % 16, place / 16 % 16, place / 256].map(|c| c as u8);
                 let [a, b, c] = six_bytes(&[opacity; DIRECTIONS], place);
-                let (_, six) = opacity_of(OpacityKind::Six, &[0, a, b, c]);
+                let (_, six) = opacity_of(OpacityKind::Six, &[0, 0, a, b, c]);
                 assert!(six.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
                 sum += six.iter().sum::<f64>() / DIRECTIONS as f64;
             }

@@ -1,8 +1,9 @@
 //! What is built: the same on any threads, better with more rays, level by level.
 
+use shiftvox::far::record::Node;
 use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, ViewOptions};
-use shiftvox::far::{BuildError, BuildOptions, FarFile, build};
+use shiftvox::far::{BuildError, BuildOptions, FarData, FarFile, build};
 use shiftvox::graph::Silent;
 use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
@@ -23,14 +24,25 @@ fn a_ray_budget_is_kept_and_other_rays_are_other_bytes() {
             ..options()
         })
     };
-    let shot = |data: &shiftvox::far::FarData| data.nodes.iter().map(|n| u64::from(n.rays)).sum();
+    let shot = |data: &FarData| data.nodes.iter().map(|n| u64::from(n.rays)).sum();
     let (few, more) = (budget(20_000), budget(40_000));
     let (shot_few, shot_more): (u64, u64) = (shot(&few), shot(&more));
     assert!(shot_few <= 20_000 && shot_few > 19_000, "{shot_few}");
     assert!(shot_more <= 40_000 && shot_more > 39_000, "{shot_more}");
-    let kept = |data: &shiftvox::far::FarData| data.nodes.iter().map(|n| n.voxels()).sum::<u64>();
-    // Too few rays make it seem that much is hidden.
-    assert!(kept(&more) > kept(&few));
+    let sum = |data: &FarData, of: fn(&Node) -> u64| data.nodes.iter().map(of).sum::<u64>();
+    let untested = |data: &FarData| sum(data, |n| u64::from(n.untested));
+    let touched = |data: &FarData| sum(data, |n| u64::from(n.touched));
+    // What too few rays cannot tell is kept, not taken for hidden.
+    assert!(untested(&few) > untested(&more) && untested(&more) > 0);
+    let enough = budget(4_000_000);
+    assert_eq!((untested(&enough), touched(&enough)), (0, touched(&few)));
+    let kept = |data: &FarData| sum(data, Node::voxels);
+    assert!(
+        kept(&few) > kept(&enough),
+        "{} {}",
+        kept(&few),
+        kept(&enough)
+    );
     assert!(few.nodes.iter().all(|n| n.voxels() <= u64::from(n.touched)));
 }
 

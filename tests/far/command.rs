@@ -64,12 +64,25 @@ fn convert_info_render() {
     assert_eq!(scene["triangles"], 242);
     assert!(scene["levels"].as_array().unwrap().len() > 2);
     let share = |name: &str| scene[name].as_f64().unwrap();
+    // Nothing is counted twice, and nothing is left out.
+    let kinds = ["voxels_seen", "voxels_untested", "voxels_occluded"].map(share);
+    assert_eq!(kinds.iter().sum::<f64>(), share("voxels_touched"));
+    assert_eq!(kinds[0] + kinds[1], share("voxels_kept"));
+    assert_eq!(kinds[2], share("voxels_dropped"));
     let sum = share("opaque_share") + share("scalar_share") + share("six_share");
     assert!((sum - 1.0).abs() < 1e-9);
     assert!(share("rays") <= 20_000.0 && share("rays_per_voxel") > 1.0);
     let text = shiftvox(at).args(["info", "a.far"]).assert().success();
     let text = String::from_utf8(text.get_output().stdout.clone()).unwrap();
     assert!(text.contains("242") && text.contains("dropped"), "{text}");
+    // Too few rays are warned of.
+    for (rays, is_warned) in [("500", true), ("200000", false)] {
+        let few = ["convert", "sheet.obj", "few.far", "--force", "--rays", rays];
+        let settings = ["--leaf-triangles", "50", "--grid", "16"];
+        let output = shiftvox(at).args(few).args(settings).assert().success();
+        let stderr = String::from_utf8(output.get_output().stderr.clone()).unwrap();
+        assert_eq!(stderr.contains("are too few"), is_warned, "{stderr}");
+    }
     let mut hashes = Vec::new();
     for opacity in ["none", "scalar", "six"] {
         // So far away that its nodes are drawn as voxels.
@@ -232,7 +245,7 @@ fn a_dolly_shows_where_levels_change() {
     // From one percent nearer to the next, to half the distance.
     let film = "bench flicker sheet.obj --families far --motions dolly --depth 3";
     let film: Vec<&str> = film.split(' ').collect();
-    let settings = "--frames 70 --size 24 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
+    let settings = "--frames 70 --size 160 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
         --far-lods 1 --json"
         .split(' ');
     let output = shiftvox(at).args(film).args(settings).assert().success();

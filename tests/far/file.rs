@@ -1,11 +1,13 @@
 //! The file: it comes back, and what is damaged is refused.
 
+use shiftvox::far::record::RECORD_BYTES;
 use shiftvox::far::store::{FarError, encode};
 use shiftvox::far::{BuildOptions, FarFile};
+use shiftvox::mesh::Surface;
 use shiftvox::scene::{FileKind, detect};
 use xxhash_rust::xxh3::xxh3_64;
 
-use super::city::{far, options};
+use super::city::{city, far, options};
 
 fn small() -> Vec<u8> {
     let options = BuildOptions {
@@ -41,17 +43,45 @@ fn a_file_comes_back() {
         file.verify().unwrap();
         assert_eq!(file.nodes(), &data.nodes[..]);
         assert_eq!(file.len(), bytes.len() as u64);
-        let mut triangles = Vec::new();
-        let mut voxels = Vec::new();
+        let mut triangles = 0;
         for (number, node) in data.nodes.iter().enumerate() {
-            if node.is_leaf() {
-                triangles.extend_from_slice(file.triangles(number).unwrap());
-            }
-            voxels.extend(file.lists(number).unwrap().concat());
+            let here = file.data(number).unwrap();
+            triangles += here.triangles().len() as u64;
+            let counts = here.lists().into_iter().zip(RECORD_BYTES);
+            let counts: Vec<usize> = counts.map(|(list, bytes)| list.len() / bytes).collect();
+            assert!(
+                counts
+                    .iter()
+                    .zip(node.counts)
+                    .all(|(&a, b)| a == b as usize)
+            );
         }
-        assert_eq!(triangles, data.triangles);
-        assert_eq!(voxels, data.voxels);
+        assert_eq!(triangles, data.triangles());
     }
+}
+
+/// A leaf has the triangles of the mesh, to the last bit of single precision.
+#[test]
+fn leaves_have_all_triangles() {
+    let file = FarFile::from_bytes(&encode(&far(&options())).unwrap()).unwrap();
+    let bits = |corners: [[f32; 3]; 3]| corners.map(|corner| corner.map(f32::to_bits));
+    let mut stored: Vec<_> = (0..file.nodes().len())
+        .flat_map(|number| {
+            let data = file.data(number).unwrap();
+            let corners = data.triangles().iter().map(|t| bits(t.corners));
+            corners.collect::<Vec<_>>()
+        })
+        .collect();
+    let mesh = city();
+    let mut expected: Vec<_> = (0..Surface::len(&mesh))
+        .map(|number| {
+            let corners = Surface::corners(&mesh, number);
+            bits(corners.map(|p| (p - file.centre()).as_vec3().to_array()))
+        })
+        .collect();
+    stored.sort_unstable();
+    expected.sort_unstable();
+    assert_eq!(stored, expected);
 }
 
 #[test]
@@ -94,10 +124,10 @@ fn fields_are_checked_behind_their_checksums() {
     let bytes = small();
     assert!(!is_refused(&with_checksums(bytes.clone())));
     let mut version = bytes.clone();
-    version[8] = 4;
+    version[8] = 3;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
     assert!(
-        error.to_string().contains("version 2 to 3, not 4"),
+        error.to_string().contains("version 4 to 4, not 3"),
         "{error}"
     );
     // Every byte of the header and of the root, but for those that may have any

@@ -7,5 +7,6 @@ mod command;
 mod file;
 mod models;
 mod samples;
+mod solid;
 mod stopped;
 mod view;

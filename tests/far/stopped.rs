@@ -14,12 +14,17 @@ use shiftvox::far::FarFile;
 const TERMINATE: (&str, i32) = ("TERM", 15);
 const KILL: (&str, i32) = ("KILL", 9);
 
-/// A binary STL: a sheet of 20,000 triangles.
+/// A binary STL: a rough sheet of 20,000 triangles, of numbers that do not pack well.
 fn stl() -> Vec<u8> {
     let mut bytes = vec![0; 80];
     bytes.extend(20_000u32.to_le_bytes());
     for i in 0..20_000 {
-        let (x, y) = ((i % 100) as f32, (i / 100) as f32);
+        let noise = |salt: u32| {
+            let bits = (i as u32 * 4 + salt).wrapping_mul(0x9e37_79b1);
+            (bits ^ bits >> 15).wrapping_mul(0x85eb_ca6b) as f32 / u32::MAX as f32
+        };
+        let x = (i % 100) as f32 + 0.3 * noise(0);
+        let y = (i / 100) as f32 + 0.3 * noise(1);
         let corners = [[x, y, 0.0], [x + 1.0, y, 0.0], [x, y + 1.0, 0.0]];
         let numbers = [[0.0, 0.0, 1.0]].into_iter().chain(corners).flatten();
         bytes.extend(numbers.flat_map(|n: f32| n.to_le_bytes()));
@@ -28,7 +33,7 @@ fn stl() -> Vec<u8> {
     bytes
 }
 
-/// Triangles alone, as one leaf: built at once, 100 MB to write.
+/// Triangles alone, as one leaf: built at once, tens of megabytes to write.
 fn start(folder: &Path) -> Child {
     let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 100 --force";
     let arguments: Vec<&str> = arguments.split(' ').collect();
@@ -43,10 +48,11 @@ fn start(folder: &Path) -> Child {
 
 fn send(child: &Child, signal: (&str, i32)) {
     let process = child.id().to_string();
+    // It fails where the process has ended by then, which the caller sees.
     let status = Command::new("kill")
         .args(["-s", signal.0, &process])
         .status();
-    assert!(status.unwrap().success());
+    status.unwrap();
 }
 
 /// Files that are not finished.
@@ -106,7 +112,7 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert!(left[0].starts_with(".shiftvox-sheet.far-"), "{left:?}");
     assert!(start(at).wait().unwrap().success());
     assert_eq!(unfinished(at), [""; 0]);
-    assert!(fs::metadata(at.join("sheet.far")).unwrap().len() > 100_000_000);
+    assert!(FarFile::open(&at.join("sheet.far")).is_ok());
 }
 
 #[test]

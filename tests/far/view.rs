@@ -104,9 +104,8 @@ fn hidden_branches_cost_no_work() {
         !seen.contains(&(n as i32)) && node.is_leaf() && is_inside
     });
     let mut bytes = encode(&data).unwrap();
-    let triangle = data.nodes[unseen.unwrap()].first_triangle as usize;
-    let triangles_at = bytes.len() - 52 * data.triangles.len();
-    bytes[triangles_at + 52 * triangle] ^= 1;
+    let data_at = bytes.len() - data.packed.len();
+    bytes[data_at + data.nodes[unseen.unwrap()].data_at as usize] ^= 1;
     let damaged = FarFile::from_bytes(&bytes).unwrap();
     assert!(damaged.verify().is_err());
     let (same, _) = draw(&mut FarViewer::new(&damaged), true);

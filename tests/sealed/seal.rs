@@ -92,40 +92,34 @@ pub(crate) fn vxg(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     Some(bytes)
 }
 
-/// A `.far` file put right; nothing where its header says too much. With `place` nodes' voxels follow each other.
+/// A `.far` file put right; nothing where its header says too much. With `place` no node's data begins before that of
+/// the one before it.
 pub(crate) fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
     if bytes.len() < 2 * RECORD {
         return None;
     }
-    let [nodes, voxels, triangles] = [24, 32, 40].map(|at| number(&bytes, at, 8));
+    let [nodes, data] = [24, 32].map(|at| number(&bytes, at, 8));
     let mut end = RECORD as u64;
     let nodes = section(&mut end, nodes, RECORD as u64);
-    let voxels = section(&mut end, voxels, 1);
-    let triangles = section(&mut end, triangles, 52);
-    lay_out(
-        &mut bytes,
-        RECORD,
-        &[nodes.clone(), voxels.clone(), triangles.clone()],
-    )?;
-    let mut next = 0;
+    let data = section(&mut end, data, 1);
+    lay_out(&mut bytes, RECORD, &[nodes.clone(), data.clone()])?;
+    let length = data.end - data.start;
+    let mut before = 0;
     for node in slot(&nodes).step_by(RECORD) {
-        let mut length = 0;
-        for (list, record) in [11, 12, 15, 33, 34, 37].into_iter().enumerate() {
-            length += record * number(&bytes, node + 72 + 4 * list, 4) as usize;
-        }
         if place {
-            put(&mut bytes, node + 64, next as u64);
+            before = number(&bytes, node + 64, 8).clamp(before, length);
+            put(&mut bytes, node + 64, before);
         }
-        let begin = voxels.start as usize + number(&bytes, node + 64, 8).min(LONGEST) as usize;
-        next += length;
-        let own = if bytes[node + 43] == 0 {
-            begin..begin + length
-        } else {
-            let first = triangles.start as usize + 52 * number(&bytes, node + 56, 4) as usize;
-            first..first + 52 * number(&bytes, node + 60, 4) as usize
-        };
-        // Data beyond the file has no checksum.
-        if let Some((at, sum)) = sum(&bytes, own, node + 120) {
+    }
+    let mut last = length;
+    for node in slot(&nodes).step_by(RECORD).rev() {
+        let begin = number(&bytes, node + 64, 8);
+        let own = [begin, last].map(|at| (data.start + at.min(length)) as usize);
+        last = begin;
+        // Data beyond the file, or that ends before it begins, has no checksum.
+        if own[0] <= own[1]
+            && let Some((at, sum)) = sum(&bytes, own[0]..own[1], node + 120)
+        {
             put(&mut bytes, at, sum);
         }
     }

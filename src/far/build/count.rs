@@ -3,21 +3,27 @@
 //! A probe *hits* the voxel where it ends at one of the node's own triangles,
 //! and *passes* every kept voxel that it leaves before. A line through many
 //! voxels that are aimed at is chosen more often than one through few; its
-//! weight, one over their number, makes up for that, so that the lines through
-//! a voxel are spread evenly, whatever is around it.
+//! weight, one over the number of probes that are aimed at them, makes up for that, so that the
+//! lines through a voxel are spread evenly, whatever is around it.
 //!
-//! A large object of which a voxel has but a corner goes on behind it: such a
-//! pass is no evidence about the object, and does not count (Wagner et al. 2007, Fig. 3b).
+//! A large object of which a voxel has but a corner goes on behind it: where everything that looks
+//! upon a voxel's surface is stopped in it or right behind it, the voxel is opaque from there,
+//! whatever passed it (Wagner et al. 2007, Fig. 3b). So probes are counted by how steeply they
+//! look upon the surface.
 
 use glam::DVec3;
 
-use super::shot::{Shot, Target};
+use super::shot::{NOWHERE, Shot, Target};
 use crate::far::blend::{DIRECTIONS, Fit};
+use crate::far::record::{STEEPNESSES, Shader, steepness};
 
-/// Least cosine between normals of one object.
-const ONE_OBJECT: f64 = 0.9;
-/// How far behind a voxel the same object must go on, voxels along the ray.
-const GOES_ON: f64 = 16.0;
+/// A probe is stopped right behind a voxel if what stops it is so near that the surface may be the
+/// voxel's own: two voxels higher over the cosine, which a flat one is, and one for its curvature.
+const RIGHT_BEHIND: [f64; 2] = [2.0, 1.0];
+/// Cosines below this count as this: a grazing probe is followed no farther.
+const LEAST_COSINE: f64 = 0.25;
+/// How far behind a voxel it matters at most what a probe meets, voxels.
+pub(super) const FOLLOWED: f64 = RIGHT_BEHIND[0] / LEAST_COSINE + RIGHT_BEHIND[1];
 
 /// The surface at a ray's end.
 #[derive(Debug, Clone, Copy)]
@@ -30,21 +36,53 @@ pub(super) struct SurfaceSample {
     pub(super) color: DVec3,
 }
 
-/// A voxel that was seen.
+/// A voxel that is kept.
 #[derive(Debug)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
     pub(super) samples: Vec<SurfaceSample>,
-    pub(super) counted: Counted,
-}
-
-/// What probes found of a voxel.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Counted {
+    /// Its opacity where no ray says anything of it: from its triangles.
+    pub(super) unseen_opacity: f64,
     /// Probes that crossed it, whatever they met.
     pub(super) crossings: u32,
+    /// What they found, from before its surface and from behind, by how steeply they looked upon it.
+    pub(super) found: [[Found; STEEPNESSES]; 2],
+}
+
+impl Seen {
+    pub(super) fn new(place: [u8; 3], unseen_opacity: f64) -> Self {
+        Self {
+            place,
+            samples: Vec::new(),
+            unseen_opacity,
+            crossings: 0,
+            found: Default::default(),
+        }
+    }
+
+    /// What all probes of less than a steepness found, from one side.
+    pub(super) fn counted_below(&self, side: usize, steepness: usize) -> Counted {
+        let found = self.found[side][..steepness].iter();
+        found.fold(Counted::default(), |all, found| all.with(&found.counted))
+    }
+}
+
+/// What probes of one steepness found of a voxel.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Found {
+    pub(super) counted: Counted,
+    /// How many there were, and weights of those that were stopped in it or right behind it, and
+    /// of the others.
+    pub(super) probes: u32,
+    pub(super) stopped: f64,
+    pub(super) passed: f64,
+}
+
+/// Hits and passes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Counted {
     /// Weight of hits and passes, of their squares, and of the hits.
-    weight: f64,
+    pub(super) weight: f64,
     square_weight: f64,
     hits: f64,
     by_direction: Fit<1>,
@@ -53,7 +91,6 @@ pub(super) struct Counted {
 impl Default for Counted {
     fn default() -> Self {
         Self {
-            crossings: 0,
             weight: 0.0,
             square_weight: 0.0,
             hits: 0.0,
@@ -71,6 +108,14 @@ impl Counted {
         self.by_direction.add(shares, &[value], weight);
     }
 
+    pub(super) fn with(mut self, other: &Self) -> Self {
+        self.weight += other.weight;
+        self.square_weight += other.square_weight;
+        self.hits += other.hits;
+        self.by_direction.merge(&other.by_direction);
+        self
+    }
+
     /// Hits over hits and passes of all directions; 1 where there were none.
     pub(super) fn scalar(&self) -> f64 {
         if self.weight > 0.0 {
@@ -81,13 +126,14 @@ impl Counted {
     }
 
     /// Opacity seen from each main direction: what makes the blend fit hits and
-    /// passes best. A direction without rays is opaque.
+    /// passes best, drawn to the scalar with the weight of a ray.
     pub(super) fn six(&self) -> [f64; DIRECTIONS] {
-        let pull = 0.05 * self.weight / self.independent().max(1.0);
+        let pull = self.weight / self.independent().max(1.0);
         if self.weight <= 0.0 {
             return [1.0; DIRECTIONS];
         }
-        let six = self.by_direction.solve(&[1.0], pull, (0.0, 1.0));
+        let scalar = self.scalar();
+        let six = self.by_direction.solve(&[scalar], pull, (0.0, 1.0));
         six.map(|v| v[0])
     }
 
@@ -110,69 +156,67 @@ impl Counted {
     }
 }
 
+/// What is known of a node's touched voxels, by their numbers.
+pub(super) struct Marks<'m> {
+    /// Numbers of touched voxels, of all voxels of the grid.
+    pub(super) slot: &'m [u32],
+    /// Places among the kept voxels.
+    pub(super) kept: &'m [u32],
+    /// How many probes were aimed at each.
+    pub(super) aimed: &'m [u32],
+}
+
 impl Target<'_> {
-    /// Counts probes. `slot` has the places in `seen` of the grid's voxels,
-    /// `aims` the numbers of the voxels that probes were aimed at.
+    /// Counts probes.
     pub(super) fn count(
         &self,
         shots: &[Shot],
-        slot: &[u32],
-        aims: &[u32],
-        plane: impl Fn(usize) -> DVec3,
+        marks: &Marks<'_>,
+        shaders: &[Shader],
         seen: &mut [Seen],
     ) {
-        let axes: Vec<DVec3> = seen.iter().map(|seen| main_normal(&seen.samples)).collect();
-        let mut is_aim = vec![false; self.grid.len()];
-        for &aim in aims {
-            is_aim[aim as usize] = true;
-        }
+        let mut crossed = Vec::new();
         for shot in shots {
-            self.count_one(shot, slot, &is_aim, &axes, &plane, seen);
-        }
-    }
-
-    fn count_one(
-        &self,
-        shot: &Shot,
-        slot: &[u32],
-        is_aim: &[bool],
-        axes: &[DVec3],
-        plane: &impl Fn(usize) -> DVec3,
-        seen: &mut [Seen],
-    ) {
-        let end_place = self.end_of(shot);
-        let shares = self.opacity_blend.shares(-shot.direction);
-        let line = self.grid.along(shot.from, shot.direction);
-        let aims = line
-            .clone()
-            .filter(|crossing| is_aim[self.grid.number(crossing.place)]);
-        let weight = 1.0 / aims.count().max(1) as f64;
-        let behind = (shot.triangle != usize::MAX).then(|| plane(shot.triangle));
-        for crossing in line {
-            let number = slot[self.grid.number(crossing.place)] as usize;
-            let is_end = Some(crossing.place) == end_place;
-            if !is_end && crossing.leave > shot.end {
-                // Ends at a triangle of another node.
-                return;
-            }
-            if let Some(seen) = seen.get_mut(number) {
-                seen.counted.crossings += 1;
-                let goes_on = !is_end
-                    && shot.end - crossing.leave < GOES_ON
-                    && behind.is_some_and(|normal| {
-                        let place = DVec3::from_array(crossing.place.map(f64::from));
-                        let middle = place + DVec3::splat(0.5);
-                        let end = shot.from + shot.direction * shot.end;
-                        let reach = 0.5 * normal.abs().element_sum();
-                        normal.dot(axes[number]).abs() > ONE_OBJECT
-                            && (middle - end).dot(normal).abs() <= reach
-                    });
-                if !goes_on {
-                    seen.counted.add(&shares, is_end, weight);
+            // One way through the grid: what is crossed of what is kept.
+            crossed.clear();
+            let mut aims = 0u32;
+            self.grid.along(shot.from, shot.direction, |number, leave| {
+                let touched = marks.slot[number];
+                if touched != NOWHERE {
+                    aims += marks.aimed[touched as usize];
+                    crossed.push((touched, leave));
                 }
-            }
-            if is_end {
-                return;
+            });
+            let weight = 1.0 / f64::from(aims.max(1));
+            let shares = self.opacity_blend.shares(-shot.direction);
+            for &(touched, leave) in &crossed {
+                let is_end = touched == shot.touched;
+                if !is_end && leave > shot.end {
+                    // Ends at a triangle of another node.
+                    break;
+                }
+                let kept = marks.kept[touched as usize];
+                if kept != NOWHERE {
+                    let shader = &shaders[kept as usize];
+                    let seen = &mut seen[kept as usize];
+                    let cosine = shader.cosine(-shot.direction, self.shader_blend);
+                    let past = shot.end - leave;
+                    seen.crossings += 1;
+                    let side = usize::from(cosine < 0.0);
+                    let cosine = cosine.abs();
+                    let found = &mut seen.found[side][steepness(cosine)];
+                    found.probes += 1;
+                    let reach = RIGHT_BEHIND[0] / cosine.max(LEAST_COSINE) + RIGHT_BEHIND[1];
+                    if is_end || past < reach {
+                        found.stopped += weight;
+                    } else {
+                        found.passed += weight;
+                    }
+                    found.counted.add(&shares, is_end, weight);
+                }
+                if is_end {
+                    break;
+                }
             }
         }
     }

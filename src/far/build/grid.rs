@@ -88,89 +88,61 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// The voxels along a ray, with the distances (in voxels) at which it enters and leaves each.
-    pub(super) fn along(&self, from: DVec3, direction: DVec3) -> GridTraversal {
+    /// Calls back with the number of each voxel along a ray, in order, and the distance (in
+    /// voxels) at which the ray leaves it.
+    pub(super) fn along(&self, from: DVec3, direction: DVec3, mut visit: impl FnMut(usize, f64)) {
         let cells = DVec3::from_array(self.cells.map(f64::from));
+        let per_cell = direction.recip();
         let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
         for k in 0..3 {
             if direction[k] == 0.0 {
                 if from[k] < 0.0 || from[k] >= cells[k] {
-                    leave = f64::NEG_INFINITY;
+                    return;
                 }
                 continue;
             }
-            let (a, b) = (-from[k] / direction[k], (cells[k] - from[k]) / direction[k]);
+            let (a, b) = (-from[k] * per_cell[k], (cells[k] - from[k]) * per_cell[k]);
             enter = enter.max(a.min(b));
             leave = leave.min(a.max(b));
         }
+        if enter >= leave {
+            return;
+        }
         let start = from + direction * enter;
-        let at =
-            [0, 1, 2].map(|k| (start[k].floor() as i32).clamp(0, i32::from(self.cells[k]) - 1));
-        let next = [0, 1, 2].map(|k| {
-            if direction[k] == 0.0 {
-                return f64::INFINITY;
+        let [nx, ny, _] = self.cells.map(isize::from);
+        let strides = [1, nx, nx * ny];
+        let (mut number, mut left, mut step) = (0isize, [0u32; 3], [0isize; 3]);
+        let mut next = [f64::INFINITY; 3];
+        for k in 0..3 {
+            let last = i32::from(self.cells[k]) - 1;
+            let at = (start[k].floor() as i32).clamp(0, last);
+            number += at as isize * strides[k];
+            let is_forward = direction[k] > 0.0;
+            left[k] = if is_forward { last - at } else { at } as u32;
+            step[k] = if is_forward { strides[k] } else { -strides[k] };
+            if direction[k] != 0.0 {
+                next[k] = (f64::from(at + i32::from(is_forward)) - from[k]) * per_cell[k];
             }
-            let plane = f64::from(at[k] + i32::from(direction[k] > 0.0));
-            (plane - from[k]) / direction[k]
-        });
-        GridTraversal {
-            cells: self.cells.map(i32::from),
-            at,
-            next,
-            per_cell: [0, 1, 2].map(|k| (1.0 / direction[k]).abs()),
-            forward: [0, 1, 2].map(|k| if direction[k] > 0.0 { 1 } else { -1 }),
-            enter,
-            is_done: enter >= leave,
         }
-    }
-}
-
-/// Voxels along a ray, one after the other.
-#[derive(Debug, Clone)]
-pub(super) struct GridTraversal {
-    cells: [i32; 3],
-    at: [i32; 3],
-    next: [f64; 3],
-    per_cell: [f64; 3],
-    forward: [i32; 3],
-    enter: f64,
-    is_done: bool,
-}
-
-/// A voxel that a ray crosses.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Crossing {
-    pub(super) place: [u8; 3],
-    /// Where the ray enters and leaves it, voxels along the ray.
-    pub(super) enter: f64,
-    pub(super) leave: f64,
-}
-
-impl Iterator for GridTraversal {
-    type Item = Crossing;
-
-    fn next(&mut self) -> Option<Crossing> {
-        if self.is_done {
-            return None;
-        }
-        let axis = (0..3).fold(0, |least, k| {
-            if self.next[k] < self.next[least] {
-                k
+        let per_cell = per_cell.abs().to_array();
+        loop {
+            let axis = if next[0] <= next[1] && next[0] <= next[2] {
+                0
+            } else if next[1] <= next[2] {
+                1
             } else {
-                least
+                2
+            };
+            enter = enter.max(next[axis]);
+            // Not negative: it is within the cells.
+            visit(number as usize, enter);
+            if left[axis] == 0 {
+                return;
             }
-        });
-        let crossing = Crossing {
-            // Within the cells, so within a byte.
-            place: self.at.map(|c| c as u8),
-            enter: self.enter,
-            leave: self.next[axis].max(self.enter),
-        };
-        self.enter = crossing.leave;
-        self.at[axis] += self.forward[axis];
-        self.next[axis] += self.per_cell[axis];
-        self.is_done = !(0..self.cells[axis]).contains(&self.at[axis]);
-        Some(crossing)
+            left[axis] -= 1;
+            number += step[axis];
+            next[axis] += per_cell[axis];
+        }
     }
 }
 
@@ -214,10 +186,15 @@ mod tests {
             cells: [4, 4, 4],
         };
         let direction = DVec3::new(1.0, 0.5, 0.0).normalize();
-        let walk: Vec<Crossing> = grid
-            .along(DVec3::new(-2.0, -0.75, 0.5), direction)
-            .collect();
-        let places: Vec<[u8; 3]> = walk.iter().map(|c| c.place).collect();
+        let walk = |from: DVec3| {
+            let mut walk = Vec::new();
+            grid.along(from, direction, |number, leave| {
+                walk.push((grid.place(number), leave));
+            });
+            walk
+        };
+        let from = DVec3::new(-2.0, -0.75, 0.5);
+        let (places, leaves): (Vec<[u8; 3]>, Vec<f64>) = walk(from).into_iter().unzip();
         let expected = [
             [0, 0, 0],
             [1, 0, 0],
@@ -227,7 +204,12 @@ mod tests {
             [3, 2, 0],
         ];
         assert_eq!(places, expected);
-        assert!(walk.windows(2).all(|w| w[0].leave == w[1].enter));
-        assert_eq!(grid.along(DVec3::splat(9.0), DVec3::X).count(), 0);
+        // It leaves the first at y = 0.25 + 0.25, and so on: where it enters the next.
+        for (leave, place) in leaves.iter().zip(&places[1..]) {
+            let at = from + direction * *leave;
+            let low = DVec3::from_array(place.map(f64::from));
+            assert!((at - low).min_element() > -1e-9 && (at - low).max_element() < 1.0 + 1e-9);
+        }
+        assert_eq!(walk(DVec3::splat(9.0)), []);
     }
 }

@@ -9,8 +9,8 @@ use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
 use super::shot::Target;
 use super::{shader_fit, surface_sample};
 use crate::far::blend::Blend;
-use crate::far::record::{Opacity, OpacityKind};
-use crate::mesh::{Mesh, MeshBuilder, Surface};
+use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
+use crate::mesh::{Material, Mesh, MeshBuilder, Surface};
 
 /// A mesh of boxes.
 fn boxes(boxes: &[(DVec3, DVec3)]) -> Mesh {
@@ -58,6 +58,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         own: 0..own,
         distance: 64.0,
         opacity_blend,
+        shader_blend: Blend::Squares,
     };
     let plane = |i: usize| {
         let [a, b, c] = corners(i);
@@ -66,7 +67,8 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
     let sample_at = |i: usize, point: DVec3, eye: DVec3| {
         surface_sample(&mesh.triangle(i), point, eye, plane(i))
     };
-    target.sample(Rays::InAll(rays), u32::MAX, 7, corners, sample_at, plane)
+    let rays = Rays::InAll(rays);
+    target.sample(rays, u32::MAX, 7, corners, sample_at, plane)
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
@@ -74,11 +76,14 @@ fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {
 }
 
 fn at(sampled: &Sampled, place: [u8; 3]) -> &Seen {
-    sampled
-        .seen
-        .iter()
-        .find(|seen| seen.place == place)
-        .unwrap()
+    let mut seen = sampled.seen.iter().map(|(seen, _)| seen);
+    seen.find(|seen| seen.place == place).unwrap()
+}
+
+/// Six opacities, of all that was counted.
+fn six(seen: &Seen) -> [f64; 6] {
+    let [front, back] = [0, 1].map(|side| seen.counted_below(side, STEEPNESSES));
+    front.with(&back).six()
 }
 
 #[test]
@@ -86,31 +91,31 @@ fn an_opaque_slab_is_opaque_from_six_directions() {
     // Two layers thick, but for so little that its faces are within them.
     let slab = boxes(&[(DVec3::new(0.3, 0.3, 2.001), DVec3::new(7.7, 7.7, 3.999))]);
     let sampled = all(&slab, unit([8, 8, 6]), 100_000);
-    let (mut inner, mut opaque) = (0, 0);
-    for seen in &sampled.seen {
+    let mut inner = 0;
+    for (seen, shown) in &sampled.seen {
         let [x, y, _] = seen.place;
         // The rim's voxels are filled in part.
         if (1..7).contains(&x) && (1..7).contains(&y) {
-            let fitted = shader_fit::fit(seen, Blend::Squares, Opacity::Six);
+            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
             inner += 1;
-            opaque += u32::from(fitted.voxel.opacity_kind == OpacityKind::Opaque);
-            let opacity = seen.counted.six();
-            assert!(
-                opacity.iter().all(|&a| a > 0.98),
-                "{:?} {opacity:?}",
-                seen.place
-            );
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z] {
+                for eye in [axis, -axis] {
+                    let blends = [Blend::Cosines, Blend::Squares];
+                    let opacity = voxel.opacity_from(eye, blends, Opacity::Six);
+                    let least = if eye.z == 0.0 { 0.9 } else { 1.0 };
+                    assert!(opacity >= least, "{:?} {eye} {opacity}", seen.place);
+                }
+            }
         }
     }
     assert_eq!(inner, 2 * 6 * 6);
-    assert_eq!(opaque, inner, "all are opaque from all six");
 }
 
 #[test]
 fn a_voxel_whose_lower_half_is_solid() {
     let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
     let sampled = all(&half, unit([1, 1, 1]), 60_000);
-    let opacity = at(&sampled, [0, 0, 0]).counted.six();
+    let opacity = six(at(&sampled, [0, 0, 0]));
     for (k, expected) in [0.5, 0.5, 1.0, 1.0, 0.5, 0.5].into_iter().enumerate() {
         assert!((opacity[k] - expected).abs() < 0.02, "{k}: {opacity:?}");
     }
@@ -120,9 +125,7 @@ fn a_voxel_whose_lower_half_is_solid() {
 fn cosines_blend_a_box_exactly_and_their_squares_do_not() {
     let half = boxes(&[(DVec3::ZERO, DVec3::new(1.0, 0.5, 1.0))]);
     let error = |blend: Blend| {
-        let opacity = at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3])
-            .counted
-            .six();
+        let opacity = six(at(&sampled(&half, 12, unit([1; 3]), 60_000, blend), [0; 3]));
         let mut worst = 0.0f64;
         for degrees in 0..=90 {
             let (sin, cos) = libm::sincos(f64::from(degrees).to_radians());
@@ -157,8 +160,7 @@ fn a_fan_of_wires_has_analytic_coverage() {
         let width = 0.1 + 0.1 * f64::from(i);
         let rows: Vec<&Seen> = (2..6).map(|z| at(&sampled, [2 * i, 0, z])).collect();
         for k in [2, 3] {
-            let mean =
-                rows.iter().map(|seen| seen.counted.six()[k]).sum::<f64>() / rows.len() as f64;
+            let mean = rows.iter().map(|seen| six(seen)[k]).sum::<f64>() / rows.len() as f64;
             assert!(
                 (mean - width).abs() < 0.05,
                 "width {width}, direction {k}: {mean}"
@@ -191,7 +193,7 @@ fn what_is_enclosed_is_dropped_and_what_hides_it_need_not_be_the_nodes_own() {
     assert!(
         both.seen
             .iter()
-            .all(|seen| seen.place.iter().any(|&c| c == 0 || c == 7))
+            .all(|(seen, _)| seen.place.iter().any(|&c| c == 0 || c == 7))
     );
 }
 
@@ -240,16 +242,70 @@ fn a_thin_floor_has_no_holes() {
     }
     let floor = builder.finish("floor").unwrap();
     let sampled = all(&floor, unit([8, 4, 8]), 100_000);
-    for seen in &sampled.seen {
-        let [x, _, z] = seen.place;
-        if (1..7).contains(&x) && (1..7).contains(&z) {
-            let opacity = seen.counted.six();
-            // A corner of the floor in a voxel is distinguished from a thin thing.
-            assert!(
-                opacity[2] > 0.9 && opacity[3] > 0.9,
-                "{:?} {opacity:?}",
-                seen.place
-            );
+    // A corner of the floor in a voxel is distinguished from a thin thing: one sees through
+    // no column, from above or below.
+    let blends = [Blend::Cosines, Blend::Squares];
+    for mode in [Opacity::Scalar, Opacity::Six] {
+        for eye in [DVec3::Y, DVec3::NEG_Y] {
+            let mut through = [[1.0; 8]; 8];
+            for (seen, shown) in &sampled.seen {
+                let [x, _, z] = seen.place.map(usize::from);
+                let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
+                through[z][x] *= 1.0 - voxel.opacity_from(eye, blends, mode);
+            }
+            let inner = through[1..7].iter().flat_map(|row| &row[1..7]);
+            let most = inner.copied().fold(0.0, f64::max);
+            assert!(most < 0.02, "{mode:?} {eye}: {through:?}");
         }
     }
+}
+
+#[test]
+fn what_was_not_tested_is_kept_and_looks_like_its_triangles() {
+    // Red walls in a row; one ray for eight voxels of them.
+    let mut builder = MeshBuilder::new();
+    let red = builder.material(Material::of_srgb("red".to_owned(), [255, 0, 0]));
+    for i in 0..16u8 {
+        let x = f32::from(i) + 0.5;
+        let corners = [[x, 0.0, 0.0], [x, 8.0, 0.0], [x, 8.0, 8.0], [x, 0.0, 8.0]];
+        let corners = corners.map(|p| builder.position(p));
+        for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+            let triangle = [corners[a], corners[b], corners[c]];
+            builder.triangle(triangle, None, red).unwrap();
+        }
+    }
+    let walls = builder.finish("walls").unwrap();
+    let few = all(&walls, unit([16, 8, 8]), 128);
+    assert_eq!((few.touched, few.rays), (1024, 128));
+    assert_eq!(few.seen.len(), 1024, "none is known to be hidden");
+    assert!(few.untested > 512, "{}", few.untested);
+    for (seen, shown) in &few.seen {
+        let (normal, color) = shown.shader.seen_from(DVec3::X, Blend::Squares);
+        assert!(normal.x.abs() > 0.99 && color.x > 0.9 && color.y < 0.1);
+        if seen.crossings == 0 {
+            let voxel = shader_fit::fit(seen, shown.shader, Opacity::Six);
+            assert_eq!(voxel.opacity_kind, OpacityKind::Opaque, "a wall");
+        }
+    }
+    // With enough of them all is tested, and what is between walls is hidden.
+    let enough = all(&walls, unit([16, 8, 8]), 100_000);
+    assert_eq!((enough.touched, enough.untested), (1024, 0));
+}
+
+#[test]
+fn no_more_is_kept_than_is_touched() {
+    // Walls exactly between voxels, of which rays see the end on either side.
+    let walls: Vec<(DVec3, DVec3)> = (1..4)
+        .map(|i| {
+            let x = f64::from(2 * i);
+            (DVec3::new(x, 1.0, 1.0), DVec3::new(x + 1.0, 7.0, 7.0))
+        })
+        .collect();
+    let sampled = all(&boxes(&walls), unit([8; 3]), 200_000);
+    assert!(
+        sampled.seen.len() <= sampled.touched as usize,
+        "{} of {}",
+        sampled.seen.len(),
+        sampled.touched
+    );
 }

@@ -24,7 +24,8 @@ pub use grid::Grid;
 
 use super::FarData;
 use super::blend::Blend;
-use super::record::{LeafTriangle, Node, Opacity, triangle_bytes};
+use super::record::{LeafTriangle, Node, Opacity};
+use super::store::pack::{pack_triangles, pack_voxels};
 use crate::graph::{PackedNormal, Progress, place};
 use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
 use count::SurfaceSample;
@@ -114,6 +115,7 @@ pub fn build<S: Surface + ?Sized>(
         own: branch.first..branch.first + branch.count,
         distance: options.distance_voxels,
         opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
     };
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
@@ -152,18 +154,18 @@ pub fn build<S: Surface + ?Sized>(
             if branch.children.is_none() {
                 // Every triangle is in one leaf: progress is counted by these.
                 progress.advance(branch.count as u64);
-                return (node, Vec::new());
+                let own = &order[branch.first..branch.first + branch.count];
+                return (node, pack_triangles(&leaf_triangles(surface, own, centre)));
             }
             let target = target(branch);
             let seed = number as u64;
             let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, sample_at, plane);
-            let voxels = keep(&mut node, &target.grid, &sampled, options);
-            (node, voxels)
+            let lists = keep(&mut node, &target.grid, &sampled, options);
+            (node, pack_voxels(&lists))
         })
         .collect();
     progress.end();
-    let triangles = leaf_triangles(surface, &order, centre);
-    let mut data = assemble(built, triangles, centre, options)?;
+    let mut data = assemble(built, centre, options)?;
     data.bevels = mesh_box(surface, data.y_up).bevels;
     Ok(data)
 }
@@ -265,27 +267,28 @@ fn keep(
     grid: &Grid,
     sampled: &sample::Sampled,
     options: &BuildOptions,
-) -> Vec<u8> {
+) -> [Vec<u8>; 6] {
     let mut lists: [Vec<u8>; 6] = Default::default();
     let mut square_error = 0.0;
     let mut samples = 0;
-    for seen in &sampled.seen {
-        let fitted = shader_fit::fit(seen, options.shader_blend, options.opacity);
-        let list = fitted.voxel.list();
-        fitted.voxel.write(&mut lists[list]);
+    for (seen, shown) in &sampled.seen {
+        let voxel = shader_fit::fit(seen, shown.shader, options.opacity);
+        let list = voxel.list();
+        voxel.write(&mut lists[list]);
         node.counts[list] += 1;
-        square_error += fitted.square_error;
+        square_error += shown.square_error;
         samples += seen.samples.len();
-        node.crossings = node.crossings.saturating_add(seen.counted.crossings);
+        node.crossings = node.crossings.saturating_add(seen.crossings);
     }
     node.origin = grid.origin.as_vec3().to_array();
     node.voxel = grid.voxel as f32;
     node.cells = grid.cells;
     node.touched = sampled.touched;
+    node.untested = sampled.untested;
     node.rays = sampled.rays;
     node.hits = sampled.hits;
     node.error = libm::sqrt(square_error / f64::from(samples.max(1) as u32)) as f32;
-    lists.concat()
+    lists
 }
 
 fn leaf_triangles<S: Surface + ?Sized>(
@@ -294,7 +297,7 @@ fn leaf_triangles<S: Surface + ?Sized>(
     centre: DVec3,
 ) -> Vec<LeafTriangle> {
     order
-        .par_iter()
+        .iter()
         .map(|&number| {
             let triangle = surface.triangle(number as usize);
             LeafTriangle {
@@ -309,7 +312,6 @@ fn leaf_triangles<S: Surface + ?Sized>(
 
 fn assemble(
     built: Vec<(Node, Vec<u8>)>,
-    triangles: Vec<LeafTriangle>,
     centre: DVec3,
     options: &BuildOptions,
 ) -> Result<FarData, BuildError> {
@@ -317,23 +319,18 @@ fn assemble(
         return Err(BuildError::TooMany(format!("{} nodes", built.len())));
     }
     let numbered: u64 = built.iter().map(|(node, _)| node.voxels()).sum();
-    let numbered = numbered + triangles.len() as u64;
+    let triangles = built.first().map_or(0, |(root, _)| root.triangles);
+    let numbered = numbered + u64::from(triangles);
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
         return Err(BuildError::TooMany(what));
     }
     let mut nodes = Vec::with_capacity(built.len());
-    let mut voxels = Vec::new();
+    let mut packed = Vec::with_capacity(built.iter().map(|(_, bytes)| bytes.len()).sum());
     for (mut node, bytes) in built {
-        node.voxels_at = voxels.len() as u64;
-        node.checksum = if node.is_leaf() {
-            let first = node.first_triangle as usize;
-            let own = &triangles[first..first + node.triangles as usize];
-            xxh3_64(triangle_bytes(own))
-        } else {
-            xxh3_64(&bytes)
-        };
-        voxels.extend(bytes);
+        node.data_at = packed.len() as u64;
+        node.checksum = xxh3_64(&bytes);
+        packed.extend(bytes);
         nodes.push(node);
     }
     Ok(FarData {
@@ -346,7 +343,6 @@ fn assemble(
         y_up: true,
         bevels: [0; 8],
         nodes,
-        voxels,
-        triangles,
+        packed,
     })
 }

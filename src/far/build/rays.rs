@@ -16,6 +16,7 @@ const EDGE: f32 = 1e-5;
 /// Triangles, ready for rays. Coordinates are those that it was given.
 pub(super) struct Occluders {
     bvh: CwBvh,
+    /// In the order of the hierarchy's indices.
     triangles: Vec<BvhTriangle>,
 }
 
@@ -38,21 +39,26 @@ impl Occluders {
             .collect();
         let bvh = build_cwbvh_from_tris(
             &triangles,
-            BvhBuildParams::medium_build(),
+            BvhBuildParams::slow_build(),
             &mut Duration::default(),
         );
+        // In the order of the hierarchy: those that a ray tests one after the other lie together.
+        let indices = bvh.primitive_indices.iter();
+        let triangles = indices.map(|&number| triangles[number as usize]).collect();
         Self { bvh, triangles }
     }
 
-    /// The nearest triangle along a unit direction.
-    pub(super) fn nearest(&self, origin: DVec3, direction: DVec3) -> Option<TriangleHit> {
-        let ray = Ray::new(origin.as_vec3a(), direction.as_vec3a(), 0.0, f32::INFINITY);
+    /// The nearest triangle along a unit direction, not farther than `most`.
+    pub(super) fn nearest(
+        &self,
+        origin: DVec3,
+        direction: DVec3,
+        most: f64,
+    ) -> Option<TriangleHit> {
+        let ray = Ray::new(origin.as_vec3a(), direction.as_vec3a(), 0.0, most as f32);
         let mut hit = RayHit::none();
         self.bvh.ray_traverse(ray, &mut hit, |ray, place| {
-            meet(
-                &self.triangles[self.bvh.primitive_indices[place] as usize],
-                ray,
-            )
+            meet(&self.triangles[place], ray)
         });
         if !hit.t.is_finite() || hit.primitive_id == u32::MAX {
             return None;
@@ -69,21 +75,18 @@ impl Occluders {
 fn meet(triangle: &BvhTriangle, ray: &Ray) -> f32 {
     let along: [Vec3A; 2] = [triangle.v1 - triangle.v0, triangle.v2 - triangle.v0];
     let across = ray.direction.cross(along[1]);
-    let scale = along[0].dot(across);
-    if scale == 0.0 {
-        return f32::INFINITY;
-    }
+    let signed = along[0].dot(across);
+    // All is compared times this, so that nothing is divided that does not meet.
+    let scale = signed.abs();
+    let sign = 1f32.copysign(signed);
     let from = ray.origin - triangle.v0;
-    let u = from.dot(across) / scale;
-    if !(-EDGE..=1.0 + EDGE).contains(&u) {
-        return f32::INFINITY;
-    }
+    let u = from.dot(across) * sign;
     let over = from.cross(along[0]);
-    let v = ray.direction.dot(over) / scale;
-    if !(v >= -EDGE && u + v <= 1.0 + EDGE) {
+    let v = ray.direction.dot(over) * sign;
+    if scale == 0.0 || u.min(v).min(scale - u - v) < -EDGE * scale {
         return f32::INFINITY;
     }
-    let t = along[1].dot(over) / scale;
+    let t = along[1].dot(over) * sign / scale;
     if t >= ray.tmin && t <= ray.tmax {
         t
     } else {

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::count::{Counted, Seen, SurfaceSample, main_normal};
+use super::count::{Counted, Found, Seen, SurfaceSample};
 use crate::far::blend::{Blend, DIRECTIONS, Fit};
-use crate::far::record::{Opacity, OpacityKind, Shader, Voxel};
+use crate::far::record::{Opacity, OpacityKind, STEEPNESSES, Shader, SideOpacity, Voxel};
 
 /// Weight of a normal's error beside a colour's: both are 0 to 1.
 const NORMAL_WEIGHT: f64 = 0.25;
@@ -14,10 +14,10 @@ const GOOD_ENOUGH: f64 = 5e-4;
 const WORTH_IT: f64 = 0.7;
 /// Fewer samples do not determine a complex shader.
 const LEAST_SAMPLES: usize = 6;
-/// A voxel is stored as opaque if its opacity is this near 1, root of the mean
-/// square over the directions that rays crossed it from.
-const OPAQUE_WITHIN: f64 = 0.1;
-/// Six opacities are stored as one number if they are this near it.
+/// A voxel is stored as opaque if its opacity, of all that does not look steeply upon something
+/// solid, is this or more.
+const OPAQUE_FROM: f64 = 0.97;
+/// Six opacities are stored as one number if they are within this share of it.
 const ALIKE_WITHIN: f64 = 0.1;
 /// How much nearer six numbers come to hits and passes than one does by chance
 /// alone: this many binomial variances over the number of rays (the mean of chi
@@ -27,62 +27,126 @@ const NOISE: f64 = 5.0;
 /// rays which all hit do not prove that all would.
 const DOUBT: f64 = 0.5;
 
-/// A fitted voxel, and the sum over its samples of the square error.
-pub(super) struct Fitted {
-    pub(super) voxel: Voxel,
+/// A voxel is solid seen at a steepness if no more than this share of what looks so upon it passes,
+/// by weight, ...
+const MOST_PASSED: f64 = 0.05;
+/// ... and as many probes or more, at this steepness and above, were stopped.
+const LEAST_STOPPED: u32 = 4;
+
+/// A shader, and the sum over its samples of the square error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ShaderFit {
+    pub(super) shader: Shader,
     pub(super) square_error: f64,
 }
 
-/// Fits a voxel that was seen at least once.
-pub(super) fn fit(seen: &Seen, blend: Blend, use_of_opacity: Opacity) -> Fitted {
-    let samples = &seen.samples;
+/// Fits a shader to what was seen, once or more; `normal` is the main one.
+pub(super) fn fit_shader(samples: &[SurfaceSample], normal: DVec3, blend: Blend) -> ShaderFit {
     let count = samples.len().max(1) as f64;
-    let flat = flat(samples);
-    let flat_error = error(&flat, samples, blend) / count;
-    let mut chosen = (flat, flat_error);
-    if flat_error > GOOD_ENOUGH && samples.len() >= LEAST_SAMPLES {
+    let flat = flat(samples, normal);
+    let square_error = error(&flat, samples, blend);
+    if square_error > GOOD_ENOUGH * count && samples.len() >= LEAST_SAMPLES {
         let complex = complex(samples, blend);
-        let complex_error = error(&complex, samples, blend) / count;
-        if complex_error < WORTH_IT * flat_error {
-            chosen = (complex, complex_error);
+        let complex_error = error(&complex, samples, blend);
+        if complex_error < WORTH_IT * square_error {
+            return ShaderFit {
+                shader: complex,
+                square_error: complex_error,
+            };
         }
     }
-    let (opacity_kind, opacity) = classify(&seen.counted, use_of_opacity);
-    let scalar = match opacity_kind {
-        OpacityKind::Opaque => 1.0,
-        OpacityKind::Scalar | OpacityKind::Six => seen.counted.scalar(),
-    };
-    Fitted {
-        voxel: Voxel {
-            place: seen.place,
-            shader: chosen.0,
-            opacity,
-            scalar,
-            opacity_kind,
-        },
-        square_error: chosen.1 * count,
+    ShaderFit {
+        shader: flat,
+        square_error,
     }
+}
+
+/// Fits the opacity of a voxel.
+pub(super) fn fit(seen: &Seen, shader: Shader, use_of_opacity: Opacity) -> Voxel {
+    let fitted = classify(seen, use_of_opacity);
+    Voxel {
+        place: seen.place,
+        shader,
+        opacity: fitted.six,
+        sides: fitted.sides,
+        opacity_kind: fitted.kind,
+    }
+}
+
+/// An opacity, fitted.
+struct FittedOpacity {
+    kind: OpacityKind,
+    sides: [SideOpacity; 2],
+    six: [f64; DIRECTIONS],
+}
+
+/// The steepness from which on all that looks upon a side is stopped in the voxel or right behind.
+/// A side that nothing looks upon is solid: it is hidden.
+fn solid_from(side: &[Found; STEEPNESSES]) -> usize {
+    let mut solid = STEEPNESSES;
+    let mut probes = 0;
+    for (steepness, found) in side.iter().enumerate().rev() {
+        if found.passed > MOST_PASSED * (found.passed + found.stopped) {
+            return solid;
+        }
+        probes += found.probes;
+        if probes >= LEAST_STOPPED {
+            solid = steepness;
+        }
+    }
+    if probes == 0 { 0 } else { solid }
 }
 
 /// The smallest kind of opacity that agrees with what rays found, within tolerance and noise.
-fn classify(counted: &Counted, most: Opacity) -> (OpacityKind, [f64; DIRECTIONS]) {
-    let rays = counted.independent();
-    let (six, scalar) = (counted.six(), counted.scalar());
+fn classify(seen: &Seen, most: Opacity) -> FittedOpacity {
+    let opaque = FittedOpacity {
+        kind: OpacityKind::Opaque,
+        sides: [SideOpacity::OPAQUE; 2],
+        six: [1.0; DIRECTIONS],
+    };
+    let is_crossed = seen.found.iter().flatten().any(|found| found.probes > 0);
+    let sides = [0, 1].map(|side| {
+        if !is_crossed {
+            let counted = Counted::default();
+            return (counted, STEEPNESSES, seen.unseen_opacity);
+        }
+        let solid = solid_from(&seen.found[side]);
+        let rest = seen.counted_below(side, solid);
+        (rest, solid, rest.scalar())
+    });
+    let is_opaque = sides
+        .iter()
+        .all(|&(_, solid, scalar)| solid == 0 || scalar >= OPAQUE_FROM);
+    if most == Opacity::None || is_opaque {
+        return opaque;
+    }
+    let rest = sides[0].0.with(&sides[1].0);
+    let rays = rest.independent();
+    let (six, scalar) = (rest.six(), rest.scalar());
     let likely = (scalar * rays + DOUBT) / (rays + 2.0 * DOUBT);
     let noise = NOISE * likely * (1.0 - likely) / rays.max(1.0);
-    let is_opaque = counted.square_from(&six, 1.0) <= OPAQUE_WITHIN * OPAQUE_WITHIN + noise;
-    if most == Opacity::None || is_opaque {
-        return (OpacityKind::Opaque, [1.0; DIRECTIONS]);
+    let alike = (ALIKE_WITHIN * scalar).powi(2) + noise;
+    // As near as one number for each side, of either side.
+    let square: f64 = sides
+        .iter()
+        .map(|(rest, _, scalar)| rest.weight * rest.square_from(&six, *scalar))
+        .sum();
+    let is_alike = square <= alike * rest.weight;
+    FittedOpacity {
+        kind: if most == Opacity::Scalar || is_alike {
+            OpacityKind::Scalar
+        } else {
+            OpacityKind::Six
+        },
+        sides: sides.map(|(_, solid, scalar)| SideOpacity {
+            scalar,
+            solid_from: solid as u8,
+        }),
+        six,
     }
-    let is_alike = counted.square_from(&six, scalar) <= ALIKE_WITHIN * ALIKE_WITHIN + noise;
-    if most == Opacity::Scalar || is_alike {
-        return (OpacityKind::Scalar, [scalar; DIRECTIONS]);
-    }
-    (OpacityKind::Six, six)
 }
 
-fn flat(samples: &[SurfaceSample]) -> Shader {
-    let normal = main_normal(samples);
+fn flat(samples: &[SurfaceSample], normal: DVec3) -> Shader {
     let mut sums = [(DVec3::ZERO, 0.0); 2];
     for sample in samples {
         let side = usize::from(sample.towards_eye.dot(normal) < 0.0);
@@ -151,6 +215,7 @@ fn error(shader: &Shader, samples: &[SurfaceSample], blend: Blend) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::far::build::count::main_normal;
 
     fn samples(of: impl Fn(DVec3) -> (DVec3, DVec3)) -> Vec<SurfaceSample> {
         (0..500)
@@ -179,7 +244,7 @@ mod tests {
                 (-up, DVec3::Y)
             }
         });
-        let shader = flat(&wall);
+        let shader = flat(&wall, main_normal(&wall));
         assert!(error(&shader, &wall, Blend::Squares) < 1e-9);
         let Shader::Flat { normal, colors } = shader else {
             panic!("not flat");
@@ -192,7 +257,7 @@ mod tests {
     #[test]
     fn a_ball_is_better_complex() {
         let ball = samples(|eye| (eye, DVec3::splat(0.5) + eye * 0.3));
-        let of_flat = error(&flat(&ball), &ball, Blend::Squares);
+        let of_flat = error(&flat(&ball, main_normal(&ball)), &ball, Blend::Squares);
         for blend in [Blend::Squares, Blend::Cosines] {
             let of_complex = error(&complex(&ball, blend), &ball, blend);
             assert!(of_complex < WORTH_IT * of_flat, "{of_complex} {of_flat}");
@@ -216,10 +281,15 @@ mod tests {
 
     #[test]
     fn six_opacities_are_stored_where_they_differ_by_more_than_chance() {
-        let kind = |rays, share: fn(DVec3) -> f64| {
-            let counted = counted(rays, share);
-            classify(&counted, Opacity::Six).0
+        let classify = |counted: Counted, most| {
+            let mut seen = Seen::new([0; 3], 1.0);
+            // Nothing known of any solid surface.
+            seen.found[0][0].counted = counted;
+            seen.found[0][0].probes = counted.independent() as u32;
+            seen.found[0][0].passed = 1.0;
+            classify(&seen, most).kind
         };
+        let kind = |rays, share: fn(DVec3) -> f64| classify(counted(rays, share), Opacity::Six);
         let solid = |_: DVec3| 1.0;
         let veil = |_: DVec3| 0.4;
         // A sheet across y: all from above, little from the sides.
@@ -233,12 +303,9 @@ mod tests {
         }
         // The requested kind is the most that is stored.
         let sheet = counted(1000, sheet);
-        assert_eq!(classify(&sheet, Opacity::Scalar).0, OpacityKind::Scalar);
-        assert_eq!(classify(&sheet, Opacity::None).0, OpacityKind::Opaque);
-        assert_eq!(
-            classify(&counted(0, solid), Opacity::Six).0,
-            OpacityKind::Opaque
-        );
+        assert_eq!(classify(sheet, Opacity::Scalar), OpacityKind::Scalar);
+        assert_eq!(classify(sheet, Opacity::None), OpacityKind::Opaque);
+        assert_eq!(kind(0, solid), OpacityKind::Opaque);
     }
 
     #[test]

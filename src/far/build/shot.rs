@@ -23,44 +23,79 @@ pub(super) struct Target<'t> {
     /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
     pub(super) opacity_blend: Blend,
+    pub(super) shader_blend: Blend,
 }
 
 /// A ray that ended, in voxels of the grid.
 pub(super) struct Shot {
     pub(super) from: DVec3,
     pub(super) direction: DVec3,
-    /// Where it ends along its direction; infinite where it meets nothing.
+    /// Where it ends along its direction; infinite where it meets nothing as far as it was followed.
     pub(super) end: f64,
     /// The triangle that it meets.
-    pub(super) triangle: usize,
+    pub(super) triangle: u32,
+    /// Number of the touched voxel in which it ends at one of the node's own triangles;
+    /// [`NOWHERE`]: in none.
+    pub(super) touched: u32,
 }
 
+/// No voxel.
+pub(super) const NOWHERE: u32 = u32::MAX;
+/// A ray's end is in single precision: it may lie this far from the triangle, voxels, and so in
+/// the voxel beside the triangle's.
+const END_WITHIN: f64 = 0.01;
+
 impl Target<'_> {
-    /// The voxel in which a ray ends at one of the node's own triangles.
-    pub(super) fn end_of(&self, shot: &Shot) -> Option<[u8; 3]> {
-        if !self.own.contains(&shot.triangle) {
-            return None;
+    /// Number of the touched voxel in which a ray ends. `slot` has those numbers, of all voxels of
+    /// the grid.
+    fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
+        let cells = self.grid.cells.map(f64::from);
+        let number = |at: DVec3| {
+            let place = [0, 1, 2].map(|k| at[k].floor().clamp(0.0, cells[k] - 1.0) as u8);
+            slot[self.grid.number(place)]
+        };
+        let here = number(end);
+        if here != NOWHERE {
+            return here;
         }
-        let mut last = None;
-        for crossing in self.grid.along(shot.from, shot.direction) {
-            last = Some(crossing.place);
-            if crossing.leave > shot.end {
-                break;
-            }
-        }
-        last
+        // Triangles between two voxels, or in a corner.
+        let near = (0..27).map(|step| {
+            let step = DVec3::new(
+                f64::from(step % 3),
+                f64::from(step / 3 % 3),
+                f64::from(step / 9),
+            );
+            number(end + (step - DVec3::ONE) * END_WITHIN)
+        });
+        near.into_iter()
+            .find(|&slot| slot != NOWHERE)
+            .unwrap_or(NOWHERE)
     }
 
-    /// A ray from S through a point of the grid.
-    pub(super) fn shoot(&self, point: DVec3, direction: DVec3) -> Shot {
-        let from = point - direction * self.back_to_surface(point, direction);
-        let meeting = self.occluders.nearest(self.grid.world(from), direction);
-        Shot {
+    /// A ray from S through a point of the grid, followed until `beyond` voxels behind it. `slot`
+    /// has the numbers of touched voxels.
+    pub(super) fn shoot(&self, point: DVec3, direction: DVec3, beyond: f64, slot: &[u32]) -> Shot {
+        let back = self.back_to_surface(point, direction);
+        let from = point - direction * back;
+        let most = (back + beyond) * self.grid.voxel;
+        let meeting = self
+            .occluders
+            .nearest(self.grid.world(from), direction, most);
+        let mut shot = Shot {
             from,
             direction,
-            end: meeting.map_or(f64::INFINITY, |m| m.distance / self.grid.voxel),
-            triangle: meeting.map_or(usize::MAX, |m| m.triangle),
+            end: f64::INFINITY,
+            triangle: NOWHERE,
+            touched: NOWHERE,
+        };
+        if let Some(meeting) = meeting {
+            shot.end = meeting.distance / self.grid.voxel;
+            shot.triangle = meeting.triangle as u32;
+            if self.own.contains(&meeting.triangle) {
+                shot.touched = self.voxel_at(from + direction * shot.end, slot);
+            }
         }
+        shot
     }
 
     /// How far back from a point of the grid along a direction S is, voxels.

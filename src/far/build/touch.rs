@@ -21,21 +21,22 @@ const LEAST_AREA: f64 = 1e-9;
 pub(super) struct Touched {
     /// Its number in the grid.
     pub(super) number: u32,
-    /// Points of what is in it, in voxels from the grid's origin.
-    pub(super) points: [DVec3; POINTS],
+    /// Points of what is in it, in voxels from the grid's origin, and the number of the triangle
+    /// that each is on.
+    pub(super) points: [(DVec3, u32); POINTS],
     /// Area of what is in it, in faces of a voxel.
-    area: f64,
+    pub(super) area: f64,
 }
 
 /// The voxels that triangles touch, in the grid's order.
 pub(super) fn touched(
     grid: &Grid,
-    triangles: impl Iterator<Item = [DVec3; 3]>,
+    triangles: impl Iterator<Item = (usize, [DVec3; 3])>,
     chance: &mut Chance,
 ) -> Vec<Touched> {
     let mut slot = vec![u32::MAX; grid.len()];
     let mut all: Vec<Touched> = Vec::new();
-    for corners in triangles {
+    for (triangle, corners) in triangles {
         let corners = corners.map(|p| grid.local(p));
         parts(grid, &corners, |number, piece| {
             let part = piece.cut();
@@ -49,7 +50,7 @@ pub(super) fn touched(
                 *place = all.len() as u32;
                 all.push(Touched {
                     number,
-                    points: [DVec3::ZERO; POINTS],
+                    points: [(DVec3::ZERO, 0); POINTS],
                     area: 0.0,
                 });
             }
@@ -57,7 +58,8 @@ pub(super) fn touched(
             voxel.area += area;
             for point in &mut voxel.points {
                 if chance.unit() * voxel.area < area {
-                    *point = part.point(chance);
+                    // Fewer than 2^32 triangles.
+                    *point = (part.point(chance), triangle as u32);
                 }
             }
         });
@@ -269,11 +271,20 @@ mod tests {
         let triangles = [at(0.1, 0.8, 0.5), at(0.1, 0.4, 0.2), at(1.3, 0.5, 0.5)];
         let mut low = 0;
         for seed in 0..500 {
-            let voxels = touched(&unit(), triangles.into_iter(), &mut Chance::new(seed));
+            let voxels = touched(
+                &unit(),
+                triangles.into_iter().enumerate(),
+                &mut Chance::new(seed),
+            );
             let numbers: Vec<u32> = voxels.iter().map(|voxel| voxel.number).collect();
             assert_eq!(numbers, [0, 1]);
             assert_eq!(count(&unit(), triangles.into_iter()), 2);
-            low += voxels[0].points.iter().filter(|p| p.z < 0.3).count();
+            let points = voxels.iter().flat_map(|voxel| voxel.points);
+            // Each is on the triangle that it names.
+            for (point, triangle) in points {
+                assert_eq!(point.z, triangles[triangle as usize][0].z);
+            }
+            low += voxels[0].points.iter().filter(|p| p.0.z < 0.3).count();
         }
         // A fifth of the area.
         let share = low as f64 / (500 * POINTS) as f64;

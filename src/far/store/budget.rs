@@ -1,4 +1,4 @@
-//! How much of a mapped file's data is in memory, and what goes when it is too much.
+//! How much of a file's data is in memory, unpacked, and what goes when it is too much.
 //!
 //! Nodes are let go of in the order of a clock: round and round, one that was
 //! used since the hand last passed is spared once. What was let go of is read
@@ -6,7 +6,6 @@
 //! changes nothing else.
 
 use std::collections::VecDeque;
-use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -23,8 +22,8 @@ pub(super) struct Budget {
 
 #[derive(Debug, Default)]
 struct Clock {
-    /// Nodes whose data is in memory, from the hand on, and where that is.
-    here: VecDeque<(usize, Range<usize>)>,
+    /// Nodes whose data is in memory, from the hand on, and its bytes.
+    here: VecDeque<(usize, u64)>,
     bytes: u64,
     most_bytes: u64,
     released: u64,
@@ -52,14 +51,9 @@ impl Budget {
         }
     }
 
-    /// Notes that a node's data is about to be examined, and lets go of others
-    /// until it fits; a node larger than the budget is alone in memory.
-    pub(super) fn touch(
-        &self,
-        node: usize,
-        place: impl FnOnce() -> Range<usize>,
-        release: impl Fn(&Range<usize>),
-    ) {
+    /// Notes that so many bytes of a node's data are examined, and lets go of others
+    /// until they fit; a node larger than the budget is alone in memory.
+    pub(super) fn touch(&self, node: usize, bytes: u64, release: impl Fn(usize)) {
         self.was_used[node].store(true, Ordering::Relaxed);
         if self.is_here[node].load(Ordering::Relaxed) {
             return;
@@ -69,27 +63,21 @@ impl Budget {
         if self.is_here[node].swap(true, Ordering::Relaxed) {
             return;
         }
-        let place = place();
-        let bytes = place.len() as u64;
         while clock.bytes.saturating_add(bytes) > self.most
-            && let Some((other, range)) = clock.here.pop_front()
+            && let Some((other, its)) = clock.here.pop_front()
         {
             if self.was_used[other].swap(false, Ordering::Relaxed) {
-                clock.here.push_back((other, range));
+                clock.here.push_back((other, its));
                 continue;
             }
-            release(&range);
+            release(other);
             self.is_here[other].store(false, Ordering::Relaxed);
-            clock.bytes -= range.len() as u64;
+            clock.bytes -= its;
             clock.released += 1;
         }
         clock.bytes += bytes;
         clock.most_bytes = clock.most_bytes.max(clock.bytes);
-        clock.here.push_back((node, place));
-    }
-
-    pub(super) fn is_here(&self, node: usize) -> bool {
-        self.is_here[node].load(Ordering::Relaxed)
+        clock.here.push_back((node, bytes));
     }
 
     pub(super) fn resident(&self) -> Resident {
@@ -111,10 +99,7 @@ mod tests {
         let budget = Budget::new(100, 20);
         let gone = Mutex::new(Vec::new());
         let touch = |node: usize| {
-            let place = || node * 30..node * 30 + 30;
-            budget.touch(node, place, |range| {
-                gone.lock().unwrap().push(range.start / 30);
-            });
+            budget.touch(node, 30, |other| gone.lock().unwrap().push(other));
         };
         (0..3).for_each(touch);
         // All were used: the hand spares each once, then takes the first.
@@ -134,7 +119,7 @@ mod tests {
             (90, 90, 4)
         );
         // Larger than the budget: alone.
-        budget.touch(9, || 0..500, |_| {});
+        budget.touch(9, 500, |_| {});
         assert_eq!(budget.resident().bytes, 500);
     }
 }

@@ -10,7 +10,7 @@ pub(super) struct Fault {
 }
 
 /// Checks all nodes against each other and against the sizes of the sections.
-pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<(), Fault> {
+pub(super) fn check(nodes: &[Node], data_bytes: u64, triangles: u64) -> Result<(), Fault> {
     let fault = |node: usize, expected: String| Err(Fault { node, expected });
     let Some(root) = nodes.first() else {
         return fault(0, "a root".to_owned());
@@ -21,27 +21,16 @@ pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<
     }
     let mut has_parent = vec![false; nodes.len()];
     has_parent[0] = true;
-    let (mut bytes, mut numbered) = (0u64, triangles);
+    let (mut before, mut numbered) = (0u64, triangles);
     for (i, node) in nodes.iter().enumerate() {
         check_alone(node).or_else(|expected| fault(i, expected.to_owned()))?;
-        if node.voxels_at != bytes {
-            return fault(
-                i,
-                format!(
-                    "voxels at byte {bytes} of their section, not {}",
-                    node.voxels_at
-                ),
-            );
+        if node.data_at < before || node.data_at > data_bytes || i == 0 && node.data_at > 0 {
+            let range = format!("data from byte {before} to {data_bytes} of its section");
+            return fault(i, range);
         }
-        // Six counts of 32 bits by at most 37 bytes: no overflow; the sum is checked each time.
-        bytes += node.voxel_bytes();
+        before = node.data_at;
+        // Six counts of 32 bits, of fewer than 2^32 nodes: no overflow.
         numbered += node.voxels();
-        if bytes > voxel_bytes {
-            return fault(
-                i,
-                format!("voxels within the {voxel_bytes} bytes of their section"),
-            );
-        }
         if !has_parent[i] {
             return fault(i, "a parent before it".to_owned());
         }
@@ -56,12 +45,6 @@ pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<
             }
         }
     }
-    if bytes != voxel_bytes {
-        return fault(
-            nodes.len() - 1,
-            format!("{voxel_bytes} bytes of voxels, not {bytes}"),
-        );
-    }
     if numbered >= u64::from(u32::MAX) {
         return fault(0, "fewer than 2^32 voxels and triangles".to_owned());
     }
@@ -71,7 +54,6 @@ pub(super) fn check(nodes: &[Node], voxel_bytes: u64, triangles: u64) -> Result<
 fn check_alone(node: &Node) -> Result<(), &'static str> {
     let ensure = |holds: bool, expected| if holds { Ok(()) } else { Err(expected) };
     ensure(node.is_leaf <= 1, "a leaf or not, 1 or 0")?;
-    ensure(node.spare == 0, "zero in the spare field")?;
     ensure(node.triangles > 0, "triangles")?;
     let is_box = (0..3).all(|k| {
         let (low, high) = (node.low[k], node.high[k]);
@@ -84,8 +66,14 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     )?;
     if node.is_leaf() {
         let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
-        let counts = [node.touched, node.rays, node.hits, node.crossings];
-        let is_empty = counts == [0; 4] && node.counts == [0; 6] && node.children == [0; 2];
+        let counts = [
+            node.touched,
+            node.untested,
+            node.rays,
+            node.hits,
+            node.crossings,
+        ];
+        let is_empty = counts == [0; 5] && node.counts == [0; 6] && node.children == [0; 2];
         return ensure(
             is_plain && is_empty,
             "a leaf without grid, voxels, rays or children",
@@ -97,7 +85,14 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
         && node.cells.iter().all(|&c| c > 0);
     ensure(is_grid, "a grid")?;
     let cells: u64 = node.cells.iter().map(|&c| u64::from(c)).product();
-    ensure(node.voxels() <= cells, "no more voxels than its grid has")?;
+    ensure(
+        node.voxels() <= u64::from(node.touched),
+        "no more voxels than triangles touch",
+    )?;
+    ensure(
+        u64::from(node.untested) <= node.voxels(),
+        "no more untested voxels than it has",
+    )?;
     ensure(
         u64::from(node.touched) <= cells,
         "no more touched voxels than its grid has",

@@ -1,9 +1,9 @@
 //! The layout of a `.far` file: `spec/far.md`.
 //!
-//! A header of 128 bytes, then nodes, voxels and triangles, each aligned to 64
+//! A header of 128 bytes, then nodes and their data, each aligned to 64
 //! bytes with zeros between. All numbers are little-endian.
 
-use crate::far::record::{NODE_BYTES, TRIANGLE_BYTES};
+use crate::far::record::NODE_BYTES;
 use crate::graph::file::{Format, HEADER_BYTES, section_after};
 
 /// How files begin.
@@ -11,18 +11,15 @@ pub(super) const FORMAT: Format = Format {
     ending: ".far",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89FAR\r\n\x1a\n",
-    versions: VERSION_WITHOUT_BEVELS..=3,
+    versions: 4..=4,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };
 
-/// The version of the layout without bevels.
-pub(super) const VERSION_WITHOUT_BEVELS: u32 = 2;
-
 /// Where things are in the header, beside what every header has.
 pub(super) mod at {
     pub(in super::super) const NODES: usize = 24;
-    pub(in super::super) const VOXEL_BYTES: usize = 32;
+    pub(in super::super) const DATA_BYTES: usize = 32;
     pub(in super::super) const TRIANGLES: usize = 40;
     pub(in super::super) const CENTRE: usize = 48;
     pub(in super::super) const DISTANCE: usize = 72;
@@ -41,19 +38,13 @@ pub(super) mod at {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Layout {
     pub(super) nodes: [u64; 2],
-    pub(super) voxels: [u64; 2],
-    pub(super) triangles: [u64; 2],
+    pub(super) data: [u64; 2],
 }
 
-/// Begin and end of each section, in bytes, for so many nodes, bytes of voxels
-/// and triangles. There is only one layout. Saturates.
-pub(super) fn layout(nodes: u64, voxel_bytes: u64, triangles: u64) -> Layout {
+/// Begin and end of each section, in bytes, for so many nodes and bytes of data. There is only one
+/// layout. Saturates.
+pub(super) fn layout(nodes: u64, data_bytes: u64) -> Layout {
     let nodes = section_after(HEADER_BYTES as u64, nodes, NODE_BYTES);
-    let voxels = section_after(nodes[1], voxel_bytes, 1);
-    let triangles = section_after(voxels[1], triangles, TRIANGLE_BYTES);
-    Layout {
-        nodes,
-        voxels,
-        triangles,
-    }
+    let data = section_after(nodes[1], data_bytes, 1);
+    Layout { nodes, data }
 }

@@ -1,9 +1,8 @@
 //! Reading a `.far` file: on demand, or all of it.
 
 use std::io;
-use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 
 use glam::DVec3;
 use xxhash_rust::xxh3::xxh3_64;
@@ -11,10 +10,12 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::FarError;
 use super::budget::{Budget, Resident};
 use super::check::check;
-use super::format::{FORMAT, Layout, VERSION_WITHOUT_BEVELS, at, layout};
+use super::data::{NodeData, Slot};
+use super::format::{FORMAT, Layout, at, layout};
+use super::pack::{unpack_triangles, unpack_voxels};
 use super::write::blend_byte;
 use crate::far::blend::Blend;
-use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES, triangle_bytes};
+use crate::far::record::Node;
 use crate::graph::MeshBox;
 use crate::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
 use crate::graph::map::release;
@@ -32,8 +33,8 @@ pub struct FarFile {
     nodes: Vec<Node>,
     /// Number of each node's first voxel, over all nodes.
     first_voxel: Vec<u32>,
-    /// Nodes whose data was found sound.
-    is_checked: Vec<AtomicBool>,
+    /// Each node's data, once it was needed.
+    data: Vec<Slot>,
     /// What limits how much of the data is in memory, if anything does.
     budget: Option<Budget>,
     centre: DVec3,
@@ -58,9 +59,9 @@ impl FarFile {
         Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
     }
 
-    /// Opens a file of which at most so many bytes of nodes' data are in memory
+    /// Opens a file of which at most so many bytes of nodes' data are in memory, unpacked,
     /// at a time (a node that is larger is there alone). Header and hierarchy,
-    /// pictures and what is made of nodes while they are drawn come on top.
+    /// pictures and what nodes are in use at the moment come on top.
     ///
     /// # Errors
     /// As [`FarFile::open`]; and where the system cannot let go of mapped pages.
@@ -86,16 +87,6 @@ impl FarFile {
         self.budget.as_ref().map(Budget::resident)
     }
 
-    /// Lets go of nodes' data that was let go of before, while it was in use.
-    pub(in crate::far) fn settle(&self, nodes: impl Iterator<Item = usize>) {
-        if let (Some(budget), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
-            for node in nodes.filter(|&node| !budget.is_here(node)) {
-                let place = self.place_of(node);
-                let _ = release(map, place.start, place.len());
-            }
-        }
-    }
-
     /// A file that is held in memory; it is named `(memory)` in errors.
     ///
     /// # Errors
@@ -109,7 +100,7 @@ impl FarFile {
         let all = bytes.get();
         let header = Header::read(all, all.len() as u64, path)?;
         let places = header.places;
-        let sections = [places.nodes, places.voxels, places.triangles];
+        let sections = [places.nodes, places.data];
         check_padding(all, sections.into_iter(), path)?;
         let node_bytes = &all[range(places.nodes)];
         if xxh3_64(node_bytes) != header.nodes_checksum {
@@ -137,12 +128,7 @@ impl FarFile {
                 ));
             }
         }
-        check(
-            &nodes,
-            places.voxels[1] - places.voxels[0],
-            header.triangles,
-        )
-        .map_err(|fault| {
+        check(&nodes, places.data[1] - places.data[0], header.triangles).map_err(|fault| {
             let offset = places.nodes[0] + (fault.node * size_of::<Node>()) as u64;
             let expected = format!("node {} to have {}", fault.node, fault.expected);
             FarError::damaged(path, "hierarchy", offset, expected)
@@ -160,7 +146,7 @@ impl FarFile {
         Ok(Self {
             path: path.to_owned(),
             budget: None,
-            is_checked: nodes.iter().map(|_| AtomicBool::new(false)).collect(),
+            data: nodes.iter().map(|_| Slot::default()).collect(),
             places,
             nodes,
             first_voxel,
@@ -226,7 +212,7 @@ impl FarFile {
     /// Bytes of the file.
     #[must_use]
     pub fn len(&self) -> u64 {
-        self.places.triangles[1]
+        self.places.data[1]
     }
 
     /// Never: a file has a header.
@@ -243,7 +229,7 @@ impl FarFile {
         (world(root.low), world(root.high))
     }
 
-    /// What fitted cameras look at; in a file of an earlier program the box has no bevels.
+    /// What fitted cameras look at.
     #[must_use]
     pub fn mesh_box(&self) -> MeshBox {
         let (low, high) = self.bounds();
@@ -268,33 +254,24 @@ impl FarFile {
         self.first_voxel[last] + self.nodes[last].voxels() as u32
     }
 
-    /// Records of a node's voxels, one slice for each list.
+    /// A node's voxels or triangles.
     ///
     /// # Errors
     /// When they are not as they were written.
-    pub fn lists(&self, node: usize) -> Result<[&[u8]; 6], FarError> {
-        self.ensure(node)?;
-        let mut rest = self.voxel_bytes(node);
-        let counts = self.nodes[node].counts;
-        Ok(std::array::from_fn(|list| {
-            let (mine, more) = rest.split_at(counts[list] as usize * RECORD_BYTES[list]);
-            rest = more;
-            mine
-        }))
-    }
-
-    /// Triangles of a node.
-    ///
-    /// # Errors
-    /// When those of a leaf are not as they were written.
-    pub fn triangles(&self, node: usize) -> Result<&[LeafTriangle], FarError> {
-        self.ensure(node)?;
-        Ok(self.triangles_of(node))
-    }
-
-    /// A triangle by its number over all leaves.
-    pub(in crate::far) fn triangle(&self, number: usize) -> &LeafTriangle {
-        &self.all_triangles()[number]
+    pub fn data(&self, number: usize) -> Result<Arc<NodeData>, FarError> {
+        let slot = &self.data[number];
+        let data = match slot.get() {
+            Some(data) => data,
+            None => {
+                let data = Arc::new(self.unpacked(number)?);
+                slot.set(Some(Arc::clone(&data)));
+                data
+            }
+        };
+        if let Some(budget) = &self.budget {
+            budget.touch(number, data.bytes(), |other| self.data[other].set(None));
+        }
+        Ok(data)
     }
 
     /// Checks the data of all nodes.
@@ -302,97 +279,42 @@ impl FarFile {
     /// # Errors
     /// At the first node whose data is not as it was written.
     pub fn verify(&self) -> Result<(), FarError> {
-        (0..self.nodes.len()).try_for_each(|node| self.ensure(node))
+        (0..self.nodes.len()).try_for_each(|node| self.data(node).map(drop))
     }
 
-    fn all_triangles(&self) -> &[LeafTriangle] {
-        bytemuck::cast_slice(&self.bytes.get()[range(self.places.triangles)])
+    /// Where a node's data is in the file.
+    fn place_of(&self, number: usize) -> [u64; 2] {
+        let [first, last] = self.places.data;
+        let end = self.nodes.get(number + 1).map(|next| first + next.data_at);
+        [first + self.nodes[number].data_at, end.unwrap_or(last)]
     }
 
-    fn triangles_of(&self, node: usize) -> &[LeafTriangle] {
-        let first = self.nodes[node].first_triangle as usize;
-        &self.all_triangles()[first..first + self.nodes[node].triangles as usize]
-    }
-
-    fn voxel_bytes(&self, node: usize) -> &[u8] {
-        let begin = self.places.voxels[0] + self.nodes[node].voxels_at;
-        &self.bytes.get()[range([begin, begin + self.nodes[node].voxel_bytes()])]
-    }
-
-    /// Where a node's data is, with what the system may bring in around it.
-    fn place_of(&self, number: usize) -> Range<usize> {
+    /// Reads a node's data, and checks it.
+    fn unpacked(&self, number: usize) -> Result<NodeData, FarError> {
         let node = &self.nodes[number];
-        let (begin, bytes) = if node.is_leaf() {
-            let size = size_of::<LeafTriangle>() as u64;
-            let first = u64::from(node.first_triangle) * size;
-            (
-                self.places.triangles[0] + first,
-                u64::from(node.triangles) * size,
-            )
+        let place = self.place_of(number);
+        let packed = &self.bytes.get()[range(place)];
+        let damaged = |expected: String| FarError::damaged(&self.path, "data", place[0], expected);
+        if xxh3_64(packed) != node.checksum {
+            let expected = format!("checksum {:016x} of node {number}", node.checksum);
+            return Err(damaged(expected));
+        }
+        let (unpacked, expected) = if node.is_leaf() {
+            let triangles = unpack_triangles(packed, node.triangles);
+            let sound = triangles.and_then(|own| NodeData::of_triangles(node, own));
+            (sound, "triangles within leaf")
         } else {
-            (self.places.voxels[0] + node.voxels_at, node.voxel_bytes())
+            let records = unpack_voxels(packed, &node.counts);
+            let sound = records.and_then(|own| NodeData::of_voxels(node, own));
+            (sound, "voxels within the grid of node")
         };
-        let end = (begin + bytes).next_multiple_of(BROUGHT_IN);
-        range([begin / BROUGHT_IN * BROUGHT_IN, end.min(self.len())])
-    }
-
-    /// Counts a node's data into the budget, and checks it when it is first needed.
-    fn ensure(&self, number: usize) -> Result<(), FarError> {
-        if let (Some(budget), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
-            let release_range = |range: &Range<usize>| {
-                // It did at the beginning; a page more in memory does no harm.
-                let _ = release(map, range.start, range.len());
-            };
-            budget.touch(number, || self.place_of(number), release_range);
+        if let (Some(_), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
+            let begin = place[0] / BROUGHT_IN * BROUGHT_IN;
+            let end = place[1].next_multiple_of(BROUGHT_IN).min(self.len());
+            // It did at the beginning; a page more in memory does no harm.
+            let _ = release(map, begin as usize, (end - begin) as usize);
         }
-        if self.is_checked[number].load(Ordering::Relaxed) {
-            return Ok(());
-        }
-        let node = &self.nodes[number];
-        let damaged = |section, offset, expected: String| {
-            Err(FarError::damaged(&self.path, section, offset, expected))
-        };
-        if node.is_leaf() {
-            let triangles = self.triangles_of(number);
-            let offset = self.places.triangles[0]
-                + u64::from(node.first_triangle) * size_of::<LeafTriangle>() as u64;
-            if xxh3_64(triangle_bytes(triangles)) != node.checksum {
-                let expected = format!("checksum {:016x} of leaf {number}", node.checksum);
-                return damaged("triangles", offset, expected);
-            }
-            let is_within =
-                |p: &[f32; 3]| (0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]);
-            let is_sound = |t: &LeafTriangle| t.spare == 0 && t.corners.iter().all(is_within);
-            if !triangles.iter().all(is_sound) {
-                return damaged(
-                    "triangles",
-                    offset,
-                    format!("triangles within leaf {number}"),
-                );
-            }
-        } else {
-            let bytes = self.voxel_bytes(number);
-            let offset = self.places.voxels[0] + node.voxels_at;
-            if xxh3_64(bytes) != node.checksum {
-                let expected = format!("checksum {:016x} of node {number}", node.checksum);
-                return damaged("voxels", offset, expected);
-            }
-            let mut rest = bytes;
-            for list in 0..LISTS.len() {
-                let (mine, more) = rest.split_at(node.counts[list] as usize * RECORD_BYTES[list]);
-                rest = more;
-                let mut records = mine.chunks_exact(RECORD_BYTES[list]);
-                if records.any(|r| (0..3).any(|k| r[k] >= node.cells[k])) {
-                    return damaged(
-                        "voxels",
-                        offset,
-                        format!("voxels within the grid of node {number}"),
-                    );
-                }
-            }
-        }
-        self.is_checked[number].store(true, Ordering::Relaxed);
-        Ok(())
+        unpacked.ok_or_else(|| damaged(format!("{expected} {number}")))
     }
 }
 
@@ -414,10 +336,10 @@ impl Header {
     /// Reads a header from the beginning of a file of `file_bytes`.
     fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, FarError> {
         let header = FORMAT.read(beginning, file_bytes, path)?;
-        let [nodes, voxel_bytes, triangles] =
-            [at::NODES, at::VOXEL_BYTES, at::TRIANGLES].map(|at| header.u64_at(at));
-        let places = layout(nodes, voxel_bytes, triangles);
-        header.ensure(places.triangles[1] == file_bytes, at::NODES, || {
+        let [nodes, data_bytes, triangles] =
+            [at::NODES, at::DATA_BYTES, at::TRIANGLES].map(|at| header.u64_at(at));
+        let places = layout(nodes, data_bytes);
+        header.ensure(places.data[1] == file_bytes, at::NODES, || {
             format!("sections that end with the file at byte {file_bytes}")
         })?;
         let is_spare = header.is_zero(at::SPARE) && header.is_zero(at::MORE_SPARE);
@@ -438,8 +360,6 @@ impl Header {
         let blends = [blend(at::OPACITY_BLEND)?, blend(at::SHADER_BLEND)?];
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
         let bevels = header.bytes_at(at::BEVELS);
-        let says_bevels = header.version() > VERSION_WITHOUT_BEVELS;
-        header.ensure(says_bevels || bevels == [0; 8], at::BEVELS, || "zeros")?;
         Ok(Self {
             places,
             triangles,

@@ -7,7 +7,7 @@ use xxhash_rust::xxh3::xxh3_64;
 use super::format::{FORMAT, at, layout};
 use crate::far::FarData;
 use crate::far::blend::Blend;
-use crate::far::record::{Node, triangle_bytes};
+use crate::far::record::Node;
 use crate::graph::file::{self, HEADER_BYTES};
 
 /// Writes far voxels: to a temporary file, say, that then gets its name
@@ -16,18 +16,10 @@ use crate::graph::file::{self, HEADER_BYTES};
 /// # Errors
 /// The writer's byte order; a machine that stores the highest byte first.
 pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
-    let places = layout(
-        data.nodes.len() as u64,
-        data.voxels.len() as u64,
-        data.triangles.len() as u64,
-    );
+    let places = layout(data.nodes.len() as u64, data.packed.len() as u64);
     let nodes: &[u8] = bytemuck::cast_slice::<Node, u8>(&data.nodes);
-    let header = header(data, nodes, places.triangles[1]);
-    let sections = [
-        (places.nodes, nodes),
-        (places.voxels, &data.voxels[..]),
-        (places.triangles, triangle_bytes(&data.triangles)),
-    ];
+    let header = header(data, nodes, places.data[1]);
+    let sections = [(places.nodes, nodes), (places.data, &data.packed[..])];
     file::write(&FORMAT, &header, sections.into_iter(), out)
 }
 
@@ -51,8 +43,8 @@ pub(super) fn blend_byte(blend: Blend) -> u8 {
 fn header(data: &FarData, nodes: &[u8], file_bytes: u64) -> [u8; HEADER_BYTES] {
     FORMAT.header(file_bytes, |put| {
         put(at::NODES, &(data.nodes.len() as u64).to_le_bytes());
-        put(at::VOXEL_BYTES, &(data.voxels.len() as u64).to_le_bytes());
-        put(at::TRIANGLES, &(data.triangles.len() as u64).to_le_bytes());
+        put(at::DATA_BYTES, &(data.packed.len() as u64).to_le_bytes());
+        put(at::TRIANGLES, &data.triangles().to_le_bytes());
         for (k, centre) in data.centre.iter().enumerate() {
             put(at::CENTRE + 8 * k, &centre.to_le_bytes());
         }

@@ -120,8 +120,9 @@ impl Cut<'_> {
         let distance_from = |eye: DVec3| (low - eye).max(eye - high).max(DVec3::ZERO).length();
         let from = distance_from(self.cut_of.eye);
         let is_small = voxel * self.cut_of.focal_px <= self.voxel_px * from;
-        // Nearer, things that were taken to hide it may be behind the eye.
-        let is_far = from >= self.file.distance_voxels() * voxel;
+        // Nearer, things that were taken to hide it may be behind the eye; but there is nothing
+        // behind an eye outside the box of everything.
+        let is_far = from >= self.file.distance_voxels() * voxel || self.is_outside_all();
         let is_drawn = node.is_leaf() || is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
@@ -145,6 +146,13 @@ impl Cut<'_> {
         } else {
             CutNode::Branch(chosen)
         })
+    }
+
+    /// Whether the eye whose cut it is lies outside the box of all triangles.
+    fn is_outside_all(&self) -> bool {
+        let (low, high) = self.file.bounds();
+        let eye = self.cut_of.eye;
+        eye.cmplt(low).any() || eye.cmpgt(high).any()
     }
 
     /// All nodes that are drawn, hidden or not.

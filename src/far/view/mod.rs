@@ -267,8 +267,6 @@ impl<'f> FarViewer<'f> {
             let splats = transparent::draw(self.file, view, options, &transparent, &mut drawn)?;
             counts.transparent_voxels = splats;
         }
-        self.file
-            .settle(walked.drawn.iter().map(|node| node.number));
         let size = [pixels.width, pixels.height].map(|side| side as usize);
         let drawn = samples::averaged(drawn, size, across as usize);
         Ok((
@@ -331,14 +329,6 @@ struct Pixel {
 }
 
 impl Pixel {
-    /// Lays something of a colour and opacity over it.
-    fn cover(&mut self, color: [f32; 3], opacity: f32) {
-        for (below, above) in self.light.iter_mut().zip(color) {
-            *below = above * opacity + *below * (1.0 - opacity);
-        }
-        self.coverage = opacity + self.coverage * (1.0 - opacity);
-    }
-
     fn encode(&self, background: Option<[u8; 3]>) -> [u8; 4] {
         if self.coverage <= 0.0 {
             return background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);

@@ -1,16 +1,17 @@
 //! Opaque voxels and triangles, with a depth buffer.
 
 use std::borrow::Borrow;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::cut::Chosen;
-use super::splat::Places;
+use super::splat::{Places, Square};
 use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
-use crate::far::store::FarFile;
+use crate::far::store::{FarFile, NodeData};
 use crate::graph::{PackedNormal, Silent};
 use crate::mesh::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
@@ -19,6 +20,9 @@ use crate::mesh::{Surface, Triangle, srgb_to_linear};
 
 /// Nothing: as deep as can be, and no number.
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
+
+/// Pixels that a thread resolves at a time.
+const RESOLVED: usize = 1 << 12;
 
 /// The buffer: for each pixel depth (bits of a positive `f32`, which order as
 /// numbers do) and number of the nearest voxel or triangle.
@@ -82,30 +86,38 @@ impl<'f> Opaque<'f> {
     }
 
     fn voxels(&self, number: usize) -> Result<u64, ViewError> {
-        let node = &self.file.nodes()[number];
-        let places = Places::of(node, self.file.centre());
+        let places = Places::of(&self.file.nodes()[number], self.file.centre());
         let mut id = self.file.first_voxel(number);
         let mut drawn = 0;
         let width = self.view.width as usize;
-        for (list, records) in self.file.lists(number)?.into_iter().enumerate() {
-            let is_opaque = LISTS[list].1 == OpacityKind::Opaque;
-            if !is_opaque && self.options.opacity != Opacity::None {
-                id += node.counts[list];
-                continue;
-            }
-            drawn += u64::from(node.counts[list]);
+        let data = self.file.data(number)?;
+        for (list, records) in data.lists().into_iter().enumerate() {
+            let is_opaque =
+                LISTS[list].1 == OpacityKind::Opaque || self.options.opacity == Opacity::None;
             for record in records.chunks_exact(RECORD_BYTES[list]) {
-                if let Some(square) = places.square(&self.view, record) {
-                    let depth = (square.depth as f32).to_bits();
-                    let word = u64::from(depth) << 32 | u64::from(id);
-                    let [[x0, y0], [x1, y1]] = square.pixels(&self.view);
-                    for y in y0..y1 {
-                        for x in x0..x1 {
+                let number = id;
+                id += 1;
+                if !is_opaque && !Voxel::is_partly_solid(list, record) {
+                    continue;
+                }
+                let Some(square) = places.square(&self.view, record) else {
+                    continue;
+                };
+                if !is_opaque && !is_opaque_from(list, record, &square, self.file, &self.options) {
+                    continue;
+                }
+                drawn += 1;
+                let depth = (square.depth as f32).to_bits();
+                let word = u64::from(depth) << 32 | u64::from(number);
+                let hexagon = places.hexagon(&self.view, &square);
+                let [[x0, y0], [x1, y1]] = hexagon.pixels(&self.view);
+                for y in y0..y1 {
+                    for x in x0..x1 {
+                        if hexagon.holds(x, y) {
                             self.put(y * width + x, word);
                         }
                     }
                 }
-                id += 1;
             }
         }
         Ok(drawn)
@@ -119,20 +131,12 @@ impl<'f> Opaque<'f> {
     }
 
     fn leaves(&mut self, leaves: &[Chosen]) -> Result<u64, ViewError> {
-        let mut numbers = Vec::new();
-        for leaf in leaves {
-            // Asked for so that they are checked.
-            self.file.triangles(leaf.number)?;
-            let node = &self.file.nodes()[leaf.number];
-            numbers.extend(node.first_triangle..node.first_triangle + node.triangles);
-        }
         // The file's order, whatever is nearer.
-        numbers.sort_unstable();
-        let surface = Leaves {
-            file: self.file,
-            numbers,
-        };
-        self.rasterize(&surface, surface.numbers.clone())
+        let mut leaves: Vec<usize> = leaves.iter().map(|leaf| leaf.number).collect();
+        leaves.sort_unstable();
+        let surface = Leaves::of(self.file, &leaves)?;
+        let numbers = (0..surface.len()).map(|at| surface.number(at)).collect();
+        self.rasterize(&surface, numbers)
     }
 
     /// Draws triangles that are not of the file. They are numbered after those of the file.
@@ -228,41 +232,52 @@ impl<'f> Opaque<'f> {
 
     /// Colours of what is seen.
     pub(super) fn resolve(&self) -> Vec<Pixel> {
-        let voxels = self.file.voxels();
-        self.words
-            .par_iter()
+        let mut pixels = vec![Pixel::default(); self.words.len()];
+        pixels
+            .par_chunks_mut(RESOLVED)
             .enumerate()
-            .map(|(pixel, word)| {
-                let word = word.load(Ordering::Relaxed);
-                if word == EMPTY {
-                    return Pixel {
-                        depth: f32::INFINITY,
-                        ..Pixel::default()
-                    };
+            .for_each(|(chunk, pixels)| {
+                let mut last = None;
+                for (at, pixel) in pixels.iter_mut().enumerate() {
+                    *pixel = self.pixel(chunk * RESOLVED + at, &mut last);
                 }
-                let id = word as u32;
-                let light = if id < voxels {
-                    self.voxel_light(id)
-                } else {
-                    self.triangle_light(pixel, id - voxels)
-                };
-                Pixel {
-                    light,
-                    coverage: 1.0,
-                    depth: f32::from_bits((word >> 32) as u32),
-                }
-            })
-            .collect()
+            });
+        pixels
     }
 
-    fn voxel_light(&self, id: u32) -> [f32; 3] {
+    /// `last`: the node whose data was needed last, which neighbours need again.
+    fn pixel(&self, pixel: usize, last: &mut Option<(usize, Arc<NodeData>)>) -> Pixel {
+        let word = self.words[pixel].load(Ordering::Relaxed);
+        if word == EMPTY {
+            return Pixel {
+                depth: f32::INFINITY,
+                ..Pixel::default()
+            };
+        }
+        let (id, voxels) = (word as u32, self.file.voxels());
+        let light = if id < voxels {
+            self.voxel_light(id, last)
+        } else {
+            self.triangle_light(pixel, id - voxels)
+        };
+        Pixel {
+            light,
+            coverage: 1.0,
+            depth: f32::from_bits((word >> 32) as u32),
+        }
+    }
+
+    fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
         let number = self.node_of(id);
-        let mut rest = (id - self.file.first_voxel(number)) as usize;
-        // Was drawn, hence is sound.
-        let Ok(lists) = self.file.lists(number) else {
+        if last.as_ref().is_none_or(|(node, _)| *node != number) {
+            // Was drawn, hence is sound.
+            *last = self.file.data(number).ok().map(|data| (number, data));
+        }
+        let Some((_, data)) = last else {
             return [0.0; 3];
         };
-        for (list, records) in lists.into_iter().enumerate() {
+        let mut rest = (id - self.file.first_voxel(number)) as usize;
+        for (list, records) in data.lists().into_iter().enumerate() {
             let count = records.len() / RECORD_BYTES[list];
             if rest < count {
                 let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
@@ -287,6 +302,19 @@ impl<'f> Opaque<'f> {
     }
 }
 
+/// Whether a voxel of a list with opacities is opaque as it is seen.
+pub(super) fn is_opaque_from(
+    list: usize,
+    record: &[u8],
+    square: &Square,
+    file: &FarFile,
+    options: &ViewOptions,
+) -> bool {
+    let voxel = Voxel::read(list, record);
+    let blends = [file.opacity_blend(), file.shader_blend()];
+    voxel.opacity_from(square.towards_eye, blends, options.opacity) >= 1.0
+}
+
 /// Linear light of a voxel as seen from a direction.
 pub(super) fn light_of(
     voxel: &Voxel,
@@ -299,31 +327,55 @@ pub(super) fn light_of(
     (color * share).as_vec3().to_array()
 }
 
-/// Triangles of a file, by their numbers.
+/// Triangles of some leaves.
 struct Leaves<'f> {
     file: &'f FarFile,
-    numbers: Vec<u32>,
+    data: Vec<Arc<NodeData>>,
+    /// Of each triangle its leaf among these, its place in it, and its number in the file.
+    places: Vec<(u32, u32, u32)>,
 }
 
-impl Leaves<'_> {
-    fn of(&self, number: usize) -> &LeafTriangle {
-        self.file.triangle(self.numbers[number] as usize)
+impl<'f> Leaves<'f> {
+    fn of(file: &'f FarFile, leaves: &[usize]) -> Result<Self, ViewError> {
+        let mut surface = Self {
+            file,
+            data: Vec::with_capacity(leaves.len()),
+            places: Vec::new(),
+        };
+        for &leaf in leaves {
+            let node = &file.nodes()[leaf];
+            let number = surface.data.len() as u32;
+            let places = (0..node.triangles).map(|at| (number, at, node.first_triangle + at));
+            surface.places.extend(places);
+            surface.data.push(file.data(leaf)?);
+        }
+        Ok(surface)
+    }
+
+    /// Number in the file.
+    fn number(&self, at: usize) -> u32 {
+        self.places[at].2
+    }
+
+    fn triangle_at(&self, at: usize) -> &LeafTriangle {
+        let (leaf, place, _) = self.places[at];
+        &self.data[leaf as usize].triangles()[place as usize]
     }
 }
 
 impl Surface for Leaves<'_> {
     fn len(&self) -> usize {
-        self.numbers.len()
+        self.places.len()
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
         let centre = self.file.centre();
-        let corners = self.of(number).corners;
+        let corners = self.triangle_at(number).corners;
         corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
     }
 
     fn triangle(&self, number: usize) -> Triangle {
-        let stored = self.of(number);
+        let stored = self.triangle_at(number);
         let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
         let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
         Triangle {

@@ -1,18 +1,16 @@
-//! Transparent voxels over what is opaque: nodes back to front, within a node
-//! in the file's order, tested against depth and not written to it.
+//! Transparent voxels before what is opaque: nodes front to back, within a node
+//! against the file's order, tested against depth and not written to it.
 //!
-//! A voxel whose square covers a share `s` of a pixel with opacity `a` lets
-//! `(1 - a)^s` of what is behind through: squares side by side that together
-//! cover the pixel once then let `1 - a` through, as the surface does that
-//! they are parts of.
+//! A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in
+//! the parts whose middles its square covers: squares side by side cover each part once, and
+//! a square that is alone covers its own area and no more.
 
 use rayon::prelude::*;
 
 use super::cut::Chosen;
 use super::opaque::light_of;
-use super::splat::{Places, Square};
-use super::{Opacity, Pixel, ViewError, ViewOptions};
-use crate::far::blend::Blend;
+use super::splat::{PARTS, Places, Square};
+use super::{Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::FarFile;
 use crate::mesh::raster::RasterCamera;
@@ -24,8 +22,16 @@ const BAND: usize = 16;
 struct Splat {
     square: Square,
     color: [f32; 3],
-    opacity: f64,
+    /// Share of light that it lets through.
+    through: f32,
     rows: [usize; 2],
+}
+
+/// What transparent voxels let through and add, of a pixel.
+#[derive(Clone, Copy)]
+struct Veil {
+    through: [[f32; PARTS]; PARTS],
+    light: [f32; 3],
 }
 
 /// Draws; returns how many voxels. `nodes` in any order.
@@ -37,7 +43,7 @@ pub(super) fn draw(
     pixels: &mut [Pixel],
 ) -> Result<u64, ViewError> {
     let mut nodes: Vec<&Chosen> = nodes.to_vec();
-    nodes.sort_by(|a, b| b.middle.total_cmp(&a.middle).then(a.number.cmp(&b.number)));
+    nodes.sort_by(|a, b| a.middle.total_cmp(&b.middle).then(b.number.cmp(&a.number)));
     let splats = nodes
         .par_iter()
         .map(|node| splats(file, view, options, node.number))
@@ -48,9 +54,15 @@ pub(super) fn draw(
         .enumerate()
         .for_each(|(band, pixels)| {
             let rows = [band * BAND, band * BAND + pixels.len() / width];
-            for splat in splats.iter().flatten() {
+            let mut veils: Vec<Option<Box<Veil>>> = vec![None; pixels.len()];
+            for splat in splats.iter().flat_map(|node| node.iter().rev()) {
                 if splat.rows[0] < rows[1] && splat.rows[1] > rows[0] {
-                    blend(splat, view, rows, pixels);
+                    blend(splat, view, rows, pixels, &mut veils);
+                }
+            }
+            for (pixel, veil) in pixels.iter_mut().zip(&veils) {
+                if let Some(veil) = veil {
+                    pixel.lay(veil);
                 }
             }
         });
@@ -65,8 +77,10 @@ fn splats(
 ) -> Result<Vec<Splat>, ViewError> {
     let node = &file.nodes()[number];
     let places = Places::of(node, file.centre());
+    let blends = [file.opacity_blend(), file.shader_blend()];
     let mut splats = Vec::new();
-    for (list, records) in file.lists(number)?.into_iter().enumerate() {
+    let data = file.data(number)?;
+    for (list, records) in data.lists().into_iter().enumerate() {
         if LISTS[list].1 == OpacityKind::Opaque {
             continue;
         }
@@ -79,41 +93,80 @@ fn splats(
                 continue;
             }
             let voxel = Voxel::read(list, record);
-            splats.push(Splat {
-                opacity: opacity(&voxel, &square, file.opacity_blend(), options.opacity),
-                color: light_of(&voxel, square.towards_eye, file, options),
-                rows: [y0, y1],
-                square,
-            });
+            let opacity = voxel.opacity_from(square.towards_eye, blends, options.opacity);
+            // What is opaque as it is seen was drawn with what always is.
+            if opacity < 1.0 {
+                splats.push(Splat {
+                    through: (1.0 - opacity) as f32,
+                    color: light_of(&voxel, square.towards_eye, file, options),
+                    rows: [y0, y1],
+                    square,
+                });
+            }
         }
     }
     Ok(splats)
 }
 
-fn opacity(voxel: &Voxel, square: &Square, blend: Blend, mode: Opacity) -> f64 {
-    match mode {
-        Opacity::None => 1.0,
-        Opacity::Scalar => voxel.scalar,
-        Opacity::Six => {
-            let shares = blend.shares(square.towards_eye).into_iter();
-            shares.map(|(k, share)| voxel.opacity[k] * share).sum()
-        }
-    }
-}
-
-fn blend(splat: &Splat, view: &RasterCamera, [top, bottom]: [usize; 2], pixels: &mut [Pixel]) {
+fn blend(
+    splat: &Splat,
+    view: &RasterCamera,
+    [top, bottom]: [usize; 2],
+    pixels: &[Pixel],
+    veils: &mut [Option<Box<Veil>>],
+) {
     let width = view.width as usize;
     let [[x0, y0], [x1, y1]] = splat.square.touched(view);
     let depth = splat.square.depth as f32;
     for y in y0.max(top)..y1.min(bottom) {
+        let down = splat.square.parts(1, y);
         for x in x0..x1 {
-            let pixel = &mut pixels[(y - top) * width + x];
-            if depth > pixel.depth {
+            let across = splat.square.parts(0, x);
+            let at = (y - top) * width + x;
+            if down == 0 || across == 0 || depth > pixels[at].depth {
                 continue;
             }
-            let share = splat.square.share(x, y);
-            let through = libm::pow((1.0 - splat.opacity).max(0.0), share);
-            pixel.cover(splat.color, (1.0 - through) as f32);
+            let clear = || {
+                Box::new(Veil {
+                    through: [[1.0; PARTS]; PARTS],
+                    light: [0.0; 3],
+                })
+            };
+            let veil = veils[at].get_or_insert_with(clear);
+            let factors: [f32; PARTS] = std::array::from_fn(|part| {
+                if across >> part & 1 == 1 {
+                    splat.through
+                } else {
+                    1.0
+                }
+            });
+            let mut taken = 0.0;
+            for (part, row) in veil.through.iter_mut().enumerate() {
+                if down >> part & 1 == 0 {
+                    continue;
+                }
+                for (through, factor) in row.iter_mut().zip(factors) {
+                    let less = *through * factor;
+                    taken += *through - less;
+                    *through = less;
+                }
+            }
+            taken /= (PARTS * PARTS) as f32;
+            for (light, color) in veil.light.iter_mut().zip(splat.color) {
+                *light += color * taken;
+            }
         }
+    }
+}
+
+impl Pixel {
+    /// Lays transparent voxels over it.
+    fn lay(&mut self, veil: &Veil) {
+        let sum: f32 = veil.through.iter().flatten().sum();
+        let through = sum / (PARTS * PARTS) as f32;
+        for (light, before) in self.light.iter_mut().zip(veil.light) {
+            *light = before + *light * through;
+        }
+        self.coverage = 1.0 - (1.0 - self.coverage) * through;
     }
 }
