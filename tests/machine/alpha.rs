@@ -96,7 +96,7 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
                 sides[k] & 15
             };
             weight += i64::from(nibble + nibble / 8) * counts[k];
-            is_whole |= nibble == 15 && shares[k] >= 4;
+            is_whole |= nibble == 15;
         }
         let weight = if is_whole { 256 } else { weight };
         let left = i64::from(sample.left);

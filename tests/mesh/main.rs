@@ -10,6 +10,7 @@ mod models;
 mod opacities;
 mod raster;
 mod shapes;
+mod solids;
 mod voxels;
 mod watertight;
 mod work;
