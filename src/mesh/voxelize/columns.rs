@@ -33,13 +33,7 @@ pub(super) fn opacities(graph: GraphView<'_>, covered: Vec<Covered>) -> Vec<Opac
     let nodes = covered.len();
     let columns = Columns {
         graph,
-        masks: covered
-            .into_par_iter()
-            .map(|covered| {
-                let large_from = covered.large_from.into_inner();
-                (covered.masks.map(|mask| mask.into_inner()), large_from)
-            })
-            .collect(),
+        covered,
         closed: (0..nodes).map(|_| AtomicU32::new(0)).collect(),
         found: (0..nodes).map(|_| AtomicU32::new(0)).collect(),
     };
@@ -56,8 +50,7 @@ pub(super) fn opacities(graph: GraphView<'_>, covered: Vec<Covered>) -> Vec<Opac
 
 struct Columns<'g> {
     graph: GraphView<'g>,
-    /// By node, the points that it covers, and the coarsest level at which a large object is in it.
-    masks: Vec<(Masks, u8)>,
+    covered: Vec<Covered>,
     /// By node, four bits for each axis, from `8 * axis` on: of its four columns of children those with a child that
     /// is opaque.
     closed: Vec<AtomicU32>,
@@ -117,7 +110,7 @@ impl Columns<'_> {
         let mut closed = 0;
         for (axis, [u, v]) in OTHERS.into_iter().enumerate() {
             let mut columns = 0;
-            if level == self.graph.depth && self.masks[node as usize].0[axis] == ALL {
+            if level == self.graph.depth && self.masks(node)[axis] == ALL {
                 columns = ALL_COLUMNS;
             }
             for octant in 0..8u8 {
@@ -136,8 +129,8 @@ impl Columns<'_> {
 
     /// Finds a node's opacities; the columns of its level are known.
     fn settle(&self, node: u32, place: [u32; 3], level: u32) {
-        let (masks, large_from) = self.masks[node as usize];
-        let is_large = u32::from(large_from) <= level;
+        let masks = self.masks(node);
+        let is_large = self.is_large(node, level);
         let dither = dither(&masks);
         let mut bits = 0;
         for axis in 0..3 {
@@ -180,15 +173,29 @@ impl Columns<'_> {
             let Some(other) = self.node_at(next, level) else {
                 break;
             };
-            let (masks, large_from) = self.masks[other as usize];
-            if u32::from(large_from) <= level {
+            if self.is_large(other, level) {
                 column = column.and(Column {
-                    covered: masks[axis],
+                    covered: self.masks(other)[axis],
                     closed: self.closed_of(other, axis),
                 });
             }
         }
         column
+    }
+
+    /// The points that a node covers.
+    fn masks(&self, node: u32) -> Masks {
+        let masks = &self.covered[node as usize].masks;
+        [0, 1, 2].map(|axis| masks[axis].load(Ordering::Relaxed))
+    }
+
+    /// Whether a large object is in a node of a level.
+    fn is_large(&self, node: u32, level: u32) -> bool {
+        u32::from(
+            self.covered[node as usize]
+                .large_from
+                .load(Ordering::Relaxed),
+        ) <= level
     }
 
     /// The columns of a node's children that are closed.
