@@ -1,9 +1,12 @@
 //! The level that is chosen by itself is about as good as the triangles.
 
+use std::path::PathBuf;
+
 use glam::DVec3;
 use shiftvox::graph::Silent;
 use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
-use shiftvox::mesh::{Material, Mesh, MeshBuilder};
+use shiftvox::mesh::{LoadOptions, Material, Mesh, MeshBuilder};
+use shiftvox::scene::read_mesh;
 use shiftvox::textured::view::{Detail, ViewOptions, draw};
 use shiftvox::textured::{BuildOptions, Element, TexturedFile, build};
 
@@ -177,12 +180,23 @@ fn drawn(file: &TexturedFile, view: &RasterCamera, detail: Detail) -> (Vec<[u8; 
 fn auto_is_about_as_good_as_triangles_at_one_sample() {
     let mut worst_by_texels: f64 = 0.0;
     let mut levels = 0;
-    for (name, mesh) in [
+    let mut meshes = vec![
         ("village", village()),
         ("tubes", tubes()),
         ("sphere", sphere()),
         ("foliage", foliage()),
-    ] {
+    ];
+    let models = std::env::var_os("SHIFTVOX_MESHES").map(PathBuf::from);
+    for name in ["tree_Oak_Large.obj", "as_AC14-FZK-Haus.obj", "platform.obj"] {
+        match models.as_ref().map(|folder| folder.join(name)) {
+            Some(path) if path.exists() => {
+                let read = read_mesh(&path, &LoadOptions::default(), &Silent);
+                meshes.push((name, read.unwrap().0));
+            }
+            _ => eprintln!("skipped: SHIFTVOX_MESHES has no {name}"),
+        }
+    }
+    for (name, mesh) in meshes {
         let grids = BuildOptions {
             grids: vec![4, 16, 64],
             texels: 16,
@@ -203,8 +217,9 @@ fn auto_is_about_as_good_as_triangles_at_one_sample() {
                 let rival = psnr(&reference, &triangles(&mesh, &view, 1));
                 let (auto, texel) = drawn(&file, &view, Detail::Auto { texel_px: 1.0 });
                 let auto = psnr(&reference, &auto);
+                // From 48 dB on the error is less than a step of a byte.
                 assert!(
-                    auto > rival - 1.0,
+                    auto > (rival - 1.0).min(48.0),
                     "{name} from {direction} {away}: {auto} dB, triangles {rival}"
                 );
                 levels += u32::from(texel > 0.0);
