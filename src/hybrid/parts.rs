@@ -10,7 +10,7 @@ use crate::mesh::{Mesh, Surface};
 /// longest extent: the smaller side of a leaf, the girth of a wire, more than a pixel for all that
 /// is large both ways.
 pub(super) fn widths(mesh: &Mesh) -> Vec<f64> {
-    let mut vertices: HashMap<[u32; 3], usize> = HashMap::new();
+    let mut vertices: HashMap<[u64; 3], usize> = HashMap::new();
     let mut parents: Vec<usize> = (0..mesh.len()).collect();
     for (number, corners) in mesh.triangles().iter().enumerate() {
         for &corner in corners {

@@ -18,11 +18,21 @@ pub struct BadIndex {
     pub positions: usize,
 }
 
+/// A triangle as it is given.
+#[derive(Debug, Clone, Copy)]
+struct Corners {
+    corners: [u32; 3],
+    normals: Option<[[f32; 3]; 3]>,
+    material: u32,
+    tint: Option<[f32; 3]>,
+}
+
 /// Collects positions and triangles and leaves out what cannot be drawn.
 ///
 /// Left out, counted and reported as a warning: triangles with a coordinate that
 /// is infinite or not a number, triangles without area (two equal corners, or
-/// all three on a line), triangles whose material has opacity 0.
+/// all three on a line), triangles whose material has opacity 0. Where that would be all that can be drawn, they are
+/// drawn opaque, with a warning: some programs write 0 for what is opaque.
 #[derive(Debug, Default)]
 pub struct MeshBuilder {
     mesh: Mesh,
@@ -32,6 +42,8 @@ pub struct MeshBuilder {
     first_not_finite: u64,
     degenerate: u64,
     invisible: u64,
+    /// Triangles of opacity 0, while there are no others.
+    hidden: Vec<Corners>,
     seen: u64,
     too_many: bool,
 }
@@ -51,19 +63,19 @@ impl MeshBuilder {
     }
 
     /// Adds a position and returns its number.
-    pub fn position(&mut self, position: [f32; 3]) -> u32 {
+    pub fn position<T: Into<f64>>(&mut self, position: [T; 3]) -> u32 {
         let number = self.mesh.positions.len();
         if number >= MOST {
             self.too_many = true;
             return 0;
         }
-        self.mesh.positions.push(position);
+        self.mesh.positions.push(position.map(Into::into));
         number as u32
     }
 
     /// Adds a position with a colour (sRGB). Positions before it that came
     /// without are white.
-    pub fn colored_position(&mut self, position: [f32; 3], color: [u8; 3]) -> u32 {
+    pub fn colored_position<T: Into<f64>>(&mut self, position: [T; 3], color: [u8; 3]) -> u32 {
         let number = self.position(position);
         let colors = &mut self.mesh.vertex_colors;
         colors.resize(number as usize, [255; 3]);
@@ -78,7 +90,7 @@ impl MeshBuilder {
     pub fn reserve(&mut self, positions: usize, triangles: usize) -> Result<(), Shortage> {
         const WHAT: &str = "a mesh";
         let mesh = &mut self.mesh;
-        let needed = positions * size_of::<[f32; 3]>() + triangles * size_of::<([u32; 3], u32)>();
+        let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
         let needed = needed as u64;
         budget::check(WHAT, needed)?;
         let had = mesh
@@ -116,6 +128,21 @@ impl MeshBuilder {
         normals: Option<[[f32; 3]; 3]>,
         material: u32,
     ) -> Result<(), BadIndex> {
+        self.textured_triangle(corners, normals, material, None)
+    }
+
+    /// [`triangle`](Self::triangle), with the mean colour of its texture, linear light, by which its colour is
+    /// multiplied.
+    ///
+    /// # Errors
+    /// As [`triangle`](Self::triangle).
+    pub fn textured_triangle(
+        &mut self,
+        corners: [u32; 3],
+        normals: Option<[[f32; 3]; 3]>,
+        material: u32,
+        tint: Option<[f32; 3]>,
+    ) -> Result<(), BadIndex> {
         let positions = self.mesh.positions.len();
         if let Some(&index) = corners.iter().find(|&&i| i as usize >= positions) {
             return Err(BadIndex { index, positions });
@@ -140,11 +167,24 @@ impl MeshBuilder {
             .is_some_and(|material| material.alpha == 0.0)
         {
             self.invisible += 1;
+            if self.mesh.triangles.is_empty() && self.hidden.len() < MOST {
+                self.hidden.push(Corners {
+                    corners,
+                    normals,
+                    material,
+                    tint,
+                });
+            }
             return Ok(());
         }
+        self.hidden = Vec::new();
         if self.mesh.triangles.len() >= MOST {
             self.too_many = true;
             return Ok(());
+        }
+        if let Some(tint) = tint {
+            self.mesh.tints.resize(self.mesh.triangles.len(), [1.0; 3]);
+            self.mesh.tints.push(tint);
         }
         // No zero: `across` is not, though its length may round to it.
         let plane = across.normalize_or(DVec3::Z).as_vec3().to_array();
@@ -177,11 +217,42 @@ impl MeshBuilder {
             .collect();
     }
 
+    /// Shows triangles of opacity 0 where there are no others.
+    fn show_hidden(&mut self) {
+        let hidden = std::mem::take(&mut self.hidden);
+        if hidden.is_empty() {
+            return;
+        }
+        for material in &mut self.mesh.materials {
+            if material.alpha == 0.0 {
+                material.alpha = 1.0;
+            }
+        }
+        self.warn(format!(
+            "all {} triangles are of materials with opacity 0, which some programs write for opaque ones: they are \
+             drawn opaque",
+            hidden.len()
+        ));
+        self.invisible = 0;
+        let seen = self.seen;
+        for triangle in hidden {
+            // In range: it was when it was given.
+            let _ = self.textured_triangle(
+                triangle.corners,
+                triangle.normals,
+                triangle.material,
+                triangle.tint,
+            );
+        }
+        self.seen = seen;
+    }
+
     /// The mesh, of a file of that name.
     ///
     /// # Errors
     /// When no triangle is left, or when there are more than 2^32 of anything.
-    pub fn finish(self, file: &str) -> Result<Mesh, MeshError> {
+    pub fn finish(mut self, file: &str) -> Result<Mesh, MeshError> {
+        self.show_hidden();
         let in_file = |error: MeshError| error.in_file(file);
         if self.too_many {
             let fault = MeshFault::new(
@@ -240,18 +311,18 @@ impl MeshBuilder {
                 *material = 0;
             }
         }
+        if !mesh.tints.is_empty() {
+            mesh.tints.resize(mesh.triangles.len(), [1.0; 3]);
+        }
         if !mesh.vertex_colors.is_empty() {
             mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
         }
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        (mesh.low, mesh.high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for corner in mesh.triangles.iter().flatten() {
-            let position = mesh.positions[*corner as usize];
-            for k in 0..3 {
-                low[k] = low[k].min(position[k]);
-                high[k] = high[k].max(position[k]);
-            }
+            let position = point(mesh.positions[*corner as usize]);
+            mesh.low = mesh.low.min(position);
+            mesh.high = mesh.high.max(position);
         }
-        (mesh.low, mesh.high) = (low, high);
         mesh.positions.shrink_to_fit();
         mesh.triangles.shrink_to_fit();
         mesh.material_of.shrink_to_fit();
@@ -260,12 +331,12 @@ impl MeshBuilder {
     }
 }
 
-fn point(position: [f32; 3]) -> DVec3 {
-    DVec3::from_array(position.map(f64::from))
+fn point(position: [f64; 3]) -> DVec3 {
+    DVec3::from_array(position)
 }
 
 fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
-    point(normal)
+    DVec3::from_array(normal.map(f64::from))
         .try_normalize()
         .map(|unit| unit.as_vec3().to_array())
 }

@@ -4,6 +4,7 @@
 //! Here is what it is given and what becomes of materials and normals: a corner of a triangle is a
 //! vertex of its position, material and colour, so that no collapse mixes materials; a corner's
 //! normal is the mean of those that the mesh has at its position and that face as the triangle does.
+//! Colours of textures, which triangles have, become those of vertices.
 
 use std::collections::HashMap;
 
@@ -13,7 +14,7 @@ use meshoptimizer_rs::{
 };
 
 use super::surface::plane_normal;
-use super::{Mesh, Surface};
+use super::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
 use crate::graph::PackedNormal;
 
 /// How far a mesh is decimated.
@@ -43,7 +44,10 @@ const FACES_ALIKE: f64 = 0.5;
 const ATTRIBUTES: usize = 6;
 
 /// What makes two corners one vertex: position, material, colour.
-type Key = ([u32; 3], u32, [u8; 3]);
+type Key = (Place, u32, [u8; 3]);
+
+/// The bits of a position.
+type Place = [u64; 3];
 
 /// Decimates a mesh; `None` where no triangle is left.
 ///
@@ -51,11 +55,14 @@ type Key = ([u32; 3], u32, [u8; 3]);
 /// [`DecimateError`].
 pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
     let vertices = Vertices::of(mesh);
+    let (low, high) = mesh.bounds();
+    // About the box, of which single precision tells the parts wherever it lies.
+    let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
+    let near: Vec<[f32; 3]> = vertices.positions.iter().map(near).collect();
     let mut options = SimplifyOptions::ERROR_ABSOLUTE;
     if how.prunes {
         options |= SimplifyOptions::PRUNE;
     }
-    let (low, high) = mesh.bounds();
     let extent = (high - low).max_element();
     let error = how.error.unwrap_or(10.0 * extent);
     // Where a distance is given, a normal that turns by its length is as wrong.
@@ -76,7 +83,7 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
     let attributes = Attributes::from_interleaved(attributes, count, ATTRIBUTES, ATTRIBUTES, 0);
     let simplified = simplify_with_attributes(
         &vertices.indices,
-        Positions::from_packed(&vertices.positions),
+        Positions::from_packed(&near),
         attributes.map_err(failed)?,
         &weights,
         None,
@@ -93,12 +100,12 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
 
 /// A mesh as the library takes it.
 struct Vertices {
-    positions: Vec<[f32; 3]>,
+    positions: Vec<[f64; 3]>,
     attributes: Vec<[f32; ATTRIBUTES]>,
     keys: Vec<Key>,
     indices: Vec<u32>,
     /// Normals at each position, as long as the areas of their triangles.
-    normals: HashMap<[u32; 3], Vec<DVec3>>,
+    normals: HashMap<Place, Vec<DVec3>>,
 }
 
 impl Vertices {
@@ -112,17 +119,25 @@ impl Vertices {
             normals: HashMap::new(),
         };
         let mut sums: Vec<DVec3> = Vec::new();
+        let tints = tints(mesh);
         for (number, corners) in mesh.triangles.iter().enumerate() {
             let triangle = mesh.triangle(number);
             let [a, b, c] = triangle.corners;
             let area = (b - a).cross(c - a).length();
             for (k, &corner) in corners.iter().enumerate() {
                 // Zeros of both signs are one place.
-                let position = mesh.positions[corner as usize].map(|x| x + 0.0);
-                let place = position.map(f32::to_bits);
+                let position = mesh.positions[corner as usize];
+                let place = place_of(position);
+                let material = mesh.material_of[number];
                 let color = mesh.vertex_colors.get(corner as usize);
-                let color = color.copied().unwrap_or([255; 3]);
-                let key = (place, mesh.material_of[number], color);
+                let mut color = color.copied().unwrap_or([255; 3]);
+                if let Some(tint) = tints.get(&(place, material)) {
+                    let linear = color.map(|byte| f64::from(srgb_to_linear(byte)));
+                    color = (DVec3::from_array(linear) * *tint)
+                        .to_array()
+                        .map(linear_to_srgb);
+                }
+                let key = (place, material, color);
                 let vertex = *numbers.entry(key).or_insert_with(|| {
                     all.positions.push(position);
                     all.keys.push(key);
@@ -162,7 +177,7 @@ impl Vertices {
                 *numbers.entry(corner).or_insert_with(|| {
                     let (_, _, color) = self.keys[corner as usize];
                     left.positions.push(self.positions[corner as usize]);
-                    if !mesh.vertex_colors.is_empty() {
+                    if !mesh.vertex_colors.is_empty() || !mesh.tints.is_empty() {
                         left.vertex_colors.push(color);
                     }
                     (left.positions.len() - 1) as u32
@@ -186,8 +201,33 @@ impl Vertices {
     }
 }
 
-fn point(position: [f32; 3]) -> DVec3 {
-    DVec3::from_array(position.map(f64::from))
+fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
+    DVec3::from_array(position.map(Into::into))
+}
+
+/// Zeros of both signs are one place.
+fn place_of(position: [f64; 3]) -> Place {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
+/// The mean colour of textures at each position of each material, linear light; nothing where there
+/// are none.
+fn tints(mesh: &Mesh) -> HashMap<(Place, u32), DVec3> {
+    let mut sums: HashMap<(Place, u32), (DVec3, f64)> = HashMap::new();
+    for (number, &tint) in mesh.tints.iter().enumerate() {
+        let [a, b, c] = Surface::corners(mesh, number);
+        let area = (b - a).cross(c - a).length();
+        for corner in mesh.triangles[number] {
+            let place = place_of(mesh.positions[corner as usize]);
+            let sum = sums.entry((place, mesh.material_of[number])).or_default();
+            *sum = (sum.0 + point(tint) * area, sum.1 + area);
+        }
+    }
+    let mean = |(key, (sum, area)): (_, (DVec3, f64))| {
+        let is_some = area > 0.0;
+        (key, if is_some { sum / area } else { DVec3::ONE })
+    };
+    sums.into_iter().map(mean).collect()
 }
 
 /// Steps of a coordinate over the box of a compact mesh.
@@ -198,7 +238,8 @@ const HEADER: u64 = 6 * 4 + 3 * 4;
 /// A mesh as it would be stored for drawing, indexed: vertices of a position in 16 bits an axis of
 /// the box, a normal in 16 bits and, where the mesh has colours of vertices, 24 bits of colour;
 /// triangles of three numbers of vertices, each of 16 or 32 bits, and one of 8 or 16 bits of a
-/// material, if there are several; materials of 24 bits.
+/// material, if there are several, and 24 of its texture's colour, if there are textures; materials
+/// of 24 bits.
 ///
 /// Gives the mesh with what was rounded, and its bytes.
 #[must_use]
@@ -209,8 +250,8 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
     for position in &mut rounded.positions {
         for k in 0..3 {
             if step[k] > 0.0 {
-                let steps = libm::round((f64::from(position[k]) - low[k]) / step[k]);
-                position[k] = (low[k] + steps * step[k]) as f32;
+                let steps = libm::round((position[k] - low[k]) / step[k]);
+                position[k] = low[k] + steps * step[k];
             }
         }
     }
@@ -229,7 +270,7 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
             if let Some(unit) = packed.decode() {
                 *normal = unit.as_vec3().to_array();
             }
-            let place = rounded.positions[corner as usize].map(f32::to_bits);
+            let place = place_of(rounded.positions[corner as usize]);
             let color = rounded.vertex_colors.get(corner as usize).copied();
             vertices.insert((place, packed.0, color));
         }
@@ -245,7 +286,8 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
     let bytes = HEADER
         + vertices.len() as u64 * vertex
         + rounded.triangles.len() as u64 * (3 * index + material)
-        + used.len() as u64 * 3;
+        + used.len() as u64 * 3
+        + rounded.tints.len() as u64 * 3;
     (rounded, bytes)
 }
 
@@ -263,6 +305,7 @@ impl Mesh {
             part.triangles.push(self.triangles[number]);
             part.material_of.push(self.material_of[number]);
             part.corner_normals.extend(self.corner_normals.get(number));
+            part.tints.extend(self.tints.get(number));
         }
         part.find_bounds();
         part
@@ -281,18 +324,17 @@ impl Mesh {
             all.material_of.extend(part.material_of);
             all.corner_normals.extend(part.corner_normals);
             all.vertex_colors.extend(part.vertex_colors);
+            all.tints.extend(part.tints);
         }
         all.find_bounds();
         Some(all)
     }
 
     fn find_bounds(&mut self) {
-        let (mut low, mut high) = ([f32::INFINITY; 3], [f32::NEG_INFINITY; 3]);
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for &corner in self.triangles.iter().flatten() {
-            for k in 0..3 {
-                let at = self.positions[corner as usize][k];
-                (low[k], high[k]) = (low[k].min(at), high[k].max(at));
-            }
+            let at = point(self.positions[corner as usize]);
+            (low, high) = (low.min(at), high.max(at));
         }
         (self.low, self.high) = (low, high);
     }

@@ -30,21 +30,23 @@ pub use surface::{Instances, Surface, Triangle, barycentric, mesh_box};
 /// every coordinate finite and every triangle of an area above zero.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
-    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) positions: Vec<[f64; 3]>,
     pub(crate) triangles: Vec<[u32; 3]>,
     pub(crate) material_of: Vec<u32>,
     pub(crate) materials: Vec<Material>,
     pub(crate) corner_normals: Vec<[[f32; 3]; 3]>,
     pub(crate) vertex_colors: Vec<[u8; 3]>,
-    pub(crate) low: [f32; 3],
-    pub(crate) high: [f32; 3],
+    /// Mean colour of each triangle's texture, linear light, or nothing where there are none.
+    pub(crate) tints: Vec<[f32; 3]>,
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
     pub(crate) warnings: Vec<String>,
 }
 
 impl Mesh {
     /// Vertex positions, finite.
     #[must_use]
-    pub fn positions(&self) -> &[[f32; 3]] {
+    pub fn positions(&self) -> &[[f64; 3]] {
         &self.positions
     }
 
@@ -83,8 +85,7 @@ impl Mesh {
     /// Lowest and highest corner of the box around all triangles.
     #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
-        let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
-        (point(self.low), point(self.high))
+        (self.low, self.high)
     }
 
     /// Warnings about a file that could be read, one sentence each.
@@ -102,6 +103,7 @@ impl Mesh {
             size_of_val(&self.material_of[..]),
             size_of_val(&self.corner_normals[..]),
             size_of_val(&self.vertex_colors[..]),
+            size_of_val(&self.tints[..]),
         ];
         sizes.iter().map(|&size| size as u64).sum()
     }

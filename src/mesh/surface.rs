@@ -66,7 +66,7 @@ impl Surface for Mesh {
     }
 
     fn corners(&self, number: usize) -> [DVec3; 3] {
-        self.triangles[number].map(|i| DVec3::from_array(self.positions[i as usize].map(f64::from)))
+        self.triangles[number].map(|i| DVec3::from_array(self.positions[i as usize]))
     }
 
     fn triangle(&self, number: usize) -> Triangle {
@@ -77,7 +77,9 @@ impl Surface for Mesh {
         };
         let material: Option<&Material> = self.materials.get(self.material_of[number] as usize);
         let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
-        let diffuse = DVec3::from_array(diffuse.map(f64::from));
+        let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
+        let linear = |color: [f32; 3]| DVec3::from_array(color.map(f64::from));
+        let diffuse = linear(diffuse) * linear(tint);
         let colors = if self.vertex_colors.is_empty() {
             [diffuse; 3]
         } else {
@@ -127,7 +129,7 @@ impl Instances {
             .zip(&is_used)
             .filter(|(_, used)| **used);
         let used: Vec<DVec3> = used
-            .map(|(position, _)| DVec3::from_array(position.map(f64::from)))
+            .map(|(position, _)| DVec3::from_array(*position))
             .collect();
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for place in &places {

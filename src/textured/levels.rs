@@ -7,6 +7,8 @@
 //! by when they first show, and a surfel is there from one level to another.
 //! Going from level to level, either way, is choosing another number.
 
+use std::collections::HashMap;
+
 use super::cell_grid::{ACROSS, is_positive_half};
 use super::record::{CLEAR, VoxelRecord};
 
@@ -105,6 +107,8 @@ pub struct Levels {
     surfels: Vec<Surfel>,
     /// Of each level, the cells of the box around the voxels that are left.
     boxes: Vec<[[u32; 3]; 2]>,
+    /// Of each level, along each axis, how many cells before its voxels what they show may lie behind their faces.
+    reaches: Vec<[u32; 3]>,
     rows: Vec<LevelRow>,
 }
 
@@ -119,6 +123,7 @@ impl Levels {
             order: Vec::with_capacity(primitives),
             surfels: surfels(voxels, cells),
             boxes: Vec::new(),
+            reaches: Vec::new(),
             rows: Vec::new(),
         };
         levels.surfels.retain(|surfel| {
@@ -140,6 +145,7 @@ impl Levels {
             levels.shown.push(levels.order.len() as u32);
             levels.boxes.push(box_around(&voxels[eroded..]));
         }
+        levels.reaches = reaches(voxels, &levels.surfels, levels.last(), cells);
         levels.rows = (0..=levels.last())
             .map(|level| {
                 let primitives = levels.primitives(level).len() as u64;
@@ -182,6 +188,12 @@ impl Levels {
         self.surfels.iter().filter(shows)
     }
 
+    /// Along each axis, how many cells behind a face that a level shows lies what is on it, at the most.
+    #[must_use]
+    pub fn reach(&self, level: u32) -> [u32; 3] {
+        self.reaches[level.min(self.last()) as usize]
+    }
+
     /// The table of all levels.
     #[must_use]
     pub fn rows(&self) -> &[LevelRow] {
@@ -195,6 +207,40 @@ impl Levels {
         let level = level.min(self.last());
         (level < self.last()).then(|| self.boxes[level as usize])
     }
+}
+
+/// Of each level, the longest way from a face that it shows to the end of the voxels behind it in its half.
+fn reaches(voxels: &[VoxelRecord], surfels: &[Surfel], last: u32, cells: u32) -> Vec<[u32; 3]> {
+    let half_column = |voxel: &VoxelRecord, axis: usize| {
+        let [across, down] = ACROSS[axis];
+        let is_positive = is_positive_half(u32::from(voxel.cell[axis]), cells);
+        (axis, voxel.cell[across], voxel.cell[down], is_positive)
+    };
+    // The slice of each half column that is nearest to the middle.
+    let mut innermost = HashMap::new();
+    for voxel in voxels {
+        for axis in 0..3 {
+            let slice = u32::from(voxel.cell[axis]);
+            let key = half_column(voxel, axis);
+            let inner = innermost.entry(key).or_insert(slice);
+            *inner = if key.3 {
+                slice.min(*inner)
+            } else {
+                slice.max(*inner)
+            };
+        }
+    }
+    let mut reaches = vec![[0; 3]; last as usize + 1];
+    for surfel in surfels {
+        let (axis, voxel) = (usize::from(surfel.axis), &voxels[surfel.voxel as usize]);
+        let slice = u32::from(voxel.cell[axis]);
+        let reach = 1 + slice.abs_diff(innermost[&half_column(voxel, axis)]);
+        for level in surfel.from..=surfel.to {
+            let longest = &mut reaches[usize::from(level)][axis];
+            *longest = reach.max(*longest);
+        }
+    }
+    reaches
 }
 
 fn box_around(voxels: &[VoxelRecord]) -> [[u32; 3]; 2] {

@@ -109,9 +109,7 @@ fn the_camera_is_nearer_than_one_that_sees_the_whole_box() {
     let (low, high) = mesh.bounds();
     let points = mesh.positions().iter();
     let of_vertices = Bounds {
-        hull: points
-            .map(|p| DVec3::from_array(p.map(f64::from)))
-            .collect(),
+        hull: points.map(|p| DVec3::from_array(*p)).collect(),
         ..Bounds::of_box(low, high)
     };
     let of_mesh = Bounds::of_mesh(&mesh_box(&mesh, true));

@@ -96,7 +96,7 @@ fn reference(graph: &Graph, light: &[[u16; 3]], camera: &Camera, at: [f64; 2]) -
                 sides[k] & 15
             };
             weight += i64::from(nibble + nibble / 8) * counts[k];
-            is_whole |= nibble == 15 && shares[k] >= 4;
+            is_whole |= nibble == 15;
         }
         let weight = if is_whole { 256 } else { weight };
         let left = i64::from(sample.left);
@@ -228,9 +228,9 @@ fn two_voxels_by_hand() {
             .find(|c| c.1[2] == 0)
             .expect("a voxel")
             .0;
-        // Seen from above: the high side of z. Other sides must not count.
-        opacity[top as usize] = Opacity([255, 255, upper << 4 | 15]);
-        opacity[bottom as usize] = Opacity([255, 255, lower << 4 | 15]);
+        // Seen from above: the high side of z. Other sides must not count, as they are not opaque.
+        opacity[top as usize] = Opacity([238, 238, upper << 4 | 15]);
+        opacity[bottom as usize] = Opacity([238, 238, lower << 4 | 15]);
         graph.opacity = opacity.into();
         let mut light = vec![[0; 3]; graph.len()];
         light[top as usize] = [1000, 0, 7];

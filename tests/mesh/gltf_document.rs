@@ -52,7 +52,7 @@ impl Document {
         let corners = |mesh: &Mesh| -> Vec<[[f32; 3]; 3]> {
             let triangles = mesh.triangles().iter();
             triangles
-                .map(|t| t.map(|i| mesh.positions()[i as usize]))
+                .map(|t| t.map(|i| mesh.positions()[i as usize].map(|c| c as f32)))
                 .collect()
         };
         match (&self.shows, &mesh) {
@@ -425,15 +425,15 @@ fn show(
     for &triangle in triangles {
         let mut corners = triangle.map(|i| {
             let [x, y, z] = positions[i].map(f64::from);
-            place.map(|row| (row[0] * x + row[1] * y + row[2] * z + row[3]) as f32)
+            place.map(|row| row[0] * x + row[1] * y + row[2] * z + row[3])
         });
         if is_mirror {
             corners.swap(1, 2);
         }
-        let [p, q, r] = corners.map(|corner| corner.map(f64::from));
+        let [p, q, r] = corners;
         let edge = |to: [f64; 3]| [0, 1, 2].map(|k| to[k] - p[k]);
         if cross(edge(q), edge(r)) != [0.0; 3] {
-            shows.push(corners);
+            shows.push(corners.map(|corner| corner.map(|c| c as f32)));
         }
     }
 }

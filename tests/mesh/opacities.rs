@@ -17,7 +17,7 @@ fn graph_of(mesh: &Mesh, depth: u32) -> (Graph, Grid) {
     (graph, grid)
 }
 
-/// By level and axis, what the nodes' faces cover together in world units: a
+/// By level and axis, what the nodes' faces cover together in world units, seen from the high side: a
 /// column of nodes counts once for each of them.
 fn covered(graph: &Graph) -> Vec<[f64; 3]> {
     let levels = graph.level_start.windows(2).enumerate();
@@ -29,7 +29,6 @@ fn covered(graph: &Graph) -> Vec<[f64; 3]> {
             for node in nodes[0]..nodes[1] {
                 let opacity = graph.opacity[node as usize];
                 for (k, sum) in sum.iter_mut().enumerate() {
-                    assert_eq!(opacity.from_side(k, false), opacity.from_side(k, true));
                     *sum += f64::from(sixteenths(opacity.from_side(k, true))) / 16.0 * side * side;
                 }
             }
@@ -47,7 +46,7 @@ fn a_thin_bar_keeps_its_width_at_every_level() {
     for (level, [_, y, z]) in covered(&graph).into_iter().enumerate().skip(5) {
         for (axis, area) in [('y', y), ('z', z)] {
             let share = area / (100.0 * 0.3);
-            // Of a shell, front and back are in one node or in two of a column.
+            // The back is behind the front and does not count, but where both are whole.
             let most = if level > 8 { 2.2 } else { 1.5 };
             assert!(
                 (0.6..most).contains(&share),
@@ -69,11 +68,11 @@ fn slanted_walls_stay_whole() {
         &[[0, 1, 2], [0, 2, 3]],
     );
     let (graph, _) = graph_of(&wall, 6);
-    // Seen along y, all but the outermost columns are covered in full.
+    // Seen along y, all but the outermost columns are covered in full; where the wall is cut into two, by both parts.
     let sums = covered(&graph);
     for (level, [_, y, _]) in sums.iter().enumerate().skip(2) {
         let share = y / (64.0 * 64.0);
-        assert!((0.9..1.15).contains(&share), "level {level}: {share}");
+        assert!((0.9..1.9).contains(&share), "level {level}: {share}");
     }
     let whole = graph.opacity.iter().filter(|o| o.from_side(1, true) == 15);
     assert!(whole.count() > graph.len() / 4);

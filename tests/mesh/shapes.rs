@@ -109,7 +109,7 @@ pub fn load(bytes: &[u8], format: MeshFormat) -> Result<Mesh, MeshError> {
 
 /// The corners of all triangles.
 pub fn soup(mesh: &Mesh) -> Vec<[[f32; 3]; 3]> {
-    let corner = |i: u32| mesh.positions()[i as usize];
+    let corner = |i: u32| mesh.positions()[i as usize].map(|c| c as f32);
     mesh.triangles().iter().map(|t| t.map(corner)).collect()
 }
 

@@ -279,7 +279,7 @@ fn threads_and_instances_change_nothing() {
         positions.extend(
             mesh.positions()
                 .iter()
-                .map(|p| [p[0] + 3.0 * f32::from(i), p[1], p[2]]),
+                .map(|p| [p[0] + 3.0 * f64::from(i), p[1], p[2]].map(|c| c as f32)),
         );
         triangles.extend(mesh.triangles().iter().map(|t| t.map(|c| c + base)));
     }

@@ -1,6 +1,7 @@
 //! Textured voxels: build, levels, file, view, command line.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+mod auto;
 mod command;
 mod file;
 mod levels;

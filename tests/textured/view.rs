@@ -12,7 +12,7 @@ use shiftvox::textured::{BuildOptions, Element, TexturedFile, build};
 use super::file::rayon_pool;
 use super::scenes::{balls, built, file_of, mesh_of};
 
-fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
+pub(super) fn view(eye: DVec3, target: DVec3, side: u32, fov_degrees: f64) -> RasterCamera {
     let forward = (target - eye).normalize();
     let helper = if forward.y.abs() > 0.9 {
         DVec3::X
@@ -268,7 +268,10 @@ fn auto_takes_texels_of_a_pixel() {
         let direction = DVec3::new(1.0, 0.7, -0.5).normalize();
         let view = view(centre + direction * away, centre, 256, 40.0);
         let chosen = choose(&file, &view, 1.0);
-        assert!(chosen.texel_px <= 1.0, "{chosen:?}");
+        assert!(
+            chosen.texel_px <= 1.0 && chosen.behind_px <= 1.0,
+            "{chosen:?}"
+        );
         let rows = file.grid(chosen.grid).levels().rows();
         let faces = rows[chosen.level as usize].faces;
         assert!(

@@ -6,6 +6,7 @@ mod obj;
 mod ply;
 mod stl;
 mod text;
+mod texture;
 
 use std::fmt;
 use std::io;

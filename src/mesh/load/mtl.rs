@@ -1,7 +1,7 @@
 //! Material libraries of Wavefront files: names, diffuse colours, opacities.
 //!
-//! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `d`, `Tr`.
-//! All else, textures among it, is passed over.
+//! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `map_Kd`, `d`, `Tr`.
+//! All else is passed over.
 
 use super::{LoadOptions, text};
 use crate::mesh::Material;
@@ -11,8 +11,8 @@ use crate::mesh::Material;
 pub(super) struct Library {
     /// Materials in the order of the file; of two of one name the last counts.
     pub(super) materials: Vec<Material>,
-    /// Materials whose colour is a texture, which is not read.
-    pub(super) textured: usize,
+    /// By material, the name of the picture that its colour is multiplied by.
+    pub(super) textures: Vec<Option<String>>,
     /// First line that could not be understood.
     pub(super) odd_line: Option<usize>,
 }
@@ -39,8 +39,8 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
             "d" => open.alpha_from(rest, |d| d),
             "Tr" => open.alpha_from(rest, |tr| 1.0 - tr),
             "map_Kd" => {
-                open.textured = true;
-                true
+                open.texture = file_name(rest);
+                open.texture.is_some()
             }
             _ => true,
         };
@@ -56,8 +56,13 @@ pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
 
 impl Library {
     fn close(&mut self, open: Open, options: &LoadOptions) {
-        self.textured += usize::from(open.textured);
-        let material = match open.color {
+        // Black times a picture is black: programs that write so mean the picture alone. So do those that write none.
+        let color = match (&open.texture, open.color) {
+            (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
+            (_, color) => color,
+        };
+        self.textures.push(open.texture);
+        let material = match color {
             Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
             None => Material {
                 alpha: open.alpha.clamp(0.0, 1.0),
@@ -68,12 +73,35 @@ impl Library {
     }
 }
 
+/// The name in a `map_Kd`, after its options: `-s 1 1 1 -clamp on wood grain.png`.
+fn file_name(rest: &str) -> Option<String> {
+    let mut rest = rest.trim();
+    while rest.starts_with('-') {
+        let (option, after) = rest.split_once(char::is_whitespace)?;
+        rest = after.trim_start();
+        // Up to three numbers, or exactly so many words.
+        let (most, any) = match option {
+            "-s" | "-o" | "-t" => (3, false),
+            "-mm" => (2, true),
+            _ => (1, true),
+        };
+        for _ in 0..most {
+            let (word, after) = rest.split_once(char::is_whitespace)?;
+            if !any && word.parse::<f64>().is_err() {
+                break;
+            }
+            rest = after.trim_start();
+        }
+    }
+    (!rest.is_empty()).then(|| rest.to_owned())
+}
+
 /// A material of which more lines may follow.
 struct Open {
     name: String,
     color: Option<[f32; 3]>,
     alpha: f32,
-    textured: bool,
+    texture: Option<String>,
 }
 
 impl Open {
@@ -82,7 +110,7 @@ impl Open {
             name: name.to_owned(),
             color: None,
             alpha: 1.0,
-            textured: false,
+            texture: None,
         }
     }
 
@@ -118,6 +146,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn pictures_have_names_after_their_options() {
+        let name = |line| file_name(line);
+        assert_eq!(name("a b.png").as_deref(), Some("a b.png"));
+        let options = "-s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 sub/a b.png";
+        assert_eq!(name(options).as_deref(), Some("sub/a b.png"));
+        assert_eq!(name("-clamp on"), None);
+        assert_eq!(name(""), None);
+    }
+
+    #[test]
     fn materials_with_what_is_odd_about_them() {
         let text =
             b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
@@ -129,6 +167,8 @@ mod tests {
         assert_eq!(library.materials[0].alpha, 0.75);
         assert_eq!(library.materials[1].alpha, 0.5);
         assert_eq!(library.materials[2].diffuse, library.materials[3].diffuse);
-        assert_eq!((library.textured, library.odd_line), (1, Some(11)));
+        assert_eq!(library.odd_line, Some(11));
+        let wood = Some("wood.png".to_owned());
+        assert_eq!(library.textures, [None, wood, None, None]);
     }
 }

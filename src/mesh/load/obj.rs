@@ -2,7 +2,7 @@
 //!
 //! Read: positions with their colours, normals, faces of any number of corners
 //! (cut into a fan from the first, so they should be convex), materials by
-//! name. Lines, points, curves, texture coordinates are passed over.
+//! name with their textures. Lines, points, curves are passed over.
 
 use std::cell::{Cell, RefCell};
 use std::io::{self, BufRead, Read};
@@ -10,6 +10,7 @@ use std::path::Path;
 
 use tobj::LoadError;
 
+use super::texture::Textures;
 use super::{Beside, LoadOptions, MOST_CORNERS, check_corners, mtl, text};
 use crate::mesh::error::{MeshError, MeshFault, Place};
 use crate::mesh::{Material, MeshBuilder};
@@ -51,6 +52,7 @@ pub(super) fn read(
         builder.warn(warning);
     }
     let mut without = 0;
+    let mut textures = Textures::default();
     for model in &models {
         let mesh = &model.mesh;
         let base = builder.positions() as u32;
@@ -65,6 +67,12 @@ pub(super) fn read(
             }
         }
         let material = mesh.material_id.map(|id| first + id as u32);
+        let texture = mesh
+            .material_id
+            .and_then(|id| libraries.textures.get(id)?.as_ref())
+            .and_then(|name| textures.get(name, || beside.read(name)));
+        let uvs = mesh.texcoords.as_chunks::<2>().0;
+        let uv_indices = mesh.texcoord_indices.as_chunks::<3>().0;
         let has_normals = mesh.normal_indices.len() == mesh.indices.len();
         let normals = mesh.normals.as_chunks::<3>().0;
         let normal_indices = mesh.normal_indices.as_chunks::<3>().0;
@@ -72,17 +80,27 @@ pub(super) fn read(
             let given = (has_normals && !normals.is_empty())
                 .then(|| normal_indices.get(number))
                 .flatten()
-                .map(|at| at.map(|i| normals.get(i as usize).copied().unwrap_or_default()));
+                .map(|at| at.map(|i| normals.get(i as usize).copied().unwrap_or_default()))
+                .map(|normals| normals.map(|normal| normal.map(|c| c as f32)));
+            let tint = texture.as_ref().and_then(|texture| {
+                let at = uv_indices.get(number)?;
+                let corner = |i: u32| uvs.get(i as usize).copied();
+                texture.mean(
+                    [corner(at[0])?, corner(at[1])?, corner(at[2])?].map(|[u, v]| [u, 1.0 - v]),
+                )
+            });
             without += usize::from(material.is_none());
             builder
-                .triangle(
+                .textured_triangle(
                     corners.map(|i| base.saturating_add(i)),
                     given,
                     material.unwrap_or(default),
+                    tint,
                 )
                 .map_err(|bad| out_of_range(i64::from(bad.index), bad.positions, 0))?;
         }
     }
+    textures.tell(builder);
     if without > 0 && first as usize + 1 > 1 && libraries.named > 0 {
         builder.warn(format!(
             "{without} triangles have no material that was found; they got the default colour"
@@ -95,6 +113,8 @@ pub(super) fn read(
 #[derive(Debug, Default)]
 struct Libraries {
     materials: Vec<Material>,
+    /// By material, the picture that its colour is multiplied by, as the mesh's folder has it.
+    textures: Vec<Option<String>>,
     warnings: Vec<String>,
     named: usize,
 }
@@ -118,12 +138,12 @@ impl Libraries {
                 return Err(LoadError::OpenFileFailed);
             }
         };
-        if library.textured > 0 {
-            self.warnings.push(format!(
-                "{name}: {} materials have textures, which are not read; their plain colours are used",
-                library.textured
-            ));
-        }
+        // Pictures lie beside the library.
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let beside_library = |name: String| folder.join(name).to_string_lossy().into_owned();
+        let textures = library.textures.into_iter();
+        self.textures
+            .extend(textures.map(|name| name.map(beside_library)));
         if let Some(line) = library.odd_line {
             self.warnings.push(format!(
                 "{name}: line {line} is not understood and was passed over"

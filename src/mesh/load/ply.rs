@@ -17,7 +17,7 @@ use crate::mesh::{Material, MeshBuilder};
 /// One vertex or face, with what matters of it.
 #[derive(Debug, Default)]
 struct Element {
-    position: [f32; 3],
+    position: [f64; 3],
     normal: [f32; 3],
     color: [u8; 3],
     corners: Vec<i64>,
@@ -38,12 +38,18 @@ impl PropertyAccess for Element {
                 let Some(number) = number else {
                     return PropertyAccessResult::UnsupportedType;
                 };
-                let (list, axis) = match name.as_bytes() {
-                    [b'n', axis] => (&mut self.normal, axis),
-                    [axis, ..] => (&mut self.position, axis),
-                    [] => return PropertyAccessResult::Ignored,
+                // A double keeps all of its digits.
+                let exact = match property {
+                    Property::Double(exact) => exact,
+                    Property::Int(whole) => f64::from(whole),
+                    Property::UInt(whole) => f64::from(whole),
+                    _ => f64::from(number),
                 };
-                list[usize::from(axis - b'x')] = number;
+                match name.as_bytes() {
+                    [b'n', axis] => self.normal[usize::from(axis - b'x')] = number,
+                    [axis, ..] => self.position[usize::from(axis - b'x')] = exact,
+                    [] => return PropertyAccessResult::Ignored,
+                }
             }
             "red" | "r" | "diffuse_red" => return self.colored(0, &property),
             "green" | "g" | "diffuse_green" => return self.colored(1, &property),

@@ -8,10 +8,12 @@
 //! subtrees of 32 voxels a side, some at a time; memory grows with the
 //! triangles and not with the voxels. Rules: `spec/mesh.md`.
 
+mod columns;
 mod distinct;
 mod grid;
 mod mix;
 mod opacity;
+mod parts;
 mod subtree;
 mod touch;
 

@@ -12,13 +12,13 @@
 //! Triangles have two sides, so what the mesh covers along an axis it covers
 //! from both ends of it.
 
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
 use super::distinct::Distinct;
 use super::touch::{OTHERS, Prepared, child};
-use super::{Grid, SUBTREE_LEVELS};
+use super::{Grid, SUBTREE_LEVELS, columns, parts};
 use crate::graph::{Graph, GraphView, Opacity, Progress};
 use crate::mesh::Surface;
 
@@ -26,7 +26,7 @@ use crate::mesh::Surface;
 const POINTS: usize = 8;
 /// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u`
 /// and `v` the axes after it.
-type Masks = [u64; 3];
+pub(super) type Masks = [u64; 3];
 
 /// The opacities of a graph's nodes, one each. The graph is the tree of the
 /// voxels that [`voxelize`](super::voxelize()) made of the same surface on the same grid.
@@ -40,36 +40,47 @@ pub fn opacities<S: Surface + ?Sized>(
 ) -> Vec<Opacity> {
     let side = grid.side(grid.depth());
     let origin = graph.placement.origin_index.map(|index| index * side);
-    let found: Vec<AtomicU32> = (0..graph.len()).map(|_| AtomicU32::new(0)).collect();
-    let finder = OpacityFinder {
+    let covered: Vec<Covered> = (0..graph.len()).map(|_| Covered::default()).collect();
+    // Equal triangles cover what one of them covers.
+    let distinct = Distinct::of(surface, grid).numbers;
+    let sides: Vec<i64> = (0..=graph.depth)
+        .map(|level| side << (graph.depth - level))
+        .collect();
+    let finder = CoverageFinder {
         surface,
         grid,
         graph: graph.view(),
-        found: &found,
+        found: &covered,
+        large_from: parts::coarsest_levels(surface, grid, &distinct, &sides),
         progress,
     };
     let voxels = graph.len() as u64;
     progress.begin("find opacities", voxels);
-    // Equal triangles cover what one of them covers.
-    let distinct = Distinct::of(surface, grid).numbers;
     finder.node(graph.root, &distinct, origin, 0);
     progress.end();
-    let opacity = |bits: AtomicU32| {
-        let [x, y, z, _] = bits.into_inner().to_le_bytes();
-        Opacity([x, y, z])
-    };
-    found.into_iter().map(opacity).collect()
+    columns::opacities(graph.view(), covered)
 }
 
-struct OpacityFinder<'w, S: ?Sized> {
+/// What a node covers, once that is found.
+#[derive(Debug, Default)]
+pub(super) struct Covered {
+    /// The points of its faces.
+    pub(super) masks: [AtomicU64; 3],
+    /// The coarsest level at which a large object is in it.
+    pub(super) large_from: AtomicU8,
+}
+
+struct CoverageFinder<'w, S: ?Sized> {
     surface: &'w S,
     grid: &'w Grid,
     graph: GraphView<'w>,
-    found: &'w [AtomicU32],
+    found: &'w [Covered],
+    /// By triangle, the coarsest level at which it is part of a large object.
+    large_from: Vec<u8>,
     progress: &'w dyn Progress,
 }
 
-impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
+impl<S: Surface + ?Sized> CoverageFinder<'_, S> {
     /// Side on the lattice of a node of a level of the graph, which may have
     /// fewer levels than the grid.
     fn side(&self, level: u32) -> i64 {
@@ -78,11 +89,14 @@ impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
 
     /// A node, of which these triangles may be a part. Deep down, threads are
     /// of no use and triangles are few enough to be prepared.
-    fn node(&self, node: u32, triangles: &[u32], corner: [i64; 3], level: u32) -> Masks {
+    fn node(&self, node: u32, triangles: &[u32], corner: [i64; 3], level: u32) -> Inside {
         if self.graph.depth - level <= SUBTREE_LEVELS {
-            let prepared: Vec<Prepared> = triangles
+            let prepared: Vec<(Prepared, u8)> = triangles
                 .iter()
-                .map(|&number| Prepared::new(self.grid.corners(self.surface, number)))
+                .map(|&number| {
+                    let corners = self.grid.corners(self.surface, number);
+                    (Prepared::new(corners), self.large_from[number as usize])
+                })
                 .collect();
             let mut list: Vec<u32> = (0..triangles.len() as u32).collect();
             let before = self.below(node, level);
@@ -91,11 +105,11 @@ impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
             return masks;
         }
         let half = self.side(level + 1);
-        let masks: Vec<Masks> = (0..8u8)
+        let inside: Vec<Inside> = (0..8u8)
             .into_par_iter()
             .map(|octant| {
                 let Some(inner) = self.graph.child(node, octant) else {
-                    return Masks::default();
+                    return NOTHING;
                 };
                 let at = child(corner, half, octant);
                 let touching: Vec<u32> = triangles
@@ -109,7 +123,7 @@ impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
                 self.node(inner, &touching, at, level + 1)
             })
             .collect();
-        self.store(node, joined(&masks))
+        self.store(node, together(&inside))
     }
 
     /// Nodes of a subtree, for the progress: those of its two upper levels.
@@ -124,23 +138,25 @@ impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
     fn descend(
         &self,
         node: u32,
-        prepared: &[Prepared],
+        prepared: &[(Prepared, u8)],
         list: &mut Vec<u32>,
         begin: usize,
         corner: [i64; 3],
         level: u32,
-    ) -> Masks {
+    ) -> Inside {
         if level == self.graph.depth {
             let side = self.side(level);
-            let mut masks = Masks::default();
+            let (mut masks, mut large_from) = (Masks::default(), u8::MAX);
             for &triangle in &list[begin..] {
-                cover(&prepared[triangle as usize], corner, side, &mut masks);
+                let (triangle, from) = &prepared[triangle as usize];
+                cover(triangle, corner, side, &mut masks);
+                large_from = large_from.min(*from);
             }
-            return self.store(node, masks);
+            return self.store(node, (masks, large_from));
         }
         let half = self.side(level + 1);
         let end = list.len();
-        let mut masks = [Masks::default(); 8];
+        let mut inside = [NOTHING; 8];
         for octant in 0..8u8 {
             let Some(inner) = self.graph.child(node, octant) else {
                 continue;
@@ -148,30 +164,40 @@ impl<S: Surface + ?Sized> OpacityFinder<'_, S> {
             let at = child(corner, half, octant);
             for i in begin..end {
                 let triangle = list[i];
-                if prepared[triangle as usize].touches(at, half) {
+                if prepared[triangle as usize].0.touches(at, half) {
                     list.push(triangle);
                 }
             }
-            masks[usize::from(octant)] = self.descend(inner, prepared, list, end, at, level + 1);
+            inside[usize::from(octant)] = self.descend(inner, prepared, list, end, at, level + 1);
             list.truncate(end);
         }
-        self.store(node, joined(&masks))
+        self.store(node, together(&inside))
     }
 
-    fn store(&self, node: u32, masks: Masks) -> Masks {
-        let dither = dither(&masks);
-        let [x, y, z] = masks.map(|mask| {
-            let opacity = opacity_of(mask.count_ones(), dither);
-            opacity | opacity << 4
-        });
-        let bits = u32::from_le_bytes([x, y, z, 0]);
-        self.found[node as usize].store(bits, Ordering::Relaxed);
-        masks
+    fn store(&self, node: u32, inside: Inside) -> Inside {
+        let found = &self.found[node as usize];
+        for (found, mask) in found.masks.iter().zip(inside.0) {
+            found.store(mask, Ordering::Relaxed);
+        }
+        found.large_from.store(inside.1, Ordering::Relaxed);
+        inside
     }
 }
 
+/// The points that a node covers, and the coarsest level at which a large object is in it.
+type Inside = (Masks, u8);
+
+const NOTHING: Inside = ([0; 3], u8::MAX);
+
+/// What eight children come to, by octant.
+fn together(children: &[Inside]) -> Inside {
+    let masks: Vec<Masks> = children.iter().map(|child| child.0).collect();
+    let large_from = children.iter().map(|child| child.1).min();
+    (joined(&masks), large_from.unwrap_or(u8::MAX))
+}
+
 /// A pseudo-random number that follows from what a node covers.
-fn dither(masks: &Masks) -> u32 {
+pub(super) fn dither(masks: &Masks) -> u32 {
     let mixed = masks.iter().fold(0u64, |hash, &mask| {
         (hash ^ mask)
             .wrapping_mul(0x9e37_79b9_7f4a_7c15)
@@ -182,7 +208,7 @@ fn dither(masks: &Masks) -> u32 {
 
 /// The opacity of a face of which so many of the 64 points are covered: in
 /// sixteenths, rounded up or down as the dither has it, all and nothing apart.
-fn opacity_of(points: u32, dither: u32) -> u8 {
+pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
     let sixteenths = ((points * 16 + (dither & 63)) / 64) as u8;
     match sixteenths {
         // Eight sixteenths are between two opacities.

@@ -102,7 +102,12 @@ pub fn build<S: Surface + ?Sized>(
         .into_par_iter()
         .map(|number| Primitive::of(&surface.triangle(number)))
         .collect();
-    let (low, high) = bounds(&primitives);
+    let (rounded_low, rounded_high) = bounds(&primitives);
+    if !(rounded_low.is_finite() && rounded_high.is_finite()) {
+        return Err(BuildError::Range);
+    }
+    // The mesh's own box: what is made of a mesh is seen from one place.
+    let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
     if !(low.is_finite() && high.is_finite() && extent > 0.0) {
         return Err(BuildError::Range);

@@ -122,7 +122,9 @@ pub(super) fn check_primitives(
             return Err((number, "finite corners, and zero in the spare field"));
         }
     }
-    if crate::textured::build::bounds(primitives) != (low, high) {
+    // The box is that of the corners before they were rounded to single precision, which keeps their order.
+    let rounded = [low, high].map(|corner| corner.as_vec3().as_dvec3());
+    if crate::textured::build::bounds(primitives) != (rounded[0], rounded[1]) {
         return Err((0, "primitives that fill the box of the header"));
     }
     Ok(())

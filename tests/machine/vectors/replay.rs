@@ -200,7 +200,8 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             let y = nearest(1).min(16 - x);
             let shares = [x, y, 16 - x - y];
             let mut out = shares.to_vec();
-            out.extend(bits(&shares.map(|share| share >= 4)));
+            // From every share on, also from none.
+            out.extend(bits(&shares.map(|share| share >= 0)));
             out
         }
         "blend_counts" => {

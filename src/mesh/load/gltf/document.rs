@@ -26,6 +26,10 @@ pub(super) struct Document {
     #[serde(default)]
     pub(super) materials: Vec<Material>,
     #[serde(default)]
+    pub(super) textures: Vec<Texture>,
+    #[serde(default)]
+    pub(super) images: Vec<Image>,
+    #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
     #[serde(default)]
     pub(super) buffer_views: Vec<BufferView>,
@@ -83,6 +87,10 @@ pub(super) struct Attributes {
     pub(super) normal: Option<usize>,
     #[serde(rename = "COLOR_0")]
     pub(super) color: Option<usize>,
+    #[serde(rename = "TEXCOORD_0")]
+    pub(super) first_uv: Option<usize>,
+    #[serde(rename = "TEXCOORD_1")]
+    pub(super) second_uv: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -100,7 +108,45 @@ pub(super) struct Material {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Pbr {
     pub(super) base_color_factor: Option<[f32; 4]>,
-    pub(super) base_color_texture: Option<serde::de::IgnoredAny>,
+    pub(super) base_color_texture: Option<TextureInfo>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    pub(super) index: usize,
+    #[serde(default)]
+    pub(super) tex_coord: usize,
+    #[serde(default)]
+    pub(super) extensions: TextureExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    pub(super) transform: Option<TextureTransform>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureTransform {
+    pub(super) offset: Option<[f64; 2]>,
+    #[serde(default)]
+    pub(super) rotation: f64,
+    pub(super) scale: Option<[f64; 2]>,
+    pub(super) tex_coord: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Texture {
+    pub(super) source: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Image {
+    pub(super) uri: Option<String>,
+    pub(super) buffer_view: Option<usize>,
 }
 
 #[derive(Debug, Deserialize)]

@@ -2,13 +2,14 @@
 //!
 //! Read: the default scene's nodes with their transforms, triangles, strips
 //! and fans, positions, normals, the first vertex colours, indices; of
-//! materials the base colour's factor and the alpha mode. Buffers may be in
+//! materials the base colour's factor and texture, and the alpha mode. Buffers may be in
 //! the file, in a `data:` address or in a file of the same folder. Not read:
-//! textures, skins, morph targets, animations, sparse accessors, compressed
+//! other textures, skins, morph targets, animations, sparse accessors, compressed
 //! meshes; the last two are refused, the others passed over with a warning.
 
 mod accessor;
 mod document;
+mod picture;
 mod scene;
 
 use std::collections::HashMap;
@@ -122,7 +123,7 @@ fn read_document(
     })?;
     document.check()?;
     let buffers = Buffers::read(&document, binary, beside)?;
-    scene::Reader::new(&document, &buffers, json.len()).read(options, builder)
+    scene::Reader::new(&document, &buffers, beside, json.len()).read(options, builder)
 }
 
 /// The bytes of all buffers. One address is read once.
@@ -183,16 +184,17 @@ impl Buffers {
     }
 }
 
+/// The bytes of a `data:` address, where it is one in base64.
+fn decoded(data: &str) -> Option<Vec<u8>> {
+    let (_, text) = data.split_once(";base64,")?;
+    let text = text.trim_end_matches('=');
+    let decoded = STANDARD_NO_PAD.decode(text);
+    decoded.or_else(|_| STANDARD.decode(text)).ok()
+}
+
 fn fetch(uri: &str, number: usize, beside: &dyn Beside) -> Result<Vec<u8>, MeshError> {
     if let Some(data) = uri.strip_prefix("data:") {
-        let decoded = data.split_once(";base64,").and_then(|(_, text)| {
-            let text = text.trim_end_matches('=');
-            STANDARD_NO_PAD
-                .decode(text)
-                .or_else(|_| STANDARD.decode(text))
-                .ok()
-        });
-        return decoded
+        return decoded(data)
             .ok_or_else(|| fault_of("buffer", number, "data in base64", "other data", BROKEN));
     }
     let name = unescaped(uri);

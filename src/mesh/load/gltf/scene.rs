@@ -4,8 +4,10 @@ use glam::{DMat4, DQuat, DVec3};
 
 use super::accessor::Numbers;
 use super::document::{Document, Material as FileMaterial, Mesh as FileMesh, Node, Primitive};
-use super::{BROKEN, Buffers, LoadOptions, fault_of};
+use super::picture::{self, Painted};
+use super::{BROKEN, Beside, Buffers, LoadOptions, fault_of};
 use crate::mesh::error::{MeshError, MeshFault, Place};
+use crate::mesh::load::texture::Textures;
 use crate::mesh::material::linear_to_srgb;
 use crate::mesh::{ColorSpace, Material, MeshBuilder};
 
@@ -31,10 +33,17 @@ pub(super) struct Reader<'d> {
     skipped_modes: u64,
     morphed: u64,
     skinned: u64,
+    beside: &'d dyn Beside,
+    textures: Textures,
 }
 
 impl<'d> Reader<'d> {
-    pub(super) fn new(document: &'d Document, buffers: &'d Buffers, json_bytes: usize) -> Self {
+    pub(super) fn new(
+        document: &'d Document,
+        buffers: &'d Buffers,
+        beside: &'d dyn Beside,
+        json_bytes: usize,
+    ) -> Self {
         let bytes = json_bytes + buffers.len();
         Self {
             document,
@@ -43,6 +52,8 @@ impl<'d> Reader<'d> {
             skipped_modes: 0,
             morphed: 0,
             skinned: 0,
+            beside,
+            textures: Textures::default(),
         }
     }
 
@@ -110,13 +121,8 @@ impl<'d> Reader<'d> {
     }
 
     fn tell(&self, builder: &mut MeshBuilder) {
-        let textured = self.document.materials.iter();
-        let textured = textured.filter(|m| m.pbr_metallic_roughness.base_color_texture.is_some());
+        self.textures.tell(builder);
         for (count, what) in [
-            (
-                textured.count() as u64,
-                "materials have textures, which are not read; their plain colours are used",
-            ),
             (
                 self.skipped_modes,
                 "primitives of points or lines were passed over",
@@ -229,6 +235,40 @@ impl<'d> Reader<'d> {
         Ok(())
     }
 
+    /// The texture of a primitive's base colour and where its corners are on it.
+    fn painted(&mut self, primitive: &Primitive) -> Result<Option<Painted<'d>>, MeshError> {
+        let document = self.document;
+        let material = primitive.material.and_then(|m| document.materials.get(m));
+        let Some(info) =
+            material.and_then(|m| m.pbr_metallic_roughness.base_color_texture.as_ref())
+        else {
+            return Ok(None);
+        };
+        let transform = info.extensions.transform.as_ref();
+        let set = transform
+            .and_then(|t| t.tex_coord)
+            .unwrap_or(info.tex_coord);
+        let uvs = match set {
+            0 => primitive.attributes.first_uv,
+            1 => primitive.attributes.second_uv,
+            _ => None,
+        };
+        let Some(uvs) = uvs else { return Ok(None) };
+        let uvs = self.numbers(uvs)?;
+        let texture = picture::find(
+            document,
+            self.buffers,
+            self.beside,
+            info.index,
+            &mut self.textures,
+        );
+        Ok(texture.map(|texture| Painted {
+            texture,
+            uvs,
+            transform,
+        }))
+    }
+
     fn numbers(&self, accessor: usize) -> Result<Numbers<'d>, MeshError> {
         Numbers::find(self.document, self.buffers, accessor)
     }
@@ -257,7 +297,7 @@ impl<'d> Reader<'d> {
         let base = builder.positions() as u32;
         for at in 0..positions.count {
             let point = DVec3::from_array(positions.triple(at).map(f64::from));
-            let world = placed.transform_point3(point).as_vec3().to_array();
+            let world = placed.transform_point3(point).to_array();
             match &colors {
                 Some(colors) => {
                     let light = colors.triple(at);
@@ -282,6 +322,7 @@ impl<'d> Reader<'d> {
         let material = primitive
             .material
             .map_or(0, |m| (m as u32).saturating_add(1));
+        let painted = self.painted(primitive)?;
         for number in 0..triangles {
             let mut at = match mode {
                 4 => [3 * number, 3 * number + 1, 3 * number + 2],
@@ -315,7 +356,9 @@ impl<'d> Reader<'d> {
                 _ => None,
             };
             // In range: checked just now.
-            let _ = builder.triangle(triangle.map(|i| base + i), given, material);
+            let tint = painted.as_ref().and_then(|painted| painted.mean(triangle));
+            let corners = triangle.map(|i| base + i);
+            let _ = builder.textured_triangle(corners, given, material, tint);
         }
         Ok(())
     }
