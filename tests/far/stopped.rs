@@ -8,11 +8,8 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use assert_cmd::cargo::cargo_bin;
+use rustix::process::{Pid, Signal, kill_process};
 use shiftvox::far::FarFile;
-
-/// As `kill` names it, and its number.
-const TERMINATE: (&str, i32) = ("TERM", 15);
-const KILL: (&str, i32) = ("KILL", 9);
 
 /// A binary STL: a rough sheet of 20,000 triangles, of numbers that do not pack well.
 fn stl() -> Vec<u8> {
@@ -33,9 +30,9 @@ fn stl() -> Vec<u8> {
     bytes
 }
 
-/// Triangles alone, as one leaf: built at once, tens of megabytes to write.
+/// Triangles alone, as one leaf: built at once, ten megabytes to write.
 fn start(folder: &Path) -> Child {
-    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 100 --force";
+    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 40 --force";
     let arguments: Vec<&str> = arguments.split(' ').collect();
     Command::new(cargo_bin("shiftvox"))
         .current_dir(folder)
@@ -46,13 +43,9 @@ fn start(folder: &Path) -> Child {
         .unwrap()
 }
 
-fn send(child: &Child, signal: (&str, i32)) {
-    let process = child.id().to_string();
+fn send(child: &Child, signal: Signal) {
     // It fails where the process has ended by then, which the caller sees.
-    let status = Command::new("kill")
-        .args(["-s", signal.0, &process])
-        .status();
-    status.unwrap();
+    let _ = kill_process(Pid::from_child(child), signal);
 }
 
 /// Files that are not finished.
@@ -64,7 +57,7 @@ fn unfinished(folder: &Path) -> Vec<String> {
 }
 
 /// Starts builds until one is caught by the signal while it writes.
-fn stop_while_writing(folder: &Path, signal: (&str, i32)) {
+fn stop_while_writing(folder: &Path, signal: Signal) {
     for _ in 0..20 {
         let mut child = start(folder);
         let started = Instant::now();
@@ -73,12 +66,12 @@ fn stop_while_writing(folder: &Path, signal: (&str, i32)) {
                 started.elapsed() < Duration::from_secs(120),
                 "nothing is written"
             );
-            std::thread::sleep(Duration::from_millis(2));
+            std::thread::sleep(Duration::from_millis(1));
         }
         send(&child, signal);
         let status = child.wait().unwrap();
         let is_old = fs::read(folder.join("sheet.far")).unwrap() == b"old";
-        if status.signal() == Some(signal.1) && is_old {
+        if status.signal() == Some(signal.as_raw()) && is_old {
             return;
         }
         // It had written all before the signal came.
@@ -99,14 +92,14 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     // Long before anything is written.
     let mut child = start(at);
     std::thread::sleep(Duration::from_millis(50));
-    send(&child, TERMINATE);
-    assert_eq!(child.wait().unwrap().signal(), Some(TERMINATE.1));
+    send(&child, Signal::TERM);
+    assert_eq!(child.wait().unwrap().signal(), Some(Signal::TERM.as_raw()));
     assert!(unfinished(at).is_empty());
     // While it is written.
-    stop_while_writing(at, TERMINATE);
+    stop_while_writing(at, Signal::TERM);
     assert_eq!(unfinished(at), [""; 0]);
     // Killed, it can tidy nothing up: what is left is named, and the next build removes it.
-    stop_while_writing(at, KILL);
+    stop_while_writing(at, Signal::KILL);
     let left = unfinished(at);
     assert_eq!(left.len(), 1);
     assert!(left[0].starts_with(".shiftvox-sheet.far-"), "{left:?}");
@@ -128,7 +121,7 @@ fn a_signal_that_is_ignored_stays_ignored() {
         .spawn()
         .unwrap();
     std::thread::sleep(Duration::from_millis(100));
-    send(&child, ("HUP", 1));
+    send(&child, Signal::HUP);
     assert!(child.wait().unwrap().success());
     assert!(folder.path().join("sheet.far").exists());
 }

@@ -108,11 +108,11 @@ fn what_is_read_in_parts_is_checked_where_it_is_read() {
         &["--erosion", "0", "--erosion-grid", "4"][..],
         &["--erosion", "0", "--erosion-grid", "8"][..],
     );
-    // The section at the end of the file: triangles, seen from near; texels of the second grid.
+    // The end of the file: a leaf's triangles, seen from near; texels of the second grid.
     for (made, end, is_read, is_not) in [
         (
             &["a.far", "--leaf-triangles", "100", "--rays", "20000"][..],
-            "triangles",
+            "data",
             near,
             away,
         ),

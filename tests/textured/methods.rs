@@ -129,7 +129,10 @@ fn heights_are_those_asked_for_on_a_generated_mesh() {
         };
         assert!(bytes("decimated 1/4, 4") * 2 < bytes("triangles 4"));
         assert!(bytes("hybrid 16") < bytes("triangles 16"));
-        assert!(distance["rivals"][2]["ahead"].as_f64().unwrap() > -0.5);
+        // At 22 pixels nothing else is so small.
+        let ahead = distance["rivals"][2]["ahead"].as_f64();
+        assert_eq!(ahead.is_some(), height == 40);
+        assert!(ahead.is_none_or(|ahead| ahead > -0.5), "{ahead:?}");
     }
     for (spec, output, code) in [
         ("mesh:bush", "b.ply", 4),
