@@ -34,7 +34,7 @@ fn nothing_but_time_changes_on_a_walk() {
         let Some(path) = model(name) else { continue };
         let (mesh, _) = scene::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let options = BuildOptions {
-            rays: Some(300_000),
+            rays: Some(150_000),
             leaf_triangles: 500,
             ..BuildOptions::default()
         };
@@ -50,7 +50,7 @@ fn nothing_but_time_changes_on_a_walk() {
         let budget = bytes[0].len() as u64 / 4;
         let within = FarFile::open_within(&path, budget);
         let plan = FarPathPlan {
-            frames: 24,
+            frames: 10,
             size: (160, 90),
             voxel_px: 1.0,
             opacities: Vec::new(),
@@ -85,7 +85,7 @@ fn nothing_but_time_changes_on_a_walk() {
                 }
             }
         }
-        assert!(hidden > 100, "{name}: {hidden} nodes were hidden");
+        assert!(hidden > 40, "{name}: {hidden} nodes were hidden");
         if let Ok(within) = &within {
             let resident = within.resident().unwrap();
             assert!(resident.most_bytes <= budget, "{name}: {resident:?}");
