@@ -32,7 +32,7 @@ fn stl() -> Vec<u8> {
 
 /// Triangles alone, as one leaf: built at once, ten megabytes to write.
 fn start(folder: &Path) -> Child {
-    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 40 --force";
+    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
     let arguments: Vec<&str> = arguments.split(' ').collect();
     Command::new(cargo_bin("shiftvox"))
         .current_dir(folder)
