@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
-use super::opacity::{Covered, Masks, dither, opacity_of};
+use super::coverage::{Covered, Masks, dither, opacity_of};
 use super::touch::OTHERS;
 use crate::graph::{GraphView, Opacity};
 

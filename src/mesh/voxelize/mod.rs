@@ -9,6 +9,7 @@
 //! triangles and not with the voxels. Rules: `spec/mesh.md`.
 
 mod columns;
+mod coverage;
 mod distinct;
 mod grid;
 mod mix;
