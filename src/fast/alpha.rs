@@ -7,19 +7,10 @@
 use super::band::Band;
 use super::lanes::Isa;
 use crate::graph::sixteenths;
-use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
+use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 
-/// The weights of a voxel's visible sides, by axis.
-#[derive(Debug, Clone, Copy, Default)]
-struct SideWeights {
-    /// In sixteenths of an outline.
-    counts: [u32; 3],
-    /// Whether a side's share is large enough for a full one to hide all.
-    is_seen: [bool; 3],
-}
-
-/// The weights of the sides of a voxel with this lowest corner and side.
-fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> SideWeights {
+/// By axis, the weight of the side that is seen, sixteenths of an outline, of a voxel with this lowest corner and side.
+fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
     let along: [i64; 3] = std::array::from_fn(|k| {
         let centre = i64::from(min[k]) + i64::from(side / 2);
         ((centre >> eye.shift) - eye.at[k]).abs()
@@ -32,10 +23,7 @@ fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> SideWeights {
     let squared = shares.iter().map(|share| share * share).sum::<i64>();
     // The root, to the nearest: 9 to 16.
     let length = (9..16).find(|n| squared <= n * (n + 1)).unwrap_or(16);
-    SideWeights {
-        counts: shares.map(|share| ((2 * share * share / length + 1) >> 1) as u32),
-        is_seen: shares.map(|share| share >= SEEN_SHARE),
-    }
+    shares.map(|share| ((2 * share * share / length + 1) >> 1) as u32)
 }
 
 impl<I: Isa> Band<'_, I> {
@@ -105,17 +93,16 @@ impl<I: Isa> Band<'_, I> {
     fn weight(&self, eye: &OpacityEye, node: u32, [x, y, z, level]: [i32; 4]) -> u32 {
         let opacity = self.graph.opacity_of(node);
         let side = self.constants.levels[level as usize].side;
-        let weights = side_weights(eye, [x, y, z], side);
         let half = i64::from(side / 2);
-        let mut weight = 0;
-        for (k, min) in [x, y, z].into_iter().enumerate() {
-            let is_high = self.constants.eye_floor[k] >= i64::from(min) + half;
-            let covered = u32::from(sixteenths(opacity.from_side(k, is_high)));
-            if covered == SHARES as u32 && weights.is_seen[k] {
-                return ALL_LEFT;
-            }
-            weight += covered * weights.counts[k];
+        let min = [x, y, z];
+        let covered: [u32; 3] = std::array::from_fn(|k| {
+            let is_high = self.constants.eye_floor[k] >= i64::from(min[k]) + half;
+            u32::from(sixteenths(opacity.from_side(k, is_high)))
+        });
+        if covered.contains(&(SHARES as u32)) {
+            return ALL_LEFT;
         }
-        weight
+        let weights = side_weights(eye, min, side);
+        (0..3).map(|k| covered[k] * weights[k]).sum()
     }
 }

@@ -16,7 +16,7 @@ use super::constants::BlendEye;
 use super::record::Cube;
 use crate::frame::Blend;
 use crate::graph::Opacity;
-use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, SEEN_SHARE, SHARES};
+use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, SHARES};
 
 /// Bits of a share of a direction, 0 to 16.
 const SHARE_BITS: u32 = 5;
@@ -33,15 +33,9 @@ const OPACITY_BITS: u32 = 4;
 /// The weight of a voxel that lets nothing through.
 const WHOLE: Narrow = Narrow::from_host(ALL_LEFT);
 
-/// How a voxel's three sides are seen.
+/// By axis, the sixteenths of a voxel's outline that the side that is seen counts for.
 #[derive(Debug, Clone, Copy)]
-struct VisibleSides {
-    /// By axis, sixteenths of the outline that the side counts for.
-    counts: [Narrow; 3],
-    /// By axis, whether the side's share is so large that the side, if it is
-    /// opaque, hides everything behind the voxel.
-    is_seen: [bool; 3],
-}
+struct VisibleSides([Narrow; 3]);
 
 impl VisibleSides {
     /// Of a voxel between two corners.
@@ -72,9 +66,8 @@ impl VisibleSides {
         let y = dp.min(y, left);
         let z = dp.sub(left, y);
         let shares = [x, y, z].map(|share| dp.narrowed(share, SHARE_BITS));
-        let is_seen = shares.map(|share| dp.le_narrow(SHARE_BITS, SEEN, share));
         let shares_shown = wires(shares, SHARE_BITS);
-        dp.tap(Block::BlendShares, &along, &(shares_shown, is_seen));
+        dp.tap(Block::BlendShares, &along, &shares_shown);
         let squares = shares
             .map(|share| plus_product(dp, WEIGHT_BITS, Narrow::ZERO, share, share, SHARE_BITS));
         let length = length_of(dp, squares);
@@ -84,7 +77,7 @@ impl VisibleSides {
             &shares_shown,
             &wires(counts, SHARE_BITS),
         );
-        Self { counts, is_seen }
+        Self(counts)
     }
 
     /// A voxel's weight, 0 to 256. `high`: by axis, whether the eye is on the
@@ -92,15 +85,16 @@ impl VisibleSides {
     fn weight<P: Probe>(&self, dp: &mut Datapath<P>, opacity: Opacity, high: [bool; 3]) -> Narrow {
         let mut weight = Narrow::ZERO;
         let mut is_whole = false;
-        for (k, count) in self.counts.into_iter().enumerate() {
+        for (k, count) in self.0.into_iter().enumerate() {
             let sides = [false, true].map(|high| u32::from(opacity.from_side(k, high)));
             let [low_side, high_side] = sides.map(Narrow::from_host);
             let opacity = dp.select_narrow(OPACITY_BITS, high[k], high_side, low_side);
             let eighth = dp.shr_narrow(OPACITY_BITS, opacity, 3);
             let covered = dp.add_narrow(SHARE_BITS, opacity, eighth);
             weight = plus_product(dp, WEIGHT_BITS, weight, covered, count, SHARE_BITS);
-            // Sixteen sixteenths: one bit.
-            is_whole |= self.is_seen[k] && dp.bit_narrow(covered, OPACITY_BITS);
+            // Sixteen sixteenths: one bit. From however flat an angle such a side is seen, it lets nothing through: a
+            // ray that grazes a wall would pass many of its voxels by the little that each covers from there.
+            is_whole |= dp.bit_narrow(covered, OPACITY_BITS);
         }
         let weight = dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight);
         let sides: [[Short; 2]; 3] = std::array::from_fn(|k| {
@@ -108,7 +102,7 @@ impl VisibleSides {
         });
         dp.tap(
             Block::BlendWeight,
-            &(sides, high, wires(self.counts, SHARE_BITS), self.is_seen),
+            &(sides, high, wires(self.0, SHARE_BITS)),
             &Short::narrow(weight, WEIGHT_BITS),
         );
         weight
@@ -120,8 +114,6 @@ impl VisibleSides {
 fn wires<const N: usize>(numbers: [Narrow; N], bits: u32) -> [Short; N] {
     numbers.map(|number| Short::narrow(number, bits))
 }
-
-const SEEN: Narrow = Narrow::from_host(SEEN_SHARE as u32);
 
 /// `16 a / all` to the nearest, halves up, by a restoring divide of one
 /// integer step and five more. `0 <= a <= all`.

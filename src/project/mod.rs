@@ -15,7 +15,7 @@ pub mod viewer;
 pub use camera::{Camera, CameraError};
 pub use engine::{Engine, EngineError, OCCLUSION_ORDER, Stats};
 pub use fit_camera::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
-pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SEEN_SHARE, SHARES};
+pub use opacity::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 pub use options::{CageKind, Coverage, SetupOptions};
 pub use setup::{FrameSetup, SetupError};
 pub use viewer::{Contents, Viewer};

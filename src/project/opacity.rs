@@ -11,9 +11,6 @@ const HEADROOM_BITS: u32 = 5;
 
 /// Shares of a direction are sixteenths.
 pub const SHARES: i64 = 16;
-/// From this share on, a side that is covered in full makes a voxel opaque: from none on, since a ray that grazes a wall
-/// would pass through many of its voxels by the little that each covers from there.
-pub const SEEN_SHARE: i64 = 0;
 /// What a sample lets through before anything is drawn: all.
 pub const ALL_LEFT: u32 = 256;
 /// A sample that lets no more than this through is opaque enough: what it

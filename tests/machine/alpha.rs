@@ -274,7 +274,7 @@ fn what_blending_costs() {
         let add = 3 + 2 + 2 + 3 * 5 + 2 + 3;
         let sub = 3 + 3 + 2;
         let shift = 3 + 3 + 2 + 3 * 5 + 3 * 2;
-        let [select, compare] = [3 * 5 + 7, 3 + 7];
+        let [select, compare] = [3 * 5 + 7, 7];
         // The voxel's weight: which sides, a product of five bits for each.
         let voxel = [
             3 + 3 * (1 + 5),

@@ -198,11 +198,7 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             let nearest = |k: usize| (32 * way[k] + all).div_euclid(2 * all);
             let x = nearest(0);
             let y = nearest(1).min(16 - x);
-            let shares = [x, y, 16 - x - y];
-            let mut out = shares.to_vec();
-            // From every share on, also from none.
-            out.extend(bits(&shares.map(|share| share >= 0)));
-            out
+            vec![x, y, 16 - x - y]
         }
         "blend_counts" => {
             let squares = row.axes("share").map(|share| share * share);
@@ -211,12 +207,12 @@ pub(super) fn replay(block: &str, row: &Row, constants: &Constants) -> Vec<i128>
             squares.map(nearest).to_vec()
         }
         "blend_weight" => {
-            let (high, count, seen) = (row.axes("high"), row.axes("count"), row.axes("seen"));
+            let (high, count) = (row.axes("high"), row.axes("count"));
             let opacity = |k: usize| {
                 let side = ["low", "high"][high[k] as usize];
                 get(&format!("opacity_{}_{side}", AXES[k]))
             };
-            if (0..3).any(|k| seen[k] == 1 && opacity(k) == 15) {
+            if (0..3).any(|k| opacity(k) == 15) {
                 return vec![256];
             }
             // 15 covers all sixteen sixteenths.

@@ -38,11 +38,9 @@ pub(super) fn shares() -> Description {
         "blend_shares",
         &[Stage::Blend],
         "11",
-        "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but at most 16 - share_x, share_z = 16 - share_x - share_y; seen = share >= 4",
+        "with s = max(way_x + way_y + way_z, 1): share_x = (floor(32 way_x / s) + 1) >> 1, share_y the same of way_y but at most 16 - share_x, share_z = 16 - share_x - share_y",
         Ports::new(NO_CAGE).axes("way", WORD, "d of the axis"),
-        Ports::new(NO_CAGE)
-            .axes("share", SHARE, "u of the axis, sixteenths")
-            .axes("seen", BIT, "a full side hides all"),
+        Ports::new(NO_CAGE).axes("share", SHARE, "u of the axis, sixteenths"),
     )
 }
 
@@ -64,7 +62,7 @@ pub(super) fn weight() -> Description {
         "blend_weight",
         &[Stage::Blend],
         "11",
-        "with a = opacity_high where high is set, else opacity_low: weight = 256 where an axis that is seen has a = 15, else the sum of (a + (a >> 3)) count",
+        "with a = opacity_high where high is set, else opacity_low: weight = 256 where an axis has a = 15, else the sum of (a + (a >> 3)) count",
         ["x", "y", "z"]
             .iter()
             .fold(Ports::new(NO_CAGE), |ports, axis| {
@@ -72,8 +70,7 @@ pub(super) fn weight() -> Description {
                 ports.each(&format!("opacity_{axis}"), &["low", "high"], FOUR, meaning)
             })
             .axes("high", BIT, "the eye is on the high side")
-            .axes("count", SHARE, COUNT)
-            .axes("seen", BIT, "a full side hides all"),
+            .axes("count", SHARE, COUNT),
         Ports::new(NO_CAGE).one("weight", WEIGHT, "w: 256 lets nothing through"),
     )
 }
