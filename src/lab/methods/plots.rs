@@ -12,9 +12,9 @@ pub fn panels(mesh: &MeshMethods) -> Vec<Panel> {
     let error = |o: &Outcome| Some(o.picture.flip);
     let time = |o: &Outcome| Some(o.thread.as_ref().unwrap_or(&o.wall).median_ms);
     let flicker = |o: &Outcome| o.flicker.map(|f| 1e3 * f);
-    panels.push(over_distances(mesh, "error: mean FLIP", error));
-    panels.push(over_distances(mesh, "ms a frame, one thread", time));
-    panels.push(over_distances(
+    panels.extend(over_distances(mesh, "error: mean FLIP", error));
+    panels.extend(over_distances(mesh, "ms a frame, one thread", time));
+    panels.extend(over_distances(
         mesh,
         "flicker, thousandths of white",
         flicker,
@@ -106,11 +106,12 @@ fn leaders(mesh: &MeshMethods) -> Vec<usize> {
     leaders
 }
 
+/// A value of the leaders over the distances; nothing where it was not measured.
 fn over_distances(
     mesh: &MeshMethods,
     label: &str,
     value: impl Fn(&Outcome) -> Option<f64>,
-) -> Panel {
+) -> Option<Panel> {
     let points = leaders(mesh).into_iter().flat_map(|place| {
         let facts = &mesh.facts[place];
         let value = &value;
@@ -120,11 +121,14 @@ fn over_distances(
             Some((facts.label.clone(), at))
         })
     });
-    Panel::Chart(Chart {
-        title: format!("{}: {label}", mesh.mesh),
-        x: axis("pixels down the picture"),
-        y: axis(label),
-        series: Series::collect(points),
-        level: None,
+    let series = Series::collect(points);
+    (!series.is_empty()).then(|| {
+        Panel::Chart(Chart {
+            title: format!("{}: {label}", mesh.mesh),
+            x: axis("pixels down the picture"),
+            y: axis(label),
+            series,
+            level: None,
+        })
     })
 }
