@@ -40,7 +40,7 @@ pub(super) struct SurfaceSample {
 }
 
 /// A voxel that is kept, when all its rays were shot.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
     /// Its opacity where no ray says anything of it: from its triangles.
@@ -52,13 +52,12 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn new(place: [u8; 3], unseen_opacity: f64) -> Self {
-        Self {
-            place,
-            unseen_opacity,
-            crossings: 0,
-            found: Default::default(),
-        }
+    /// Becomes another voxel, of which nothing was found yet.
+    pub(super) fn begin(&mut self, place: [u8; 3], unseen_opacity: f64) {
+        self.place = place;
+        self.unseen_opacity = unseen_opacity;
+        self.crossings = 0;
+        self.found = Default::default();
     }
 
     /// What all probes of less than a steepness found, from one side.
@@ -196,7 +195,7 @@ pub(super) struct Marks<'m> {
     pub(super) kept: &'m [u32],
     /// Of all voxels: 0 of one that is not kept, else one more than the number of probes that were
     /// aimed at it.
-    pub(super) aimed: &'m [u16],
+    pub(super) aimed: &'m [u8],
 }
 
 /// The probes of a node, by the voxels that they cross.

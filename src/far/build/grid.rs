@@ -95,6 +95,7 @@ impl Grid {
     ///
     /// Distances are whole numbers of 2^-32 voxels here, so that steps are exact and a step needs
     /// no branch: this loop is a quarter of a build.
+    #[inline]
     pub(super) fn along(
         &self,
         from: DVec3,

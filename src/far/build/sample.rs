@@ -19,10 +19,10 @@ use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
 
 /// Most visibility rays from random directions at a voxel that none reached yet.
-pub(super) const MOST_VISIBILITY_RAYS: u32 = 16;
+pub(super) const MOST_VISIBILITY_RAYS: u32 = 8;
 /// Most of them from where neighbours were seen: what one window lets a ray
 /// through to lies side by side, and a random direction seldom finds the window.
-pub(super) const MOST_FOLLOWED: u8 = 12;
+pub(super) const MOST_FOLLOWED: u8 = 8;
 /// A voxel that fewer rays were aimed at, none of which reached it, is not known to be hidden.
 pub(super) const LEAST_TESTS: u8 = 8;
 /// Visibility rays are shot in so many batches a turn: those of one find what the next ones need
@@ -131,13 +131,14 @@ impl Target<'_> {
         // What is kept, and how many probes were aimed at it: see `Marks`.
         let is_untested = |number: usize| !is_seen[number] && tests[number] < LEAST_TESTS;
         let mut kept = vec![NOWHERE; touched.len()];
-        let mut aimed_of_grid = vec![0u16; self.grid.len()];
+        let mut aimed_of_grid = vec![0u8; self.grid.len()];
         let mut count = 0;
         for (number, voxel) in touched.iter().enumerate() {
             if is_seen[number] || is_untested(number) {
                 kept[number] = count as u32;
                 count += 1;
-                let probes = aimed[number].min(u32::from(u16::MAX) - 1) as u16;
+                // More than a byte counts only a number of rays gives, and then to all alike.
+                let probes = aimed[number].min(u32::from(u8::MAX) - 1) as u8;
                 aimed_of_grid[voxel.number as usize] = probes + 1;
             }
         }
@@ -157,6 +158,7 @@ impl Target<'_> {
         let ends = Groups::new(count, &ends);
         let mut untested = 0;
         let mut samples = Vec::new();
+        let mut seen = Seen::default();
         for (number, voxel) in touched.iter().enumerate() {
             let place = kept[number] as usize;
             if place == NOWHERE as usize {
@@ -181,7 +183,7 @@ impl Target<'_> {
             }));
             let fit = fit_shader(&samples, main_normal(&samples), self.shader_blend);
             // As opaque as the area in it is large, in its faces.
-            let mut seen = Seen::new(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
+            seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
             let blends = [self.opacity_blend, self.shader_blend];
             probes.count(place, &fit.shader, blends, &mut seen);
             keep(&seen, &fit, samples.len());

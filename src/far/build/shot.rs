@@ -6,7 +6,7 @@
 use std::io;
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec3, Vec3A};
 
 use super::clusters::Occluders;
 use super::grid::Grid;
@@ -14,7 +14,7 @@ use super::rays::{Around, Meeting, Query};
 use crate::far::blend::Blend;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
-const STEPS_TO_S: u32 = 3;
+const STEPS_TO_S: u32 = 2;
 
 /// A node that is sampled.
 pub(super) struct Target<'t> {
@@ -70,13 +70,34 @@ const BATCH: usize = 1 << 17;
 /// Rays are shot in the order of their directions' cells, so many along each axis and to each side.
 const CELLS: f32 = 4.0;
 
+/// Cells of directions.
+const ALL_CELLS: usize = 128;
+
 /// The cell of a direction.
 fn cell(direction: Vec3) -> usize {
     // Each below 8; a unit vector's third coordinate follows but for its sign.
-    let [x, y, _] = ((direction + Vec3::ONE) * CELLS)
-        .to_array()
-        .map(|c| (c as usize).min(7));
-    (x << 3 | y) << 1 | usize::from(direction.z < 0.0)
+    let cell = |c: f32| (((c + 1.0) * CELLS) as usize).min(7);
+    (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
+}
+
+/// Numbers of rays such that those that are alike follow one another: they visit the same boxes.
+fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
+    let mut places = [0u32; ALL_CELLS];
+    for aim in aims {
+        places[cell(aim.direction)] += 1;
+    }
+    let mut sum = 0;
+    for place in &mut places {
+        sum += std::mem::replace(place, sum);
+    }
+    order.clear();
+    order.resize(aims.len(), 0);
+    for (number, aim) in aims.iter().enumerate() {
+        let place = &mut places[cell(aim.direction)];
+        // A batch has fewer than 2^32.
+        order[*place as usize] = number as u32;
+        *place += 1;
+    }
 }
 
 impl Target<'_> {
@@ -121,11 +142,9 @@ impl Target<'_> {
         let cells = DVec3::from_array(self.grid.cells.map(f64::from));
         let reach = DVec3::splat(self.distance + 1.0);
         let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
-        let (mut queries, mut meetings) = (Vec::new(), Vec::new());
+        let (mut order, mut queries, mut meetings) = (Vec::new(), Vec::new(), Vec::new());
         for batch in aims.chunks(BATCH) {
-            // Rays that are alike follow one another: they visit the same boxes.
-            let mut order: Vec<u32> = (0..batch.len() as u32).collect();
-            order.sort_by_cached_key(|&number| cell(batch[number as usize].direction) as u8);
+            in_order(batch, &mut order);
             let begin = shots.len();
             queries.clear();
             shots.extend(batch.iter().map(|aim| Shot {
@@ -137,10 +156,10 @@ impl Target<'_> {
             }));
             queries.extend(order.iter().map(|&number| {
                 let aim = batch[number as usize];
-                let (point, direction) = (aim.point.as_dvec3(), aim.direction.as_dvec3());
-                let back = self.back_to_surface(point, direction);
+                let back = f64::from(self.back_to_surface(aim.point, aim.direction));
+                let from = aim.point.as_dvec3() - aim.direction.as_dvec3() * back;
                 Query {
-                    origin: self.grid.world(point - direction * back).as_vec3(),
+                    origin: self.grid.world(from).as_vec3(),
                     direction: aim.direction,
                     most: ((back + beyond) * self.grid.voxel) as f32,
                 }
@@ -173,21 +192,23 @@ impl Target<'_> {
     }
 
     /// How far back from a point of the grid along a direction S is, voxels.
-    fn back_to_surface(&self, point: DVec3, direction: DVec3) -> f64 {
-        let cells = DVec3::from_array(self.grid.cells.map(f64::from));
+    #[inline]
+    fn back_to_surface(&self, point: Vec3, direction: Vec3) -> f32 {
+        let (point, direction) = (Vec3A::from(point), Vec3A::from(direction));
+        let cells = Vec3A::from_array(self.grid.cells.map(f32::from));
         // The distance from the grid grows ever faster along the ray: Newton's
         // steps from beyond S come nearer to it and never go past.
-        let mut back = self.distance + cells.length();
+        let mut back = self.distance as f32 + cells.length();
         for _ in 0..STEPS_TO_S {
             let at = point - direction * back;
-            let outside = (at - cells).max(DVec3::ZERO) + at.min(DVec3::ZERO);
+            let outside = (at - cells).max(Vec3A::ZERO) + at.min(Vec3A::ZERO);
             let distance = outside.length();
             let slope = -outside.dot(direction) / distance;
             // Beyond the grid there is a slope; not for a direction of zero length.
             if slope.is_nan() || slope <= 0.0 {
                 break;
             }
-            back -= (distance - self.distance) / slope;
+            back -= (distance - self.distance as f32) / slope;
         }
         back
     }
