@@ -138,6 +138,15 @@ pub fn available() -> Option<u64> {
     [granted, left].into_iter().flatten().chain([free]).min()
 }
 
+/// Bytes of memory that this process holds. `None` where the system does not report it.
+#[must_use]
+pub fn resident() -> Option<u64> {
+    kibibytes_of(
+        &std::fs::read_to_string("/proc/self/status").ok()?,
+        "VmRSS:",
+    )
+}
+
 /// The bytes of an entry that is given in kibibytes. `None` where there is no such entry.
 fn kibibytes_of(text: &str, name: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(name))?;

@@ -32,10 +32,12 @@ pub struct ConvertArgs {
     /// Replace a file that exists
     #[arg(long)]
     force: bool,
-    /// Build a .vxg out of core, taking at most this much of it: 512M, 2G; 64M at the least
+    /// Build a .vxg or .far out of core, taking at most this much memory: 512M, 2G; 64M at the
+    /// least. The mesh of a .far, which is in memory, is part of it
     #[arg(long, value_name = "SIZE")]
     memory: Option<Memory>,
-    /// Folder of the temporary files of --memory, about 22 bytes a voxel; else beside OUT
+    /// Folder of the temporary files of --memory, about 22 bytes a voxel of a .vxg, 80 a triangle
+    /// of a .far; else beside OUT
     #[arg(long, value_name = "DIR", requires = "memory")]
     temp: Option<PathBuf>,
     /// Of .far: rays of all nodes together [default: up to 24 that look for each voxel, 24 for each
@@ -59,6 +61,10 @@ pub struct ConvertArgs {
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     instances: Option<u32>,
+    /// Of .far: keep what is finished in OUT.part until all is, and go on from there if an earlier
+    /// build with the same mesh and options was stopped
+    #[arg(long)]
+    resume: bool,
     /// Of .far: what opacities are stored for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
@@ -73,6 +79,7 @@ impl ConvertArgs {
             || self.leaf_triangles.is_some()
             || self.instances.is_some()
             || self.far_opacity.is_some()
+            || self.resume
     }
 
     fn conversion(&self) -> Conversion<'_> {
@@ -118,8 +125,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     if is_ending("tvx") {
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
-                "a .tvx takes --grid, --texels and --element; --memory is for .vxg files, \
-                 --rays, --leaf-triangles, --instances and --far-opacity are for .far files",
+                "a .tvx takes --grid, --texels and --element; --memory is for .vxg and .far files, \
+                 --rays, --leaf-triangles, --instances, --resume and --far-opacity are for .far files",
             ));
         }
         return textured::convert(&args.conversion(), &args.textured_options(), console);
@@ -128,31 +135,28 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         if args.grid.len() > 1 {
             return Err(CliError::usage("a .far has one --grid"));
         }
-        if args.memory.is_some() {
-            return Err(CliError::usage(
-                "--memory is for .vxg files; a .far is built in memory",
-            ));
-        }
+        check_temporary(args)?;
+        let resources = far::Resources {
+            memory: args.memory.map(|memory| memory.bytes),
+            temporary: args.temp.as_deref(),
+            resume: args.resume,
+        };
         return far::convert(
             &args.conversion(),
             &args.far_options(),
             args.instances,
+            &resources,
             console,
         );
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, \
+            "--rays, --leaf-triangles, --instances, --resume and --far-opacity are for .far files, \
              --grid for .far and .tvx files",
         ));
     }
     scene_files::check_ending(&args.output)?;
-    if let Some(temporary) = args.temp.as_deref().filter(|folder| !folder.is_dir()) {
-        let message = format!("{}: there is no such folder", temporary.display());
-        return Err(
-            CliError::new(Kind::Run, message).advise("make it first, or name another with --temp")
-        );
-    }
+    check_temporary(args)?;
     if let Some(memory) = args.memory {
         if args.scene.opacities {
             return Err(CliError::usage(
@@ -174,6 +178,17 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     )?;
     let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
     scene_files::report_written("convert", &args.input, &args.output, &written, console)
+}
+
+fn check_temporary(args: &ConvertArgs) -> Result<(), CliError> {
+    match args.temp.as_deref().filter(|folder| !folder.is_dir()) {
+        None => Ok(()),
+        Some(temporary) => {
+            let message = format!("{}: there is no such folder", temporary.display());
+            let error = CliError::new(Kind::Run, message);
+            Err(error.advise("make it first, or name another with --temp"))
+        }
+    }
 }
 
 fn build_outside_memory(

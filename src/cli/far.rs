@@ -1,5 +1,7 @@
 //! `.far` files on the command line: `convert` and `info`.
 
+use std::fs;
+use std::path::Path;
 use std::time::Instant;
 
 use glam::{DAffine3, DMat3, DVec3};
@@ -13,36 +15,76 @@ use super::scene_files::Conversion;
 use super::scenes;
 use crate::budget;
 use crate::drawing::milliseconds_since;
+use crate::far::build::{Outside, part_of};
 use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind, TRIANGLE_BYTES};
-use crate::far::store::write_to;
-use crate::far::{BuildError, BuildOptions, FarFile, build};
+use crate::far::{BuildError, BuildOptions, FarFile, build_outside};
 use crate::mesh::Instances;
 use crate::project::Up;
 use crate::whole;
+
+/// What a build may take, and where it keeps what is not in memory.
+pub(super) struct Resources<'r> {
+    /// Bytes of memory, of which the mesh is a part.
+    pub(super) memory: Option<u64>,
+    /// Folder of temporary files; `None`: beside the output.
+    pub(super) temporary: Option<&'r Path>,
+    /// Whether an unfinished file is kept, and used.
+    pub(super) resume: bool,
+}
 
 /// Builds far voxels of a mesh and writes them.
 pub(super) fn convert(
     of: &Conversion<'_>,
     options: &BuildOptions,
     instances: Option<u32>,
+    resources: &Resources<'_>,
     console: &Console,
 ) -> Result<(), CliError> {
     let (mesh, up) = scenes::open_mesh(of.input, of.scene, console)?;
     let started = Instant::now();
     let triangles = mesh.triangles().len() as u64 * u64::from(instances.unwrap_or(1));
-    check_room(triangles).map_err(|e| e.at(of.input))?;
+    check_room(triangles, resources.memory).map_err(|e| e.at(of.input))?;
+    let beside = whole::folder_of(of.output);
+    whole::make_folder(beside)?;
+    let part = resources.resume.then(|| part_of(of.output));
+    let outside = Outside {
+        // What is resident are the mesh and the program itself.
+        memory: resources.memory.map(|memory| {
+            let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
+            memory.saturating_sub(loaded)
+        }),
+        folder: resources.temporary.unwrap_or(beside),
+        part: part.as_deref(),
+    };
     let built = match instances {
-        None => build(&mesh, options, console.progress()),
+        None => build_outside(&mesh, options, &outside, console.progress()),
         Some(count) => {
             let places = in_rows(mesh.bounds(), up, count);
             let fleet = Instances::new(mesh, places);
-            build(&fleet, options, console.progress())
+            build_outside(&fleet, options, &outside, console.progress())
         }
     };
-    let mut data = built.map_err(|e| CliError::from(e).at(of.input))?;
-    data.y_up = up == Up::Y;
+    let mut built = built.map_err(|error| {
+        let is_memory = matches!(error, BuildError::Memory { .. });
+        let is_of_mesh = !matches!(error, BuildError::File { .. });
+        let error = CliError::from(error);
+        let error = if is_of_mesh {
+            error.at(of.input)
+        } else {
+            error
+        };
+        match is_memory {
+            true => error.advise("give it more --memory, or build on fewer --threads"),
+            false => error,
+        }
+    })?;
+    built.data.y_up = up == Up::Y;
     let build_ms = milliseconds_since(started);
-    whole::write_with(of.output, of.force, |file| write_to(&data, file))?;
+    whole::write_with(of.output, of.force, |file| built.write_to(file))?;
+    if let Some(part) = &part {
+        // It is of no use any more; left, it would do no harm.
+        let _ = fs::remove_file(part);
+    }
     let file = FarFile::open(of.output)?;
     let facts = Facts::of(&file);
     console.note(format!(
@@ -78,15 +120,18 @@ pub(super) fn convert(
 /// Fewer rays through a voxel are warned of.
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;
 
-/// Bytes a triangle that a build takes at the least, in memory; measured are 283
+/// Bytes a triangle that a build takes in memory without a budget, or more
 /// (`docs/far-voxels.md`).
-const LEAST_BYTES: u64 = 200;
+const LEAST_BYTES: u64 = 64;
 
 /// Refuses what cannot be numbered or does not fit the memory that is free, before copies are
-/// placed.
-fn check_room(triangles: u64) -> Result<(), CliError> {
+/// placed. A budget is checked when its mesh is loaded.
+fn check_room(triangles: u64, budget: Option<u64>) -> Result<(), CliError> {
     if u32::try_from(triangles).is_err() {
         return Err(BuildError::TooMany(format!("{triangles} triangles")).into());
+    }
+    if budget.is_some() {
+        return Ok(());
     }
     // No overflow: 32 bits by 8.
     let needed = triangles * LEAST_BYTES;
@@ -98,7 +143,7 @@ fn check_room(triangles: u64) -> Result<(), CliError> {
                  built of them, and {free} are free"
             ),
         )
-        .advise("ask for fewer --instances, or leave out a part of the mesh")),
+        .advise("build within a budget with --memory, or ask for fewer --instances")),
         _ => Ok(()),
     }
 }

@@ -15,7 +15,7 @@ pub mod view;
 use blend::Blend;
 use record::Node;
 
-pub use build::{BuildError, BuildOptions, build};
+pub use build::{BuildError, BuildOptions, build, build_outside};
 pub use store::{FarError, FarFile};
 
 /// Far voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.

@@ -1,10 +1,12 @@
 //! What is built: the same on any threads, better with more rays, level by level.
 
+use glam::{DAffine3, DVec3};
 use shiftvox::far::record::Node;
 use shiftvox::far::store::encode;
 use shiftvox::far::view::{FarViewer, ViewOptions};
 use shiftvox::far::{BuildError, BuildOptions, FarData, FarFile, build};
 use shiftvox::graph::Silent;
+use shiftvox::mesh::Instances;
 use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::city::{city, far, light, on_threads, options, view};
@@ -84,6 +86,46 @@ fn voxels_shrink_from_level_to_level() {
         }
     }
     assert!(levels >= 4, "{levels}");
+}
+
+/// However large or small the numbers of a mesh are, it has the same voxels and looks the same.
+#[test]
+fn size_does_not_matter() {
+    let options = options();
+    let mesh = city();
+    let usual = far(&options);
+    let picture = |data: &FarData, scale: f64| {
+        let file = FarFile::from_bytes(&encode(data).unwrap()).unwrap();
+        let mut view = view(30.0, 0.6, 150.0, 192);
+        view.eye *= scale;
+        view.near *= scale;
+        let shown = shown(&view, 2.0);
+        FarViewer::new(&file).draw(&view, &shown).unwrap().0.rgba
+    };
+    let expected = picture(&usual, 1.0);
+    let voxels = |data: &FarData| data.nodes.iter().map(Node::voxels).sum::<u64>();
+    for scale in [1e-12, 1e-5, 1e12] {
+        let place = DAffine3::from_scale(DVec3::splat(scale));
+        let data = build(
+            &Instances::new(mesh.clone(), vec![place]),
+            &options,
+            &Silent,
+        )
+        .unwrap();
+        let (found, all) = (voxels(&data), voxels(&usual));
+        assert!(
+            found.abs_diff(all) * 200 <= all,
+            "{scale}: {found} of {all}"
+        );
+        let pairs = picture(&data, scale).into_iter().zip(&expected);
+        let square = |(a, b): ([u8; 4], &[u8; 4])| {
+            let channels = (0..3).map(|k| (f64::from(a[k]) - f64::from(b[k])).powi(2));
+            channels.sum::<f64>() / 3.0
+        };
+        let mean = pairs.map(square).sum::<f64>() / expected.len() as f64;
+        // Other numbers round otherwise, and so some rays end elsewhere.
+        assert!(mean.sqrt() < 2.0, "{scale}: {}", mean.sqrt());
+    }
 }
 
 /// Root mean square difference of the channels to 256 samples a pixel.

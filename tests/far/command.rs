@@ -304,7 +304,7 @@ fn what_is_wrong_is_said_with_an_exit_code() {
             "render", "a.far", "--engine", "far", "--lod", "0", "-o", "x.png",
         ],
         &["convert", "sheet.obj", "b.vxg", "--rays", "7"],
-        &["convert", "sheet.obj", "b.far", "--memory", "1G"],
+        &["convert", "sheet.obj", "b.vxg", "--resume"],
         &["convert", "sheet.obj", "b.vxg", "--instances", "2"],
         &["render", "sheet.obj", "--memory", "1G", "--hash"],
     ];

@@ -108,6 +108,99 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
     assert!(FarFile::open(&at.join("sheet.far")).is_ok());
 }
 
+/// A build of many nodes, some of which take their time, of which what is finished is kept.
+fn start_to_resume(folder: &Path, more: &[&str]) -> Command {
+    let arguments =
+        "convert sheet.stl kept.far --leaf-triangles 200 --grid 32 --rays 2000000 --resume";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    command
+        .current_dir(folder)
+        .args(arguments.split(' '))
+        .args(more);
+    command
+}
+
+#[test]
+fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    let whole = "convert sheet.stl whole.far --leaf-triangles 200 --grid 32 --rays 2000000 -q";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    let built = command.current_dir(at).args(whole.split(' ')).status();
+    assert!(built.unwrap().success());
+    let expected = fs::read(at.join("whole.far")).unwrap();
+    let part = at.join("kept.far.part");
+    let length = || fs::metadata(&part).map_or(0, |there| there.len());
+    // Stopped by either signal after a sixth each, and its last node cut short.
+    for (sixths, signal) in [(1, Signal::TERM), (2, Signal::KILL)] {
+        let enough = expected.len() as u64 * sixths / 6;
+        let mut quiet = start_to_resume(at, &["-q"]);
+        let mut child = quiet.stderr(Stdio::null()).spawn().unwrap();
+        while length() < enough && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        send(&child, signal);
+        assert_eq!(child.wait().unwrap().signal(), Some(signal.as_raw()));
+        assert!(!at.join("kept.far").exists());
+        assert!(length() >= enough);
+        let kept = fs::File::options().write(true).open(&part).unwrap();
+        kept.set_len(length() - 5).unwrap();
+    }
+    // Of something else it is not resumed.
+    let refused = |more: &[&str]| {
+        let output = start_to_resume(at, more).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.contains("kept.far.part"), "{stderr}");
+        stderr
+    };
+    assert!(refused(&["--far-opacity", "none"]).contains("other options"));
+    let mut other = stl();
+    other[84 + 12] ^= 1;
+    fs::write(at.join("sheet.stl"), other).unwrap();
+    assert!(refused(&[]).contains("another mesh"));
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    assert!(length() > expected.len() as u64 / 4);
+    assert!(start_to_resume(at, &["-q"]).status().unwrap().success());
+    assert!(fs::read(at.join("kept.far")).unwrap() == expected);
+    assert!(!part.exists());
+}
+
+#[test]
+fn a_budget_of_memory_changes_no_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    let convert = |more: &[&str]| {
+        // 400,000 triangles, several clusters.
+        let arguments = "--leaf-triangles 5000 --grid 32 --rays 200000 --instances 20 --force -q";
+        let mut command = Command::new(cargo_bin("shiftvox"));
+        let command = command
+            .current_dir(at)
+            .args(["convert", "sheet.stl", "a.far"]);
+        let output = command.args(arguments.split(' ')).args(more).output();
+        let output = output.unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        (
+            output.status.code(),
+            stderr,
+            fs::read(at.join("a.far")).unwrap_or_default(),
+        )
+    };
+    let (code, stderr, free) = convert(&[]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let (code, stderr, bound) = convert(&["--memory", "180M"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(free == bound && !free.is_empty());
+    let (code, stderr, _) = convert(&["--memory", "64M"]);
+    assert_eq!(code, Some(5));
+    assert!(
+        stderr.contains("sheet.stl") && stderr.contains("--memory"),
+        "{stderr}"
+    );
+}
+
 #[test]
 fn a_signal_that_is_ignored_stays_ignored() {
     let folder = tempfile::tempdir().unwrap();

@@ -11,10 +11,13 @@
 //! whatever passed it (Wagner et al. 2007, Fig. 3b). So probes are counted by how steeply they
 //! look upon the surface.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 
-use super::shot::{NOWHERE, Shot, Target};
-use crate::far::blend::{DIRECTIONS, Fit};
+use super::grid::Grid;
+use super::shot::Shot;
+use crate::far::blend::{Blend, DIRECTIONS, Fit};
 use crate::far::record::{STEEPNESSES, Shader, steepness};
 
 /// A probe is stopped right behind a voxel if what stops it is so near that the surface may be the
@@ -36,11 +39,10 @@ pub(super) struct SurfaceSample {
     pub(super) color: DVec3,
 }
 
-/// A voxel that is kept.
-#[derive(Debug)]
+/// A voxel that is kept, when all its rays were shot.
+#[derive(Debug, Clone, Default)]
 pub(super) struct Seen {
     pub(super) place: [u8; 3],
-    pub(super) samples: Vec<SurfaceSample>,
     /// Its opacity where no ray says anything of it: from its triangles.
     pub(super) unseen_opacity: f64,
     /// Probes that crossed it, whatever they met.
@@ -50,14 +52,12 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub(super) fn new(place: [u8; 3], unseen_opacity: f64) -> Self {
-        Self {
-            place,
-            samples: Vec::new(),
-            unseen_opacity,
-            crossings: 0,
-            found: Default::default(),
-        }
+    /// Becomes another voxel, of which nothing was found yet.
+    pub(super) fn begin(&mut self, place: [u8; 3], unseen_opacity: f64) {
+        self.place = place;
+        self.unseen_opacity = unseen_opacity;
+        self.crossings = 0;
+        self.found = Default::default();
     }
 
     /// What all probes of less than a steepness found, from one side.
@@ -156,69 +156,147 @@ impl Counted {
     }
 }
 
-/// What is known of a node's touched voxels, by their numbers.
-pub(super) struct Marks<'m> {
-    /// Numbers of touched voxels, of all voxels of the grid.
-    pub(super) slot: &'m [u32],
-    /// Places among the kept voxels.
-    pub(super) kept: &'m [u32],
-    /// How many probes were aimed at each.
-    pub(super) aimed: &'m [u32],
+/// Where a probe crossed a kept voxel: the probe's number, and how far behind the voxel it was
+/// stopped, in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Crossing(u32);
+
+/// Bits of a probe's number: nodes have no more rays.
+const PROBE_BITS: u32 = 22;
+/// Parts of a voxel in which it is counted how far behind a voxel a probe is stopped.
+const PARTS: f64 = 64.0;
+
+impl Crossing {
+    /// `past`: how far behind the voxel the probe is stopped; `None`: in it.
+    fn new(probe: usize, past: Option<f64>) -> Self {
+        let most = (1u32 << (32 - PROBE_BITS)) - 1;
+        // Farther than it matters is as far as can be counted.
+        let parts = past.map_or(0, |past| {
+            (1.0 + past.max(0.0) * PARTS).min(f64::from(most)) as u32
+        });
+        Self(parts << PROBE_BITS | probe as u32)
+    }
+
+    fn probe(self) -> usize {
+        (self.0 & ((1 << PROBE_BITS) - 1)) as usize
+    }
+
+    fn past(self) -> Option<f64> {
+        let parts = self.0 >> PROBE_BITS;
+        (parts > 0).then(|| f64::from(parts - 1) / PARTS)
+    }
 }
 
-impl Target<'_> {
-    /// Counts probes.
-    pub(super) fn count(
-        &self,
-        shots: &[Shot],
-        marks: &Marks<'_>,
-        shaders: &[Shader],
-        seen: &mut [Seen],
-    ) {
-        let mut crossed = Vec::new();
-        for shot in shots {
-            // One way through the grid: what is crossed of what is kept.
-            crossed.clear();
+/// What is known of the voxels of a grid.
+pub(super) struct Marks<'m> {
+    /// Of all voxels: numbers of those that are touched.
+    pub(super) slot: &'m [u32],
+    /// Of those that are touched: places among those that are kept.
+    pub(super) kept: &'m [u32],
+    /// Of all voxels: 0 of one that is not kept, else one more than the number of probes that were
+    /// aimed at it.
+    pub(super) aimed: &'m [u8],
+}
+
+/// The probes of a node, by the voxels that they cross.
+pub(super) struct Probes<'p> {
+    shots: &'p [Shot],
+    /// Of each: one over the number of probes that were aimed at what it crosses.
+    weights: Vec<f32>,
+    crossings: Groups<Crossing>,
+}
+
+impl<'p> Probes<'p> {
+    /// Follows probes through a grid of which so many voxels are kept.
+    pub(super) fn new(grid: &Grid, shots: &'p [Shot], marks: &Marks<'_>, kept: usize) -> Self {
+        let mut weights = Vec::with_capacity(shots.len());
+        let mut all = Vec::new();
+        for (probe, shot) in shots.iter().enumerate() {
+            // One way through the grid: also what lies behind the end is aimed at.
             let mut aims = 0u32;
-            self.grid.along(shot.from, shot.direction, |number, leave| {
-                let touched = marks.slot[number];
-                if touched != NOWHERE {
-                    aims += marks.aimed[touched as usize];
-                    crossed.push((touched, leave));
-                }
-            });
-            let weight = 1.0 / f64::from(aims.max(1));
-            let shares = self.opacity_blend.shares(-shot.direction);
-            for &(touched, leave) in &crossed {
-                let is_end = touched == shot.touched;
-                if !is_end && leave > shot.end {
-                    // Ends at a triangle of another node.
-                    break;
-                }
-                let kept = marks.kept[touched as usize];
-                if kept != NOWHERE {
-                    let shader = &shaders[kept as usize];
-                    let seen = &mut seen[kept as usize];
-                    let cosine = shader.cosine(-shot.direction, self.shader_blend);
-                    let past = shot.end - leave;
-                    seen.crossings += 1;
-                    let side = usize::from(cosine < 0.0);
-                    let cosine = cosine.abs();
-                    let found = &mut seen.found[side][steepness(cosine)];
-                    found.probes += 1;
-                    let reach = RIGHT_BEHIND[0] / cosine.max(LEAST_COSINE) + RIGHT_BEHIND[1];
-                    if is_end || past < reach {
-                        found.stopped += weight;
-                    } else {
-                        found.passed += weight;
+            let mut is_over = false;
+            let end = f64::from(shot.end);
+            let (from, direction) = (shot.point.as_dvec3(), shot.direction.as_dvec3());
+            grid.along(from, direction, |number, leave| {
+                let aimed = marks.aimed[number];
+                if aimed > 0 {
+                    aims += u32::from(aimed - 1);
+                    let touched = marks.slot[number];
+                    let is_end = touched == shot.touched;
+                    // Otherwise it ends at a triangle of another node.
+                    if !is_over && (is_end || leave <= end) {
+                        let past = (!is_end).then_some(end - leave);
+                        all.push((marks.kept[touched as usize], Crossing::new(probe, past)));
                     }
-                    found.counted.add(&shares, is_end, weight);
+                    is_over |= is_end || leave > end;
                 }
-                if is_end {
-                    break;
-                }
-            }
+                ControlFlow::Continue(())
+            });
+            weights.push(1.0 / aims.max(1) as f32);
         }
+        Self {
+            shots,
+            weights,
+            crossings: Groups::new(kept, &all),
+        }
+    }
+
+    /// Counts the probes that crossed a voxel of a place.
+    pub(super) fn count(&self, place: usize, shader: &Shader, blends: [Blend; 2], seen: &mut Seen) {
+        for crossing in self.crossings.of(place) {
+            let probe = crossing.probe();
+            let towards_eye = -self.shots[probe].direction.as_dvec3();
+            let weight = f64::from(self.weights[probe]);
+            let cosine = shader.cosine(towards_eye, blends[1]);
+            seen.crossings += 1;
+            let side = usize::from(cosine < 0.0);
+            let cosine = cosine.abs();
+            let found = &mut seen.found[side][steepness(cosine)];
+            found.probes += 1;
+            let reach = RIGHT_BEHIND[0] / cosine.max(LEAST_COSINE) + RIGHT_BEHIND[1];
+            let past = crossing.past();
+            if past.is_none_or(|past| past < reach) {
+                found.stopped += weight;
+            } else {
+                found.passed += weight;
+            }
+            let shares = blends[0].shares(towards_eye);
+            found.counted.add(&shares, past.is_none(), weight);
+        }
+    }
+}
+
+/// Items by the number of a group that each belongs to, in their order.
+pub(super) struct Groups<T> {
+    items: Vec<T>,
+    /// Where each group ends; the next begins there.
+    ends: Vec<u32>,
+}
+
+impl<T: Copy> Groups<T> {
+    /// Sorts items to so many groups; fewer than 2^32 items.
+    pub(super) fn new(groups: usize, all: &[(u32, T)]) -> Self {
+        let mut ends = vec![0u32; groups];
+        for (group, _) in all {
+            ends[*group as usize] += 1;
+        }
+        // Where each begins, first.
+        let mut sum = 0;
+        for end in &mut ends {
+            sum += std::mem::replace(end, sum);
+        }
+        let mut items: Vec<T> = all.iter().map(|&(_, item)| item).collect();
+        for &(group, item) in all {
+            let place = &mut ends[group as usize];
+            items[*place as usize] = item;
+            *place += 1;
+        }
+        Self { items, ends }
+    }
+
+    pub(super) fn of(&self, group: usize) -> &[T] {
+        let begin = group.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.items[begin as usize..self.ends[group] as usize]
     }
 }
 

@@ -1,5 +1,7 @@
 //! The uniform grid of a node: which voxels there are, which a ray crosses.
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 
 /// Cubes from `origin`, `cells` along each axis (1 to 255).
@@ -88,12 +90,21 @@ impl Grid {
         self.origin + local * self.voxel
     }
 
-    /// Calls back with the number of each voxel along a ray, in order, and the distance (in
-    /// voxels) at which the ray leaves it.
-    pub(super) fn along(&self, from: DVec3, direction: DVec3, mut visit: impl FnMut(usize, f64)) {
+    /// Calls back with the number of each voxel along a line, in order, and the distance (in
+    /// voxels, from `from`) at which the line leaves it, until it is told to stop.
+    ///
+    /// Distances are whole numbers of 2^-32 voxels here, so that steps are exact and a step needs
+    /// no branch: this loop is a quarter of a build.
+    #[inline]
+    pub(super) fn along(
+        &self,
+        from: DVec3,
+        direction: DVec3,
+        mut visit: impl FnMut(usize, f64) -> ControlFlow<()>,
+    ) {
         let cells = DVec3::from_array(self.cells.map(f64::from));
         let per_cell = direction.recip();
-        let (mut enter, mut leave) = (0.0f64, f64::INFINITY);
+        let (mut enter, mut leave) = (f64::NEG_INFINITY, f64::INFINITY);
         for k in 0..3 {
             if direction[k] == 0.0 {
                 if from[k] < 0.0 || from[k] >= cells[k] {
@@ -109,42 +120,47 @@ impl Grid {
             return;
         }
         let start = from + direction * enter;
-        let [nx, ny, _] = self.cells.map(isize::from);
+        let [nx, ny, _] = self.cells.map(i64::from);
         let strides = [1, nx, nx * ny];
-        let (mut number, mut left, mut step) = (0isize, [0u32; 3], [0isize; 3]);
-        let mut next = [f64::INFINITY; 3];
+        // Planes that are not reached are far away, and two of them are no overflow.
+        let units = |distance: f64| (distance * UNITS).clamp(-FAR_AWAY, FAR_AWAY) as i64;
+        let (mut number, mut end) = (0, i64::MAX);
+        let (mut step, mut next, mut size) = ([0; 3], [i64::MAX; 3], [0; 3]);
         for k in 0..3 {
-            let last = i32::from(self.cells[k]) - 1;
-            let at = (start[k].floor() as i32).clamp(0, last);
-            number += at as isize * strides[k];
+            let last = i64::from(self.cells[k]) - 1;
+            let at = (start[k].floor() as i64).clamp(0, last);
+            number += at * strides[k];
             let is_forward = direction[k] > 0.0;
-            left[k] = if is_forward { last - at } else { at } as u32;
-            step[k] = if is_forward { strides[k] } else { -strides[k] };
             if direction[k] != 0.0 {
-                next[k] = (f64::from(at + i32::from(is_forward)) - from[k]) * per_cell[k];
+                step[k] = if is_forward { strides[k] } else { -strides[k] };
+                next[k] = units(((at + i64::from(is_forward)) as f64 - from[k]) * per_cell[k]);
+                size[k] = units(per_cell[k].abs());
+                let left = if is_forward { last - at } else { at };
+                end = end.min(next[k].saturating_add(left.saturating_mul(size[k])));
             }
         }
-        let per_cell = per_cell.abs().to_array();
+        let ([mut x, mut y, mut z], [of_x, of_y, of_z]) = (next, size);
         loop {
-            let axis = if next[0] <= next[1] && next[0] <= next[2] {
-                0
-            } else if next[1] <= next[2] {
-                1
-            } else {
-                2
-            };
-            enter = enter.max(next[axis]);
+            let nearest = x.min(y).min(z);
             // Not negative: it is within the cells.
-            visit(number as usize, enter);
-            if left[axis] == 0 {
+            if visit(number as usize, nearest as f64 / UNITS).is_break() || nearest >= end {
                 return;
             }
-            left[axis] -= 1;
-            number += step[axis];
-            next[axis] += per_cell[axis];
+            // All ones where that plane is crossed; where several are, through an edge or corner.
+            let crossed = |plane: i64| -i64::from(plane == nearest);
+            let (by_x, by_y, by_z) = (crossed(x), crossed(y), crossed(z));
+            x += of_x & by_x;
+            y += of_y & by_y;
+            z += of_z & by_z;
+            number += (step[0] & by_x) + (step[1] & by_y) + (step[2] & by_z);
         }
     }
 }
+
+/// Parts of a voxel in which distances along a line are counted.
+const UNITS: f64 = (1u64 << 32) as f64;
+/// Farther than any plane of a grid that a line crosses within it, in these parts.
+const FAR_AWAY: f64 = (1u64 << 60) as f64;
 
 #[cfg(test)]
 mod tests {
@@ -190,6 +206,7 @@ mod tests {
             let mut walk = Vec::new();
             grid.along(from, direction, |number, leave| {
                 walk.push((grid.place(number), leave));
+                ControlFlow::Continue(())
             });
             walk
         };

@@ -2,12 +2,14 @@
 
 use glam::DVec3;
 
+use super::clusters::{Occluders, Part};
 use super::count::Seen;
 use super::grid::Grid;
-use super::rays::Occluders;
-use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
+use super::rays::Around;
+use super::sample::{MOST_VISIBILITY_RAYS, Rays, Triangles};
+use super::shader_fit::ShaderFit;
 use super::shot::Target;
-use super::{shader_fit, surface_sample};
+use super::{MOST_RAYS, Ordered, shader_fit};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
 use crate::mesh::{Material, Mesh, MeshBuilder, Surface};
@@ -49,9 +51,30 @@ fn unit(cells: [u8; 3]) -> Grid {
     }
 }
 
+/// What the rays of a node found.
+struct Sampled {
+    seen: Vec<(Seen, ShaderFit)>,
+    touched: u32,
+    untested: u32,
+    rays: u32,
+    hits: u32,
+}
+
 fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend) -> Sampled {
-    let corners = |i: usize| Surface::corners(mesh, i);
-    let occluders = Occluders::new((0..Surface::len(mesh)).map(corners));
+    let order: Vec<u32> = (0..Surface::len(mesh) as u32).collect();
+    let triangles = Ordered {
+        surface: mesh,
+        order: &order,
+        centre: DVec3::ZERO,
+        scale: 1.0,
+    };
+    let (low, high) = mesh.bounds();
+    let part = Part {
+        triangles: 0..order.len(),
+        around: Around::of(low, high),
+    };
+    let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
+    let occluders = Occluders::new(&[part], corners, None).unwrap();
     let target = Target {
         occluders: &occluders,
         grid,
@@ -60,15 +83,18 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
         opacity_blend,
         shader_blend: Blend::Squares,
     };
-    let plane = |i: usize| {
-        let [a, b, c] = corners(i);
-        (b - a).cross(c - a).normalize()
-    };
-    let sample_at = |i: usize, point: DVec3, eye: DVec3| {
-        surface_sample(&mesh.triangle(i), point, eye, plane(i))
-    };
+    let mut seen = Vec::new();
+    let keep = |voxel: &Seen, shown: &ShaderFit, _| seen.push((voxel.clone(), *shown));
     let rays = Rays::InAll(rays);
-    target.sample(rays, u32::MAX, 7, corners, sample_at, plane)
+    let found = target.sample(rays, MOST_RAYS, 7, &triangles, |_| (), keep);
+    let found = found.unwrap();
+    Sampled {
+        seen,
+        touched: found.touched,
+        untested: found.untested,
+        rays: found.rays,
+        hits: found.hits,
+    }
 }
 
 fn all(mesh: &Mesh, grid: Grid, rays: u32) -> Sampled {

@@ -4,35 +4,48 @@
 //! threads: a node's rays depend on its number and on nothing else.
 
 mod chance;
+mod clusters;
 mod count;
 mod grid;
 mod rays;
+mod room;
 mod sample;
 mod shader_fit;
 mod shot;
 mod split;
+mod spool;
 mod touch;
 
 #[cfg(test)]
 mod known;
 
+use std::fs::File;
+use std::io::{self, Cursor, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
 use glam::DVec3;
 use rayon::prelude::*;
-use xxhash_rust::xxh3::xxh3_64;
 
 pub use grid::Grid;
+pub use spool::part_of;
 
 use super::FarData;
 use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::{pack_triangles, pack_voxels};
+use super::store::write_parts;
 use crate::graph::{PackedNormal, Progress, place};
 use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
-use count::SurfaceSample;
-use rays::Occluders;
-use sample::Rays;
+use clusters::{CLUSTER, MADE, MAKING, Occluders, Part};
+use count::{Seen, SurfaceSample};
+use rays::Around;
+use room::Room;
+use sample::{Rays, Triangles};
+use shader_fit::ShaderFit;
 use shot::Target;
 use split::{Branch, split};
+use spool::{Origin, Spool, open_part};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,6 +72,12 @@ pub struct BuildOptions {
 pub const RAYS_PER_VOXEL: u32 = 24;
 /// Most rays of a node: what its memory is kept to.
 const MOST_RAYS: u32 = 1 << 22;
+/// Bytes a ray that a node takes while it is sampled, or less.
+const RAY_BYTES: u64 = 96;
+/// Rays at a touched voxel, where no number of rays is given, or less: few get all.
+const RAYS_AT_VOXEL: u64 = 32;
+/// Bytes that nodes may take together at the least.
+const LEAST_ROOM: u64 = 48 << 20;
 
 impl Default for BuildOptions {
     fn default() -> Self {
@@ -89,6 +108,55 @@ pub enum BuildError {
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
+    /// A budget that is too small.
+    #[error(
+        "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
+    )]
+    Memory {
+        /// Bytes that it takes.
+        needed: u64,
+        /// Bytes that it was given.
+        given: u64,
+    },
+    /// A temporary or unfinished file.
+    #[error("{}: {problem}", file.display())]
+    File {
+        /// It, or the folder that it is in.
+        file: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+/// Where a build keeps what is not in memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Outside<'o> {
+    /// Bytes that it may take beside the surface; `None`: as many as make it fast.
+    pub memory: Option<u64>,
+    /// Folder of temporary files, which have no names where the system allows it.
+    pub folder: &'o Path,
+    /// The unfinished file: what is finished is kept in it, and what was finished before is taken
+    /// from it. `None`: a temporary one.
+    pub part: Option<&'o Path>,
+}
+
+/// Far voxels whose data is in a file.
+#[derive(Debug)]
+pub struct Spooled {
+    /// All but the data: `packed` is empty.
+    pub data: FarData,
+    spool: Spool<File>,
+}
+
+impl Spooled {
+    /// Writes a `.far` file.
+    ///
+    /// # Errors
+    /// As [`write_to`](super::store::write_to).
+    pub fn write_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        let bytes = self.spool.nodes().map(|done| done.bytes).sum();
+        write_parts(&self.data, bytes, out, |out| self.spool.copy_to(out))
+    }
 }
 
 /// Builds far voxels of a surface.
@@ -101,21 +169,127 @@ pub fn build<S: Surface + ?Sized>(
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
     check(surface, options)?;
-    let centre = centre(surface)?;
+    let spool = Spool::new(Cursor::new(Vec::new()));
+    let none = |_: &mut Spool<_>, _| Ok(());
+    let (mut data, mut spool) = fill(surface, options, None, (spool, none), progress)?;
+    let bytes: u64 = spool.nodes().map(|done| done.bytes).sum();
+    data.packed.reserve_exact(bytes as usize);
+    let copied = spool.copy_to(&mut data.packed);
+    copied.map_err(|e| failed(Path::new("memory"), &e))?;
+    Ok(data)
+}
+
+/// Builds far voxels of a surface, the same as [`build()`], outside of memory.
+///
+/// # Errors
+/// See [`BuildError`].
+pub fn build_outside<S: Surface + ?Sized>(
+    surface: &S,
+    options: &BuildOptions,
+    outside: &Outside<'_>,
+    progress: &dyn Progress,
+) -> Result<Spooled, BuildError> {
+    check(surface, options)?;
+    let spool = match outside.part {
+        Some(part) => open_part(part, &Origin::of(surface, options))?,
+        None => {
+            let file = tempfile::tempfile_in(outside.folder);
+            Spool::new(file.map_err(|e| failed(outside.folder, &e))?)
+        }
+    };
+    let resume = |spool: &mut Spool<File>, nodes| match outside.part {
+        Some(part) => spool.resume(nodes).map_err(|e| failed(part, &e)),
+        None => Ok(()),
+    };
+    let (data, spool) = fill(surface, options, Some(outside), (spool, resume), progress)?;
+    Ok(Spooled { data, spool })
+}
+
+fn failed(file: &Path, problem: &io::Error) -> BuildError {
+    BuildError::File {
+        file: file.to_owned(),
+        problem: problem.to_string(),
+    }
+}
+
+/// Triangles in the order of the hierarchy, in coordinates in which all of them together have a
+/// size of about 1: single precision holds their squares and products, however small the mesh is.
+struct Ordered<'s, S: ?Sized> {
+    surface: &'s S,
+    order: &'s [u32],
+    centre: DVec3,
+    /// A power of two, so that nothing is rounded.
+    scale: f64,
+}
+
+impl<S: Surface + ?Sized> Ordered<'_, S> {
+    fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.centre) * self.scale
+    }
+}
+
+impl<S: Surface + ?Sized> Triangles for Ordered<'_, S> {
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        let corners = self.surface.corners(self.order[number] as usize);
+        corners.map(|p| self.place(p))
+    }
+
+    fn plane(&self, number: usize) -> DVec3 {
+        let [a, b, c] = self.corners(number);
+        (b - a).cross(c - a).normalize_or(DVec3::Z)
+    }
+
+    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
+        let mut triangle = self.surface.triangle(self.order[number] as usize);
+        triangle.corners = triangle.corners.map(|p| self.place(p));
+        surface_sample(&triangle, point, towards_eye)
+    }
+}
+
+/// Fills a spool with the nodes that are not in it yet.
+fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
+    surface: &S,
+    options: &BuildOptions,
+    outside: Option<&Outside<'_>>,
+    (mut spool, resume): (
+        Spool<F>,
+        impl FnOnce(&mut Spool<F>, usize) -> Result<(), BuildError>,
+    ),
+    progress: &dyn Progress,
+) -> Result<(FarData, Spool<F>), BuildError> {
+    let (centre, scale) = centre(surface)?;
+    let folder = outside.map_or(Path::new("memory"), |outside| outside.folder);
+    let memory = outside.and_then(|outside| outside.memory);
+    let shares = shares(surface.len(), memory)?;
     progress.begin("split triangles", 0);
     let (branches, order) = split(surface, options.leaf_triangles as usize);
     progress.end();
-    let corners = |place: usize| surface.corners(order[place] as usize).map(|p| p - centre);
+    if u32::try_from(branches.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
+    }
+    resume(&mut spool, branches.len())?;
+    spool.expect(branches.len());
+    let triangles = Ordered {
+        surface,
+        order: &order,
+        centre,
+        scale,
+    };
     progress.begin("prepare rays", 0);
-    let occluders = Occluders::new((0..order.len()).map(corners));
+    let within = match shares.clusters {
+        None => None,
+        Some(most) => {
+            let file = tempfile::tempfile_in(folder).map_err(|e| failed(folder, &e))?;
+            Some((file, most))
+        }
+    };
+    let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
+    let parts = parts(&branches, |point| triangles.place(point));
+    let occluders = Occluders::new(&parts, corners, within).map_err(|e| failed(folder, &e))?;
     progress.end();
-    let target = |branch: &Branch| Target {
-        occluders: &occluders,
-        grid: Grid::around(branch.low - centre, branch.high - centre, options.grid),
-        own: branch.first..branch.first + branch.count,
-        distance: options.distance_voxels,
-        opacity_blend: options.opacity_blend,
-        shader_blend: options.shader_blend,
+    let grid = |branch: &Branch| {
+        let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
+        Grid::around(low, high, options.grid)
     };
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
@@ -128,8 +302,7 @@ pub fn build<S: Surface + ?Sized>(
                         progress.advance(branch.count as u64);
                         return 0;
                     }
-                    let own = branch.first..branch.first + branch.count;
-                    touch::count(&target(branch).grid, own.map(corners))
+                    touch::count(&grid(branch), corners(branch.triangles()))
                 })
                 .collect();
             progress.end();
@@ -137,37 +310,103 @@ pub fn build<S: Surface + ?Sized>(
         }
     };
     progress.begin("shoot rays", order.len() as u64);
-    let plane = |place: usize| {
-        let [a, b, c] = corners(place);
-        (b - a).cross(c - a).normalize_or(DVec3::Z)
-    };
-    let sample_at = |place: usize, point: DVec3, towards_eye: DVec3| {
-        let mut triangle = surface.triangle(order[place] as usize);
-        triangle.corners = triangle.corners.map(|p| p - centre);
-        surface_sample(&triangle, point, towards_eye, plane(place))
-    };
-    let built: Vec<(Node, Vec<u8>)> = branches
+    let done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
+    let spool = Mutex::new(spool);
+    let room = Room::new(shares.nodes);
+    branches
         .par_iter()
         .enumerate()
-        .map(|(number, branch)| {
-            let mut node = outline(branch, centre);
-            if branch.children.is_none() {
-                // Every triangle is in one leaf: progress is counted by these.
-                progress.advance(branch.count as u64);
-                let own = &order[branch.first..branch.first + branch.count];
-                return (node, pack_triangles(&leaf_triangles(surface, own, centre)));
+        .try_for_each(|(number, branch)| {
+            let is_leaf = branch.children.is_none();
+            if !done[number] {
+                let mut node = outline(branch, centre);
+                let data = if is_leaf {
+                    let own = &order[branch.triangles()];
+                    pack_triangles(&leaf_triangles(surface, own, centre))
+                } else {
+                    let target = Target {
+                        occluders: &occluders,
+                        grid: grid(branch),
+                        own: branch.triangles(),
+                        distance: options.distance_voxels,
+                        opacity_blend: options.opacity_blend,
+                        shader_blend: options.shader_blend,
+                    };
+                    let fitted = fit(&target, rays[number], number, &triangles, &room, options);
+                    let fitted = fitted.map_err(|e| failed(folder, &e))?;
+                    fitted.describe(&mut node, scale);
+                    pack_voxels(&fitted.lists)
+                };
+                // What was added before is sound, whoever panicked.
+                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+                let added = spool.add(number, node, &data);
+                added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
             }
-            let target = target(branch);
-            let seed = number as u64;
-            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, sample_at, plane);
-            let lists = keep(&mut node, &target.grid, &sampled, options);
-            (node, pack_voxels(&lists))
-        })
-        .collect();
+            // Every triangle is in one leaf: progress is counted by these.
+            progress.advance(if is_leaf { branch.count as u64 } else { 0 });
+            Ok(())
+        })?;
     progress.end();
-    let mut data = assemble(built, centre, options)?;
+    let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut data = assemble(&spool, centre, options)?;
     data.bevels = mesh_box(surface, data.y_up).bevels;
-    Ok(data)
+    Ok((data, spool))
+}
+
+/// How a budget is shared out.
+struct Shares {
+    /// Bytes of clusters in memory; `None`: all of them.
+    clusters: Option<u64>,
+    /// Bytes of nodes that are sampled.
+    nodes: u64,
+}
+
+/// Shares out a budget for so many triangles.
+fn shares(triangles: usize, memory: Option<u64>) -> Result<Shares, BuildError> {
+    let Some(given) = memory else {
+        return Ok(Shares {
+            clusters: None,
+            nodes: u64::MAX,
+        });
+    };
+    let triangles = triangles as u64;
+    // Their order, and of the hierarchy, at 1000 triangles a leaf, a branch and a record a node; the
+    // order twice while triangles are split.
+    let fixed = triangles * 10;
+    let making = MAKING * triangles.min(CLUSTER as u64);
+    let threads = rayon::current_num_threads() as u64;
+    let cluster = MADE * triangles.min(CLUSTER as u64);
+    let needed = fixed + making.max(LEAST_ROOM + cluster * threads);
+    if given < needed {
+        return Err(BuildError::Memory { needed, given });
+    }
+    let all = triangles * MADE;
+    let rest = given - fixed;
+    // Clusters are worth more than nodes at the same time.
+    let nodes = (rest - cluster * threads - LEAST_ROOM) / 4 + LEAST_ROOM;
+    let room = rest - nodes;
+    let fits = all + making <= room;
+    Ok(Shares {
+        clusters: (!fits).then(|| (room.saturating_sub(making)).max(cluster)),
+        nodes,
+    })
+}
+
+/// The largest subtrees of no more triangles than a cluster may have.
+fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let mut waiting = vec![0];
+    while let Some(number) = waiting.pop() {
+        let branch: &Branch = &branches[number];
+        match branch.children {
+            Some([near, far]) if branch.count > CLUSTER => waiting.extend([far, near]),
+            _ => parts.push(Part {
+                triangles: branch.triangles(),
+                around: Around::of(place(branch.low), place(branch.high)),
+            }),
+        }
+    }
+    parts
 }
 
 fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(), BuildError> {
@@ -193,15 +432,17 @@ fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(),
     Ok(())
 }
 
-/// What coordinates are relative to.
-fn centre<S: Surface + ?Sized>(surface: &S) -> Result<DVec3, BuildError> {
+/// What coordinates are relative to, and what makes them about 1.
+fn centre<S: Surface + ?Sized>(surface: &S) -> Result<(DVec3, f64), BuildError> {
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
     let farthest = low.abs().max(high.abs()).max_element();
     if !(farthest < 1e30 && extent > 1e-30) {
         return Err(BuildError::Range);
     }
-    Ok(place::centre(low.to_array(), high.to_array()).into())
+    let centre = place::centre(low.to_array(), high.to_array()).into();
+    let (_, power) = libm::frexp(extent);
+    Ok((centre, libm::ldexp(1.0, -power)))
 }
 
 /// Rays of each node, in proportion to the voxels that its triangles touch.
@@ -224,8 +465,9 @@ fn surface_sample(
     triangle: &crate::mesh::Triangle,
     point: DVec3,
     towards_eye: DVec3,
-    plane: DVec3,
 ) -> SurfaceSample {
+    let [a, b, c] = triangle.corners;
+    let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
     let shares = barycentric(&triangle.corners, point);
     let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
     let face = if plane.dot(towards_eye) >= 0.0 {
@@ -261,34 +503,73 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
     }
 }
 
-/// Fits the voxels that were seen; gives their records, list by list.
-fn keep(
-    node: &mut Node,
-    grid: &Grid,
-    sampled: &sample::Sampled,
+/// The voxels of a node, fitted.
+struct Fitted {
+    grid: Grid,
+    sampled: sample::Sampled,
+    lists: [Vec<u8>; 6],
+    counts: [u32; 6],
+    crossings: u32,
+    square_error: f64,
+    samples: usize,
+}
+
+/// Shoots rays at a node and fits its voxels.
+fn fit(
+    target: &Target<'_>,
+    rays: Rays,
+    number: usize,
+    triangles: &impl Triangles,
+    room: &Room,
     options: &BuildOptions,
-) -> [Vec<u8>; 6] {
+) -> io::Result<Fitted> {
     let mut lists: [Vec<u8>; 6] = Default::default();
-    let mut square_error = 0.0;
-    let mut samples = 0;
-    for (seen, shown) in &sampled.seen {
+    let (mut counts, mut crossings) = ([0; 6], 0u32);
+    let (mut square_error, mut all_samples) = (0.0, 0);
+    let keep = |seen: &Seen, shown: &ShaderFit, samples: usize| {
         let voxel = shader_fit::fit(seen, shown.shader, options.opacity);
         let list = voxel.list();
         voxel.write(&mut lists[list]);
-        node.counts[list] += 1;
+        counts[list] += 1;
         square_error += shown.square_error;
-        samples += seen.samples.len();
-        node.crossings = node.crossings.saturating_add(seen.crossings);
+        all_samples += samples;
+        crossings = crossings.saturating_add(seen.crossings);
+    };
+    let admit = |touched: usize| {
+        let rays = match rays {
+            Rays::PerVoxel(_) => (touched as u64 * RAYS_AT_VOXEL).min(u64::from(MOST_RAYS)),
+            Rays::InAll(rays) => u64::from(rays),
+        };
+        room.take(rays * RAY_BYTES)
+    };
+    let sampled = target.sample(rays, MOST_RAYS, number as u64, triangles, admit, keep)?;
+    Ok(Fitted {
+        grid: target.grid,
+        sampled,
+        lists,
+        counts,
+        crossings,
+        square_error,
+        samples: all_samples,
+    })
+}
+
+impl Fitted {
+    /// Describes them in a node, of coordinates of a scale.
+    fn describe(&self, node: &mut Node, scale: f64) {
+        node.counts = self.counts;
+        node.crossings = self.crossings;
+        // Back by a power of two: as exact as they were.
+        node.origin = (self.grid.origin / scale).as_vec3().to_array();
+        node.voxel = (self.grid.voxel / scale) as f32;
+        node.cells = self.grid.cells;
+        node.touched = self.sampled.touched;
+        node.untested = self.sampled.untested;
+        node.rays = self.sampled.rays;
+        node.hits = self.sampled.hits;
+        let mean = self.square_error / f64::from(self.samples.max(1) as u32);
+        node.error = libm::sqrt(mean) as f32;
     }
-    node.origin = grid.origin.as_vec3().to_array();
-    node.voxel = grid.voxel as f32;
-    node.cells = grid.cells;
-    node.touched = sampled.touched;
-    node.untested = sampled.untested;
-    node.rays = sampled.rays;
-    node.hits = sampled.hits;
-    node.error = libm::sqrt(square_error / f64::from(samples.max(1) as u32)) as f32;
-    lists
 }
 
 fn leaf_triangles<S: Surface + ?Sized>(
@@ -310,28 +591,27 @@ fn leaf_triangles<S: Surface + ?Sized>(
         .collect()
 }
 
-fn assemble(
-    built: Vec<(Node, Vec<u8>)>,
+/// All but the data of what is finished.
+fn assemble<F: Read + Write + Seek>(
+    spool: &Spool<F>,
     centre: DVec3,
     options: &BuildOptions,
 ) -> Result<FarData, BuildError> {
-    if u32::try_from(built.len()).is_err() {
-        return Err(BuildError::TooMany(format!("{} nodes", built.len())));
-    }
-    let numbered: u64 = built.iter().map(|(node, _)| node.voxels()).sum();
-    let triangles = built.first().map_or(0, |(root, _)| root.triangles);
+    let numbered: u64 = spool.nodes().map(|done| done.node.voxels()).sum();
+    let triangles = spool.nodes().next().map_or(0, |root| root.node.triangles);
     let numbered = numbered + u64::from(triangles);
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
         return Err(BuildError::TooMany(what));
     }
-    let mut nodes = Vec::with_capacity(built.len());
-    let mut packed = Vec::with_capacity(built.iter().map(|(_, bytes)| bytes.len()).sum());
-    for (mut node, bytes) in built {
-        node.data_at = packed.len() as u64;
-        node.checksum = xxh3_64(&bytes);
-        packed.extend(bytes);
-        nodes.push(node);
+    let mut nodes = Vec::new();
+    let mut data_at = 0;
+    for done in spool.nodes() {
+        nodes.push(Node {
+            data_at,
+            ..done.node
+        });
+        data_at += done.bytes;
     }
     Ok(FarData {
         centre: centre.to_array(),
@@ -343,6 +623,6 @@ fn assemble(
         y_up: true,
         bevels: [0; 8],
         nodes,
-        packed,
+        packed: Vec::new(),
     })
 }

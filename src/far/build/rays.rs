@@ -1,35 +1,110 @@
-//! What a ray meets first.
+//! What rays meet first.
+//!
+//! Triangles are held in *clusters*, subtrees of the hierarchy, each with a ray hierarchy of its
+//! own. Rays come in batches, and a batch is tested against one cluster after the other, so that
+//! only one cluster need be in memory (`clusters.rs`). What a ray meets depends neither on the
+//! order of the clusters nor on how many are in memory: it is the nearest triangle, of equally near
+//! ones that of the lowest number, and whatever may be nearer than the nearest yet is tested,
+//! with a margin for rounding.
 
 use std::time::Duration;
 
-use glam::{DVec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::builder::build_cwbvh_from_tris;
+use obvhs::cwbvh::node::CwBvhNode;
 use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle as BvhTriangle;
+
+use super::shot::NOWHERE;
 
 /// Share of an edge by which triangles reach beyond it, so that no ray slips
 /// between two that share it.
 const EDGE: f32 = 1e-5;
+/// Boxes are entered up to this share of a distance behind the nearest triangle yet.
+const MARGIN: f32 = 1.0 + 1e-3;
 
-/// Triangles, ready for rays. Coordinates are those that it was given.
-pub(super) struct Occluders {
-    bvh: CwBvh,
-    /// In the order of the hierarchy's indices.
-    triangles: Vec<BvhTriangle>,
+/// A ray, in the coordinates of the triangles.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Query {
+    pub(super) origin: Vec3,
+    /// Unit vector.
+    pub(super) direction: Vec3,
+    /// How far it is followed.
+    pub(super) most: f32,
 }
 
-/// A triangle that a ray meets.
+/// What a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct TriangleHit {
-    /// Distance along the ray.
-    pub(super) distance: f64,
-    /// Number of the triangle, as they were given.
-    pub(super) triangle: usize,
+pub(super) struct Meeting {
+    /// Distance along the ray; infinite where it meets nothing.
+    pub(super) distance: f32,
+    /// Number of the triangle, in the order of the hierarchy; [`NOWHERE`]: none.
+    pub(super) triangle: u32,
 }
 
-impl Occluders {
+impl Meeting {
+    pub(super) const NONE: Self = Self {
+        distance: f32::INFINITY,
+        triangle: NOWHERE,
+    };
+}
+
+/// A box in single precision.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Around {
+    pub(super) low: Vec3A,
+    pub(super) high: Vec3A,
+}
+
+impl Around {
+    /// A box, widened by more than single precision rounds.
+    pub(super) fn of(low: DVec3, high: DVec3) -> Self {
+        let wider = 1e-5 * (high - low).length() + 1e-6 * low.abs().max(high.abs()).max_element();
+        let wider = DVec3::splat(wider);
+        Self {
+            low: (low - wider).as_vec3a(),
+            high: (high + wider).as_vec3a(),
+        }
+    }
+
+    /// Whether a ray gets into it before a distance.
+    fn is_entered(&self, query: &Query, before: f32) -> bool {
+        let per_unit = Vec3A::from(query.direction).recip();
+        let origin = Vec3A::from(query.origin);
+        let (a, b) = (
+            (self.low - origin) * per_unit,
+            (self.high - origin) * per_unit,
+        );
+        // A ray within a plane of the box gives what is not a number there, which counts as within.
+        let enter = a.min(b).to_array().into_iter().fold(0.0, f32::max);
+        let leave = a.max(b).to_array().into_iter().fold(before, f32::min);
+        enter <= leave * MARGIN
+    }
+
+    /// The square of the distance between two boxes.
+    pub(super) fn square_from(&self, other: &Self) -> f32 {
+        let apart = (self.low - other.high)
+            .max(other.low - self.high)
+            .max(Vec3A::ZERO);
+        apart.length_squared()
+    }
+}
+
+/// A triangle: its first corner, and from there to the others.
+type Corners = [[f32; 3]; 3];
+
+/// Triangles that lie side by side, ready for rays.
+#[derive(Debug)]
+pub(super) struct Cluster {
+    bvh: CwBvh,
+    /// In the order of the ray hierarchy, which may have one several times: those that a ray tests
+    /// one after the other lie together.
+    triangles: Vec<Corners>,
+}
+
+impl Cluster {
     pub(super) fn new(corners: impl Iterator<Item = [DVec3; 3]>) -> Self {
         let triangles: Vec<BvhTriangle> = corners
             .map(|corners| {
@@ -42,54 +117,102 @@ impl Occluders {
             BvhBuildParams::slow_build(),
             &mut Duration::default(),
         );
-        // In the order of the hierarchy: those that a ray tests one after the other lie together.
-        let indices = bvh.primitive_indices.iter();
-        let triangles = indices.map(|&number| triangles[number as usize]).collect();
-        Self { bvh, triangles }
+        let in_order = bvh.primitive_indices.iter().map(|&number| {
+            let BvhTriangle { v0, v1, v2 } = triangles[number as usize];
+            [v0, v1 - v0, v2 - v0].map(|p| p.to_array())
+        });
+        Self {
+            triangles: in_order.collect(),
+            bvh,
+        }
     }
 
-    /// The nearest triangle along a unit direction, not farther than `most`.
-    pub(super) fn nearest(
-        &self,
-        origin: DVec3,
-        direction: DVec3,
-        most: f64,
-    ) -> Option<TriangleHit> {
-        let ray = Ray::new(origin.as_vec3a(), direction.as_vec3a(), 0.0, most as f32);
-        let mut hit = RayHit::none();
-        self.bvh.ray_traverse(ray, &mut hit, |ray, place| {
-            meet(&self.triangles[place], ray)
-        });
-        if !hit.t.is_finite() || hit.primitive_id == u32::MAX {
-            return None;
-        }
-        Some(TriangleHit {
-            distance: f64::from(hit.t),
-            triangle: self.bvh.primitive_indices[hit.primitive_id as usize] as usize,
-        })
+    /// Bytes that it takes.
+    pub(super) fn bytes(&self) -> u64 {
+        let [nodes, numbers, triangles] = self.sections().map(<[u8]>::len);
+        (nodes + numbers + triangles) as u64
     }
+
+    /// Its bytes, to be stored.
+    pub(super) fn sections(&self) -> [&[u8]; 3] {
+        [
+            bytemuck::cast_slice(&self.bvh.nodes),
+            bytemuck::cast_slice(&self.bvh.primitive_indices),
+            bytemuck::cast_slice(&self.triangles),
+        ]
+    }
+
+    /// Of the bytes that it gave.
+    pub(super) fn of(sections: [&[u8]; 3]) -> Self {
+        let [nodes, numbers, triangles] = sections;
+        Self {
+            bvh: CwBvh {
+                nodes: bytemuck::pod_collect_to_vec::<u8, CwBvhNode>(nodes),
+                primitive_indices: bytemuck::pod_collect_to_vec(numbers),
+                ..CwBvh::default()
+            },
+            triangles: bytemuck::pod_collect_to_vec(triangles),
+        }
+    }
+
+    /// Takes what a ray meets, if it is nearer than what it met before. `first` is the number of
+    /// the first triangle here.
+    fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
+        let most = query.most.min(meeting.distance * MARGIN);
+        let (origin, direction) = (query.origin.into(), query.direction.into());
+        let ray = Ray::new(origin, direction, 0.0, most);
+        self.bvh
+            .ray_traverse(ray, &mut RayHit::none(), |ray, place| {
+                let distance = meet(&self.triangles[place], ray);
+                if distance > meeting.distance.min(query.most) {
+                    return f32::INFINITY;
+                }
+                let triangle = first + self.bvh.primitive_indices[place];
+                if distance < meeting.distance || triangle < meeting.triangle {
+                    *meeting = Meeting { distance, triangle };
+                }
+                distance * MARGIN
+            });
+    }
+
+    /// As for one ray, for those that get into a box.
+    pub(super) fn meet_all(
+        &self,
+        around: &Around,
+        first: u32,
+        queries: &[Query],
+        meetings: &mut [Meeting],
+    ) {
+        for (query, meeting) in queries.iter().zip(meetings) {
+            if around.is_entered(query, query.most.min(meeting.distance)) {
+                self.nearest(query, first, meeting);
+            }
+        }
+    }
+}
+
+/// Whether any of some rays has to be tested against what is in a box.
+pub(super) fn is_any_entered(around: &Around, queries: &[Query], meetings: &[Meeting]) -> bool {
+    let mut both = queries.iter().zip(meetings);
+    both.any(|(query, meeting)| around.is_entered(query, query.most.min(meeting.distance)))
 }
 
 /// Distance along the ray; infinite where they do not meet. Möller and
 /// Trumbore's test, from both sides, a little beyond the edges.
-fn meet(triangle: &BvhTriangle, ray: &Ray) -> f32 {
-    let along: [Vec3A; 2] = [triangle.v1 - triangle.v0, triangle.v2 - triangle.v0];
-    let across = ray.direction.cross(along[1]);
-    let signed = along[0].dot(across);
+fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
+    let [corner, to_second, to_third] = [corner, to_second, to_third].map(Vec3A::from_array);
+    let across = ray.direction.cross(to_third);
+    let signed = to_second.dot(across);
     // All is compared times this, so that nothing is divided that does not meet.
     let scale = signed.abs();
     let sign = 1f32.copysign(signed);
-    let from = ray.origin - triangle.v0;
+    let from = ray.origin - corner;
     let u = from.dot(across) * sign;
-    let over = from.cross(along[0]);
+    let over = from.cross(to_second);
     let v = ray.direction.dot(over) * sign;
     if scale == 0.0 || u.min(v).min(scale - u - v) < -EDGE * scale {
         return f32::INFINITY;
     }
-    let t = along[1].dot(over) * sign / scale;
-    if t >= ray.tmin && t <= ray.tmax {
-        t
-    } else {
-        f32::INFINITY
-    }
+    let t = to_third.dot(over) * sign / scale;
+    if t >= 0.0 { t } else { f32::INFINITY }
 }

@@ -7,24 +7,27 @@
 //! were seen, from random directions: what share of them ends in a voxel is
 //! its opacity (`count.rs`).
 
-use std::collections::VecDeque;
+use std::io;
+use std::ops::ControlFlow;
 
 use glam::DVec3;
 
 use super::chance::Chance;
-use super::count::{FOLLOWED, Marks, Seen, SurfaceSample, main_normal};
+use super::count::{FOLLOWED, Groups, Marks, Probes, Seen, SurfaceSample, main_normal};
 use super::shader_fit::{ShaderFit, fit_shader};
-use super::shot::{NOWHERE, Shot, Target};
+use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
-use crate::far::record::Shader;
 
 /// Most visibility rays from random directions at a voxel that none reached yet.
-pub(super) const MOST_VISIBILITY_RAYS: u32 = 16;
+pub(super) const MOST_VISIBILITY_RAYS: u32 = 8;
 /// Most of them from where neighbours were seen: what one window lets a ray
 /// through to lies side by side, and a random direction seldom finds the window.
-pub(super) const MOST_FOLLOWED: u8 = 12;
+pub(super) const MOST_FOLLOWED: u8 = 8;
 /// A voxel that fewer rays were aimed at, none of which reached it, is not known to be hidden.
 pub(super) const LEAST_TESTS: u8 = 8;
+/// Visibility rays are shot in so many batches a turn: those of one find what the next ones need
+/// not look for.
+const BATCHES: usize = 4;
 /// Probes that are aimed at each voxel before it is known how many cross it.
 const FIRST_PROBES: u32 = 4;
 /// Probes that are aimed at each voxel at the least, so that their directions are spread.
@@ -32,12 +35,9 @@ const LEAST_PROBES: u32 = 8;
 /// How far beyond the point that it is aimed at a visibility ray is followed, voxels.
 const AIM_WITHIN: f64 = 0.5;
 
-/// What the rays of a node found.
-#[derive(Debug)]
+/// What the rays of a node found, beside its voxels.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Sampled {
-    /// Voxels that are kept, those that were seen and those that were not tested, in the order of
-    /// the grid, and what they show.
-    pub(super) seen: Vec<(Seen, ShaderFit)>,
     /// Voxels that triangles touch.
     pub(super) touched: u32,
     /// Voxels of those kept that were not tested.
@@ -55,21 +55,38 @@ pub(super) enum Rays {
     InAll(u32),
 }
 
+/// The triangles of a node, by their numbers.
+pub(super) trait Triangles {
+    /// Corners.
+    fn corners(&self, number: usize) -> [DVec3; 3];
+    /// Unit normal of the plane.
+    fn plane(&self, number: usize) -> DVec3;
+    /// What is seen at a point from a direction.
+    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample;
+}
+
 impl Target<'_> {
-    /// Shoots rays. `sample_at` gives normal and colour of a triangle at a point,
-    /// `plane` a triangle's unit normal; at most `most` rays are shot.
-    pub(super) fn sample(
+    /// Shoots rays, at most `most`, which is no more than 2^22. `admit` is told how many voxels are
+    /// touched, and waits until there is memory for them. Calls back with each voxel that is kept,
+    /// those that were seen and those that were not tested, in the order of the grid, what it
+    /// shows, and how many samples that is fitted to.
+    ///
+    /// # Errors
+    /// What the system says of the file of triangles.
+    pub(super) fn sample<A>(
         &self,
         rays: Rays,
         most: u32,
         seed: u64,
-        corners: impl Fn(usize) -> [DVec3; 3],
-        sample_at: impl Fn(usize, DVec3, DVec3) -> SurfaceSample,
-        plane: impl Fn(usize) -> DVec3,
-    ) -> Sampled {
+        triangles: &impl Triangles,
+        admit: impl FnOnce(usize) -> A,
+        mut keep: impl FnMut(&Seen, &ShaderFit, usize),
+    ) -> io::Result<Sampled> {
         let mut chance = Chance::new(seed);
-        let own = self.own.clone().map(|number| (number, corners(number)));
+        let own = self.own.clone();
+        let own = own.map(|number| (number, triangles.corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
+        let _admitted = admit(touched.len());
         let mut slot = vec![NOWHERE; self.grid.len()];
         for (number, voxel) in touched.iter().enumerate() {
             // Fewer than 2^24 voxels in a grid.
@@ -79,154 +96,122 @@ impl Target<'_> {
             Rays::PerVoxel(_) => most / 2,
             Rays::InAll(rays) => rays.min(most).div_ceil(2),
         };
-        let mut rays_shot = self.find_visible(&touched, &slot, most_visibility_rays, &mut chance);
-        let visibility_rays = rays_shot.shots.len();
-        let aims = numbers(&rays_shot.is_seen);
+        let mut found = Found::new(&touched, &slot, most_visibility_rays);
+        found.find_visible(self, &mut chance)?;
+        let visibility_rays = found.shots.len();
+        let aims = numbers(&found.is_seen);
         let left = most - visibility_rays as u32;
         let mut aimed = vec![0; touched.len()];
-        let mut prober = Prober::new(self, &touched, &slot, &aims, &mut chance);
+        let mut prober = Prober::new(self, &aims, &mut chance);
         match rays {
             Rays::PerVoxel(probes) => {
                 let first = FIRST_PROBES.min(probes);
                 let wanted = |_| first;
-                prober.probe(wanted, left, &mut aimed, &mut rays_shot);
+                prober.probe(wanted, left, &mut aimed, &mut found)?;
                 let crossings =
-                    self.crossings(&rays_shot.shots[visibility_rays..], &slot, touched.len());
-                let shot = (rays_shot.shots.len() - visibility_rays) as u32;
+                    self.crossings(&found.shots[visibility_rays..], &slot, touched.len());
+                let shot = (found.shots.len() - visibility_rays) as u32;
                 let wanted = |number: usize| {
                     let needed = (probes * first).div_ceil(crossings[number].max(1));
                     needed.clamp(LEAST_PROBES.min(probes), probes)
                 };
-                prober.probe(wanted, left - shot, &mut aimed, &mut rays_shot);
+                prober.probe(wanted, left - shot, &mut aimed, &mut found)?;
             }
             Rays::InAll(rays) => {
                 let probes = left.min(rays.saturating_sub(visibility_rays as u32));
-                prober.probe(|_| u32::MAX, probes, &mut aimed, &mut rays_shot);
+                prober.probe(|_| u32::MAX, probes, &mut aimed, &mut found)?;
             }
         }
-        let VisibilityRays {
+        let Found {
             shots,
             is_seen,
             tests,
             ..
-        } = rays_shot;
+        } = found;
+        // What is kept, and how many probes were aimed at it: see `Marks`.
+        let is_untested = |number: usize| !is_seen[number] && tests[number] < LEAST_TESTS;
         let mut kept = vec![NOWHERE; touched.len()];
-        let mut seen: Vec<Seen> = Vec::new();
-        let mut untested = 0;
+        let mut aimed_of_grid = vec![0u8; self.grid.len()];
+        let mut count = 0;
         for (number, voxel) in touched.iter().enumerate() {
-            let is_untested = !is_seen[number] && tests[number] < LEAST_TESTS;
-            if !is_seen[number] && !is_untested {
+            if is_seen[number] || is_untested(number) {
+                kept[number] = count as u32;
+                count += 1;
+                // More than a byte counts only a number of rays gives, and then to all alike.
+                let probes = aimed[number].min(u32::from(u8::MAX) - 1) as u8;
+                aimed_of_grid[voxel.number as usize] = probes + 1;
+            }
+        }
+        let marks = Marks {
+            slot: &slot,
+            kept: &kept,
+            aimed: &aimed_of_grid,
+        };
+        let probes = Probes::new(&self.grid, &shots[visibility_rays..], &marks, count);
+        let ends = shots
+            .iter()
+            .enumerate()
+            .filter(|(_, shot)| shot.touched != NOWHERE);
+        let ends = ends.map(|(number, shot)| (kept[shot.touched as usize], number as u32));
+        let ends: Vec<(u32, u32)> = ends.collect();
+        let hits = ends.len() as u32;
+        let ends = Groups::new(count, &ends);
+        let mut untested = 0;
+        let mut samples = Vec::new();
+        let mut seen = Seen::default();
+        for (number, voxel) in touched.iter().enumerate() {
+            let place = kept[number] as usize;
+            if place == NOWHERE as usize {
                 continue;
             }
-            kept[number] = seen.len() as u32;
-            // As opaque as the area in it is large, in its faces.
-            let mut here = Seen::new(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
-            if is_untested {
+            samples.clear();
+            if is_untested(number) {
                 untested += 1;
                 for (point, triangle) in voxel.points {
                     // From either side.
                     let triangle = triangle as usize;
-                    let (point, normal) = (self.grid.world(point), plane(triangle));
-                    let sides = [normal, -normal].map(|side| sample_at(triangle, point, side));
-                    here.samples.extend(sides);
+                    let (point, normal) = (self.grid.world(point), triangles.plane(triangle));
+                    let sides = [normal, -normal];
+                    samples.extend(sides.map(|side| triangles.sample(triangle, point, side)));
                 }
             }
-            seen.push(here);
+            samples.extend(ends.of(place).iter().map(|&shot| {
+                let shot = &shots[shot as usize];
+                let point = self.grid.world(shot.end_point());
+                let towards_eye = -shot.direction.as_dvec3();
+                triangles.sample(shot.triangle as usize, point, towards_eye)
+            }));
+            let fit = fit_shader(&samples, main_normal(&samples), self.shader_blend);
+            // As opaque as the area in it is large, in its faces.
+            seen.begin(self.grid.place(voxel.number as usize), voxel.area.min(1.0));
+            let blends = [self.opacity_blend, self.shader_blend];
+            probes.count(place, &fit.shader, blends, &mut seen);
+            keep(&seen, &fit, samples.len());
         }
-        let mut hits = 0;
-        for shot in &shots {
-            if shot.touched == NOWHERE {
-                continue;
-            }
-            hits += 1;
-            let point = self.grid.world(shot.from + shot.direction * shot.end);
-            let sample = sample_at(shot.triangle as usize, point, -shot.direction);
-            seen[kept[shot.touched as usize] as usize]
-                .samples
-                .push(sample);
-        }
-        let (fits, shaders): (Vec<ShaderFit>, Vec<Shader>) = seen
-            .iter()
-            .map(|seen| {
-                let normal = main_normal(&seen.samples);
-                let fit = fit_shader(&seen.samples, normal, self.shader_blend);
-                (fit, fit.shader)
-            })
-            .unzip();
-        let marks = Marks {
-            slot: &slot,
-            kept: &kept,
-            aimed: &aimed,
-        };
-        let probes = &shots[visibility_rays..];
-        self.count(probes, &marks, &shaders, &mut seen);
-        Sampled {
-            seen: seen.into_iter().zip(fits).collect(),
+        Ok(Sampled {
             touched: touched.len() as u32,
             untested,
             rays: shots.len() as u32,
             hits,
-        }
-    }
-
-    /// Aims visibility rays at every voxel until one reaches something in it.
-    fn find_visible<'s>(
-        &self,
-        touched: &[Touched],
-        slot: &'s [u32],
-        most: u32,
-        chance: &mut Chance,
-    ) -> VisibilityRays<'s> {
-        let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
-        let mut rays = VisibilityRays {
-            shots: Vec::new(),
-            most: most as usize,
-            slot,
-            is_seen: vec![false; touched.len()],
-            tests: vec![0; touched.len()],
-            followed: vec![0; touched.len()],
-            fresh: VecDeque::new(),
-        };
-        for turn in 0..MOST_VISIBILITY_RAYS {
-            for (number, (voxel, directions)) in touched.iter().zip(&starts).enumerate() {
-                if !rays.is_seen[number] {
-                    let (point, _) = voxel.points[turn as usize % POINTS];
-                    rays.shoot(self, number, point, directions.at(turn));
-                }
-            }
-            self.follow(touched, &mut rays);
-        }
-        rays
-    }
-
-    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no
-    /// more are found.
-    fn follow(&self, touched: &[Touched], rays: &mut VisibilityRays<'_>) {
-        while let Some((number, direction)) = rays.fresh.pop_front() {
-            let grid_number = touched[number as usize].number as usize;
-            for neighbour in self.grid.neighbours(grid_number) {
-                let number = rays.slot[neighbour] as usize;
-                if number == NOWHERE as usize || rays.is_seen[number] {
-                    continue;
-                }
-                let followed = &mut rays.followed[number];
-                if *followed < MOST_FOLLOWED {
-                    let (point, _) = touched[number].points[usize::from(*followed) % POINTS];
-                    *followed += 1;
-                    rays.shoot(self, number, point, direction);
-                }
-            }
-        }
+        })
     }
 
     /// How many of some probes reach each touched voxel.
     fn crossings(&self, probes: &[Shot], slot: &[u32], touched: usize) -> Vec<u32> {
         let mut crossings = vec![0; touched];
         for shot in probes {
-            self.grid.along(shot.from, shot.direction, |number, leave| {
+            let end = f64::from(shot.end);
+            let (from, direction) = (shot.point.as_dvec3(), shot.direction.as_dvec3());
+            self.grid.along(from, direction, |number, leave| {
                 let touched = slot[number];
-                if touched != NOWHERE && (leave <= shot.end || touched == shot.touched) {
+                let is_before = leave <= end;
+                if touched != NOWHERE && (is_before || touched == shot.touched) {
                     crossings[touched as usize] += 1;
+                }
+                if is_before {
+                    ControlFlow::Continue(())
+                } else {
+                    ControlFlow::Break(())
                 }
             });
         }
@@ -237,8 +222,7 @@ impl Target<'_> {
 /// Aims probes at the voxels that were seen, in turn.
 struct Prober<'p> {
     target: &'p Target<'p>,
-    touched: &'p [Touched],
-    slot: &'p [u32],
+    /// Numbers of those voxels among the touched ones.
     aims: &'p [u32],
     directions: Vec<Directions>,
     chance: &'p mut Chance,
@@ -247,18 +231,10 @@ struct Prober<'p> {
 }
 
 impl<'p> Prober<'p> {
-    fn new(
-        target: &'p Target<'p>,
-        touched: &'p [Touched],
-        slot: &'p [u32],
-        aims: &'p [u32],
-        chance: &'p mut Chance,
-    ) -> Self {
+    fn new(target: &'p Target<'p>, aims: &'p [u32], chance: &'p mut Chance) -> Self {
         let cells = DVec3::from_array(target.grid.cells.map(f64::from));
         Self {
             target,
-            touched,
-            slot,
             aims,
             directions: aims.iter().map(|_| Directions::new(chance)).collect(),
             chance,
@@ -272,67 +248,164 @@ impl<'p> Prober<'p> {
         wanted: impl Fn(usize) -> u32,
         most: u32,
         aimed: &mut [u32],
-        found: &mut VisibilityRays<'_>,
-    ) {
-        let mut left = most;
+        found: &mut Found<'_>,
+    ) -> io::Result<()> {
+        let mut rays = Vec::new();
         let mut is_done = self.aims.is_empty();
-        while !is_done {
+        'turns: while !is_done {
             is_done = true;
             for (&aim, directions) in self.aims.iter().zip(&self.directions) {
                 let aim = aim as usize;
                 if aimed[aim] >= wanted(aim) {
                     continue;
                 }
-                if left == 0 {
-                    return;
+                if rays.len() >= most as usize {
+                    break 'turns;
                 }
-                left -= 1;
                 is_done = false;
                 let direction = directions.at(aimed[aim]);
                 aimed[aim] += 1;
-                let place = self.target.grid.place(self.touched[aim].number as usize);
-                let point = entry(place, direction, self.chance);
-                let shot = self.target.shoot(point, direction, self.beyond, self.slot);
-                if shot.touched != NOWHERE {
-                    found.is_seen[shot.touched as usize] = true;
-                }
-                found.shots.push(shot);
+                let place = self.target.grid.place(found.touched[aim].number as usize);
+                rays.push(Aim {
+                    point: entry(place, direction, self.chance).as_vec3(),
+                    direction: direction.as_vec3(),
+                });
             }
         }
+        let begin = found.shots.len();
+        self.target
+            .shoot(&rays, self.beyond, found.slot, &mut found.shots)?;
+        for shot in &found.shots[begin..] {
+            if shot.touched != NOWHERE {
+                found.is_seen[shot.touched as usize] = true;
+            }
+        }
+        Ok(())
     }
 }
 
 /// The rays of a node, as they are shot. Voxels are numbered as they are touched.
-struct VisibilityRays<'s> {
+struct Found<'s> {
+    touched: &'s [Touched],
+    /// Numbers of the grid's voxels.
+    slot: &'s [u32],
     shots: Vec<Shot>,
     /// How many visibility rays there may be.
     most: usize,
-    /// Numbers of the grid's voxels.
-    slot: &'s [u32],
     /// Whether a ray ended in each.
     is_seen: Vec<bool>,
     /// How many rays were aimed at what is in each, 255 at most.
     tests: Vec<u8>,
     /// How many of them were from where a neighbour was seen.
     followed: Vec<u8>,
-    /// Voxels that were just seen, and along which direction.
-    fresh: VecDeque<(u32, DVec3)>,
 }
 
-impl VisibilityRays<'_> {
-    /// Aims a ray at a point of a voxel along a direction, unless there were enough rays.
-    fn shoot(&mut self, target: &Target<'_>, number: usize, point: DVec3, direction: DVec3) {
-        if self.shots.len() >= self.most {
-            return;
+/// A visibility ray that is going to be shot, at a voxel.
+type Look = (u32, Aim);
+
+impl<'s> Found<'s> {
+    fn new(touched: &'s [Touched], slot: &'s [u32], most: u32) -> Self {
+        Self {
+            touched,
+            slot,
+            shots: Vec::new(),
+            most: most as usize,
+            is_seen: vec![false; touched.len()],
+            tests: vec![0; touched.len()],
+            followed: vec![0; touched.len()],
         }
-        self.tests[number] = self.tests[number].saturating_add(1);
-        let shot = target.shoot(point, direction, AIM_WITHIN, self.slot);
-        if shot.touched != NOWHERE
-            && !std::mem::replace(&mut self.is_seen[shot.touched as usize], true)
-        {
-            self.fresh.push_back((shot.touched, direction));
+    }
+
+    /// Aims visibility rays at every voxel until one reaches something in it.
+    fn find_visible(&mut self, target: &Target<'_>, chance: &mut Chance) -> io::Result<()> {
+        let touched = self.touched;
+        let starts: Vec<Directions> = touched.iter().map(|_| Directions::new(chance)).collect();
+        for turn in 0..MOST_VISIBILITY_RAYS {
+            for batch in 0..BATCHES {
+                let mut looks: Vec<Look> = Vec::new();
+                for number in (batch..touched.len()).step_by(BATCHES) {
+                    if !self.is_seen[number] {
+                        let (point, _) = touched[number].points[turn as usize % POINTS];
+                        let aim = Aim {
+                            point: point.as_vec3(),
+                            direction: starts[number].at(turn).as_vec3(),
+                        };
+                        looks.push((number as u32, aim));
+                    }
+                }
+                let fresh = self.look(target, looks)?;
+                self.follow(target, fresh)?;
+            }
         }
-        self.shots.push(shot);
+        Ok(())
+    }
+
+    /// Shoots visibility rays, unless there were enough. Gives the voxels that were not seen before
+    /// and now are, and along which direction.
+    fn look(&mut self, target: &Target<'_>, mut looks: Vec<Look>) -> io::Result<Vec<Look>> {
+        looks.truncate(self.most - self.shots.len());
+        for (number, _) in &looks {
+            let tests = &mut self.tests[*number as usize];
+            *tests = tests.saturating_add(1);
+        }
+        let begin = self.shots.len();
+        let aims: Vec<Aim> = looks.iter().map(|(_, aim)| *aim).collect();
+        target.shoot(&aims, AIM_WITHIN, self.slot, &mut self.shots)?;
+        let mut fresh = looks;
+        fresh.clear();
+        for (shot, aim) in self.shots[begin..].iter().zip(aims) {
+            if shot.touched != NOWHERE
+                && !std::mem::replace(&mut self.is_seen[shot.touched as usize], true)
+            {
+                fresh.push((shot.touched, aim));
+            }
+        }
+        Ok(fresh)
+    }
+
+    /// Aims at the neighbours of voxels that were just seen, along the same directions, until no
+    /// more are found. A voxel is aimed at once a batch.
+    fn follow(&mut self, target: &Target<'_>, mut fresh: Vec<Look>) -> io::Result<()> {
+        let mut waiting: Vec<Look> = Vec::new();
+        let mut batch_of = vec![
+            u32::MAX;
+            if fresh.is_empty() {
+                0
+            } else {
+                self.touched.len()
+            }
+        ];
+        let mut batch = 0;
+        while !fresh.is_empty() || !waiting.is_empty() {
+            for (number, aim) in fresh {
+                let of_grid = self.touched[number as usize].number as usize;
+                for neighbour in target.grid.neighbours(of_grid) {
+                    let number = self.slot[neighbour];
+                    if number != NOWHERE && !self.is_seen[number as usize] {
+                        waiting.push((number, aim));
+                    }
+                }
+            }
+            let mut looks: Vec<Look> = Vec::new();
+            waiting.retain(|&(number, aim)| {
+                let place = number as usize;
+                let followed = &mut self.followed[place];
+                if self.is_seen[place] || *followed >= MOST_FOLLOWED {
+                    return false;
+                }
+                if std::mem::replace(&mut batch_of[place], batch) == batch {
+                    return true;
+                }
+                let (point, _) = self.touched[place].points[usize::from(*followed) % POINTS];
+                *followed += 1;
+                let point = point.as_vec3();
+                looks.push((number, Aim { point, ..aim }));
+                false
+            });
+            fresh = self.look(target, looks)?;
+            batch += 1;
+        }
+        Ok(())
     }
 }
 

@@ -1,18 +1,20 @@
-//! A ray at a node, from the surface S to where it ends.
+//! Rays at a node, from the surface S to where they end.
 //!
 //! S lies around the node: each of its points is `distance` voxels from the
 //! node's grid. Triangles beyond S do not hide the node.
 
+use std::io;
 use std::ops::Range;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3, Vec3A};
 
+use super::clusters::Occluders;
 use super::grid::Grid;
-use super::rays::Occluders;
+use super::rays::{Around, Meeting, Query};
 use crate::far::blend::Blend;
 
 /// Steps of the search for S along a ray; it is nearly straight after the first.
-const STEPS_TO_S: u32 = 3;
+const STEPS_TO_S: u32 = 2;
 
 /// A node that is sampled.
 pub(super) struct Target<'t> {
@@ -26,12 +28,24 @@ pub(super) struct Target<'t> {
     pub(super) shader_blend: Blend,
 }
 
+/// Where a ray is aimed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Aim {
+    /// In voxels of the grid.
+    pub(super) point: Vec3,
+    /// Unit vector.
+    pub(super) direction: Vec3,
+}
+
 /// A ray that ended, in voxels of the grid.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Shot {
-    pub(super) from: DVec3,
-    pub(super) direction: DVec3,
-    /// Where it ends along its direction; infinite where it meets nothing as far as it was followed.
-    pub(super) end: f64,
+    /// The point that it was aimed at.
+    pub(super) point: Vec3,
+    pub(super) direction: Vec3,
+    /// Where it ends, from that point along its direction; infinite where it meets nothing as far
+    /// as it was followed.
+    pub(super) end: f32,
     /// The triangle that it meets.
     pub(super) triangle: u32,
     /// Number of the touched voxel in which it ends at one of the node's own triangles;
@@ -39,11 +53,52 @@ pub(super) struct Shot {
     pub(super) touched: u32,
 }
 
+impl Shot {
+    /// Where it ends.
+    pub(super) fn end_point(&self) -> DVec3 {
+        self.point.as_dvec3() + self.direction.as_dvec3() * f64::from(self.end)
+    }
+}
+
 /// No voxel.
 pub(super) const NOWHERE: u32 = u32::MAX;
 /// A ray's end is in single precision: it may lie this far from the triangle, voxels, and so in
 /// the voxel beside the triangle's.
 const END_WITHIN: f64 = 0.01;
+/// Rays that are shot together: what their memory is kept to.
+const BATCH: usize = 1 << 17;
+/// Rays are shot in the order of their directions' cells, so many along each axis and to each side.
+const CELLS: f32 = 4.0;
+
+/// Cells of directions.
+const ALL_CELLS: usize = 128;
+
+/// The cell of a direction.
+fn cell(direction: Vec3) -> usize {
+    // Each below 8; a unit vector's third coordinate follows but for its sign.
+    let cell = |c: f32| (((c + 1.0) * CELLS) as usize).min(7);
+    (cell(direction.x) << 3 | cell(direction.y)) << 1 | usize::from(direction.z < 0.0)
+}
+
+/// Numbers of rays such that those that are alike follow one another: they visit the same boxes.
+fn in_order(aims: &[Aim], order: &mut Vec<u32>) {
+    let mut places = [0u32; ALL_CELLS];
+    for aim in aims {
+        places[cell(aim.direction)] += 1;
+    }
+    let mut sum = 0;
+    for place in &mut places {
+        sum += std::mem::replace(place, sum);
+    }
+    order.clear();
+    order.resize(aims.len(), 0);
+    for (number, aim) in aims.iter().enumerate() {
+        let place = &mut places[cell(aim.direction)];
+        // A batch has fewer than 2^32.
+        order[*place as usize] = number as u32;
+        *place += 1;
+    }
+}
 
 impl Target<'_> {
     /// Number of the touched voxel in which a ray ends. `slot` has those numbers, of all voxels of
@@ -51,7 +106,7 @@ impl Target<'_> {
     fn voxel_at(&self, end: DVec3, slot: &[u32]) -> u32 {
         let cells = self.grid.cells.map(f64::from);
         let number = |at: DVec3| {
-            let place = [0, 1, 2].map(|k| at[k].floor().clamp(0.0, cells[k] - 1.0) as u8);
+            let place = [0, 1, 2].map(|k| at[k].clamp(0.0, cells[k] - 1.0) as u8);
             slot[self.grid.number(place)]
         };
         let here = number(end);
@@ -72,48 +127,88 @@ impl Target<'_> {
             .unwrap_or(NOWHERE)
     }
 
-    /// A ray from S through a point of the grid, followed until `beyond` voxels behind it. `slot`
-    /// has the numbers of touched voxels.
-    pub(super) fn shoot(&self, point: DVec3, direction: DVec3, beyond: f64, slot: &[u32]) -> Shot {
-        let back = self.back_to_surface(point, direction);
-        let from = point - direction * back;
-        let most = (back + beyond) * self.grid.voxel;
-        let meeting = self
-            .occluders
-            .nearest(self.grid.world(from), direction, most);
-        let mut shot = Shot {
-            from,
-            direction,
-            end: f64::INFINITY,
-            triangle: NOWHERE,
-            touched: NOWHERE,
-        };
-        if let Some(meeting) = meeting {
-            shot.end = meeting.distance / self.grid.voxel;
-            shot.triangle = meeting.triangle as u32;
-            if self.own.contains(&meeting.triangle) {
-                shot.touched = self.voxel_at(from + direction * shot.end, slot);
+    /// Shoots rays from S, followed until `beyond` voxels behind the points that they are aimed at.
+    /// `slot` has the numbers of touched voxels. Shots are in the order of the aims.
+    ///
+    /// # Errors
+    /// What the system says of the file of triangles.
+    pub(super) fn shoot(
+        &self,
+        aims: &[Aim],
+        beyond: f64,
+        slot: &[u32],
+        shots: &mut Vec<Shot>,
+    ) -> io::Result<()> {
+        let cells = DVec3::from_array(self.grid.cells.map(f64::from));
+        let reach = DVec3::splat(self.distance + 1.0);
+        let around = Around::of(self.grid.world(-reach), self.grid.world(cells + reach));
+        let (mut order, mut queries, mut meetings) = (Vec::new(), Vec::new(), Vec::new());
+        for batch in aims.chunks(BATCH) {
+            in_order(batch, &mut order);
+            let begin = shots.len();
+            queries.clear();
+            shots.extend(batch.iter().map(|aim| Shot {
+                point: aim.point,
+                direction: aim.direction,
+                end: f32::INFINITY,
+                triangle: NOWHERE,
+                touched: NOWHERE,
+            }));
+            queries.extend(order.iter().map(|&number| {
+                let aim = batch[number as usize];
+                let back = f64::from(self.back_to_surface(aim.point, aim.direction));
+                let from = aim.point.as_dvec3() - aim.direction.as_dvec3() * back;
+                Query {
+                    origin: self.grid.world(from).as_vec3(),
+                    direction: aim.direction,
+                    most: ((back + beyond) * self.grid.voxel) as f32,
+                }
+            }));
+            self.occluders.nearest(&around, &queries, &mut meetings)?;
+            for ((&number, query), meeting) in order.iter().zip(&queries).zip(&meetings) {
+                if *meeting != Meeting::NONE {
+                    self.end(
+                        &mut shots[begin + number as usize],
+                        query,
+                        meeting,
+                        slot,
+                        beyond,
+                    );
+                }
             }
         }
-        shot
+        Ok(())
+    }
+
+    /// Notes where a ray ends.
+    fn end(&self, shot: &mut Shot, query: &Query, meeting: &Meeting, slot: &[u32], beyond: f64) {
+        // The ray's length is that up to the point and what is beyond it.
+        let length = f64::from(query.most) / self.grid.voxel;
+        shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
+        shot.triangle = meeting.triangle;
+        if self.own.contains(&(meeting.triangle as usize)) {
+            shot.touched = self.voxel_at(shot.end_point(), slot);
+        }
     }
 
     /// How far back from a point of the grid along a direction S is, voxels.
-    fn back_to_surface(&self, point: DVec3, direction: DVec3) -> f64 {
-        let cells = DVec3::from_array(self.grid.cells.map(f64::from));
+    #[inline]
+    fn back_to_surface(&self, point: Vec3, direction: Vec3) -> f32 {
+        let (point, direction) = (Vec3A::from(point), Vec3A::from(direction));
+        let cells = Vec3A::from_array(self.grid.cells.map(f32::from));
         // The distance from the grid grows ever faster along the ray: Newton's
         // steps from beyond S come nearer to it and never go past.
-        let mut back = self.distance + cells.length();
+        let mut back = self.distance as f32 + cells.length();
         for _ in 0..STEPS_TO_S {
             let at = point - direction * back;
-            let outside = (at - cells).max(DVec3::ZERO) + at.min(DVec3::ZERO);
+            let outside = (at - cells).max(Vec3A::ZERO) + at.min(Vec3A::ZERO);
             let distance = outside.length();
             let slope = -outside.dot(direction) / distance;
             // Beyond the grid there is a slope; not for a direction of zero length.
             if slope.is_nan() || slope <= 0.0 {
                 break;
             }
-            back -= (distance - self.distance) / slope;
+            back -= (distance - self.distance as f32) / slope;
         }
         back
     }

@@ -5,8 +5,9 @@
 //! are a range of their new order. The plane is the best of those between 32
 //! slices along each axis.
 
+use std::ops::Range;
+
 use glam::DVec3;
-use rayon::prelude::*;
 
 use crate::mesh::Surface;
 
@@ -16,6 +17,8 @@ const SLICES: usize = 32;
 const MOST_LEVELS: u32 = 64;
 /// Triangles from which on two halves are split by two threads.
 const PARALLEL: usize = 4096;
+/// Triangles up to which their boxes are held in memory.
+const WITH_BOXES: usize = 1 << 16;
 
 /// A node of the hierarchy.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +48,13 @@ impl Item {
     }
 }
 
+impl Branch {
+    /// Its triangles, in the new order.
+    pub(super) fn triangles(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+}
+
 struct Tree {
     low: DVec3,
     high: DVec3,
@@ -59,21 +69,44 @@ pub(super) fn split<S: Surface + ?Sized>(
     surface: &S,
     leaf_triangles: usize,
 ) -> (Vec<Branch>, Vec<u32>) {
-    let mut items: Vec<Item> = (0..surface.len())
-        .into_par_iter()
-        .map(|number| {
-            let [a, b, c] = surface.corners(number);
-            Item {
-                low: a.min(b).min(c),
-                high: a.max(b).max(c),
-                number: number as u32,
-            }
-        })
-        .collect();
-    let tree = tree(&mut items, leaf_triangles, 0);
+    let item_of = |&number: &u32| {
+        let [a, b, c] = surface.corners(number as usize);
+        Item {
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+            number,
+        }
+    };
+    // Fewer than 2^32.
+    let mut numbers: Vec<u32> = (0..surface.len() as u32).collect();
+    let tree = tree_of_numbers(&mut numbers, &item_of, leaf_triangles, 0);
     let mut branches = Vec::new();
     flatten(&tree, 0, 0, &mut branches);
-    (branches, items.iter().map(|item| item.number).collect())
+    (branches, numbers)
+}
+
+/// As [`tree`], of triangles whose boxes are found again each time while there are many of them: so
+/// they take four bytes each.
+fn tree_of_numbers<F>(numbers: &mut [u32], item_of: &F, leaf_triangles: usize, level: u32) -> Tree
+where
+    F: Fn(&u32) -> Item + Sync,
+{
+    if numbers.len() > WITH_BOXES {
+        let below =
+            |numbers: &mut [u32], level| tree_of_numbers(numbers, item_of, leaf_triangles, level);
+        return tree(numbers, item_of, leaf_triangles, level, &below);
+    }
+    let mut items: Vec<Item> = numbers.iter().map(item_of).collect();
+    let tree = tree_of_items(&mut items, leaf_triangles, level);
+    for (number, item) in numbers.iter_mut().zip(items) {
+        *number = item.number;
+    }
+    tree
+}
+
+fn tree_of_items(items: &mut [Item], leaf_triangles: usize, level: u32) -> Tree {
+    let below = |items: &mut [Item], level| tree_of_items(items, leaf_triangles, level);
+    tree(items, &|item: &Item| *item, leaf_triangles, level, &below)
 }
 
 fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) -> usize {
@@ -94,34 +127,34 @@ fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) ->
     place
 }
 
-fn bounds(items: &[Item]) -> (DVec3, DVec3) {
+fn bounds<T>(items: &[T], item_of: impl Fn(&T) -> Item) -> (DVec3, DVec3) {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    items.iter().fold(start, |(low, high), item| {
+    items.iter().map(item_of).fold(start, |(low, high), item| {
         (low.min(item.low), high.max(item.high))
     })
 }
 
-fn tree(items: &mut [Item], leaf_triangles: usize, level: u32) -> Tree {
-    let (low, high) = bounds(items);
+/// The tree of items of which boxes are known; `below` makes those of the halves.
+fn tree<T, F, B>(items: &mut [T], item_of: &F, leaf_triangles: usize, level: u32, below: &B) -> Tree
+where
+    T: Copy + Send,
+    F: Fn(&T) -> Item + Sync,
+    B: Fn(&mut [T], u32) -> Tree + Sync,
+{
+    let (low, high) = bounds(items, item_of);
     let count = items.len();
     let halves = (count >= leaf_triangles && count > 1).then(|| {
         let middle = if level < MOST_LEVELS {
-            partition(items)
+            partition(items, item_of)
         } else {
             count / 2
         };
         let (near, far) = items.split_at_mut(middle);
-        let below = level + 1;
+        let next = level + 1;
         let (near, far) = if count >= PARALLEL {
-            rayon::join(
-                || tree(near, leaf_triangles, below),
-                || tree(far, leaf_triangles, below),
-            )
+            rayon::join(|| below(near, next), || below(far, next))
         } else {
-            (
-                tree(near, leaf_triangles, below),
-                tree(far, leaf_triangles, below),
-            )
+            (below(near, next), below(far, next))
         };
         Box::new([near, far])
     });
@@ -166,25 +199,26 @@ impl Slice {
 }
 
 /// Sorts the items to the two sides of the best plane; how many are on the first, at least 1.
-fn partition(items: &mut [Item]) -> usize {
+fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
     let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = items.iter().fold(start, |(low, high), item| {
+    let (low, high) = items.iter().map(item_of).fold(start, |(low, high), item| {
         (low.min(item.middle()), high.max(item.middle()))
     });
-    let mut best: Option<(f64, usize, usize)> = None;
-    for axis in 0..3 {
-        if high[axis] <= low[axis] {
-            continue;
-        }
-        let slice_of = slice_of(axis, low, high);
-        let mut slices = [Slice::NONE; SLICES];
-        for item in items.iter() {
-            let slice = &mut slices[slice_of(item)];
+    let mut all = [[Slice::NONE; SLICES]; 3];
+    for item in items.iter().map(item_of) {
+        for (axis, slices) in all.iter_mut().enumerate() {
+            let slice = &mut slices[slice_of(axis, low, high, &item)];
             *slice = slice.with(Slice {
                 low: item.low,
                 high: item.high,
                 count: 1,
             });
+        }
+    }
+    let mut best: Option<(f64, usize, usize)> = None;
+    for (axis, slices) in all.iter().enumerate() {
+        if high[axis] <= low[axis] {
+            continue;
         }
         let mut behind = [Slice::NONE; SLICES];
         let mut sum = Slice::NONE;
@@ -208,21 +242,20 @@ fn partition(items: &mut [Item]) -> usize {
         // All middles are one point.
         return items.len() / 2;
     };
-    let slice_of = slice_of(axis, low, high);
     // Stable, so that the order does not depend on how it is done.
-    let (near, far): (Vec<Item>, Vec<Item>) = items.iter().partition(|item| slice_of(item) < plane);
+    let is_near = |item: &&T| slice_of(axis, low, high, &item_of(item)) < plane;
+    let (near, far): (Vec<T>, Vec<T>) = items.iter().partition(is_near);
     items[..near.len()].copy_from_slice(&near);
     items[near.len()..].copy_from_slice(&far);
     near.len()
 }
 
-fn slice_of(axis: usize, low: DVec3, high: DVec3) -> impl Fn(&Item) -> usize {
+/// The slice of an axis in which the middle of a box lies, of middles in a box.
+fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
     let scale = SLICES as f64 / (high[axis] - low[axis]);
-    move |item| {
-        // Not negative; what is not a number counts as 0.
-        let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
-        slice.min(SLICES - 1)
-    }
+    // Not negative; what is not a number counts as 0.
+    let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
+    slice.min(SLICES - 1)
 }
 
 #[cfg(test)]

@@ -18,4 +18,5 @@ pub use crate::graph::file::FileError as FarError;
 pub use budget::Resident;
 pub use data::NodeData;
 pub use read::FarFile;
+pub(in crate::far) use write::write_parts;
 pub use write::{encode, write_to};

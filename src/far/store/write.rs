@@ -16,11 +16,26 @@ use crate::graph::file::{self, HEADER_BYTES};
 /// # Errors
 /// The writer's byte order; a machine that stores the highest byte first.
 pub fn write_to(data: &FarData, out: &mut dyn Write) -> io::Result<()> {
-    let places = layout(data.nodes.len() as u64, data.packed.len() as u64);
+    write_parts(data, data.packed.len() as u64, out, |out| {
+        out.write_all(&data.packed)
+    })
+}
+
+/// As [`write_to`], with the nodes' data from elsewhere: `copy` writes so many bytes of it.
+pub(in crate::far) fn write_parts(
+    data: &FarData,
+    data_bytes: u64,
+    out: &mut dyn Write,
+    copy: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let places = layout(data.nodes.len() as u64, data_bytes);
     let nodes: &[u8] = bytemuck::cast_slice::<Node, u8>(&data.nodes);
-    let header = header(data, nodes, places.data[1]);
-    let sections = [(places.nodes, nodes), (places.data, &data.packed[..])];
-    file::write(&FORMAT, &header, sections.into_iter(), out)
+    let header = header(data, nodes, places.data);
+    // What lies between the sections is written before the empty one.
+    let before_data = [places.data[0]; 2];
+    let sections = [(places.nodes, nodes), (before_data, &[][..])];
+    file::write(&FORMAT, &header, sections.into_iter(), out)?;
+    copy(out)
 }
 
 /// The bytes of a whole file.
@@ -40,10 +55,10 @@ pub(super) fn blend_byte(blend: Blend) -> u8 {
     }
 }
 
-fn header(data: &FarData, nodes: &[u8], file_bytes: u64) -> [u8; HEADER_BYTES] {
-    FORMAT.header(file_bytes, |put| {
+fn header(data: &FarData, nodes: &[u8], [begin, end]: [u64; 2]) -> [u8; HEADER_BYTES] {
+    FORMAT.header(end, |put| {
         put(at::NODES, &(data.nodes.len() as u64).to_le_bytes());
-        put(at::DATA_BYTES, &(data.packed.len() as u64).to_le_bytes());
+        put(at::DATA_BYTES, &(end - begin).to_le_bytes());
         put(at::TRIANGLES, &data.triangles().to_le_bytes());
         for (k, centre) in data.centre.iter().enumerate() {
             put(at::CENTRE + 8 * k, &centre.to_le_bytes());

@@ -1,0 +1,245 @@
+//! Clusters of triangles: all in memory, or as many as a budget allows, the others in a file.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rayon::prelude::*;
+
+use super::rays::{Around, Cluster, Meeting, Query, is_any_entered};
+
+/// Most triangles of a cluster. More: rays test fewer clusters; fewer: less memory.
+pub(super) const CLUSTER: usize = 1 << 17;
+/// Bytes a triangle that a cluster takes while it is made, or less.
+pub(super) const MAKING: u64 = 320;
+/// Bytes a triangle that a finished cluster takes, or less.
+pub(super) const MADE: u64 = 80;
+
+/// All triangles, ready for rays.
+pub(super) struct Occluders {
+    places: Vec<Place>,
+    held: Held,
+}
+
+/// What is known of a cluster without its triangles.
+struct Place {
+    around: Around,
+    /// The first of its triangles.
+    first: u32,
+}
+
+enum Held {
+    All(Vec<Arc<Cluster>>),
+    Some(Mutex<Cache>),
+}
+
+/// Clusters in a file, those that were used last also in memory.
+struct Cache {
+    file: File,
+    /// Where the sections of each begin in the file, and where the last ends.
+    sections: Vec<[u64; 4]>,
+    /// Bytes that may be in memory.
+    most: u64,
+    bytes: u64,
+    here: VecDeque<(usize, Arc<Cluster>)>,
+}
+
+/// Of what a cluster is made: its triangles, in the order of the hierarchy, and the box around them.
+pub(super) struct Part {
+    pub(super) triangles: Range<usize>,
+    pub(super) around: Around,
+}
+
+impl Occluders {
+    /// Makes clusters of parts. With `within`, a file and a number of bytes, no more than these are
+    /// in memory, and one for each thread that uses it.
+    ///
+    /// # Errors
+    /// What the system says of the file.
+    pub(super) fn new<C, I>(
+        parts: &[Part],
+        corners: C,
+        within: Option<(File, u64)>,
+    ) -> io::Result<Self>
+    where
+        C: Fn(Range<usize>) -> I + Sync,
+        I: Iterator<Item = [glam::DVec3; 3]>,
+    {
+        let place = |part: &Part| Place {
+            around: part.around,
+            // Fewer than 2^32 triangles.
+            first: part.triangles.start as u32,
+        };
+        let make = |part: &Part| Cluster::new(corners(part.triangles.clone()));
+        let held = match within {
+            None => Held::All(parts.par_iter().map(|part| Arc::new(make(part))).collect()),
+            Some((file, most)) => {
+                let mut cache = Cache {
+                    file,
+                    sections: Vec::new(),
+                    most,
+                    bytes: 0,
+                    here: VecDeque::new(),
+                };
+                // One after the other: many at a time would be all in memory.
+                for part in parts {
+                    cache.put(make(part))?;
+                }
+                Held::Some(Mutex::new(cache))
+            }
+        };
+        Ok(Self {
+            places: parts.iter().map(place).collect(),
+            held,
+        })
+    }
+
+    /// What rays meet. They begin within a box, and those of a batch are near to each other.
+    ///
+    /// # Errors
+    /// What the system says of the file.
+    pub(super) fn nearest(
+        &self,
+        within: &Around,
+        queries: &[Query],
+        meetings: &mut Vec<Meeting>,
+    ) -> io::Result<()> {
+        meetings.clear();
+        meetings.resize(queries.len(), Meeting::NONE);
+        // The nearest first: what is met there hides what is behind.
+        let mut near: Vec<(f32, usize)> = Vec::new();
+        for (number, place) in self.places.iter().enumerate() {
+            near.push((place.around.square_from(within), number));
+        }
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for (_, number) in near {
+            let Place { around, first } = &self.places[number];
+            if is_any_entered(around, queries, meetings) {
+                let cluster = self.get(number)?;
+                cluster.meet_all(around, *first, queries, meetings);
+            }
+        }
+        Ok(())
+    }
+
+    fn get(&self, number: usize) -> io::Result<Arc<Cluster>> {
+        match &self.held {
+            Held::All(all) => Ok(all[number].clone()),
+            Held::Some(cache) => {
+                // Counts stay sound whoever panicked.
+                let mut cache = cache.lock().unwrap_or_else(PoisonError::into_inner);
+                cache.get(number)
+            }
+        }
+    }
+}
+
+impl Cache {
+    fn put(&mut self, cluster: Cluster) -> io::Result<()> {
+        let mut end = self.sections.last().map_or(0, |sections| sections[3]);
+        let mut places = [end; 4];
+        for (section, place) in cluster.sections().into_iter().zip(&mut places[1..]) {
+            self.file.write_all(section)?;
+            end += section.len() as u64;
+            *place = end;
+        }
+        self.sections.push(places);
+        self.keep(self.sections.len() - 1, Arc::new(cluster));
+        Ok(())
+    }
+
+    /// Holds a cluster, and lets go of those that were not used for longest until it fits.
+    fn keep(&mut self, number: usize, cluster: Arc<Cluster>) {
+        let bytes = cluster.bytes();
+        while self.bytes + bytes > self.most
+            && let Some((_, old)) = self.here.pop_front()
+        {
+            self.bytes -= old.bytes();
+        }
+        self.bytes += bytes;
+        self.here.push_back((number, cluster));
+    }
+
+    fn get(&mut self, number: usize) -> io::Result<Arc<Cluster>> {
+        if let Some(at) = self.here.iter().position(|(other, _)| *other == number)
+            && let Some(found) = self.here.remove(at)
+        {
+            let cluster = found.1.clone();
+            self.here.push_back(found);
+            return Ok(cluster);
+        }
+        let [begin, nodes, numbers, end] = self.sections[number];
+        let mut bytes = vec![0; (end - begin) as usize];
+        self.file.seek(SeekFrom::Start(begin))?;
+        self.file.read_exact(&mut bytes)?;
+        let (nodes, rest) = bytes.split_at((nodes - begin) as usize);
+        let (numbers, triangles) = rest.split_at(((numbers - begin) as usize) - nodes.len());
+        let cluster = Arc::new(Cluster::of([nodes, numbers, triangles]));
+        self.keep(number, cluster.clone());
+        Ok(cluster)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::super::chance::Chance;
+    use super::*;
+
+    #[test]
+    fn what_is_met_depends_neither_on_clusters_nor_on_memory() {
+        let mut chance = Chance::new(5);
+        let mut random = || DVec3::new(chance.unit(), chance.unit(), chance.unit());
+        let mut triangles: Vec<[DVec3; 3]> = (0..2000)
+            .map(|_| {
+                let corner = random();
+                [corner, corner + random() * 0.1, corner + random() * 0.1]
+            })
+            .collect();
+        // Every other one twice: equally near.
+        triangles.extend_from_within(..1000);
+        let queries: Vec<Query> = (0..4000)
+            .map(|_| {
+                let (from, to) = (random() * 4.0 - DVec3::splat(1.5), random());
+                Query {
+                    origin: from.as_vec3(),
+                    direction: (to - from).normalize().as_vec3(),
+                    most: 3.0,
+                }
+            })
+            .collect();
+        let around = Around::of(DVec3::splat(-0.1), DVec3::splat(1.2));
+        let met = |size: usize, within: Option<u64>| {
+            let parts: Vec<Part> = (0..3000 / size)
+                .map(|part| Part {
+                    triangles: part * size..(part + 1) * size,
+                    around,
+                })
+                .collect();
+            let corners = |own: Range<usize>| triangles[own].iter().copied();
+            let within = within.map(|most| (tempfile::tempfile().unwrap(), most));
+            let occluders = Occluders::new(&parts, corners, within).unwrap();
+            let mut meetings = Vec::new();
+            occluders.nearest(&around, &queries, &mut meetings).unwrap();
+            meetings
+        };
+        let one = met(3000, None);
+        let hits = one.iter().filter(|meeting| **meeting != Meeting::NONE);
+        assert!(hits.clone().count() > 2000);
+        assert!(
+            hits.clone().all(|meeting| meeting.triangle < 2000),
+            "the first of equal ones"
+        );
+        for (size, within) in [
+            (500, None),
+            (500, Some(1)),
+            (500, Some(60_000)),
+            (50, Some(9000)),
+        ] {
+            assert!(met(size, within) == one, "{size} {within:?}");
+        }
+    }
+}
