@@ -59,6 +59,10 @@ pub struct ConvertArgs {
     /// Of .far: so many copies of the mesh, in rows on the ground
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     instances: Option<u32>,
+    /// Of .far: keep what is wider than a voxel as a decimated surface, beside voxels of what is
+    /// thinner
+    #[arg(long)]
+    hybrid: bool,
     /// Of .far: what opacities are stored for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
@@ -73,6 +77,7 @@ impl ConvertArgs {
             || self.leaf_triangles.is_some()
             || self.instances.is_some()
             || self.far_opacity.is_some()
+            || self.hybrid
     }
 
     fn conversion(&self) -> Conversion<'_> {
@@ -91,6 +96,7 @@ impl ConvertArgs {
             leaf_triangles: self.leaf_triangles.unwrap_or(defaults.leaf_triangles),
             grid: self.grid.first().copied().unwrap_or(defaults.grid),
             opacity: self.far_opacity.unwrap_or_default(),
+            hybrid: self.hybrid,
             ..defaults
         }
     }
@@ -119,7 +125,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
                 "a .tvx takes --grid, --texels and --element; --memory is for .vxg files, \
-                 --rays, --leaf-triangles, --instances and --far-opacity are for .far files",
+                 --rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for .far files",
             ));
         }
         return textured::convert(&args.conversion(), &args.textured_options(), console);
@@ -142,7 +148,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances and --far-opacity are for .far files, \
+            "--rays, --leaf-triangles, --instances, --far-opacity and --hybrid are for .far files, \
              --grid for .far and .tvx files",
         ));
     }

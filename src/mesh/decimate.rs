@@ -10,7 +10,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use meshoptimizer_rs::{
-    Attributes, Positions, SimplifyOptions, SimplifySettings, Workspace, simplify_with_attributes,
+    Attributes, Positions, SimplifyOptions, SimplifySettings, VertexFlags, Workspace,
+    simplify_with_attributes,
 };
 
 use super::surface::plane_normal;
@@ -54,6 +55,18 @@ type Place = [u64; 3];
 /// # Errors
 /// [`DecimateError`].
 pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
+    decimate_between(mesh, how, |_| false)
+}
+
+/// Decimates a part of a mesh; positions that it shares with other parts stay.
+///
+/// # Errors
+/// [`DecimateError`].
+pub fn decimate_between(
+    mesh: &Mesh,
+    how: &Decimation,
+    is_shared: impl Fn([f64; 3]) -> bool,
+) -> Result<Option<Mesh>, DecimateError> {
     let vertices = Vertices::of(mesh);
     let (low, high) = mesh.bounds();
     // About the box, of which single precision tells the parts wherever it lies.
@@ -77,6 +90,11 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
         COLOR_WEIGHT,
         COLOR_WEIGHT,
     ];
+    let flag = |&position: &[f64; 3]| match is_shared(position) {
+        true => VertexFlags::LOCK,
+        false => VertexFlags::EMPTY,
+    };
+    let flags: Vec<VertexFlags> = vertices.positions.iter().map(flag).collect();
     let failed = |error: meshoptimizer_rs::Error| DecimateError(error.to_string());
     let count = vertices.positions.len();
     let attributes = vertices.attributes.as_flattened();
@@ -86,7 +104,7 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
         Positions::from_packed(&near),
         attributes.map_err(failed)?,
         &weights,
-        None,
+        Some(&flags),
         SimplifySettings {
             target_index_count: (3 * how.triangles).min(vertices.indices.len()),
             target_error: error as f32,
@@ -292,44 +310,6 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
 }
 
 impl Mesh {
-    /// Some of its triangles, by their numbers.
-    #[must_use]
-    pub fn part(&self, numbers: &[usize]) -> Self {
-        let mut part = Self {
-            positions: self.positions.clone(),
-            materials: self.materials.clone(),
-            vertex_colors: self.vertex_colors.clone(),
-            ..Self::default()
-        };
-        for &number in numbers {
-            part.triangles.push(self.triangles[number]);
-            part.material_of.push(self.material_of[number]);
-            part.corner_normals.extend(self.corner_normals.get(number));
-            part.tints.extend(self.tints.get(number));
-        }
-        part.find_bounds();
-        part
-    }
-
-    /// Parts of one mesh as one; `None` of none.
-    pub(crate) fn of_parts(parts: impl IntoIterator<Item = Self>) -> Option<Self> {
-        let mut parts = parts.into_iter();
-        let mut all = parts.next()?;
-        for part in parts {
-            // Both have fewer than 2^32.
-            let first = all.positions.len() as u32;
-            all.positions.extend(part.positions);
-            let moved = |corners: [u32; 3]| corners.map(|corner| corner + first);
-            all.triangles.extend(part.triangles.into_iter().map(moved));
-            all.material_of.extend(part.material_of);
-            all.corner_normals.extend(part.corner_normals);
-            all.vertex_colors.extend(part.vertex_colors);
-            all.tints.extend(part.tints);
-        }
-        all.find_bounds();
-        Some(all)
-    }
-
     fn find_bounds(&mut self) {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for &corner in self.triangles.iter().flatten() {

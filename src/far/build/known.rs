@@ -6,7 +6,7 @@ use super::count::Seen;
 use super::grid::Grid;
 use super::rays::Occluders;
 use super::sample::{MOST_VISIBILITY_RAYS, Rays, Sampled};
-use super::shot::Target;
+use super::shot::{Own, Target};
 use super::{shader_fit, surface_sample};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
@@ -55,7 +55,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
     let target = Target {
         occluders: &occluders,
         grid,
-        own: 0..own,
+        own: Own::all(0..own),
         distance: 64.0,
         opacity_blend,
         shader_blend: Blend::Squares,

@@ -4,13 +4,17 @@
 //! threads: a node's rays depend on its number and on nothing else.
 
 mod chance;
+mod coarser;
+mod compare;
 mod count;
 mod grid;
+mod parts;
 mod rays;
 mod sample;
 mod shader_fit;
 mod shot;
 mod split;
+mod surface;
 mod touch;
 
 #[cfg(test)]
@@ -25,14 +29,16 @@ pub use grid::Grid;
 use super::FarData;
 use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity};
-use super::store::pack::{pack_triangles, pack_voxels};
+use super::store::pack::pack;
+use super::store::surface::lay_out;
 use crate::graph::{PackedNormal, Progress, place};
 use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
 use count::SurfaceSample;
 use rays::Occluders;
 use sample::Rays;
-use shot::Target;
+use shot::{Own, Target};
 use split::{Branch, split};
+use surface::{MOST_TRIANGLES, Surfaces};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +59,8 @@ pub struct BuildOptions {
     pub opacity_blend: Blend,
     /// How normals and materials of main directions are blended.
     pub shader_blend: Blend,
+    /// Whether what is wider than a voxel stays a surface, decimated.
+    pub hybrid: bool,
 }
 
 /// Rays for each voxel that is kept, where no number of rays is given.
@@ -70,6 +78,7 @@ impl Default for BuildOptions {
             opacity: Opacity::Six,
             opacity_blend: Blend::Cosines,
             shader_blend: Blend::Squares,
+            hybrid: false,
         }
     }
 }
@@ -86,6 +95,9 @@ pub enum BuildError {
     /// An option out of its range.
     #[error("{0}")]
     Option(&'static str),
+    /// The surface of a node.
+    #[error("the surface of a node could not be made: {0}")]
+    Surface(String),
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
@@ -103,16 +115,22 @@ pub fn build<S: Surface + ?Sized>(
     check(surface, options)?;
     let centre = centre(surface)?;
     progress.begin("split triangles", 0);
-    let (branches, order) = split(surface, options.leaf_triangles as usize);
+    let (mut branches, order) = split(surface, options.leaf_triangles as usize);
+    let coarser = coarser::put_above(&mut branches, options.grid);
     progress.end();
     let corners = |place: usize| surface.corners(order[place] as usize).map(|p| p - centre);
     progress.begin("prepare rays", 0);
     let occluders = Occluders::new((0..order.len()).map(corners));
     progress.end();
-    let target = |branch: &Branch| Target {
+    let hybrid = options.hybrid;
+    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options));
+    let target = |number: usize, branch: &Branch| Target {
         occluders: &occluders,
-        grid: Grid::around(branch.low - centre, branch.high - centre, options.grid),
-        own: branch.first..branch.first + branch.count,
+        grid: {
+            let side = coarser::grid_of(number, coarser, options.grid);
+            Grid::around(branch.low - centre, branch.high - centre, side)
+        },
+        own: Own::all(branch.first..branch.first + branch.count),
         distance: options.distance_voxels,
         opacity_blend: options.opacity_blend,
         shader_blend: options.shader_blend,
@@ -123,13 +141,14 @@ pub fn build<S: Surface + ?Sized>(
             progress.begin("find voxels", order.len() as u64);
             let touched: Vec<u32> = branches
                 .par_iter()
-                .map(|branch| {
+                .enumerate()
+                .map(|(number, branch)| {
                     if branch.children.is_none() {
                         progress.advance(branch.count as u64);
                         return 0;
                     }
                     let own = branch.first..branch.first + branch.count;
-                    touch::count(&target(branch).grid, own.map(corners))
+                    touch::count(&target(number, branch).grid, own.map(corners))
                 })
                 .collect();
             progress.end();
@@ -151,19 +170,38 @@ pub fn build<S: Surface + ?Sized>(
         .enumerate()
         .map(|(number, branch)| {
             let mut node = outline(branch, centre);
+            let own = branch.first..branch.first + branch.count;
             if branch.children.is_none() {
                 // Every triangle is in one leaf: progress is counted by these.
                 progress.advance(branch.count as u64);
-                let own = &order[branch.first..branch.first + branch.count];
-                return (node, pack_triangles(&leaf_triangles(surface, own, centre)));
+                if let Some(surfaces) = &surfaces {
+                    let bytes = surfaces.leaf(&mut node, own);
+                    return Ok((node, bytes));
+                }
+                let triangles = leaf_triangles(surface, &order[own], centre);
+                let bytes = lay_out(&mut node, &triangles, |_| true);
+                return Ok((node, pack(&Default::default(), &bytes)));
             }
-            let target = target(branch);
-            let seed = number as u64;
-            let sampled = target.sample(rays[number], MOST_RAYS, seed, corners, sample_at, plane);
-            let lists = keep(&mut node, &target.grid, &sampled, options);
-            (node, pack_voxels(&lists))
+            let target = target(number, branch);
+            set_grid(&mut node, &target.grid);
+            // Whatever is above the root.
+            let seed = (number as u64).wrapping_sub(coarser as u64);
+            let voxels = |node: &mut Node, target: &Target<'_>| {
+                let rays = rays[number];
+                let sampled = target.sample(rays, MOST_RAYS, seed, corners, sample_at, plane);
+                keep(node, &sampled, options)
+            };
+            match &surfaces {
+                Some(surfaces) if branch.count <= MOST_TRIANGLES => {
+                    surfaces.inner(&node, own, |node, thin| voxels(node, &target.of(thin)))
+                }
+                _ => {
+                    let lists = voxels(&mut node, &target);
+                    Ok((node, pack(&lists, &[])))
+                }
+            }
         })
-        .collect();
+        .collect::<Result<_, BuildError>>()?;
     progress.end();
     let mut data = assemble(built, centre, options)?;
     data.bevels = mesh_box(surface, data.y_up).bevels;
@@ -261,13 +299,14 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
     }
 }
 
+fn set_grid(node: &mut Node, grid: &Grid) {
+    node.origin = grid.origin.as_vec3().to_array();
+    node.voxel = grid.voxel as f32;
+    node.cells = grid.cells;
+}
+
 /// Fits the voxels that were seen; gives their records, list by list.
-fn keep(
-    node: &mut Node,
-    grid: &Grid,
-    sampled: &sample::Sampled,
-    options: &BuildOptions,
-) -> [Vec<u8>; 6] {
+fn keep(node: &mut Node, sampled: &sample::Sampled, options: &BuildOptions) -> [Vec<u8>; 6] {
     let mut lists: [Vec<u8>; 6] = Default::default();
     let mut square_error = 0.0;
     let mut samples = 0;
@@ -280,9 +319,6 @@ fn keep(
         samples += seen.samples.len();
         node.crossings = node.crossings.saturating_add(seen.crossings);
     }
-    node.origin = grid.origin.as_vec3().to_array();
-    node.voxel = grid.voxel as f32;
-    node.cells = grid.cells;
     node.touched = sampled.touched;
     node.untested = sampled.untested;
     node.rays = sampled.rays;
@@ -304,7 +340,6 @@ fn leaf_triangles<S: Surface + ?Sized>(
                 corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
                 normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
                 colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
-                spare: 0,
             }
         })
         .collect()
@@ -318,9 +353,8 @@ fn assemble(
     if u32::try_from(built.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", built.len())));
     }
-    let numbered: u64 = built.iter().map(|(node, _)| node.voxels()).sum();
-    let triangles = built.first().map_or(0, |(root, _)| root.triangles);
-    let numbered = numbered + u64::from(triangles);
+    let items = |(node, _): &(Node, Vec<u8>)| node.voxels() + u64::from(node.surface);
+    let numbered: u64 = built.iter().map(items).sum();
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
         return Err(BuildError::TooMany(what));

@@ -68,7 +68,7 @@ impl Target<'_> {
         plane: impl Fn(usize) -> DVec3,
     ) -> Sampled {
         let mut chance = Chance::new(seed);
-        let own = self.own.clone().map(|number| (number, corners(number)));
+        let own = self.own.numbers().map(|number| (number, corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
         let mut slot = vec![NOWHERE; self.grid.len()];
         for (number, voxel) in touched.iter().enumerate() {
