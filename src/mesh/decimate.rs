@@ -55,19 +55,34 @@ type Place = [u64; 3];
 /// # Errors
 /// [`DecimateError`].
 pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
-    decimate_between(mesh, how, |_| false)
+    decimate_between(mesh, how, |_| None)
 }
 
-/// Decimates a part of a mesh; positions that it shares with other parts stay.
+/// Decimates a part of a mesh. Positions that it shares with other parts stay; `shared` gives the
+/// normals that all triangles have there, each as long as its triangle's area, and `None` for a
+/// position of this part alone.
 ///
 /// # Errors
 /// [`DecimateError`].
-pub fn decimate_between(
+pub fn decimate_between<'n>(
     mesh: &Mesh,
     how: &Decimation,
-    is_shared: impl Fn([f64; 3]) -> bool,
+    shared: impl Fn([f64; 3]) -> Option<&'n [DVec3]>,
 ) -> Result<Option<Mesh>, DecimateError> {
-    let vertices = Vertices::of(mesh);
+    let mut vertices = Vertices::of(mesh);
+    let mut flags = Vec::with_capacity(vertices.positions.len());
+    for &position in &vertices.positions {
+        let normals = shared(position);
+        flags.push(match normals {
+            Some(_) => VertexFlags::LOCK,
+            None => VertexFlags::EMPTY,
+        });
+        if let Some(normals) = normals {
+            vertices
+                .normals
+                .insert(place_of(position), normals.to_vec());
+        }
+    }
     let (low, high) = mesh.bounds();
     // About the box, of which single precision tells the parts wherever it lies.
     let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
@@ -90,11 +105,6 @@ pub fn decimate_between(
         COLOR_WEIGHT,
         COLOR_WEIGHT,
     ];
-    let flag = |&position: &[f64; 3]| match is_shared(position) {
-        true => VertexFlags::LOCK,
-        false => VertexFlags::EMPTY,
-    };
-    let flags: Vec<VertexFlags> = vertices.positions.iter().map(flag).collect();
     let failed = |error: meshoptimizer_rs::Error| DecimateError(error.to_string());
     let count = vertices.positions.len();
     let attributes = vertices.attributes.as_flattened();

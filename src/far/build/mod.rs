@@ -123,7 +123,7 @@ pub fn build<S: Surface + ?Sized>(
     let occluders = Occluders::new((0..order.len()).map(corners));
     progress.end();
     let hybrid = options.hybrid;
-    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options));
+    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
     let target = |number: usize, branch: &Branch| Target {
         occluders: &occluders,
         grid: {

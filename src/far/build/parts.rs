@@ -11,6 +11,9 @@ pub(super) struct Parts {
     vertices: HashMap<[u32; 3], u32>,
     /// The first and the last triangle that has each vertex.
     spans: Vec<[u32; 2]>,
+    /// Of each vertex that leaves share the normals of all triangles there, each as long as its
+    /// triangle's area.
+    normals: HashMap<u32, Vec<DVec3>>,
     /// Of each triangle the sizes of its part.
     sizes: Vec<PartSize>,
 }
@@ -26,8 +29,14 @@ pub(super) struct PartSize {
 }
 
 impl Parts {
-    /// Triangles that share a corner's position are of one part. There are fewer than 2^32.
-    pub(super) fn of(count: usize, corners: impl Fn(usize) -> [[f32; 3]; 3]) -> Self {
+    /// Triangles that share a corner's position are of one part. `leaves`: how many triangles each
+    /// leaf has, fewer than 2^32 in all; `normals_of` gives the normals of a triangle's corners.
+    pub(super) fn of(
+        leaves: &[usize],
+        corners: impl Fn(usize) -> [[f32; 3]; 3],
+        normals_of: impl Fn(usize) -> [DVec3; 3],
+    ) -> Self {
+        let count = leaves.iter().sum::<usize>();
         let mut vertices: HashMap<[u32; 3], u32> = HashMap::new();
         let mut spans: Vec<[u32; 2]> = Vec::new();
         let mut parents: Vec<u32> = (0..count as u32).collect();
@@ -48,6 +57,25 @@ impl Parts {
         let roots: Vec<u32> = (0..count as u32)
             .map(|number| root(&mut parents, number))
             .collect();
+        let mut normals: HashMap<u32, Vec<DVec3>> = HashMap::new();
+        let mut end = 0;
+        for own in leaves {
+            let leaf = end..end + own;
+            end = leaf.end;
+            for number in leaf.clone() {
+                let corners = corners(number);
+                for (k, &corner) in corners.iter().enumerate() {
+                    let vertex = vertices[&bits(corner)];
+                    let is_within = |number: u32| leaf.contains(&(number as usize));
+                    if !spans[vertex as usize].into_iter().all(is_within) {
+                        let [a, b, c] = corners.map(|p| DVec3::from_array(p.map(f64::from)));
+                        let area = (b - a).cross(c - a).length();
+                        let normal = normals_of(number)[k] * area;
+                        normals.entry(vertex).or_default().push(normal);
+                    }
+                }
+            }
+        }
         let mut parts: HashMap<u32, Part> = HashMap::new();
         for (number, root) in roots.iter().enumerate() {
             let [a, b, c] = corners(number).map(|p| DVec3::from_array(p.map(f64::from)));
@@ -64,6 +92,7 @@ impl Parts {
         Self {
             vertices,
             spans,
+            normals,
             sizes: roots.iter().map(size).collect(),
         }
     }
@@ -72,13 +101,14 @@ impl Parts {
         self.sizes[triangle]
     }
 
-    /// Whether triangles beyond a range have a corner at a position.
-    pub(super) fn is_shared(&self, range: &Range<usize>, position: [f32; 3]) -> bool {
-        let Some(&vertex) = self.vertices.get(&bits(position)) else {
-            return false;
-        };
-        let [first, last] = self.spans[vertex as usize].map(|number| number as usize);
-        first < range.start || last >= range.end
+    /// The normals of all triangles at a position where some beyond a range, which is that of a
+    /// node, have a corner; `None` of any other position.
+    pub(super) fn shared(&self, range: &Range<usize>, position: [f32; 3]) -> Option<&[DVec3]> {
+        let vertex = self.vertices.get(&bits(position))?;
+        let [first, last] = self.spans[*vertex as usize].map(|number| number as usize);
+        let is_shared = first < range.start || last >= range.end;
+        let normals = is_shared.then(|| self.normals.get(vertex))?;
+        Some(normals.map_or(&[], Vec::as_slice))
     }
 }
 
@@ -130,17 +160,20 @@ mod tests {
             triangles.extend([[a, b, c], [a, c, d]]);
         }
         triangles.push([[50.0, 0.0, 0.0], [50.0, 3.0, 0.0], [50.0, 0.0, 4.0]]);
-        let parts = Parts::of(triangles.len(), |number| triangles[number]);
+        let normals = |number: usize| [DVec3::X * (number + 1) as f64; 3];
+        let parts = Parts::of(&[4, 5], |number| triangles[number], normals);
         for number in 0..8 {
             assert!((parts.size(number).width - 8.0 / 65f32.sqrt()).abs() < 1e-6);
         }
         assert!((parts.size(8).width - 6.0 / 5.0).abs() < 1e-6);
         assert!((parts.size(8).radius - 2.5).abs() < 1e-6);
         // The middle of the strip is of triangles 2 to 5, its end of 6 and 7.
-        assert!(parts.is_shared(&(0..4), point(2, 0.0)));
-        assert!(parts.is_shared(&(4..9), point(2, 1.0)));
-        assert!(!parts.is_shared(&(0..8), point(2, 1.0)));
-        assert!(!parts.is_shared(&(4..9), point(4, 0.0)));
-        assert!(!parts.is_shared(&(0..4), [9.0; 3]));
+        let normals = parts.shared(&(0..4), point(2, 0.0)).unwrap();
+        let sums: Vec<f64> = normals.iter().map(|n| n.x).collect();
+        assert_eq!(sums, [3.0 * 2.0, 5.0 * 2.0, 6.0 * 2.0]);
+        assert_eq!(parts.shared(&(4..9), point(2, 0.0)), Some(normals));
+        assert_eq!(parts.shared(&(0..8), point(2, 0.0)), None);
+        assert_eq!(parts.shared(&(4..9), point(4, 0.0)), None);
+        assert_eq!(parts.shared(&(0..4), [9.0; 3]), None);
     }
 }

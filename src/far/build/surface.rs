@@ -11,13 +11,14 @@ use glam::DVec3;
 
 use super::compare::{Candidate, Comparison};
 use super::parts::Parts;
+use super::split::Branch;
 use super::{BuildError, BuildOptions, leaf_triangles};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
 use crate::graph::PackedNormal;
 use crate::mesh::decimate::{Decimation, decimate_between};
-use crate::mesh::{Material, Mesh, Surface};
+use crate::mesh::{Mesh, Surface, srgb_to_linear};
 
 /// Parts narrower than so many voxels of a node are thin.
 const THIN: f64 = 2.0;
@@ -46,24 +47,28 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
         order: &'s [u32],
         centre: DVec3,
         options: &'s BuildOptions,
+        branches: &[Branch],
     ) -> Self {
         let corners = |place: usize| {
             let corners = surface.corners(order[place] as usize);
             corners.map(|p| (p - centre).as_vec3().to_array())
         };
+        let normals = |place: usize| surface.triangle(order[place] as usize).normals;
+        let leaves = branches.iter().filter(|branch| branch.children.is_none());
+        let leaves: Vec<usize> = leaves.map(|leaf| leaf.count).collect();
         Self {
             surface,
             order,
             centre,
             options,
-            parts: Parts::of(order.len(), corners),
+            parts: Parts::of(&leaves, corners, normals),
         }
     }
 
     /// Bytes of a leaf.
     pub(super) fn leaf(&self, node: &mut Node, own: Range<usize>) -> Vec<u8> {
         let triangles = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-        let bytes = surface::lay_out(node, &triangles, |p| self.parts.is_shared(&own, p));
+        let bytes = surface::lay_out(node, &triangles, |p| self.parts.shared(&own, p).is_some());
         pack(&Default::default(), &bytes)
     }
 
@@ -83,7 +88,7 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
             Comparison::of(node, &all, self.options)?.best(candidates)?
         };
         let mut node = chosen.node;
-        let is_shared = |p| self.parts.is_shared(&own, p);
+        let is_shared = |p| self.parts.shared(&own, p).is_some();
         let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);
         Ok((node, pack(&chosen.lists, &bytes)))
     }
@@ -159,24 +164,29 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
             return Ok(Vec::new());
         }
         let numbers: Vec<u32> = taken.iter().map(|&place| self.order[place]).collect();
-        let mesh = mesh_of(&leaf_triangles(self.surface, &numbers, self.centre));
+        let tinted: Option<Vec<u32>> = numbers
+            .iter()
+            .map(|&number| self.surface.tinted_material(number as usize))
+            .collect();
+        let mesh = mesh_of(&leaf_triangles(self.surface, &numbers, self.centre), tinted);
         let how = Decimation {
             triangles: 0,
             error: Some(error),
             prunes: false,
         };
-        let is_shared = |p: [f64; 3]| self.parts.is_shared(own, p.map(|c| c as f32));
-        let few = decimate_between(&mesh, &how, is_shared);
+        let shared = |p: [f64; 3]| self.parts.shared(own, p.map(|c| c as f32));
+        let few = decimate_between(&mesh, &how, shared);
         let few = few.map_err(|error| BuildError::Surface(error.to_string()))?;
         Ok(few.map_or(Vec::new(), |mesh| triangles_of(&mesh)))
     }
 }
 
-/// Triangles as a mesh, of colours at their corners.
-fn mesh_of(triangles: &[LeafTriangle]) -> Mesh {
+/// Triangles as a mesh, of colours at their corners; or, of triangles of textures, of one colour
+/// each, which are blended between those of one material.
+fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
+    let is_tinted = tinted.is_some();
     let mut mesh = Mesh {
-        materials: vec![Material::of_srgb("all".to_owned(), [255; 3])],
-        material_of: vec![0; triangles.len()],
+        material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]),
         ..Mesh::default()
     };
     let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -186,7 +196,13 @@ fn mesh_of(triangles: &[LeafTriangle]) -> Mesh {
             let position = triangle.corners[k].map(f64::from);
             (low, high) = (low.min(position.into()), high.max(position.into()));
             mesh.positions.push(position);
-            mesh.vertex_colors.push(triangle.colors[k]);
+            if !is_tinted {
+                mesh.vertex_colors.push(triangle.colors[k]);
+            }
+        }
+        if is_tinted {
+            let color = triangle.colors[0].map(srgb_to_linear);
+            mesh.tints.push(color);
         }
         mesh.corner_normals.push(triangle.normals.map(|normal| {
             let normal = PackedNormal(normal).decode().unwrap_or(DVec3::Z);
