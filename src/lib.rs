@@ -110,9 +110,6 @@ pub mod drawing;
 pub mod far;
 #[cfg(feature = "mesh")]
 #[doc(hidden)]
-pub mod hybrid;
-#[cfg(feature = "mesh")]
-#[doc(hidden)]
 pub mod mesh;
 #[cfg(feature = "mesh")]
 #[doc(hidden)]

@@ -65,6 +65,10 @@ pub struct ConvertArgs {
     /// build with the same mesh and options was stopped
     #[arg(long)]
     resume: bool,
+    /// Of .far: keep what is wider than a voxel as a decimated surface, beside voxels of what is
+    /// thinner
+    #[arg(long)]
+    hybrid: bool,
     /// Of .far: what opacities are stored for [default: six]
     #[arg(long, value_enum, value_name = "KIND")]
     far_opacity: Option<Opacity>,
@@ -80,6 +84,7 @@ impl ConvertArgs {
             || self.instances.is_some()
             || self.far_opacity.is_some()
             || self.resume
+            || self.hybrid
     }
 
     fn conversion(&self) -> Conversion<'_> {
@@ -98,6 +103,7 @@ impl ConvertArgs {
             leaf_triangles: self.leaf_triangles.unwrap_or(defaults.leaf_triangles),
             grid: self.grid.first().copied().unwrap_or(defaults.grid),
             opacity: self.far_opacity.unwrap_or_default(),
+            hybrid: self.hybrid,
             ..defaults
         }
     }
@@ -126,7 +132,8 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
         if args.memory.is_some() || args.has_far_settings() {
             return Err(CliError::usage(
                 "a .tvx takes --grid, --texels and --element; --memory is for .vxg and .far files, \
-                 --rays, --leaf-triangles, --instances, --resume and --far-opacity are for .far files",
+                 --rays, --leaf-triangles, --instances, --resume, --far-opacity and --hybrid are for \
+                 .far files",
             ));
         }
         return textured::convert(&args.conversion(), &args.textured_options(), console);
@@ -151,7 +158,7 @@ pub(super) fn run(args: &ConvertArgs, console: &Console) -> Result<(), CliError>
     }
     if args.has_far_settings() || !args.grid.is_empty() {
         return Err(CliError::usage(
-            "--rays, --leaf-triangles, --instances, --resume and --far-opacity are for .far files, \
+            "--rays, --leaf-triangles, --instances, --resume, --far-opacity and --hybrid are for .far files, \
              --grid for .far and .tvx files",
         ));
     }

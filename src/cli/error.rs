@@ -246,7 +246,9 @@ impl From<far::BuildError> for CliError {
     fn from(error: far::BuildError) -> Self {
         let kind = match error {
             far::BuildError::Empty | far::BuildError::Range => Kind::Input,
-            far::BuildError::TooMany(_) | far::BuildError::Memory { .. } => Kind::Limit,
+            far::BuildError::TooMany(_)
+            | far::BuildError::Surface(_)
+            | far::BuildError::Memory { .. } => Kind::Limit,
             far::BuildError::Option(_) => Kind::Usage,
             far::BuildError::File { .. } => Kind::Run,
         };

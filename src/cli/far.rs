@@ -16,7 +16,7 @@ use super::scenes;
 use crate::budget;
 use crate::drawing::milliseconds_since;
 use crate::far::build::{Outside, part_of};
-use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind, TRIANGLE_BYTES};
+use crate::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use crate::far::{BuildError, BuildOptions, FarFile, build_outside};
 use crate::mesh::Instances;
 use crate::project::Up;
@@ -196,6 +196,8 @@ struct LevelFacts {
     nodes: u64,
     leaves: u64,
     voxels: u64,
+    /// Triangles of inner nodes.
+    surface: u64,
     greatest_voxel: f32,
     square_error: f64,
 }
@@ -212,6 +214,9 @@ struct Facts {
     crossings: u64,
     voxel_bytes: u64,
     opacity_bytes: u64,
+    /// Triangles of inner nodes.
+    surface: u64,
+    surface_bytes: u64,
 }
 
 impl Facts {
@@ -227,6 +232,8 @@ impl Facts {
             crossings: 0,
             voxel_bytes: 0,
             opacity_bytes: 0,
+            surface: 0,
+            surface_bytes: 0,
         };
         for node in file.nodes() {
             let level = node.level as usize;
@@ -236,6 +243,11 @@ impl Facts {
             }
             let at = &mut facts.levels[level];
             at.nodes += 1;
+            if !node.is_leaf() {
+                at.surface += u64::from(node.surface);
+                facts.surface += u64::from(node.surface);
+            }
+            facts.surface_bytes += node.surface_bytes();
             at.leaves += u64::from(node.is_leaf());
             at.voxels += node.voxels();
             at.greatest_voxel = at.greatest_voxel.max(node.voxel);
@@ -287,6 +299,7 @@ impl Facts {
                     "nodes": level.nodes,
                     "leaves": level.leaves,
                     "voxels": level.voxels,
+                    "surface_triangles": level.surface,
                     "greatest_voxel_world": level.greatest_voxel,
                     "fit_error": libm::sqrt(level.square_error / level.voxels.max(1) as f64),
                 })
@@ -321,6 +334,8 @@ impl Facts {
             "bytes": file.len(),
             "voxel_bytes": self.voxel_bytes,
             "opacity_bytes": self.opacity_bytes,
+            "surface_triangles": self.surface,
+            "surface_bytes": self.surface_bytes,
         })
     }
 
@@ -342,6 +357,13 @@ impl Facts {
                     grouped(self.untested),
                     grouped(self.occluded()),
                     percent(self.dropped_share())
+                ),
+            ),
+            (
+                "surface",
+                format!(
+                    "{} decimated triangles of inner nodes",
+                    grouped(self.surface)
                 ),
             ),
             (
@@ -378,7 +400,7 @@ impl Facts {
                     file.len() as f64 / f64::from(file.nodes()[0].triangles),
                     grouped(self.voxel_bytes),
                     grouped(self.opacity_bytes),
-                    grouped(u64::from(file.nodes()[0].triangles) * TRIANGLE_BYTES as u64)
+                    grouped(self.surface_bytes)
                 ),
             ),
         ];
@@ -393,6 +415,7 @@ impl Facts {
                 grouped(level.nodes),
                 grouped(level.leaves),
                 grouped(level.voxels),
+                grouped(level.surface),
                 format!("{:.4}", level.greatest_voxel),
                 format!("{error:.4}"),
             ]
@@ -402,6 +425,7 @@ impl Facts {
             "nodes",
             "leaves",
             "voxels",
+            "triangles",
             "voxel size",
             "fit error",
         ];

@@ -7,7 +7,6 @@
 
 mod far;
 mod graph;
-mod hybrid;
 pub mod mesh_view;
 mod textured;
 mod triangles;
@@ -27,7 +26,6 @@ use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
 pub use far::{FarDrawing, FarStyle, resident};
 pub use graph::{GraphDrawing, GraphStyle};
-pub use hybrid::{HybridDrawing, HybridStyle};
 pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
 pub use triangles::{TrianglesDrawing, TrianglesStyle};
 

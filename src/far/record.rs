@@ -341,9 +341,8 @@ fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> ([SideOpacity; 2], [f64; DIREC
     }
 }
 
-/// A triangle of a leaf.
-#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
-#[repr(C)]
+/// A triangle of a node, in memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LeafTriangle {
     /// Corners, relative to the file's centre.
     pub corners: [[f32; 3]; 3],
@@ -351,18 +350,10 @@ pub struct LeafTriangle {
     pub normals: [u16; 3],
     /// Colours of the corners, sRGB.
     pub colors: [[u8; 3]; 3],
-    /// Zero.
-    pub spare: u8,
 }
 
-/// Bytes of a [`LeafTriangle`].
+/// Bytes of a [`LeafTriangle`] in memory.
 pub const TRIANGLE_BYTES: usize = size_of::<LeafTriangle>();
-
-/// The bytes of triangles as they are stored (on machines that store the lowest byte first).
-#[must_use]
-pub fn triangle_bytes(triangles: &[LeafTriangle]) -> &[u8] {
-    bytemuck::cast_slice(triangles)
-}
 
 /// A node of the hierarchy.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
@@ -382,7 +373,8 @@ pub struct Node {
     pub is_leaf: u8,
     /// Levels below the root.
     pub level: u32,
-    /// Numbers of the two children; zero in a leaf.
+    /// Numbers of the children: two, or one and zero; zeros in a leaf. [`Node::below`] has those
+    /// that there are.
     pub children: [u32; 2],
     /// The first of its triangles.
     pub first_triangle: u32,
@@ -406,6 +398,50 @@ pub struct Node {
     pub error: f32,
     /// xxh3-64 of its data as it is stored.
     pub checksum: u64,
+    /// Corners of its surface that no other node has, and those that others share.
+    pub vertices: [u32; 2],
+    /// Triangles of its surface: of a leaf all that it has, of an inner node decimated ones, if any.
+    pub surface: u32,
+    /// Colours of its surface, of which vertices have the numbers; 0: each vertex has its own.
+    pub colors: u16,
+    /// Whether normals are those of the triangles' planes, 1 or 0.
+    pub is_flat: u8,
+    /// Zero.
+    pub spare: u8,
+}
+
+/// Bytes of the position of a vertex of one node: 16 bits an axis of the node's box.
+pub const OWN_BYTES: usize = 6;
+/// Bytes of the position of a vertex that nodes share: single precision.
+pub const SHARED_BYTES: usize = 12;
+/// Most colours of which vertices have the numbers.
+pub const MOST_COLORS: usize = 256;
+
+/// Bytes of what a surface's vertices and corners have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::far) struct SurfaceColumns {
+    /// Of a vertex's normal.
+    pub(in crate::far) normal: usize,
+    /// Of a vertex's colour, or of its number.
+    pub(in crate::far) color: usize,
+    /// Of the number of a corner's vertex.
+    pub(in crate::far) index: usize,
+}
+
+impl SurfaceColumns {
+    pub(in crate::far) fn of(node: &Node) -> Self {
+        let [own, shared] = node.vertices.map(u64::from);
+        Self {
+            normal: if node.is_flat == 0 { 2 } else { 0 },
+            color: match node.colors {
+                0 => 3,
+                1 => 0,
+                _ => 1,
+            },
+            // Twice the number, and which list it is of.
+            index: if own.max(shared) < 1 << 15 { 2 } else { 4 },
+        }
+    }
 }
 
 /// Bytes of a [`Node`].
@@ -416,6 +452,34 @@ impl Node {
     #[must_use]
     pub fn is_leaf(&self) -> bool {
         self.is_leaf != 0
+    }
+
+    /// Numbers of its children: two, or a coarser node's one, or a leaf's none.
+    pub fn below(&self) -> impl Iterator<Item = usize> + use<> {
+        let children = self.children.into_iter();
+        // The first node is nobody's child.
+        children
+            .filter(|&child| child > 0)
+            .map(|child| child as usize)
+    }
+
+    /// Bytes of its surface, unpacked.
+    #[must_use]
+    pub fn surface_bytes(&self) -> u64 {
+        let columns = SurfaceColumns::of(self);
+        let [own, shared] = self.vertices.map(u64::from);
+        let vertex = (columns.normal + columns.color) as u64;
+        u64::from(self.colors) * 3
+            + own * OWN_BYTES as u64
+            + shared * SHARED_BYTES as u64
+            + (own + shared) * vertex
+            + u64::from(self.surface) * 3 * columns.index as u64
+    }
+
+    /// Bytes of what is drawn of it, unpacked.
+    #[must_use]
+    pub fn drawn_bytes(&self) -> u64 {
+        self.voxel_bytes() + self.surface_bytes()
     }
 
     /// Voxels that it keeps.
@@ -451,7 +515,7 @@ mod tests {
 
     #[test]
     fn records_have_their_sizes_and_come_back() {
-        assert_eq!((NODE_BYTES, TRIANGLE_BYTES), (128, 52));
+        assert_eq!((NODE_BYTES, TRIANGLE_BYTES), (144, 52));
         let white = DVec3::ONE;
         let axes = [
             DVec3::X,

@@ -10,7 +10,8 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 use meshoptimizer_rs::{
-    Attributes, Positions, SimplifyOptions, SimplifySettings, Workspace, simplify_with_attributes,
+    Attributes, Positions, SimplifyOptions, SimplifySettings, VertexFlags, Workspace,
+    simplify_with_attributes,
 };
 
 use super::surface::plane_normal;
@@ -54,7 +55,34 @@ type Place = [u64; 3];
 /// # Errors
 /// [`DecimateError`].
 pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
-    let vertices = Vertices::of(mesh);
+    decimate_between(mesh, how, |_| None)
+}
+
+/// Decimates a part of a mesh. Positions that it shares with other parts stay; `shared` gives the
+/// normals that all triangles have there, each as long as its triangle's area, and `None` for a
+/// position of this part alone.
+///
+/// # Errors
+/// [`DecimateError`].
+pub fn decimate_between<'n>(
+    mesh: &Mesh,
+    how: &Decimation,
+    shared: impl Fn([f64; 3]) -> Option<&'n [DVec3]>,
+) -> Result<Option<Mesh>, DecimateError> {
+    let mut vertices = Vertices::of(mesh);
+    let mut flags = Vec::with_capacity(vertices.positions.len());
+    for &position in &vertices.positions {
+        let normals = shared(position);
+        flags.push(match normals {
+            Some(_) => VertexFlags::LOCK,
+            None => VertexFlags::EMPTY,
+        });
+        if let Some(normals) = normals {
+            vertices
+                .normals
+                .insert(place_of(position), normals.to_vec());
+        }
+    }
     let (low, high) = mesh.bounds();
     // About the box, of which single precision tells the parts wherever it lies.
     let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
@@ -86,7 +114,7 @@ pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateE
         Positions::from_packed(&near),
         attributes.map_err(failed)?,
         &weights,
-        None,
+        Some(&flags),
         SimplifySettings {
             target_index_count: (3 * how.triangles).min(vertices.indices.len()),
             target_error: error as f32,
@@ -292,44 +320,6 @@ pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
 }
 
 impl Mesh {
-    /// Some of its triangles, by their numbers.
-    #[must_use]
-    pub fn part(&self, numbers: &[usize]) -> Self {
-        let mut part = Self {
-            positions: self.positions.clone(),
-            materials: self.materials.clone(),
-            vertex_colors: self.vertex_colors.clone(),
-            ..Self::default()
-        };
-        for &number in numbers {
-            part.triangles.push(self.triangles[number]);
-            part.material_of.push(self.material_of[number]);
-            part.corner_normals.extend(self.corner_normals.get(number));
-            part.tints.extend(self.tints.get(number));
-        }
-        part.find_bounds();
-        part
-    }
-
-    /// Parts of one mesh as one; `None` of none.
-    pub(crate) fn of_parts(parts: impl IntoIterator<Item = Self>) -> Option<Self> {
-        let mut parts = parts.into_iter();
-        let mut all = parts.next()?;
-        for part in parts {
-            // Both have fewer than 2^32.
-            let first = all.positions.len() as u32;
-            all.positions.extend(part.positions);
-            let moved = |corners: [u32; 3]| corners.map(|corner| corner + first);
-            all.triangles.extend(part.triangles.into_iter().map(moved));
-            all.material_of.extend(part.material_of);
-            all.corner_normals.extend(part.corner_normals);
-            all.vertex_colors.extend(part.vertex_colors);
-            all.tints.extend(part.tints);
-        }
-        all.find_bounds();
-        Some(all)
-    }
-
     fn find_bounds(&mut self) {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for &corner in self.triangles.iter().flatten() {

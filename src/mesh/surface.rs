@@ -38,6 +38,12 @@ pub trait Surface: Sync {
     /// Lowest and highest corner of the box around all triangles.
     fn bounds(&self) -> (DVec3, DVec3);
 
+    /// The material of triangle `number`, if its colour is the mean of its texture there: between
+    /// triangles of one material it changes without an edge.
+    fn tinted_material(&self, _number: usize) -> Option<u32> {
+        None
+    }
+
     /// Whether triangle `number` is textured: then the rasteriser calls
     /// [`Surface::texture`] at each point of it. No triangle of a mesh is.
     fn is_textured(&self, _number: usize) -> bool {
@@ -98,6 +104,10 @@ impl Surface for Mesh {
 
     fn bounds(&self) -> (DVec3, DVec3) {
         Self::bounds(self)
+    }
+
+    fn tinted_material(&self, number: usize) -> Option<u32> {
+        self.tints.get(number).map(|_| self.material_of[number])
     }
 }
 
@@ -185,6 +195,10 @@ impl Surface for Instances {
 
     fn bounds(&self) -> (DVec3, DVec3) {
         (self.low, self.high)
+    }
+
+    fn tinted_material(&self, number: usize) -> Option<u32> {
+        Surface::tinted_material(&self.mesh, number % self.mesh.triangles.len())
     }
 }
 

@@ -80,8 +80,8 @@ fn voxels_shrink_from_level_to_level() {
     let mut levels = 0;
     for node in &data.nodes {
         levels = levels.max(node.level);
-        for child in node.children.iter().filter(|_| !node.is_leaf()) {
-            let child = &data.nodes[*child as usize];
+        for child in node.below() {
+            let child = &data.nodes[child];
             assert!(child.is_leaf() || child.voxel <= node.voxel);
         }
     }

@@ -1,6 +1,6 @@
 //! The file: it comes back, and what is damaged is refused.
 
-use shiftvox::far::record::RECORD_BYTES;
+use shiftvox::far::record::{NODE_BYTES, RECORD_BYTES};
 use shiftvox::far::store::{FarError, encode};
 use shiftvox::far::{BuildOptions, FarFile};
 use shiftvox::mesh::Surface;
@@ -20,7 +20,7 @@ fn small() -> Vec<u8> {
 }
 
 /// Whether a file is found to be damaged when it is opened or when all of it is read.
-fn is_refused(bytes: &[u8]) -> bool {
+pub(crate) fn is_refused(bytes: &[u8]) -> bool {
     match FarFile::from_bytes(bytes).and_then(|file| file.verify()) {
         Ok(()) => false,
         Err(FarError::Malformed { .. }) => true,
@@ -98,7 +98,7 @@ fn truncated_files_are_refused() {
 #[test]
 fn every_flipped_bit_is_found() {
     let bytes = small();
-    let header_and_nodes = 128 + 128 * 16;
+    let header_and_nodes = 128 + NODE_BYTES * 16;
     let places = (0..header_and_nodes).chain((header_and_nodes..bytes.len()).step_by(61));
     for place in places.filter(|&place| place < bytes.len()) {
         let mut damaged = bytes.clone();
@@ -108,9 +108,9 @@ fn every_flipped_bit_is_found() {
 }
 
 /// Gives header and hierarchy the checksums that they should have.
-fn with_checksums(mut bytes: Vec<u8>) -> Vec<u8> {
+pub(crate) fn with_checksums(mut bytes: Vec<u8>) -> Vec<u8> {
     let nodes = u64::from_le_bytes(bytes[24..32].try_into().unwrap()) as usize;
-    if let Some(nodes) = bytes.get(128..128 + 128 * nodes) {
+    if let Some(nodes) = bytes.get(128..128 + NODE_BYTES * nodes) {
         let checksum = xxh3_64(nodes).to_le_bytes();
         bytes[96..104].copy_from_slice(&checksum);
     }
@@ -124,10 +124,10 @@ fn fields_are_checked_behind_their_checksums() {
     let bytes = small();
     assert!(!is_refused(&with_checksums(bytes.clone())));
     let mut version = bytes.clone();
-    version[8] = 3;
+    version[8] = 4;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
     assert!(
-        error.to_string().contains("version 4 to 4, not 3"),
+        error.to_string().contains("version 5 to 5, not 4"),
         "{error}"
     );
     // Every byte of the header and of the root, but for those that may have any
@@ -142,7 +142,7 @@ fn fields_are_checked_behind_their_checksums() {
         assert!(is_refused(&with_checksums(damaged)), "byte {place}");
     }
     // Any damage at all must not panic.
-    for place in 8..128 + 128 * 8 {
+    for place in 8..128 + NODE_BYTES * 8 {
         for flip in [0x01, 0x80, 0xff] {
             let mut damaged = bytes.clone();
             damaged[place] ^= flip;

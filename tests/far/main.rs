@@ -5,6 +5,7 @@ mod build;
 mod city;
 mod command;
 mod file;
+mod hybrid;
 mod models;
 mod samples;
 mod solid;

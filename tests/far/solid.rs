@@ -9,7 +9,7 @@ use shiftvox::mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples
 use shiftvox::mesh::{Material, Mesh, MeshBuilder, Surface};
 
 /// A sphere of 2 * n * n triangles about the origin.
-fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u32) {
+pub(crate) fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u32) {
     let at = |i: u32, j: u32| {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(n));
         let around = std::f64::consts::TAU * f64::from(j) / f64::from(n);
@@ -60,7 +60,7 @@ fn far(mesh: &Mesh) -> FarFile {
 }
 
 /// A view in which what is in a box fills about `size` pixels, from `distance` of its sizes away.
-fn view(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
+pub(crate) fn view(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
     let (low, high) = Surface::bounds(mesh);
     let (middle, side) = ((low + high) / 2.0, (high - low).length());
     let forward = -towards.normalize();
@@ -78,7 +78,7 @@ fn view(mesh: &Mesh, towards: DVec3, distance: f64, size: u32) -> RasterCamera {
 }
 
 /// Directions spread over the sphere.
-fn directions(count: u32) -> impl Iterator<Item = DVec3> {
+pub(crate) fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     (0..count).map(move |i| {
         let z = 1.0 - (2.0 * f64::from(i) + 1.0) / f64::from(count);
         let ring = libm::sqrt(1.0 - z * z);
@@ -87,7 +87,7 @@ fn directions(count: u32) -> impl Iterator<Item = DVec3> {
     })
 }
 
-fn draw(file: &FarFile, view: &RasterCamera, opacity: Opacity) -> FarPicture {
+pub(crate) fn draw(file: &FarFile, view: &RasterCamera, opacity: Opacity) -> FarPicture {
     let options = ViewOptions {
         opacity,
         background: Some([255; 3]),

@@ -62,19 +62,23 @@ fn sound_files() -> &'static [Sound] {
             &Silent,
         )
         .unwrap();
-        for (leaf_triangles, opacity) in
-            [(1000, Opacity::Six), (3, Opacity::Six), (2, Opacity::None)]
-        {
+        for (leaf_triangles, opacity, hybrid) in [
+            (1000, Opacity::Six, false),
+            (3, Opacity::Six, false),
+            (2, Opacity::None, false),
+            (3, Opacity::Six, true),
+        ] {
             let options = far::BuildOptions {
                 rays: Some(500),
                 grid: 4,
                 leaf_triangles,
                 opacity,
+                hybrid,
                 ..far::BuildOptions::default()
             };
             let data = far::build(&mesh, &options, &Silent).unwrap();
             let bytes = far::store::encode(&data).unwrap();
-            let fields = 128 * (1 + data.nodes.len());
+            let fields = 128 + far::record::NODE_BYTES * data.nodes.len();
             files.push(Sound {
                 format: Format::Far,
                 bytes,

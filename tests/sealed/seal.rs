@@ -6,8 +6,10 @@ use std::ops::Range;
 
 use xxhash_rust::xxh3::xxh3_64;
 
-/// Bytes of the headers of `.far` and `.tvx`, and of a node of a `.far` file.
+/// Bytes of the headers of `.far` and `.tvx`.
 const RECORD: usize = 128;
+/// Bytes of a node of a `.far` file.
+const NODE: usize = 144;
 /// Bytes of the header of `.vxg`.
 const VXG_HEADER: usize = 512;
 /// Bytes of what a `.tvx` file says of a grid.
@@ -95,24 +97,24 @@ pub(crate) fn vxg(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
 /// A `.far` file put right; nothing where its header says too much. With `place` no node's data begins before that of
 /// the one before it.
 pub(crate) fn far(mut bytes: Vec<u8>, place: bool) -> Option<Vec<u8>> {
-    if bytes.len() < 2 * RECORD {
+    if bytes.len() < RECORD + NODE {
         return None;
     }
     let [nodes, data] = [24, 32].map(|at| number(&bytes, at, 8));
     let mut end = RECORD as u64;
-    let nodes = section(&mut end, nodes, RECORD as u64);
+    let nodes = section(&mut end, nodes, NODE as u64);
     let data = section(&mut end, data, 1);
     lay_out(&mut bytes, RECORD, &[nodes.clone(), data.clone()])?;
     let length = data.end - data.start;
     let mut before = 0;
-    for node in slot(&nodes).step_by(RECORD) {
+    for node in slot(&nodes).step_by(NODE) {
         if place {
             before = number(&bytes, node + 64, 8).clamp(before, length);
             put(&mut bytes, node + 64, before);
         }
     }
     let mut last = length;
-    for node in slot(&nodes).step_by(RECORD).rev() {
+    for node in slot(&nodes).step_by(NODE).rev() {
         let begin = number(&bytes, node + 64, 8);
         let own = [begin, last].map(|at| (data.start + at.min(length)) as usize);
         last = begin;

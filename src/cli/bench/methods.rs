@@ -20,7 +20,6 @@ use crate::drawing::{Erosion, milliseconds_since};
 use crate::far::view::Opacity;
 use crate::far::{BuildOptions, FarFile};
 use crate::graph::Graph;
-use crate::hybrid::{self, Hybrid, HybridOptions};
 use crate::lab::bench::Schedule;
 use crate::lab::error::{Method, PixelStyle, Refused, voxel_method};
 use crate::lab::flicker::Motion;
@@ -159,7 +158,7 @@ struct Made {
     /// The image-order paper's grid, and those that a level is chosen from by distance.
     textured: Option<[(TexturedFile, f64); 2]>,
     decimated: Vec<Decimated>,
-    hybrid: Option<(Hybrid, f64)>,
+    hybrid: Option<(FarFile, f64)>,
 }
 
 impl Made {
@@ -180,10 +179,11 @@ impl Made {
             made.decimated = decimated_of(mesh, &args.budgets)?;
         }
         if args.takes(Family::Hybrid) {
-            let started = Instant::now();
-            let built = hybrid::build(mesh, &HybridOptions::default(), console.progress());
-            let built = built.map_err(|e| CliError::new(Kind::Run, e))?;
-            made.hybrid = Some((built, milliseconds_since(started)));
+            let options = BuildOptions {
+                hybrid: true,
+                ..BuildOptions::default()
+            };
+            made.hybrid = Some(far_of(mesh, &options, console)?);
         }
         if args.takes(Family::Voxels) {
             // Opaque, as the other rules want them, and with opacities.
@@ -277,10 +277,10 @@ fn methods<'m>(
         for aa_log2 in 0..3 {
             let method = experiment::hybrid(hybrid, 1.0, aa_log2, style);
             let label = format!("hybrid, {}", 1 << (2 * aa_log2));
-            all.push(candidate(label, hybrid.bytes(), *ms, method));
+            all.push(candidate(label, hybrid.len(), *ms, method));
         }
         let method = experiment::hybrid(hybrid, 2.0, 1, style);
-        all.push(candidate("hybrid, 4, lod 2", hybrid.bytes(), *ms, method));
+        all.push(candidate("hybrid, 4, lod 2", hybrid.len(), *ms, method));
     }
     if let [opaque, airy] = made.voxels.as_slice() {
         let rules = [

@@ -8,7 +8,7 @@ use super::grid::Grid;
 use super::rays::Around;
 use super::sample::{MOST_VISIBILITY_RAYS, Rays, Triangles};
 use super::shader_fit::ShaderFit;
-use super::shot::Target;
+use super::shot::{Own, Target};
 use super::{MOST_RAYS, Ordered, shader_fit};
 use crate::far::blend::Blend;
 use crate::far::record::{Opacity, OpacityKind, STEEPNESSES};
@@ -78,7 +78,7 @@ fn sampled(mesh: &Mesh, own: usize, grid: Grid, rays: u32, opacity_blend: Blend)
     let target = Target {
         occluders: &occluders,
         grid,
-        own: 0..own,
+        own: Own::all(0..own),
         distance: 64.0,
         opacity_blend,
         shader_blend: Blend::Squares,

@@ -5,8 +5,11 @@
 
 mod chance;
 mod clusters;
+mod coarser;
+mod compare;
 mod count;
 mod grid;
+mod parts;
 mod rays;
 mod room;
 mod sample;
@@ -14,6 +17,7 @@ mod shader_fit;
 mod shot;
 mod split;
 mod spool;
+mod surface;
 mod touch;
 
 #[cfg(test)]
@@ -33,7 +37,8 @@ pub use spool::part_of;
 use super::FarData;
 use super::blend::Blend;
 use super::record::{LeafTriangle, Node, Opacity};
-use super::store::pack::{pack_triangles, pack_voxels};
+use super::store::pack::pack;
+use super::store::surface::lay_out;
 use super::store::write_parts;
 use crate::graph::{PackedNormal, Progress, place};
 use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
@@ -43,9 +48,10 @@ use rays::Around;
 use room::Room;
 use sample::{Rays, Triangles};
 use shader_fit::ShaderFit;
-use shot::Target;
+use shot::{Own, Target};
 use split::{Branch, split};
 use spool::{Origin, Spool, open_part};
+use surface::{MOST_TRIANGLES, Surfaces};
 
 /// How far voxels are built.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -66,6 +72,8 @@ pub struct BuildOptions {
     pub opacity_blend: Blend,
     /// How normals and materials of main directions are blended.
     pub shader_blend: Blend,
+    /// Whether what is wider than a voxel stays a surface, decimated.
+    pub hybrid: bool,
 }
 
 /// Rays for each voxel that is kept, where no number of rays is given.
@@ -76,6 +84,9 @@ const MOST_RAYS: u32 = 1 << 22;
 const RAY_BYTES: u64 = 96;
 /// Rays at a touched voxel, where no number of rays is given, or less: few get all.
 const RAYS_AT_VOXEL: u64 = 32;
+/// Bytes a triangle that the parts of a hybrid take while they are found, or less: three vertices
+/// in a table, and what is known of them and of the triangle.
+const PARTS_BYTES: u64 = 160;
 /// Bytes that nodes may take together at the least.
 const LEAST_ROOM: u64 = 48 << 20;
 
@@ -89,6 +100,7 @@ impl Default for BuildOptions {
             opacity: Opacity::Six,
             opacity_blend: Blend::Cosines,
             shader_blend: Blend::Squares,
+            hybrid: false,
         }
     }
 }
@@ -105,6 +117,9 @@ pub enum BuildError {
     /// An option out of its range.
     #[error("{0}")]
     Option(&'static str),
+    /// The surface of a node.
+    #[error("the surface of a node could not be made: {0}")]
+    Surface(String),
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
@@ -260,9 +275,10 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let (centre, scale) = centre(surface)?;
     let folder = outside.map_or(Path::new("memory"), |outside| outside.folder);
     let memory = outside.and_then(|outside| outside.memory);
-    let shares = shares(surface.len(), memory)?;
+    let shares = shares(surface.len(), options.hybrid, memory)?;
     progress.begin("split triangles", 0);
-    let (branches, order) = split(surface, options.leaf_triangles as usize);
+    let (mut branches, order) = split(surface, options.leaf_triangles as usize);
+    let coarser = coarser::put_above(&mut branches, options.grid);
     progress.end();
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
@@ -287,9 +303,18 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let parts = parts(&branches, |point| triangles.place(point));
     let occluders = Occluders::new(&parts, corners, within).map_err(|e| failed(folder, &e))?;
     progress.end();
-    let grid = |branch: &Branch| {
-        let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
-        Grid::around(low, high, options.grid)
+    let hybrid = options.hybrid;
+    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
+    let target = |number: usize, branch: &Branch| Target {
+        occluders: &occluders,
+        grid: {
+            let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
+            Grid::around(low, high, coarser::grid_of(number, coarser, options.grid))
+        },
+        own: Own::all(branch.triangles()),
+        distance: options.distance_voxels,
+        opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
     };
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
@@ -297,12 +322,13 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
             progress.begin("find voxels", order.len() as u64);
             let touched: Vec<u32> = branches
                 .par_iter()
-                .map(|branch| {
+                .enumerate()
+                .map(|(number, branch)| {
                     if branch.children.is_none() {
                         progress.advance(branch.count as u64);
                         return 0;
                     }
-                    touch::count(&grid(branch), corners(branch.triangles()))
+                    touch::count(&target(number, branch).grid, corners(branch.triangles()))
                 })
                 .collect();
             progress.end();
@@ -310,33 +336,51 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
         }
     };
     progress.begin("shoot rays", order.len() as u64);
+    let room = Room::new(shares.nodes);
+    let make = |number: usize, branch: &Branch| {
+        let mut node = outline(branch, centre);
+        if branch.children.is_none() {
+            let own = branch.triangles();
+            let data = match &surfaces {
+                Some(surfaces) => surfaces.leaf(&mut node, own),
+                None => {
+                    let triangles = leaf_triangles(surface, &order[own], centre);
+                    let bytes = lay_out(&mut node, &triangles, |_| true);
+                    pack(&Default::default(), &bytes)
+                }
+            };
+            return Ok((node, data));
+        }
+        let target = target(number, branch);
+        set_grid(&mut node, &target.grid, scale);
+        // Whatever is above the root.
+        let seed = (number as u64).wrapping_sub(coarser as u64);
+        let voxels = |node: &mut Node, target: &Target<'_>| {
+            let fitted = fit(target, rays[number], seed, &triangles, &room, options);
+            let fitted = fitted.map_err(|e| failed(folder, &e))?;
+            fitted.describe(node);
+            Ok(fitted.lists)
+        };
+        match &surfaces {
+            Some(surfaces) if branch.count <= MOST_TRIANGLES => {
+                let thin = |node: &mut Node, thin: &[bool]| voxels(node, &target.of(thin));
+                surfaces.inner(&node, branch.triangles(), thin)
+            }
+            _ => {
+                let lists = voxels(&mut node, &target)?;
+                Ok((node, pack(&lists, &[])))
+            }
+        }
+    };
     let done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
     let spool = Mutex::new(spool);
-    let room = Room::new(shares.nodes);
     branches
         .par_iter()
         .enumerate()
         .try_for_each(|(number, branch)| {
             let is_leaf = branch.children.is_none();
             if !done[number] {
-                let mut node = outline(branch, centre);
-                let data = if is_leaf {
-                    let own = &order[branch.triangles()];
-                    pack_triangles(&leaf_triangles(surface, own, centre))
-                } else {
-                    let target = Target {
-                        occluders: &occluders,
-                        grid: grid(branch),
-                        own: branch.triangles(),
-                        distance: options.distance_voxels,
-                        opacity_blend: options.opacity_blend,
-                        shader_blend: options.shader_blend,
-                    };
-                    let fitted = fit(&target, rays[number], number, &triangles, &room, options);
-                    let fitted = fitted.map_err(|e| failed(folder, &e))?;
-                    fitted.describe(&mut node, scale);
-                    pack_voxels(&fitted.lists)
-                };
+                let (node, data) = make(number, branch)?;
                 // What was added before is sound, whoever panicked.
                 let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
                 let added = spool.add(number, node, &data);
@@ -362,7 +406,7 @@ struct Shares {
 }
 
 /// Shares out a budget for so many triangles.
-fn shares(triangles: usize, memory: Option<u64>) -> Result<Shares, BuildError> {
+fn shares(triangles: usize, hybrid: bool, memory: Option<u64>) -> Result<Shares, BuildError> {
     let Some(given) = memory else {
         return Ok(Shares {
             clusters: None,
@@ -372,7 +416,7 @@ fn shares(triangles: usize, memory: Option<u64>) -> Result<Shares, BuildError> {
     let triangles = triangles as u64;
     // Their order, and of the hierarchy, at 1000 triangles a leaf, a branch and a record a node; the
     // order twice while triangles are split.
-    let fixed = triangles * 10;
+    let fixed = triangles * if hybrid { 10 + PARTS_BYTES } else { 10 };
     let making = MAKING * triangles.min(CLUSTER as u64);
     let threads = rayon::current_num_threads() as u64;
     let cluster = MADE * triangles.min(CLUSTER as u64);
@@ -503,9 +547,15 @@ fn outline(branch: &Branch, centre: DVec3) -> Node {
     }
 }
 
+/// Describes a grid in a node, of coordinates of a scale: back by a power of two, as exact as it was.
+fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
+    node.origin = (grid.origin / scale).as_vec3().to_array();
+    node.voxel = (grid.voxel / scale) as f32;
+    node.cells = grid.cells;
+}
+
 /// The voxels of a node, fitted.
 struct Fitted {
-    grid: Grid,
     sampled: sample::Sampled,
     lists: [Vec<u8>; 6],
     counts: [u32; 6],
@@ -518,7 +568,7 @@ struct Fitted {
 fn fit(
     target: &Target<'_>,
     rays: Rays,
-    number: usize,
+    seed: u64,
     triangles: &impl Triangles,
     room: &Room,
     options: &BuildOptions,
@@ -542,9 +592,8 @@ fn fit(
         };
         room.take(rays * RAY_BYTES)
     };
-    let sampled = target.sample(rays, MOST_RAYS, number as u64, triangles, admit, keep)?;
+    let sampled = target.sample(rays, MOST_RAYS, seed, triangles, admit, keep)?;
     Ok(Fitted {
-        grid: target.grid,
         sampled,
         lists,
         counts,
@@ -555,14 +604,10 @@ fn fit(
 }
 
 impl Fitted {
-    /// Describes them in a node, of coordinates of a scale.
-    fn describe(&self, node: &mut Node, scale: f64) {
+    /// Describes them in a node, whose grid is described.
+    fn describe(&self, node: &mut Node) {
         node.counts = self.counts;
         node.crossings = self.crossings;
-        // Back by a power of two: as exact as they were.
-        node.origin = (self.grid.origin / scale).as_vec3().to_array();
-        node.voxel = (self.grid.voxel / scale) as f32;
-        node.cells = self.grid.cells;
         node.touched = self.sampled.touched;
         node.untested = self.sampled.untested;
         node.rays = self.sampled.rays;
@@ -585,7 +630,6 @@ fn leaf_triangles<S: Surface + ?Sized>(
                 corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
                 normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
                 colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
-                spare: 0,
             }
         })
         .collect()
@@ -597,9 +641,8 @@ fn assemble<F: Read + Write + Seek>(
     centre: DVec3,
     options: &BuildOptions,
 ) -> Result<FarData, BuildError> {
-    let numbered: u64 = spool.nodes().map(|done| done.node.voxels()).sum();
-    let triangles = spool.nodes().next().map_or(0, |root| root.node.triangles);
-    let numbered = numbered + u64::from(triangles);
+    let items = |done: spool::Done| done.node.voxels() + u64::from(done.node.surface);
+    let numbered: u64 = spool.nodes().map(items).sum();
     if numbered >= u64::from(u32::MAX) {
         let what = format!("{numbered} voxels and triangles");
         return Err(BuildError::TooMany(what));

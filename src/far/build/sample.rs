@@ -83,7 +83,7 @@ impl Target<'_> {
         mut keep: impl FnMut(&Seen, &ShaderFit, usize),
     ) -> io::Result<Sampled> {
         let mut chance = Chance::new(seed);
-        let own = self.own.clone();
+        let own = self.own.numbers();
         let own = own.map(|number| (number, triangles.corners(number)));
         let touched = touched(&self.grid, own, &mut chance);
         let _admitted = admit(touched.len());

@@ -282,7 +282,8 @@ mod tests {
     #[test]
     fn six_opacities_are_stored_where_they_differ_by_more_than_chance() {
         let classify = |counted: Counted, most| {
-            let mut seen = Seen::new([0; 3], 1.0);
+            let mut seen = Seen::default();
+            seen.begin([0; 3], 1.0);
             // Nothing known of any solid surface.
             seen.found[0][0].counted = counted;
             seen.found[0][0].probes = counted.independent() as u32;

@@ -21,11 +21,53 @@ pub(super) struct Target<'t> {
     pub(super) occluders: &'t Occluders,
     pub(super) grid: Grid,
     /// The node's own triangles among the occluders.
-    pub(super) own: Range<usize>,
+    pub(super) own: Own<'t>,
     /// Least distance of an eye that sees it, voxels.
     pub(super) distance: f64,
     pub(super) opacity_blend: Blend,
     pub(super) shader_blend: Blend,
+}
+
+/// Which triangles voxels are made of.
+#[derive(Debug, Clone)]
+pub(super) struct Own<'t> {
+    range: Range<usize>,
+    /// Of each of the range whether it is one; `None`: all are.
+    is_taken: Option<&'t [bool]>,
+}
+
+impl<'t> Own<'t> {
+    pub(super) fn all(range: Range<usize>) -> Self {
+        Self {
+            range,
+            is_taken: None,
+        }
+    }
+
+    pub(super) fn contains(&self, triangle: usize) -> bool {
+        let is_taken = |taken: &[bool]| taken[triangle - self.range.start];
+        self.range.contains(&triangle) && self.is_taken.is_none_or(is_taken)
+    }
+
+    pub(super) fn numbers(&self) -> impl Iterator<Item = usize> + use<'_, 't> {
+        self.range.clone().filter(|&number| self.contains(number))
+    }
+}
+
+impl<'t> Target<'t> {
+    /// The same with some of its triangles.
+    pub(super) fn of<'s>(&self, is_taken: &'s [bool]) -> Target<'s>
+    where
+        't: 's,
+    {
+        Target {
+            own: Own {
+                range: self.own.range.clone(),
+                is_taken: Some(is_taken),
+            },
+            ..*self
+        }
+    }
 }
 
 /// Where a ray is aimed.
@@ -186,7 +228,7 @@ impl Target<'_> {
         let length = f64::from(query.most) / self.grid.voxel;
         shot.end = (f64::from(meeting.distance) / self.grid.voxel - length + beyond) as f32;
         shot.triangle = meeting.triangle;
-        if self.own.contains(&(meeting.triangle as usize)) {
+        if self.own.contains(meeting.triangle as usize) {
             shot.touched = self.voxel_at(shot.end_point(), slot);
         }
     }

@@ -1,6 +1,6 @@
 //! Whether a hierarchy makes sense: every field of every node.
 
-use crate::far::record::Node;
+use crate::far::record::{MOST_COLORS, Node};
 
 /// What is wrong with a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub(super) fn check(nodes: &[Node], data_bytes: u64, triangles: u64) -> Result<(
     }
     let mut has_parent = vec![false; nodes.len()];
     has_parent[0] = true;
-    let (mut before, mut numbered) = (0u64, triangles);
+    let (mut before, mut numbered) = (0u64, 0u64);
     for (i, node) in nodes.iter().enumerate() {
         check_alone(node).or_else(|expected| fault(i, expected.to_owned()))?;
         if node.data_at < before || node.data_at > data_bytes || i == 0 && node.data_at > 0 {
@@ -29,8 +29,8 @@ pub(super) fn check(nodes: &[Node], data_bytes: u64, triangles: u64) -> Result<(
             return fault(i, range);
         }
         before = node.data_at;
-        // Six counts of 32 bits, of fewer than 2^32 nodes: no overflow.
-        numbered += node.voxels();
+        // Seven counts of 32 bits, of fewer than 2^32 nodes: no overflow.
+        numbered += node.voxels() + u64::from(node.surface);
         if !has_parent[i] {
             return fault(i, "a parent before it".to_owned());
         }
@@ -38,8 +38,7 @@ pub(super) fn check(nodes: &[Node], data_bytes: u64, triangles: u64) -> Result<(
             continue;
         }
         check_children(nodes, i).or_else(|expected| fault(i, expected.to_owned()))?;
-        for child in node.children {
-            let child = child as usize;
+        for child in node.below() {
             if std::mem::replace(&mut has_parent[child], true) {
                 return fault(child, "one parent, not two".to_owned());
             }
@@ -64,7 +63,18 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
         node.error.is_finite() && node.error >= 0.0,
         "an error of 0 or more",
     )?;
+    let vertices: u64 = node.vertices.iter().map(|&n| u64::from(n)).sum();
+    ensure(
+        node.surface <= node.triangles && vertices <= 3 * u64::from(node.surface),
+        "no more triangles than it has, of three vertices each",
+    )?;
+    let has_colors = usize::from(node.colors) <= MOST_COLORS && node.is_flat <= 1;
+    ensure(
+        has_colors && node.spare == 0,
+        "at most 256 colours, and flat triangles or not",
+    )?;
     if node.is_leaf() {
+        ensure(node.surface == node.triangles, "all of a leaf's triangles")?;
         let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
         let counts = [
             node.touched,
@@ -103,19 +113,24 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
 fn check_children(nodes: &[Node], number: usize) -> Result<(), &'static str> {
     let node = &nodes[number];
     let [near, far] = node.children.map(|child| child as usize);
-    if near != number + 1 || far <= near || far >= nodes.len() {
+    // The only child of a coarser node has no sibling.
+    let is_alone = far == 0;
+    if near != number + 1 || near >= nodes.len() || !is_alone && (far <= near || far >= nodes.len())
+    {
         return Err("its first child after it and its second after that");
     }
-    let (near, far) = (&nodes[near], &nodes[far]);
-    let split = u64::from(node.first_triangle) + u64::from(near.triangles);
-    let shares = near.first_triangle == node.first_triangle
-        && u64::from(far.first_triangle) == split
-        && u64::from(near.triangles) + u64::from(far.triangles) == u64::from(node.triangles);
-    if !shares {
-        return Err("children that share its triangles");
+    let mut next = u64::from(node.first_triangle);
+    for child in node.below().map(|child| &nodes[child]) {
+        if u64::from(child.first_triangle) != next {
+            return Err("children that share its triangles");
+        }
+        next += u64::from(child.triangles);
+        if child.level != node.level + 1 {
+            return Err("children one level below");
+        }
     }
-    if near.level != node.level + 1 || far.level != node.level + 1 {
-        return Err("children one level below");
+    if next != u64::from(node.first_triangle) + u64::from(node.triangles) {
+        return Err("children that share its triangles");
     }
     Ok(())
 }

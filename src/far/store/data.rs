@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::far::record::{LISTS, LeafTriangle, Node, RECORD_BYTES};
 
-/// Voxels of an inner node, or triangles of a leaf.
+/// Triangles, and of an inner node voxels.
 #[derive(Debug)]
 pub struct NodeData {
     counts: [u32; 6],
@@ -13,30 +13,23 @@ pub struct NodeData {
 }
 
 impl NodeData {
-    /// Of an inner node's records; `None` if one is not within its grid.
-    pub(super) fn of_voxels(node: &Node, records: Vec<u8>) -> Option<Self> {
+    /// Of what was unpacked; `None` if a voxel is not within the grid or a triangle not within the
+    /// box.
+    pub(super) fn of(node: &Node, records: Vec<u8>, triangles: Vec<LeafTriangle>) -> Option<Self> {
         let data = Self {
             counts: node.counts,
             records,
-            triangles: Vec::new(),
-        };
-        let is_within = |record: &[u8]| (0..3).all(|k| record[k] < node.cells[k]);
-        let is_sound = {
-            let mut lists = data.lists().into_iter().zip(RECORD_BYTES);
-            lists.all(|(list, bytes)| list.chunks_exact(bytes).all(is_within))
-        };
-        is_sound.then_some(data)
-    }
-
-    /// Of a leaf's triangles; `None` if one is not within its box.
-    pub(super) fn of_triangles(node: &Node, triangles: Vec<LeafTriangle>) -> Option<Self> {
-        let is_within = |p: &[f32; 3]| (0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]);
-        let is_sound = |t: &LeafTriangle| t.spare == 0 && t.corners.iter().all(is_within);
-        triangles.iter().all(is_sound).then_some(Self {
-            counts: [0; 6],
-            records: Vec::new(),
             triangles,
-        })
+        };
+        let is_in_grid = |record: &[u8]| (0..3).all(|k| record[k] < node.cells[k]);
+        let is_in_box = |p: &[f32; 3]| (0..3).all(|k| node.low[k] <= p[k] && p[k] <= node.high[k]);
+        let is_list = |(list, bytes): (&[u8], usize)| list.chunks_exact(bytes).all(is_in_grid);
+        let is_sound = data.lists().into_iter().zip(RECORD_BYTES).all(is_list)
+            && data
+                .triangles
+                .iter()
+                .all(|t| t.corners.iter().all(is_in_box));
+        is_sound.then_some(data)
     }
 
     /// Records of the voxels, one slice for each list; empty ones of a leaf.
@@ -50,7 +43,7 @@ impl NodeData {
         })
     }
 
-    /// Triangles; none of an inner node.
+    /// Triangles: of a leaf all that it has, of an inner node its surface.
     #[must_use]
     pub fn triangles(&self) -> &[LeafTriangle] {
         &self.triangles

@@ -12,6 +12,7 @@ mod data;
 mod format;
 pub(in crate::far) mod pack;
 mod read;
+pub(in crate::far) mod surface;
 mod write;
 
 pub use crate::graph::file::FileError as FarError;

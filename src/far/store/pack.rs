@@ -1,33 +1,39 @@
 //! A node's data as it is stored: deflated.
 //!
 //! Records of voxels are laid out byte by byte first: the first bytes of all records of a list,
-//! then the second ones, and so on. Neighbours are alike in each. Triangles stay as they are:
-//! those that share a corner repeat its bytes.
+//! then the second ones, and so on. Neighbours are alike in each. The surface follows
+//! (`surface.rs`).
 
 use miniz_oxide::deflate::compress_to_vec;
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
-use crate::far::record::{LeafTriangle, RECORD_BYTES, triangle_bytes};
+use super::surface;
+use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
 /// How hard it is tried to make data small, 0 to 10: what other programs do if not told otherwise.
 const EFFORT: u8 = 6;
 
-/// Packs the records of voxels, list by list.
-pub(in crate::far) fn pack_voxels(lists: &[Vec<u8>; 6]) -> Vec<u8> {
-    let mut columns = Vec::with_capacity(lists.iter().map(Vec::len).sum());
+/// Packs the records of voxels, list by list, and the bytes of a surface.
+pub(in crate::far) fn pack(lists: &[Vec<u8>; 6], surface: &[u8]) -> Vec<u8> {
+    let voxels: usize = lists.iter().map(Vec::len).sum();
+    let mut columns = Vec::with_capacity(voxels + surface.len());
     for (list, bytes) in lists.iter().zip(RECORD_BYTES) {
         for column in 0..bytes {
             columns.extend(list.iter().skip(column).step_by(bytes));
         }
     }
+    columns.extend(surface);
     compress_to_vec(&columns, EFFORT)
 }
 
-/// Unpacks records of so many voxels in each list; `None` where it is not they that were packed.
-pub(super) fn unpack_voxels(packed: &[u8], counts: &[u32; 6]) -> Option<Vec<u8>> {
-    let lengths = [0, 1, 2, 3, 4, 5].map(|list| counts[list] as usize * RECORD_BYTES[list]);
-    let columns = unpack(packed, lengths.iter().sum())?;
-    let mut records = vec![0; columns.len()];
+/// Unpacks records of voxels and triangles; `None` where it is not they that were packed.
+pub(super) fn unpack(packed: &[u8], node: &Node) -> Option<(Vec<u8>, Vec<LeafTriangle>)> {
+    let lists = [0, 1, 2, 3, 4, 5];
+    let lengths = lists.map(|list| node.counts[list] as usize * RECORD_BYTES[list]);
+    let voxels: usize = lengths.iter().sum();
+    let columns = inflate(packed, voxels + usize::try_from(node.surface_bytes()).ok()?)?;
+    let (columns, surface) = columns.split_at(voxels);
+    let mut records = vec![0; voxels];
     let mut begin = 0;
     for (length, bytes) in lengths.into_iter().zip(RECORD_BYTES) {
         let count = length / bytes;
@@ -40,21 +46,10 @@ pub(super) fn unpack_voxels(packed: &[u8], counts: &[u32; 6]) -> Option<Vec<u8>>
         }
         begin += length;
     }
-    Some(records)
+    Some((records, surface::read(node, surface)?))
 }
 
-/// Packs the triangles of a leaf.
-pub(in crate::far) fn pack_triangles(triangles: &[LeafTriangle]) -> Vec<u8> {
-    compress_to_vec(triangle_bytes(triangles), EFFORT)
-}
-
-/// Unpacks so many triangles; `None` where it is not they that were packed.
-pub(super) fn unpack_triangles(packed: &[u8], count: u32) -> Option<Vec<LeafTriangle>> {
-    let bytes = unpack(packed, count as usize * size_of::<LeafTriangle>())?;
-    Some(bytemuck::pod_collect_to_vec(&bytes))
-}
-
-fn unpack(packed: &[u8], length: usize) -> Option<Vec<u8>> {
+fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
     // It grows with what is there: a wrong length takes no memory.
     let bytes = decompress_to_vec_with_limit(packed, length).ok()?;
     (bytes.len() == length).then_some(bytes)
@@ -64,6 +59,15 @@ fn unpack(packed: &[u8], length: usize) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
+    fn node(counts: [u32; 6]) -> Node {
+        Node {
+            low: [-1.0, 0.0, 0.0],
+            high: [3.0, 1.0, 0.0],
+            counts,
+            ..bytemuck::Zeroable::zeroed()
+        }
+    }
+
     #[test]
     fn data_comes_back_and_wrong_lengths_do_not() {
         let lists: [Vec<u8>; 6] = std::array::from_fn(|list| {
@@ -71,12 +75,70 @@ mod tests {
             (0..bytes).map(|at| (at * at / 5) as u8).collect()
         });
         let counts = [0, 7, 14, 21, 28, 35];
-        let packed = pack_voxels(&lists);
-        assert_eq!(unpack_voxels(&packed, &counts), Some(lists.concat()));
-        assert_eq!(unpack_voxels(&packed, &[1, 7, 14, 21, 28, 35]), None);
-        assert_eq!(unpack_voxels(&packed, &[0, 7, 14, 21, 28, 34]), None);
-        assert_eq!(unpack_voxels(&packed[1..], &counts), None);
-        let packed = pack_voxels(&Default::default());
-        assert_eq!(unpack_voxels(&packed, &[0; 6]), Some(Vec::new()));
+        let packed = pack(&lists, &[]);
+        let voxels = |counts| unpack(&packed, &node(counts)).map(|(records, _)| records);
+        assert_eq!(voxels(counts), Some(lists.concat()));
+        assert_eq!(voxels([1, 7, 14, 21, 28, 35]), None);
+        assert_eq!(voxels([0, 7, 14, 21, 28, 34]), None);
+        assert_eq!(unpack(&packed[1..], &node(counts)), None);
+        let packed = pack(&Default::default(), &[]);
+        assert_eq!(
+            unpack(&packed, &node([0; 6])),
+            Some((Vec::new(), Vec::new()))
+        );
+    }
+
+    /// What is shared comes back to the last bit, the rest within half a step of the box; of few
+    /// colours and of many, with normals and without.
+    #[test]
+    fn surfaces_come_back() {
+        for (count, colors, is_flat) in [(1u32, 1u32, false), (400, 7, true), (40_000, 9000, false)]
+        {
+            let at = |i: u32| (f64::from(i) * 0.618_033).fract();
+            let point = |i: u32| [4.0 * at(i) - 1.0, at(3 * i + 1), 0.0].map(|c| c as f32);
+            let triangle = |i: u32| LeafTriangle {
+                corners: [point(i), point(i + 1), point(i + 2)],
+                normals: match is_flat {
+                    true => [surface::flat_normal(&[point(i), point(i + 1), point(i + 2)]); 3],
+                    false => [i, i + 1, i + 2].map(|i| (i % 9000) as u16),
+                },
+                colors: [i, i + 1, i + 2].map(|i| {
+                    let [a, b, ..] = (i % colors).to_le_bytes();
+                    [a, b, 9]
+                }),
+            };
+            let triangles: Vec<LeafTriangle> = (0..count).map(triangle).collect();
+            let is_shared = |p: [f32; 3]| p[0] > 0.5;
+            let mut node = node([0; 6]);
+            let bytes = surface::lay_out(&mut node, &triangles, is_shared);
+            assert_eq!(bytes.len() as u64, node.surface_bytes());
+            assert_eq!(
+                u32::from(node.colors),
+                if colors > 256 {
+                    0
+                } else {
+                    colors.min(3 * count).min(colors)
+                }
+            );
+            let (_, back) = unpack(&pack(&Default::default(), &bytes), &node).unwrap();
+            assert_eq!(back.len(), triangles.len());
+            for (was, is) in triangles.iter().zip(&back) {
+                for k in 0..3 {
+                    let [p, q] = [was.corners[k], is.corners[k]];
+                    let off = (0..3).map(|k| (p[k] - q[k]).abs()).fold(0.0, f32::max);
+                    let most = if is_shared(p) { 0.0 } else { 2.0001 / 65535.0 };
+                    assert!(off <= most, "{p:?} {q:?}");
+                }
+                assert_eq!(was.colors, is.colors);
+                let normals = if is_flat {
+                    [surface::flat_normal(&is.corners); 3]
+                } else {
+                    was.normals
+                };
+                assert_eq!(normals, is.normals);
+            }
+            node.surface += 1;
+            assert_eq!(unpack(&pack(&Default::default(), &bytes), &node), None);
+        }
     }
 }

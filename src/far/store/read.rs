@@ -12,7 +12,7 @@ use super::budget::{Budget, Resident};
 use super::check::check;
 use super::data::{NodeData, Slot};
 use super::format::{FORMAT, Layout, at, layout};
-use super::pack::{unpack_triangles, unpack_voxels};
+use super::pack::unpack;
 use super::write::blend_byte;
 use crate::far::blend::Blend;
 use crate::far::record::Node;
@@ -33,6 +33,8 @@ pub struct FarFile {
     nodes: Vec<Node>,
     /// Number of each node's first voxel, over all nodes.
     first_voxel: Vec<u32>,
+    /// Number of the first triangle that each node draws, over all nodes.
+    first_triangle: Vec<u32>,
     /// Each node's data, once it was needed.
     data: Vec<Slot>,
     /// What limits how much of the data is in memory, if anything does.
@@ -133,16 +135,9 @@ impl FarFile {
             let expected = format!("node {} to have {}", fault.node, fault.expected);
             FarError::damaged(path, "hierarchy", offset, expected)
         })?;
-        let mut next = 0;
-        let first_voxel = nodes
-            .iter()
-            .map(|node| {
-                let first = next;
-                // Checked: fewer than 2^32 of all.
-                next += node.voxels() as u32;
-                first
-            })
-            .collect();
+        // Checked: fewer than 2^32 of all.
+        let first_voxel = first_of(&nodes, |node| node.voxels() as u32);
+        let first_triangle = first_of(&nodes, |node| node.surface);
         Ok(Self {
             path: path.to_owned(),
             budget: None,
@@ -150,6 +145,7 @@ impl FarFile {
             places,
             nodes,
             first_voxel,
+            first_triangle,
             centre: header.centre,
             distance_voxels: header.distance_voxels,
             blends: header.blends,
@@ -246,6 +242,11 @@ impl FarFile {
         self.first_voxel[node]
     }
 
+    /// Number of the first triangle that a node draws, over all nodes.
+    pub(in crate::far) fn first_triangle(&self, node: usize) -> u32 {
+        self.first_triangle[node]
+    }
+
     /// Voxels of all nodes.
     #[must_use]
     pub fn voxels(&self) -> u32 {
@@ -299,23 +300,28 @@ impl FarFile {
             let expected = format!("checksum {:016x} of node {number}", node.checksum);
             return Err(damaged(expected));
         }
-        let (unpacked, expected) = if node.is_leaf() {
-            let triangles = unpack_triangles(packed, node.triangles);
-            let sound = triangles.and_then(|own| NodeData::of_triangles(node, own));
-            (sound, "triangles within leaf")
-        } else {
-            let records = unpack_voxels(packed, &node.counts);
-            let sound = records.and_then(|own| NodeData::of_voxels(node, own));
-            (sound, "voxels within the grid of node")
-        };
+        let unpacked = unpack(packed, node);
+        let unpacked = unpacked.and_then(|(records, own)| NodeData::of(node, records, own));
         if let (Some(_), Bytes::Mapped(map)) = (&self.budget, &self.bytes) {
             let begin = place[0] / BROUGHT_IN * BROUGHT_IN;
             let end = place[1].next_multiple_of(BROUGHT_IN).min(self.len());
             // It did at the beginning; a page more in memory does no harm.
             let _ = release(map, begin as usize, (end - begin) as usize);
         }
+        let expected = "voxels within the grid and triangles within the box of node";
         unpacked.ok_or_else(|| damaged(format!("{expected} {number}")))
     }
+}
+
+/// The number of each node's first item, if items are counted on from node to node.
+fn first_of(nodes: &[Node], items: impl Fn(&Node) -> u32) -> Vec<u32> {
+    let mut next = 0;
+    let first = |node| {
+        let first = next;
+        next += items(node);
+        first
+    };
+    nodes.iter().map(first).collect()
 }
 
 /// The header, decoded and checked.

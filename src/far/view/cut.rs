@@ -82,7 +82,7 @@ impl Outline {
 /// A node in the picture.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum CutNode {
-    /// It is drawn: as voxels, or a leaf as triangles.
+    /// It is drawn: its voxels and its triangles.
     Drawn(Chosen),
     /// Its children are. The outline holds all that is below.
     Branch(Chosen),
@@ -169,9 +169,8 @@ impl Cut<'_> {
         drawn
     }
 
-    pub(super) fn children(&self, number: usize) -> [usize; 2] {
-        let children = self.file.nodes()[number].children;
-        children.map(|child| child as usize)
+    pub(super) fn children(&self, number: usize) -> impl Iterator<Item = usize> + use<> {
+        self.file.nodes()[number].below()
     }
 }
 

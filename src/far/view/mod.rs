@@ -19,14 +19,11 @@ mod visible;
 
 use glam::DVec3;
 
+use super::record::Node;
 pub use super::record::Opacity;
-use super::record::TRIANGLE_BYTES;
 use super::store::{FarError, FarFile};
-use crate::graph::Silent;
-use crate::mesh::raster::{
-    self, Light, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, Samples,
-};
-use crate::mesh::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
+use crate::mesh::raster::{Light, RasterCamera, RasterError};
+use crate::mesh::{linear_to_srgb, srgb_to_linear};
 use cut::{Chosen, Cut};
 use fill::Fill;
 use opaque::Opaque;
@@ -112,9 +109,9 @@ pub struct FarCounts {
     pub visited: u64,
     /// Nodes of those beside or behind the picture.
     pub outside: u64,
-    /// Nodes drawn as voxels.
+    /// Inner nodes drawn.
     pub voxel_nodes: u64,
-    /// Nodes drawn as triangles.
+    /// Leaves drawn.
     pub leaves: u64,
     /// Nodes and branches that were found hidden; nothing below them was visited.
     pub hidden: u64,
@@ -129,7 +126,7 @@ pub struct FarCounts {
     /// Whether two triangles of different batches were equally deep somewhere
     /// and the frame was drawn again in one.
     pub drawn_twice: u64,
-    /// Bytes of what the drawn nodes have in the file.
+    /// Bytes of what the drawn nodes have in the file, before it is deflated.
     pub bytes: u64,
 }
 
@@ -165,20 +162,7 @@ impl<'f> FarViewer<'f> {
         view: &RasterCamera,
         options: &ViewOptions,
     ) -> Result<(FarPicture, FarCounts), ViewError> {
-        self.draw_all(view, view, None, options)
-    }
-
-    /// Draws a frame with triangles beside those of the file.
-    ///
-    /// # Errors
-    /// See [`ViewError`].
-    pub fn draw_with(
-        &mut self,
-        view: &RasterCamera,
-        beside: Option<&dyn Surface>,
-        options: &ViewOptions,
-    ) -> Result<(FarPicture, FarCounts), ViewError> {
-        self.draw_all(view, view, beside, options)
+        self.draw_with_cut_of(view, view, options)
     }
 
     /// Draws a frame with the nodes that would be drawn from elsewhere: what of
@@ -190,16 +174,6 @@ impl<'f> FarViewer<'f> {
         &mut self,
         view: &RasterCamera,
         cut_of: &RasterCamera,
-        options: &ViewOptions,
-    ) -> Result<(FarPicture, FarCounts), ViewError> {
-        self.draw_all(view, cut_of, None, options)
-    }
-
-    fn draw_all(
-        &mut self,
-        view: &RasterCamera,
-        cut_of: &RasterCamera,
-        beside: Option<&dyn Surface>,
         options: &ViewOptions,
     ) -> Result<(FarPicture, FarCounts), ViewError> {
         if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
@@ -219,9 +193,6 @@ impl<'f> FarViewer<'f> {
             voxel_px: options.voxel_px * f64::from(across),
         };
         let mut opaque = Opaque::new(self.file, view, options)?;
-        if let Some(surface) = beside {
-            counts.triangles += opaque.beside(surface)?;
-        }
         let walked = if options.culling {
             visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
         } else {
@@ -238,9 +209,6 @@ impl<'f> FarViewer<'f> {
             counts.opaque_voxels = 0;
             counts.triangles = 0;
             opaque = Opaque::new(self.file, view, options)?;
-            if let Some(surface) = beside {
-                counts.triangles += opaque.beside(surface)?;
-            }
             opaque.draw(&walked.drawn, &mut counts)?;
         }
         let is_leaf = |node: &&Chosen| self.file.nodes()[node.number].is_leaf();
@@ -250,11 +218,7 @@ impl<'f> FarViewer<'f> {
             .drawn
             .iter()
             .map(|node| &self.file.nodes()[node.number]);
-        let bytes = drawn.map(|node| match node.is_leaf() {
-            true => u64::from(node.triangles) * TRIANGLE_BYTES as u64,
-            false => node.voxel_bytes(),
-        });
-        counts.bytes = bytes.sum();
+        counts.bytes = drawn.map(Node::drawn_bytes).sum();
         let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
         if options.culling {
             let fill = Fill::of(&opaque.depths(), view);
@@ -281,42 +245,6 @@ impl<'f> FarViewer<'f> {
             counts,
         ))
     }
-}
-
-/// Draws triangles alone as [`FarViewer::draw_with`] does beside a file.
-///
-/// # Errors
-/// See [`ViewError`].
-pub fn draw_surface(
-    view: &RasterCamera,
-    surface: Option<&dyn Surface>,
-    options: &ViewOptions,
-) -> Result<(FarPicture, FarCounts), ViewError> {
-    let across = options.samples_across;
-    let samples = Samples::new(across * across, Pattern::Regular);
-    let with = RasterOptions {
-        samples: samples.map_err(|_| ViewError::Samples(across))?,
-        light: options.light,
-        background: options.background,
-    };
-    let drawn = match surface {
-        Some(surface) => raster::draw(surface, view, &with, &Silent)?,
-        None => raster::draw(&Mesh::default(), view, &with, &Silent)?,
-    };
-    let node = |&triangle: &u32| if triangle == NO_TRIANGLE { -1 } else { 0 };
-    let counts = FarCounts {
-        triangles: surface.map_or(0, |surface| surface.len() as u64),
-        ..FarCounts::default()
-    };
-    let picture = FarPicture {
-        width: drawn.width,
-        height: drawn.height,
-        node: drawn.triangle.iter().map(node).collect(),
-        rgba: drawn.rgba,
-        coverage: drawn.coverage,
-        depth: drawn.depth,
-    };
-    Ok((picture, counts))
 }
 
 /// Linear light, premultiplied, and coverage.

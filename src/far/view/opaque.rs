@@ -71,16 +71,18 @@ impl<'f> Opaque<'f> {
         counts: &mut FarCounts,
     ) -> Result<(), ViewError> {
         let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
-        let (leaves, inner): (Vec<Chosen>, Vec<Chosen>) = nodes
-            .into_iter()
-            .partition(|node| self.file.nodes()[node.number].is_leaf());
-        let drawn = inner
+        let drawn = nodes
             .par_iter()
             .map(|node| self.voxels(node.number))
             .collect::<Result<Vec<u64>, ViewError>>()?;
         counts.opaque_voxels += drawn.iter().sum::<u64>();
-        if !leaves.is_empty() {
-            counts.triangles += self.leaves(&leaves)?;
+        // The file's order, whatever is nearer.
+        let with_surface = nodes.iter().map(|node| node.number);
+        let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
+        let mut with_surface: Vec<usize> = with_surface.filter(has_surface).collect();
+        with_surface.sort_unstable();
+        if !with_surface.is_empty() {
+            counts.triangles += self.surfaces(&with_surface)?;
         }
         Ok(())
     }
@@ -130,34 +132,15 @@ impl<'f> Opaque<'f> {
         }
     }
 
-    fn leaves(&mut self, leaves: &[Chosen]) -> Result<u64, ViewError> {
-        // The file's order, whatever is nearer.
-        let mut leaves: Vec<usize> = leaves.iter().map(|leaf| leaf.number).collect();
-        leaves.sort_unstable();
-        let surface = Leaves::of(self.file, &leaves)?;
-        let numbers = (0..surface.len()).map(|at| surface.number(at)).collect();
-        self.rasterize(&surface, numbers)
-    }
-
-    /// Draws triangles that are not of the file. They are numbered after those of the file.
-    pub(super) fn beside(&mut self, surface: &dyn Surface) -> Result<u64, ViewError> {
-        let first = self.file.nodes()[0].triangles;
-        // As many as the rasteriser takes, in 32 bits.
-        let numbers = (0..surface.len() as u32).map(|number| first.saturating_add(number));
-        self.rasterize(surface, numbers.collect())
-    }
-
-    fn rasterize<S: Surface + ?Sized>(
-        &mut self,
-        surface: &S,
-        numbers: Vec<u32>,
-    ) -> Result<u64, ViewError> {
+    fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
+        let surface = Surfaces::of(self.file, nodes)?;
+        let numbers: Vec<u32> = (0..surface.len()).map(|at| surface.number(at)).collect();
         let options = RasterOptions {
             samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
             light: self.options.light,
             background: None,
         };
-        let picture = raster::draw(surface, &self.view, &options, &Silent)?;
+        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
         let voxels = self.file.voxels();
         for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
             if at == NO_TRIANGLE {
@@ -190,8 +173,6 @@ impl<'f> Opaque<'f> {
     /// Node of each pixel; -1 where there is none.
     pub(super) fn nodes(&self) -> Vec<i32> {
         let voxels = self.file.voxels();
-        let nodes = self.file.nodes();
-        let leaves: Vec<usize> = (0..nodes.len()).filter(|&n| nodes[n].is_leaf()).collect();
         self.words
             .iter()
             .map(|word| {
@@ -201,12 +182,9 @@ impl<'f> Opaque<'f> {
                     return -1;
                 } else if id < voxels {
                     self.node_of(id)
-                } else if id - voxels >= nodes[0].triangles {
-                    // Beside the file.
-                    return -1;
                 } else {
-                    let is_before = |&leaf: &usize| nodes[leaf].first_triangle <= id - voxels;
-                    leaves[leaves.partition_point(is_before) - 1]
+                    let first = |node| self.file.first_triangle(node);
+                    self.last_from(id - voxels, first)
                 };
                 i32::try_from(node).unwrap_or(i32::MAX)
             })
@@ -215,13 +193,16 @@ impl<'f> Opaque<'f> {
 
     /// The node of a voxel.
     fn node_of(&self, voxel: u32) -> usize {
-        let nodes = self.file.nodes().len();
-        let (mut low, mut high) = (0, nodes);
-        // The last node whose first voxel is not above; nodes without voxels
-        // stand before the one that has it.
+        self.last_from(voxel, |node| self.file.first_voxel(node))
+    }
+
+    /// The last node whose first item is not above; nodes without items stand before the one that
+    /// has it.
+    fn last_from(&self, item: u32, first: impl Fn(usize) -> u32) -> usize {
+        let (mut low, mut high) = (0, self.file.nodes().len());
         while high - low > 1 {
             let middle = low.midpoint(high);
-            if self.file.first_voxel(middle) <= voxel {
+            if first(middle) <= item {
                 low = middle;
             } else {
                 high = middle;
@@ -327,27 +308,27 @@ pub(super) fn light_of(
     (color * share).as_vec3().to_array()
 }
 
-/// Triangles of some leaves.
-struct Leaves<'f> {
+/// Triangles of some nodes.
+struct Surfaces<'f> {
     file: &'f FarFile,
     data: Vec<Arc<NodeData>>,
-    /// Of each triangle its leaf among these, its place in it, and its number in the file.
+    /// Of each triangle its node among these, its place in it, and its number in the file.
     places: Vec<(u32, u32, u32)>,
 }
 
-impl<'f> Leaves<'f> {
-    fn of(file: &'f FarFile, leaves: &[usize]) -> Result<Self, ViewError> {
+impl<'f> Surfaces<'f> {
+    fn of(file: &'f FarFile, nodes: &[usize]) -> Result<Self, ViewError> {
         let mut surface = Self {
             file,
-            data: Vec::with_capacity(leaves.len()),
+            data: Vec::with_capacity(nodes.len()),
             places: Vec::new(),
         };
-        for &leaf in leaves {
-            let node = &file.nodes()[leaf];
+        for &node in nodes {
+            let first = file.first_triangle(node);
             let number = surface.data.len() as u32;
-            let places = (0..node.triangles).map(|at| (number, at, node.first_triangle + at));
+            let places = (0..file.nodes()[node].surface).map(|at| (number, at, first + at));
             surface.places.extend(places);
-            surface.data.push(file.data(leaf)?);
+            surface.data.push(file.data(node)?);
         }
         Ok(surface)
     }
@@ -358,12 +339,12 @@ impl<'f> Leaves<'f> {
     }
 
     fn triangle_at(&self, at: usize) -> &LeafTriangle {
-        let (leaf, place, _) = self.places[at];
-        &self.data[leaf as usize].triangles()[place as usize]
+        let (node, place, _) = self.places[at];
+        &self.data[node as usize].triangles()[place as usize]
     }
 }
 
-impl Surface for Leaves<'_> {
+impl Surface for Surfaces<'_> {
     fn len(&self) -> usize {
         self.places.len()
     }

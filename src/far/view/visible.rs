@@ -59,7 +59,7 @@ impl VisibilityHistory {
         }
         for &branch in branches.iter().rev() {
             let is_seen = |child: usize| self.seen_in[child] == self.frame;
-            if cut.children(branch).into_iter().any(is_seen) {
+            if cut.children(branch).any(is_seen) {
                 self.seen_in[branch] = self.frame;
             }
         }
@@ -145,7 +145,7 @@ pub(super) fn walk(
                 CutNode::Drawn(chosen) => visible.push(chosen),
                 CutNode::Branch(chosen) => {
                     walked.branches.push(chosen.number);
-                    let children = cut.children(chosen.number).into_iter();
+                    let children = cut.children(chosen.number);
                     let found = children.filter_map(|child| cut.classify(child, counts));
                     waiting.extend(found.map(QueueEntry));
                 }

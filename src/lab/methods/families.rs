@@ -3,13 +3,12 @@
 
 use crate::drawing::mesh_view::view_of;
 use crate::drawing::{
-    Erosion, FarDrawing, FarStyle, HybridDrawing, HybridStyle, Shown, TexturedDrawing,
-    TexturedStyle, TrianglesDrawing, TrianglesStyle,
+    Erosion, FarDrawing, FarStyle, Shown, TexturedDrawing, TexturedStyle, TrianglesDrawing,
+    TrianglesStyle,
 };
 use crate::far::FarFile;
 use crate::far::view::{FarViewer, Opacity};
 use crate::graph::Silent;
-use crate::hybrid::Hybrid;
 use crate::lab::error::{Examined, Method, PixelStyle, Refused, Sum, drawn, sums};
 use crate::mesh::Mesh;
 use crate::mesh::raster::{Pattern, Samples};
@@ -94,37 +93,19 @@ pub fn opacity_in_words(opacity: Opacity) -> &'static str {
     }
 }
 
-/// A hybrid whose pixels are of at most so many, with `4^aa_log2` samples a pixel.
+/// A hybrid of voxels of at most so many pixels, with `4^aa_log2` samples a pixel.
 #[must_use]
-pub fn hybrid(hybrid: &Hybrid, level_px: f64, aa_log2: u32, style: PixelStyle) -> Method<'_> {
+pub fn hybrid(file: &FarFile, voxel_px: f64, aa_log2: u32, style: PixelStyle) -> Method<'_> {
     let samples = 1 << (2 * aa_log2);
     let mut name = format!("hybrid {samples}");
-    if level_px != 1.0 {
-        name += &format!(" lod {level_px}");
+    if voxel_px != 1.0 {
+        name += &format!(" lod {voxel_px}");
     }
-    let style = HybridStyle {
-        level_px,
-        aa_log2,
-        shading: style.shading,
-        background: Background::Color(style.background),
-    };
-    let counters: &[Sum] = &[
-        ("triangles_and_voxels", &["triangles", "voxels"]),
-        ("triangles", &["triangles"]),
-        ("voxels", &["voxels"]),
-        ("bytes", &["bytes"]),
-    ];
     Method {
         family: "hybrid",
         name,
-        settings: vec![
-            ("samples", samples.to_string()),
-            ("lod", level_px.to_string()),
-        ],
         kind: "hybrid".to_owned(),
-        drawing: Box::new(move || Box::new(HybridDrawing::new(hybrid, style))),
-        examine: Box::new(|shown, _| Ok(examined(shown, counters, &["voxels"]))),
-        with_cut_of: None,
+        ..far(file, Opacity::Six, voxel_px, aa_log2, style)
     }
 }
 
