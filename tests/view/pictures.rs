@@ -70,8 +70,7 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     };
     let far = made("knot.far", &["--rays", "1000", "--leaf-triangles", "500"]);
     let tvx = made("knot.tvx", &["--grid", "8", "--texels", "4"]);
-    let program = Program::start(&["assets/knot.obj", &far, &tvx, "--depth", "6", "--lod", "2"]);
-    // Flags that a file's method does not follow are refused when it is opened.
+    let program = Program::start(&["assets/knot.obj", &far, &tvx, "--lod", "2"]);
     let mut page = program.page();
     assert_eq!(page.hello["flags"], json!({ "lod": "2" }));
     for scene in 0..3 {

@@ -56,8 +56,8 @@ fn rate_of_frames_at_1024() {
     // Turns with every frame of the screen for three seconds, as a hand does; pictures stay whole.
     let turn = "new Promise((done) => {
         const kept = [], note = noteFrame, began = performance.now();
-        pace.clear();
-        noteFrame = (head, ms, key) => { note(head, ms, key); kept.push([head.width, ms]); };
+        paces.clear();
+        noteFrame = (head, ms, pace) => { note(head, ms, pace); kept.push([head.width, ms]); };
         const step = () => {
             turn(0.01, 0);
             if (performance.now() - began < 3000) return requestAnimationFrame(step);
