@@ -14,7 +14,7 @@ const STILL: &str = "view.camera && shown.still === view.version && fast.isFree"
 const MIDDLE: [f64; 2] = [430.0, 400.0];
 
 /// Keeps a picture of the page, where one is wanted.
-pub fn shot(browser: &mut Browser, tab: &Tab, name: &str) {
+pub(crate) fn shot(browser: &mut Browser, tab: &Tab, name: &str) {
     let Some(folder) = std::env::var_os("SHIFTVOX_SHOTS") else {
         return;
     };
@@ -134,7 +134,7 @@ fn the_slider_shows_the_papers_rule() {
         return;
     };
     let browser = &mut browser;
-    let program = Program::start(&["assets/tree.vox", "--size", "200x160"]);
+    let program = Program::start(&["assets/tree.vox", "--size", "360x330"]);
     let tab = browser.open(&program.address);
     let command = assert_is_renders(browser, &tab);
     browser.value(&tab, "$('compare').click()");
@@ -150,7 +150,7 @@ fn the_slider_shows_the_papers_rule() {
     let said = browser.value(&tab, "$('difference').textContent");
     let said = said.as_str().unwrap().replace(',', "");
     assert!(
-        differ > 100 && said.starts_with(&format!("{differ} of 32000 ")),
+        differ > 100 && said.starts_with(&format!("{differ} of 118800 ")),
         "{differ}: {said}"
     );
     // The edge follows the hand.
@@ -177,6 +177,7 @@ fn the_slider_shows_the_papers_rule() {
     );
     // Figures of the model came on the side.
     browser.wait(&tab, "$('model').innerText.includes('energy')");
-    shot(browser, &tab, "slider.png");
+    browser.value(&tab, "$('slider').value = 500; compare()");
+    shot(browser, &tab, "view.png");
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

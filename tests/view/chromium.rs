@@ -16,22 +16,22 @@ const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A browser, until it goes out of scope.
-pub struct Browser {
+pub(crate) struct Browser {
     child: Child,
     socket: WebSocket<MaybeTlsStream<TcpStream>>,
     count: u64,
     /// What pages complained of: errors of scripts, refused resources.
-    pub complaints: Vec<String>,
+    pub(crate) complaints: Vec<String>,
     _profile: TempDir,
 }
 
 /// A page of a browser.
 #[derive(Clone)]
-pub struct Tab(String);
+pub(crate) struct Tab(String);
 
 impl Browser {
     /// Starts one; `None`, visibly, where there is none.
-    pub fn start() -> Option<Self> {
+    pub(crate) fn start() -> Option<Self> {
         let own = std::env::var("SHIFTVOX_BROWSER").ok();
         let names = own.into_iter().chain(NAMES.map(str::to_owned));
         let profile = tempfile::tempdir().unwrap();
@@ -112,7 +112,7 @@ impl Browser {
     }
 
     /// Opens an address in a page of 1200 x 800 pixels.
-    pub fn open(&mut self, address: &str) -> Tab {
+    pub(crate) fn open(&mut self, address: &str) -> Tab {
         let target = self.call(None, "Target.createTarget", json!({ "url": "about:blank" }));
         let target = json!({ "targetId": target["targetId"], "flatten": true });
         let session = self.call(None, "Target.attachToTarget", target);
@@ -127,7 +127,7 @@ impl Browser {
     }
 
     /// The value of a script's expression, or of its promise.
-    pub fn value(&mut self, tab: &Tab, script: &str) -> Value {
+    pub(crate) fn value(&mut self, tab: &Tab, script: &str) -> Value {
         let parameters =
             json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
         let result = self.call(Some(tab), "Runtime.evaluate", parameters);
@@ -136,7 +136,7 @@ impl Browser {
     }
 
     /// Waits until an expression is true.
-    pub fn wait(&mut self, tab: &Tab, script: &str) {
+    pub(crate) fn wait(&mut self, tab: &Tab, script: &str) {
         let until = Instant::now() + PATIENCE;
         // What does not exist yet is not true yet.
         let script = format!(
@@ -154,7 +154,7 @@ impl Browser {
     }
 
     /// Presses a button of the mouse, drags and releases it.
-    pub fn drag(&mut self, tab: &Tab, from: [f64; 2], to: [f64; 2], button: &str) {
+    pub(crate) fn drag(&mut self, tab: &Tab, from: [f64; 2], to: [f64; 2], button: &str) {
         let buttons = if button == "right" { 2 } else { 1 };
         let mut mouse = |kind: &str, [x, y]: [f64; 2], buttons: u32| {
             let event = json!({ "type": kind, "x": x, "y": y, "button": button, "buttons": buttons, "clickCount": 1 });
@@ -170,13 +170,13 @@ impl Browser {
     }
 
     /// Turns the mouse's wheel.
-    pub fn wheel(&mut self, tab: &Tab, [x, y]: [f64; 2], by: f64) {
+    pub(crate) fn wheel(&mut self, tab: &Tab, [x, y]: [f64; 2], by: f64) {
         let event = json!({ "type": "mouseWheel", "x": x, "y": y, "deltaX": 0, "deltaY": by });
         self.call(Some(tab), "Input.dispatchMouseEvent", event);
     }
 
     /// Presses a key.
-    pub fn key(&mut self, tab: &Tab, key: &str) {
+    pub(crate) fn key(&mut self, tab: &Tab, key: &str) {
         for kind in ["keyDown", "keyUp"] {
             self.call(
                 Some(tab),
@@ -187,7 +187,7 @@ impl Browser {
     }
 
     /// Moves fingers: each list has their places at one time.
-    pub fn touch(&mut self, tab: &Tab, places: &[Vec<[f64; 2]>]) {
+    pub(crate) fn touch(&mut self, tab: &Tab, places: &[Vec<[f64; 2]>]) {
         let mut touch = |kind: &str, points: &[[f64; 2]]| {
             let points: Vec<Value> = points
                 .iter()
@@ -204,7 +204,7 @@ impl Browser {
     }
 
     /// A picture of a page, base64.
-    pub fn screenshot(&mut self, tab: &Tab) -> String {
+    pub(crate) fn screenshot(&mut self, tab: &Tab) -> String {
         let shot = self.call(
             Some(tab),
             "Page.captureScreenshot",

@@ -13,16 +13,16 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::{Message, WebSocket, client};
 
 /// A program that serves pages, until it goes out of scope.
-pub struct Program {
-    pub child: Child,
-    pub address: String,
-    pub port: u16,
-    pub token: String,
+pub(crate) struct Program {
+    pub(crate) child: Child,
+    pub(crate) address: String,
+    pub(crate) port: u16,
+    pub(crate) token: String,
 }
 
 impl Program {
     /// Starts `shiftvox view` with these words, in the folder of the sources.
-    pub fn start(words: &[&str]) -> Self {
+    pub(crate) fn start(words: &[&str]) -> Self {
         let mut child = Command::new(cargo_bin("shiftvox"))
             .args(["view", "--quiet"])
             .args(words)
@@ -45,7 +45,7 @@ impl Program {
     }
 
     /// Sends a request as it is, and returns the answer.
-    pub fn raw(&self, request: &str) -> String {
+    pub(crate) fn raw(&self, request: &str) -> String {
         let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
         stream
             .set_read_timeout(Some(Duration::from_secs(20)))
@@ -57,7 +57,7 @@ impl Program {
     }
 
     /// The status of a request for a path with some headers.
-    pub fn status(&self, path: &str, headers: &[&str]) -> u16 {
+    pub(crate) fn status(&self, path: &str, headers: &[&str]) -> u16 {
         let headers: String = headers
             .iter()
             .map(|header| format!("{header}\r\n"))
@@ -72,17 +72,22 @@ impl Program {
     }
 
     /// Opens a socket as the page does; what stands in its way is an HTTP status.
-    pub fn try_page(&self) -> Result<Page, u16> {
+    pub(crate) fn try_page(&self) -> Result<Page, u16> {
         let host = format!("127.0.0.1:{}", self.port);
         let origin = format!("http://{host}");
         self.socket(&host, Some(&origin), &self.token)
     }
 
-    pub fn page(&self) -> Page {
+    pub(crate) fn page(&self) -> Page {
         self.try_page().unwrap()
     }
 
-    pub fn socket(&self, host: &str, origin: Option<&str>, token: &str) -> Result<Page, u16> {
+    pub(crate) fn socket(
+        &self,
+        host: &str,
+        origin: Option<&str>,
+        token: &str,
+    ) -> Result<Page, u16> {
         let mut request = Request::builder()
             .uri(format!("ws://127.0.0.1:{}/socket?token={token}", self.port))
             .header("Host", host)
@@ -123,18 +128,18 @@ impl Drop for Program {
 }
 
 /// A page's end of a socket.
-pub struct Page {
-    pub socket: WebSocket<TcpStream>,
-    pub hello: Value,
+pub(crate) struct Page {
+    pub(crate) socket: WebSocket<TcpStream>,
+    pub(crate) hello: Value,
 }
 
 impl Page {
-    pub fn send(&mut self, text: &str) {
+    pub(crate) fn send(&mut self, text: &str) {
         self.socket.send(Message::text(text)).unwrap();
     }
 
     /// The next answer: its head, and its picture.
-    pub fn answer(&mut self) -> (Value, Vec<u8>) {
+    pub(crate) fn answer(&mut self) -> (Value, Vec<u8>) {
         let message = self.socket.read().unwrap().into_data();
         let (length, rest) = message.split_first_chunk().unwrap();
         let (head, body) = rest.split_at(u32::from_le_bytes(*length) as usize);
@@ -142,13 +147,13 @@ impl Page {
     }
 
     /// Asks for a picture with some fields of a question.
-    pub fn ask(&mut self, fields: Value) -> (Value, Vec<u8>) {
+    pub(crate) fn ask(&mut self, fields: Value) -> (Value, Vec<u8>) {
         self.send(&question(fields).to_string());
         self.answer()
     }
 
     /// Reads on until the program closes the socket, and says why.
-    pub fn closed(&mut self) -> Option<CloseCode> {
+    pub(crate) fn closed(&mut self) -> Option<CloseCode> {
         loop {
             match self.socket.read() {
                 Ok(Message::Close(frame)) => return frame.map(|frame| frame.code),
@@ -160,7 +165,7 @@ impl Page {
 }
 
 /// A question with some fields of its own.
-pub fn question(fields: Value) -> Value {
+pub(crate) fn question(fields: Value) -> Value {
     let mut question =
         json!({ "seq": 1, "ask": "picture", "scene": 0, "size": [120, 90], "aa": 1 });
     question
@@ -171,7 +176,7 @@ pub fn question(fields: Value) -> Value {
 }
 
 /// Draws the picture of a printed command: its bytes, and its hash.
-pub fn run_command(command: &str) -> (Vec<u8>, String) {
+pub(crate) fn run_command(command: &str) -> (Vec<u8>, String) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.png");
     let words = command.strip_prefix("shiftvox ").unwrap();

@@ -261,6 +261,8 @@ pub(super) fn first_flags(args: &ViewArgs) -> Flags {
 fn text(value: &toml::Value) -> String {
     match value {
         toml::Value::String(text) => text.clone(),
+        // The shortest: 2, and not 2.0.
+        toml::Value::Float(number) => number.to_string(),
         other => other.to_string(),
     }
 }
