@@ -17,6 +17,16 @@ fn told(mut times: Vec<f64>) -> String {
     format!("latency {:.1} ms, of 95 % {:.1} ms", at(0.5), at(0.95))
 }
 
+/// Processor time that a process has taken, milliseconds, in steps of ten.
+fn processor_ms(process: u32) -> f64 {
+    let line = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    let (_, fields) = line.rsplit_once(") ").unwrap();
+    let ticks = fields.split(' ').skip(11).take(2);
+    ticks
+        .map(|ticks| 10.0 * ticks.parse::<f64>().unwrap())
+        .sum()
+}
+
 #[test]
 #[ignore = "a measurement"]
 fn rate_of_frames_at_1024() {
@@ -38,9 +48,10 @@ fn rate_of_frames_at_1024() {
             times.push(asked.elapsed().as_secs_f64() * 1e3);
         }
         let rate = times.len() as f64 / started.elapsed().as_secs_f64();
+        let work = (processor_ms(program.child.id()) - before) / times.len() as f64;
+        let told = told(times);
         println!(
-            "socket, run {run}: {rate:.1} frames a second, {}",
-            told(times)
+            "socket, run {run}: {rate:.1} frames a second, {told}, {work:.1} ms of processor time"
         );
     }
     drop(page);
