@@ -47,6 +47,7 @@
 //! | `mesh` | yes | meshes, far voxels and textured voxels; without it meshes are refused, and a binary `.stl` is not recognised |
 //! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
 //! | `cli` | yes | the command line; needs all of them |
+//! | `view` | yes | the command `view`, a page for a browser; needs `cli` |
 //!
 //! Without them (`default-features = false`) the renderer and its voxel formats are left.
 

@@ -55,11 +55,11 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
         EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
         EngineName::Far => Err(CliError::usage(
-            "--engine far draws a .far file, and only render and turntable do",
+            "--engine far draws a .far file, and only render, turntable and view do",
         )
         .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far")),
         EngineName::Textured => Err(CliError::usage(
-            "--engine textured draws a .tvx file, and only render and turntable do",
+            "--engine textured draws a .tvx file, and only render, turntable and view do",
         )
         .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx")),
     }

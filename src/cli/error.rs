@@ -90,6 +90,14 @@ impl CliError {
         }
     }
 
+    /// Flags that a program put together wrongly.
+    #[cfg(feature = "view")]
+    pub(super) fn of_words(error: clap::Error) -> Self {
+        let message = error.render().to_string();
+        let first = message.lines().next().unwrap_or_default();
+        Self::usage(first.trim_start_matches("error: "))
+    }
+
     /// The same failure with advice.
     #[must_use]
     pub fn advise(mut self, advice: impl Into<String>) -> Self {

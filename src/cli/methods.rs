@@ -177,6 +177,33 @@ impl FileMethod {
 }
 
 impl Opened {
+    /// The voxels, where it is a scene of voxels.
+    #[cfg(feature = "view")]
+    pub(super) fn graph(&self) -> Option<&crate::graph::Graph> {
+        match &self.content {
+            Content::Graph(scene) => Some(&scene.graph),
+            Content::Far(_) | Content::Textured(_) => None,
+        }
+    }
+
+    /// Refuses flags that the scene's method does not follow, as [`open`] does, for flags that
+    /// change while it is open.
+    ///
+    /// # Errors
+    /// The first such flag.
+    #[cfg(feature = "view")]
+    pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
+        let of_file = match &self.content {
+            Content::Graph(_) => None,
+            Content::Far(_) => Some(FileKind::Far),
+            Content::Textured(_) => Some(FileKind::Tvx),
+        };
+        match METHODS.iter().find(|method| Some(method.file) == of_file) {
+            Some(method) => method.check(name, of_file, args),
+            None => args.engine.check_of_voxels().map_err(CliError::usage),
+        }
+    }
+
     /// Whether all of the file was checked; methods of meshes check what they read when they read
     /// it.
     pub(super) fn is_verified(&self) -> bool {

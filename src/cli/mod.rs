@@ -33,6 +33,8 @@ mod stress;
 mod textured;
 pub mod triangles;
 pub mod turntable;
+#[cfg(feature = "view")]
+mod view;
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -91,6 +93,13 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Draw many frames around a scene
     Turntable(Box<turntable::TurntableArgs>),
+    /// Look at scenes in a browser: a page on this computer
+    ///
+    /// Prints an address to open. The page turns, moves and zooms the camera, changes the settings
+    /// of `render`, shows what a frame costs, and gives the `render` command of each picture.
+    /// It is for this computer alone, and through an SSH tunnel for another (docs/view.md).
+    #[cfg(feature = "view")]
+    View(Box<view::ViewArgs>),
     /// Draw a mesh as triangles: the reference picture of a mesh
     Triangles(Box<triangles::TrianglesArgs>),
     /// Say what is in a scene
@@ -231,6 +240,8 @@ fn run_command(cli: Cli, scenes: Vec<String>, console: &Console) -> Result<(), C
         None => demo::run(console),
         Some(Command::Render(args)) => render::run(&args, scenes, console),
         Some(Command::Turntable(args)) => turntable::run(&args, scenes, console),
+        #[cfg(feature = "view")]
+        Some(Command::View(args)) => view::run(*args, scenes, console),
         Some(Command::Triangles(args)) => triangles::run(&args, console),
         Some(Command::Info(args)) => info::run(&args, scenes, console),
         Some(Command::Convert(args)) => convert::run(&args, console),

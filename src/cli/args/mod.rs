@@ -14,4 +14,6 @@ pub use output::OutputArgs;
 pub use picture::PictureArgs;
 pub use scene::SceneArgs;
 pub use setting::Setting;
+#[cfg(feature = "view")]
+pub(crate) use setting::word;
 pub use values::{DataBudget, Memory, Point, Size, ThreadCounts, Tolerance};

@@ -1,6 +1,8 @@
 //! `model`: what a frame costs on the light hardware.
 
 mod args;
+#[cfg(feature = "view")]
+mod brief;
 mod explore;
 mod findings;
 mod output;
@@ -10,6 +12,8 @@ mod trace;
 mod vectors;
 
 pub(super) use args::ModelArgs;
+#[cfg(feature = "view")]
+pub(super) use brief::brief;
 
 use super::console::Console;
 use super::error::CliError;

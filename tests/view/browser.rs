@@ -1,0 +1,183 @@
+//! The page in a real browser. `SHIFTVOX_SHOTS` is a folder for pictures of what it looks like.
+
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use serde_json::{Value, json};
+use shiftvox::picture::png;
+
+use crate::chromium::{Browser, Tab};
+use crate::program::{Program, run_command};
+
+/// True when everything that is wanted is shown.
+const STILL: &str = "view.camera && shown.still === view.version && fast.isFree";
+/// The middle of the page's picture.
+const MIDDLE: [f64; 2] = [430.0, 400.0];
+
+/// Keeps a picture of the page, where one is wanted.
+pub(crate) fn shot(browser: &mut Browser, tab: &Tab, name: &str) {
+    let Some(folder) = std::env::var_os("SHIFTVOX_SHOTS") else {
+        return;
+    };
+    let bytes = BASE64_STANDARD.decode(browser.screenshot(tab)).unwrap();
+    std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+}
+
+/// FNV-1a of a canvas's pixels.
+fn canvas(browser: &mut Browser, tab: &Tab, id: &str) -> (Value, u32) {
+    let script = format!(
+        "(() => {{ const c = $('{id}'), d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+           let h = 0x811c9dc5; for (const b of d) h = Math.imul(h ^ b, 0x01000193);
+           return [[c.width, c.height], h >>> 0]; }})()"
+    );
+    let value = browser.value(tab, &script);
+    (value[0].clone(), value[1].as_u64().unwrap() as u32)
+}
+
+fn fnv(bytes: &[u8]) -> u32 {
+    let step = |hash: u32, &byte: &u8| (hash ^ u32::from(byte)).wrapping_mul(0x0100_0193);
+    bytes.iter().fold(0x811c_9dc5, step)
+}
+
+/// The page's picture is that of its command, by its hash and by each pixel. Returns the command.
+fn assert_is_renders(browser: &mut Browser, tab: &Tab) -> String {
+    browser.wait(tab, STILL);
+    browser.wait(tab, "$('command').value.startsWith('shiftvox render')");
+    let command = browser
+        .value(tab, "$('command').value")
+        .as_str()
+        .unwrap()
+        .to_owned();
+    let (file, hash) = run_command(&command);
+    assert_eq!(
+        browser.value(tab, "$('live').dataset.hash"),
+        hash,
+        "{command}"
+    );
+    assert_canvas(browser, tab, "mine", &file, &command);
+    command
+}
+
+fn assert_canvas(browser: &mut Browser, tab: &Tab, id: &str, file: &[u8], command: &str) {
+    let expected = png::decode(file).unwrap();
+    let (size, found) = canvas(browser, tab, id);
+    assert_eq!(size, json!([expected.width, expected.height]), "{command}");
+    assert_eq!(found, fnv(expected.rgba.as_flattened()), "{id}: {command}");
+}
+
+#[test]
+fn the_page_turns_compares_and_shows_what_render_draws() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let browser = &mut browser;
+    let program = Program::start(&["assets/tree.vox", "tests/data/axes.vox", "--size", "256"]);
+    let tab = browser.open(&program.address);
+    let fitted = assert_is_renders(browser, &tab);
+
+    // Mouse, wheel, keys and fingers move the camera.
+    let mut commands = vec![fitted];
+    browser.drag(&tab, MIDDLE, [500.0, 360.0], "left");
+    commands.push(assert_is_renders(browser, &tab));
+    browser.drag(&tab, MIDDLE, [470.0, 430.0], "right");
+    browser.wheel(&tab, MIDDLE, -300.0);
+    commands.push(assert_is_renders(browser, &tab));
+    browser.value(&tab, "canvas.focus()");
+    for key in ["ArrowLeft", "ArrowUp", "+"] {
+        browser.key(&tab, key);
+    }
+    commands.push(assert_is_renders(browser, &tab));
+    let [x, y] = MIDDLE;
+    let apart = |d: f64| vec![[x - d, y], [x + d, y]];
+    browser.touch(&tab, &[apart(40.0), apart(50.0), apart(60.0)]);
+    commands.push(assert_is_renders(browser, &tab));
+    browser.touch(
+        &tab,
+        &[vec![MIDDLE], vec![[x + 30.0, y]], vec![[x + 60.0, y]]],
+    );
+    commands.push(assert_is_renders(browser, &tab));
+    commands.sort();
+    commands.dedup();
+    assert_eq!(commands.len(), 6, "each moved the camera: {commands:#?}");
+
+    // The other scene, chosen by its place; settings.
+    browser.value(&tab, "$('scene').value = 1; $('scene').onchange()");
+    assert!(assert_is_renders(browser, &tab).contains("axes.vox"));
+    browser.value(
+        &tab,
+        "$('coverage').value = 'center'; $('coverage').onchange()",
+    );
+    assert!(assert_is_renders(browser, &tab).contains("--coverage=center"));
+
+    // A second page, with a camera of its own.
+    let other = browser.open(&program.address);
+    browser.wait(&other, STILL);
+    browser.value(&other, "turn(1, 0.1); turn(0.5, 0)");
+    let seen = assert_is_renders(browser, &other);
+    assert!(seen.contains("tree.vox") && !commands.contains(&seen));
+    assert!(assert_is_renders(browser, &tab).contains("axes.vox"));
+
+    // A camera that is none.
+    browser.value(&tab, "place([NaN, 0, 0], [0, 0, 0], [0, 0, 1])");
+    browser.wait(
+        &tab,
+        "$('error').textContent.includes('not a finite number')",
+    );
+    browser.value(&tab, "$('first').click()");
+    assert_is_renders(browser, &tab);
+    assert_eq!(browser.value(&tab, "$('error').textContent"), "");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
+
+#[test]
+fn the_slider_shows_the_papers_rule() {
+    let Some(mut browser) = Browser::start() else {
+        return;
+    };
+    let browser = &mut browser;
+    let program = Program::start(&["assets/tree.vox", "--size", "360x330"]);
+    let tab = browser.open(&program.address);
+    let command = assert_is_renders(browser, &tab);
+    browser.value(&tab, "$('compare').click()");
+    browser.wait(
+        &tab,
+        "shown.paperWhole === view.version && $('difference').textContent.includes('differ')",
+    );
+    let (paper, _) = run_command(&command.replace("--size", "--paper --size"));
+    assert_canvas(browser, &tab, "paper", &paper, "the paper's");
+    let (mine, _) = run_command(&command);
+    let [mine, paper] = [mine, paper].map(|file| png::decode(&file).unwrap().rgba);
+    let differ = mine.iter().zip(&paper).filter(|(a, b)| a != b).count();
+    let said = browser.value(&tab, "$('difference').textContent");
+    let said = said.as_str().unwrap().replace(',', "");
+    assert!(
+        differ > 100 && said.starts_with(&format!("{differ} of 118800 ")),
+        "{differ}: {said}"
+    );
+    // The edge follows the hand.
+    let at = browser.value(
+        &tab,
+        "(() => { const b = $('slider').getBoundingClientRect(); return [b.left, b.width, b.top + b.height / 2]; })()",
+    );
+    let [left, width, y] = [0, 1, 2].map(|k| at[k].as_f64().unwrap());
+    browser.drag(
+        &tab,
+        [left + width / 2.0, y],
+        [left + width / 4.0, y],
+        "left",
+    );
+    let edge = browser
+        .value(&tab, "parseFloat($('edge').style.left)")
+        .as_f64()
+        .unwrap();
+    assert!((edge - 25.0).abs() < 3.0, "{edge}");
+    let clip = browser.value(&tab, "$('paper').style.clipPath");
+    assert!(
+        clip.as_str().unwrap().ends_with(&format!("{edge}%)")),
+        "{clip} {edge}"
+    );
+    // Figures of the model came on the side.
+    browser.wait(&tab, "$('model').innerText.includes('energy')");
+    browser.value(&tab, "$('slider').value = 500; compare()");
+    shot(browser, &tab, "view.png");
+    assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
+}
