@@ -116,7 +116,7 @@ pub fn build<S: Surface + ?Sized>(
     let centre = centre(surface)?;
     progress.begin("split triangles", 0);
     let (mut branches, order) = split(surface, options.leaf_triangles as usize);
-    let coarser = coarser::put_above(&mut branches, options.grid);
+    let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
     progress.end();
     let corners = |place: usize| surface.corners(order[place] as usize).map(|p| p - centre);
     progress.begin("prepare rays", 0);
