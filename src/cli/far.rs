@@ -97,7 +97,7 @@ pub(super) fn convert(
         grouped(file.len()),
         build_ms / 1e3
     ));
-    if facts.rays_per_voxel() < LEAST_RAYS_PER_VOXEL {
+    if facts.kept > 0 && facts.rays_per_voxel() < LEAST_RAYS_PER_VOXEL {
         console.note(format!(
             "warning: {}: only {:.1} rays passed through a voxel that is kept, and {LEAST_RAYS_PER_VOXEL} \
              are too few for opacities; {} voxels were not tested and are kept: ask for more \

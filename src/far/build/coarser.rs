@@ -3,16 +3,17 @@
 
 use super::split::Branch;
 
-/// Fewest voxels along a node that is above another.
-const LEAST: u32 = 16;
+/// Fewest voxels along a node that is above another: of voxels alone, since thin tubes lose area in
+/// larger ones; and where what a node holds is measured.
+const LEAST: [u32; 2] = [32, 16];
 
 /// Puts nodes of half the voxels along a side, and so on, above the root, unless that is a leaf.
 /// Gives how many.
-pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32) -> usize {
+pub(super) fn put_above(branches: &mut Vec<Branch>, grid: u32, hybrid: bool) -> usize {
     let Some(root) = branches.first().filter(|root| root.children.is_some()) else {
         return 0;
     };
-    let count = (grid / LEAST).max(1).ilog2();
+    let count = (grid / LEAST[usize::from(hybrid)]).max(1).ilog2();
     let coarser: Vec<Branch> = (0..count)
         .map(|level| Branch {
             level,

@@ -278,7 +278,7 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let shares = shares(surface.len(), options.hybrid, memory)?;
     progress.begin("split triangles", 0);
     let (mut branches, order) = split(surface, options.leaf_triangles as usize);
-    let coarser = coarser::put_above(&mut branches, options.grid);
+    let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
     progress.end();
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));

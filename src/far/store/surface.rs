@@ -7,7 +7,7 @@
 
 use std::collections::HashMap;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::far::record::{
     LeafTriangle, MOST_COLORS, Node, OWN_BYTES, SHARED_BYTES, SurfaceColumns,
@@ -20,6 +20,7 @@ const STEPS: f64 = 65535.0;
 /// Where vertices of one node may be.
 struct Lattice {
     low: DVec3,
+    high: Vec3,
     step: DVec3,
 }
 
@@ -28,6 +29,7 @@ impl Lattice {
         let [low, high] = [node.low, node.high].map(|p| DVec3::from_array(p.map(f64::from)));
         Self {
             low,
+            high: high.as_vec3(),
             step: (high - low) / STEPS,
         }
     }
@@ -43,7 +45,9 @@ impl Lattice {
 
     fn point(&self, place: [u16; 3]) -> [f32; 3] {
         let steps = DVec3::from_array(place.map(f64::from));
-        (self.low + steps * self.step).as_vec3().to_array()
+        let point = (self.low + steps * self.step).as_vec3();
+        // Rounding must not leave the box.
+        point.max(self.low.as_vec3()).min(self.high).to_array()
     }
 }
 
