@@ -203,13 +203,11 @@ impl Browser {
         touch("touchEnd", &[]);
     }
 
-    /// A picture of a page, base64.
+    /// A picture of a page, at 0.6 of its size, base64.
     pub(crate) fn screenshot(&mut self, tab: &Tab) -> String {
-        let shot = self.call(
-            Some(tab),
-            "Page.captureScreenshot",
-            json!({ "format": "png" }),
-        );
+        let clip = json!({ "x": 0, "y": 0, "width": 1200, "height": 800, "scale": 0.6 });
+        let parameters = json!({ "format": "png", "clip": clip });
+        let shot = self.call(Some(tab), "Page.captureScreenshot", parameters);
         shot["data"].as_str().unwrap().to_owned()
     }
 }
