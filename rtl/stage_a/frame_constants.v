@@ -18,12 +18,13 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output [3*W-1:0]              eye_floor,     // the eye in object space, rounded down
   output reg signed [W-1:0]     near, near_crossing,
   output reg signed [W-1:0]     size_limit, lod_limit, least_size, // screen-space sizes
-  // By octree level: the least depth of a node that level of detail takes for a solid, if there is one.
+  // By octree level: the least depth of a node that level of detail takes for a solid, if there is one;
+  // in the cycle after `look_up`.
+  input                         look_up,
   input  [`LEVEL_BITS-1:0]      of_level,
   output                        has_lod_depth,
   output signed [W-1:0]         lod_depth);
   reg [W-1:0] vector [0:14];  // origin, edges, eye
-  reg [W-1:0] lod [0:63];
   reg         has_lod;
   genvar i;
   generate
@@ -36,13 +37,13 @@ module frame_constants #(parameter W = `WORD_BITS) (
     end
   endgenerate
   // All ones above the greatest depth: no node of the level is a solid by its depth.
-  assign has_lod_depth = has_lod & lod[of_level] != {1'b0, {(W-1){1'b1}}};
-  assign lod_depth = lod[of_level];
+  wire [W-1:0] found;
+  memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[6]),
+    .address(look_up ? of_level : address[5:0]), .data_in(data), .data_out(found));
+  assign has_lod_depth = has_lod & found != {1'b0, {(W-1){1'b1}}};
+  assign lod_depth = found;
   always @(posedge clk)
-    if (write)
-      if (address[6])
-        lod[address[5:0]] <= data;
-      else
+    if (write & ~address[6])
         case (address[5:0])
           6'd0: root <= data;
           6'd1: levels <= data[`LEVEL_BITS-1:0];

@@ -1,0 +1,149 @@
+//! The blocks against the rows of the vectors.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::testbench::testbench;
+use super::tools::{is_there, rtl, run, shiftvox, text};
+
+/// Views: from outside, where records change to screen space; and with the eye within, where they stay.
+const VIEWS: [&[&str]; 2] = [
+    &["gen:menger,depth=3", "--size", "48"],
+    &["gen:menger,depth=3", "--size", "48", "--eye", "13.4,12.7,3.5", "--target", "20,14,9"],
+];
+
+/// A folder of vectors of a view, its manifest, and definitions of its widths.
+struct Rows {
+    _shelter: TempDir,
+    folder: PathBuf,
+    manifest: Value,
+    defines: [String; 2],
+}
+
+fn rows(view: &[&str], bits: &str) -> Rows {
+    let shelter = tempfile::tempdir().unwrap();
+    let folder = shelter.path().join("rows");
+    let rest = ["--paper", "--bits", bits, "--vectors", text(&folder), "--vector-records", "400"];
+    shiftvox(shelter.path(), &[&["model"], view, &rest].concat());
+    let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let fraction = manifest["word"]["screen_fraction_bits"].as_u64().unwrap();
+    Rows {
+        _shelter: shelter,
+        defines: [format!("-DWORD_BITS={bits}"), format!("-DFRACTION_BITS={fraction}")],
+        folder,
+        manifest,
+    }
+}
+
+/// Runs all blocks of a folder of modules through their rows; how many were wrong, by block. `None`: some
+/// module is no Verilog.
+fn wrong_rows(rows: &Rows, modules: &Path) -> BTreeMap<String, u64> {
+    let blocks = rows.manifest["blocks"].as_array().unwrap();
+    let with_rows = || blocks.iter().filter(|block| block["rows"].as_u64() != Some(0));
+    let benches: String = with_rows().map(testbench).collect();
+    let source = rows.folder.with_extension("v");
+    let compiled = rows.folder.with_extension("vvp");
+    fs::write(&source, benches).unwrap();
+    let rtl = rtl();
+    let mut arguments = vec!["-g2012", "-I", text(&rtl), "-y", text(modules), "-o", text(&compiled)];
+    arguments.extend(rows.defines.iter().map(String::as_str));
+    let tops: Vec<String> = with_rows()
+        .map(|block| format!("{}_tb", block["name"].as_str().unwrap()))
+        .collect();
+    arguments.extend(tops.iter().flat_map(|top| ["-s", top]));
+    arguments.push(text(&source));
+    run(&rows.folder, "iverilog", &arguments);
+    run(&rows.folder, "vvp", &["-n", text(&compiled)])
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .filter_map(|(block, wrong)| Some((block.to_owned(), wrong.parse().ok()?)))
+        .collect()
+}
+
+#[test]
+fn every_row_of_every_block_in_two_formats() {
+    if !is_there("iverilog") {
+        return;
+    }
+    for bits in ["24", "32"] {
+        for view in VIEWS {
+            let wrong = wrong_rows(&rows(view, bits), &rtl().join("blocks"));
+            assert!(wrong.len() >= 22, "{wrong:?}");
+            assert!(wrong.values().all(|&wrong| wrong == 0), "{bits} {view:?}: {wrong:?}");
+        }
+    }
+}
+
+/// Texts of the blocks, and a fault that somebody could make in each.
+const FAULTS: [(&str, &str, &str); 26] = [
+    ("filled", "&vector", "|vector"),
+    ("change_depth", "w_min >= least", "w_min > least"),
+    ("detail_depth", "w_min >= least", "w_min > least"),
+    ("change_guard", "wide - at", "wide + at"),
+    ("size_limit", "w_min >>> below", "w_min >> below"),
+    ("size_clip", "here >= there", "here <= there"),
+    ("size_screen", "size <= limit", "size < limit"),
+    ("centre", "signed [W:0]   sum", "signed [W-1:0] sum"),
+    ("octant_order", "eye < middle", "eye <= middle"),
+    ("midpoints", "sum = a + b", "sum = a + b + 1"),
+    ("child_vertices", "9*(v/4) + 3*(v/2%2)", "9*(v/4) + 3*(v%2)"),
+    ("child_corners", "octant[k] ? centre", "octant[2 - k] ? centre"),
+    ("child_span", "a <= b", "a >= b"),
+    ("border_clip", "left_high < 0", "left_high <= 0"),
+    ("bisector_clip", "lowered <= 0", "lowered < 0"),
+    ("near_node", "to_right > 0", "to_right >= 0"),
+    ("half_clip", "right ? far", "~right ? far"),
+    ("border_screen", "right < low", "right <= low"),
+    ("bisector_screen", "middle < high", "middle <= high"),
+    ("quadrants", "{high_half_x, low_half_x}", "{low_half_x, high_half_x}"),
+    ("node_choice", "overlapped[3] | overlapped[1]", "overlapped[1]"),
+    ("cage_centre", "sum[W:1]", "sum[W-1:0]"),
+    ("centre_half", "beyond >= 0", "beyond > 0"),
+    ("centre_sample", "- 1'b1", "- 1'b0"),
+    ("fill_update", "&after", "^after"),
+    ("divide_step", "~left[W+4]", "~left[W+4] & |left"),
+];
+
+/// A fault in each block at once: each has rows that find it. The pool's two parts are one block.
+#[test]
+fn a_fault_in_any_block_is_found() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(view, "32")).collect();
+    // The two that other blocks consist of go one by one.
+    for parts in [&["child_vertices"][..], &["midpoints"], &[]] {
+        let shelter = tempfile::tempdir().unwrap();
+        for file in fs::read_dir(rtl().join("blocks")).unwrap() {
+            let path = file.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let mut source = fs::read_to_string(&path).unwrap();
+            let is_part = ["child_vertices", "midpoints"].contains(&name);
+            if let Some((_, right, fault)) = FAULTS.iter().find(|(block, ..)| *block == name) {
+                assert_eq!(source.matches(right).count(), 1, "{name}: {right}");
+                if parts.contains(&name) || !is_part && parts.is_empty() {
+                    source = source.replace(right, fault);
+                }
+            }
+            fs::write(shelter.path().join(format!("{name}.v")), source).unwrap();
+        }
+        let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
+        for rows in &all {
+            for (block, count) in wrong_rows(rows, shelter.path()) {
+                *wrong.entry(block).or_default() += count;
+            }
+        }
+        if parts.is_empty() {
+            wrong.remove("vertex_pool");
+            let missed: Vec<_> = wrong.iter().filter(|&(_, &wrong)| wrong == 0).collect();
+            assert!(missed.is_empty(), "{missed:?}");
+        } else {
+            assert!(wrong["vertex_pool"] > 0, "{parts:?}");
+        }
+    }
+}

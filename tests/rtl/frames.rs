@@ -1,0 +1,183 @@
+//! Whole frames in Verilator against the machine: every event with all its bits, in order; the picture; the cycles.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::tools::{is_there, rtl, run, shiftvox, text};
+
+/// The simulator of the machine in a folder, of words of 32 bits, for pictures up to 256 x 256.
+fn simulator(hardware: &Path, folder: &Path) -> PathBuf {
+    let arguments = "--binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH \
+                     -I. -Iblocks -Istage_a --top-module frame_tb tb/frame_tb.v -o frame --Mdir";
+    let mut arguments: Vec<&str> = arguments.split(' ').filter(|word| !word.is_empty()).collect();
+    arguments.push(text(folder));
+    run(hardware, "verilator", &arguments);
+    folder.join("frame")
+}
+
+/// The simulator of the machine as it is, made once.
+fn right() -> &'static Path {
+    static MADE: OnceLock<(TempDir, PathBuf)> = OnceLock::new();
+    let (_, path) = MADE.get_or_init(|| {
+        let shelter = tempfile::tempdir().unwrap();
+        let path = simulator(&rtl(), shelter.path());
+        (shelter, path)
+    });
+    path
+}
+
+/// What crossed a port, the first number; and where, and what, as far as the simulation writes it down.
+type Event = (u8, u64, String);
+
+/// Events of a frame from its vectors.
+fn expected_events(folder: &Path) -> Vec<Event> {
+    let rows = |name: &str| {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        let rows = text.lines().filter(|line| !line.starts_with("//"));
+        rows.map(str::to_owned).collect::<Vec<_>>()
+    };
+    let records = rows("turns.records.hex");
+    rows("turns.ports.hex")
+        .iter()
+        .map(|row| {
+            // 3 bits of port, 32 of address, 40 of data.
+            let row = u128::from_str_radix(row, 16).unwrap();
+            let (port, address) = ((row >> 72) as u8, (row >> 40) as u64 & 0xffff_ffff);
+            let data = row as u64 & 0xff_ffff_ffff;
+            let data = match port {
+                // Twelve wide words of planes, zeros under this rule, come last.
+                1 => {
+                    let record = &records[data as usize];
+                    let (record, planes) = record.split_at(record.len() - 12 * 16);
+                    assert!(planes.bytes().all(|digit| digit == b'0'));
+                    record.trim_start_matches('0').to_owned()
+                }
+                3 => format!("{data:x}"),
+                6 => data.to_string(),
+                _ => String::new(),
+            };
+            (port, address, data)
+        })
+        .collect()
+}
+
+/// Events that the simulation wrote down.
+fn simulated_events(folder: &Path) -> Vec<Event> {
+    let text = fs::read_to_string(folder.join("events.txt")).unwrap();
+    text.lines()
+        .map(|line| {
+            let mut words = line.split(' ');
+            let mut next = || words.next().unwrap_or_default();
+            let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
+            let data = next();
+            let data = if port == 1 { data.trim_start_matches('0') } else { data };
+            (port, address, data.to_owned())
+        })
+        .collect()
+}
+
+/// Whole numbers of a `.npy` file.
+fn numbers(path: &Path) -> Vec<i32> {
+    let bytes = fs::read(path).unwrap();
+    let head = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+    let number = |bytes: &[u8]| i32::from_le_bytes(bytes.try_into().unwrap());
+    bytes[head..].chunks_exact(4).map(number).collect()
+}
+
+/// What a frame showed.
+#[derive(Debug)]
+struct Agreement {
+    events: usize,
+    samples: usize,
+    /// Simulated hardware, cycle model.
+    cycles: [u64; 2],
+    hash: String,
+}
+
+/// Draws a view on the hardware and on the machine, and compares all but the cycles. `Err`: what differs.
+fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
+    let shelter = tempfile::tempdir().unwrap();
+    let folder = shelter.path().join("frame");
+    let hardware = rtl().join("stage_a.toml");
+    let common = [view, &["--paper", "--bits", "32"]].concat();
+    let rows = ["--vectors", text(&folder), "--vector-records", "100000000", "--json"];
+    let of_model = [&["model", "--hw", text(&hardware)], &common[..], &rows].concat();
+    let model: Value = serde_json::from_str(&shiftvox(shelter.path(), &of_model)).unwrap();
+    let of_render = ["--engine", "machine", "-o", "picture.png", "--aov", "node,voxel", "--hash"];
+    let hash = shiftvox(shelter.path(), &[&["render"], &common[..], &of_render].concat());
+
+    let printed = run(&folder, simulator, &["+events", "+most=200000000"]);
+    let cycles = printed.lines().find_map(|line| line.strip_suffix(" cycles"));
+    let cycles = cycles.ok_or_else(|| printed.clone())?.trim().parse().unwrap();
+
+    let (expected, simulated) = (expected_events(&folder), simulated_events(&folder));
+    let pairs = expected.iter().zip(&simulated);
+    if let Some(at) = pairs.clone().position(|(expected, simulated)| expected != simulated) {
+        let (expected, simulated) = (&expected[at], &simulated[at]);
+        return Err(format!("event {at}: {simulated:?}, not {expected:?}"));
+    }
+    if expected.len() != simulated.len() {
+        return Err(format!("{} events, not {}", simulated.len(), expected.len()));
+    }
+
+    let nodes = numbers(&shelter.path().join("picture.node.npy"));
+    let voxels = numbers(&shelter.path().join("picture.voxel.npy"));
+    let mut drawn = vec![-1i32; nodes.len()];
+    // From the object's lowest corner to the file's indices: the same for all.
+    let mut moved = None;
+    for line in fs::read_to_string(folder.join("pixels.txt")).unwrap().lines() {
+        let pixel: Vec<i32> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+        let [at, node, x, y, z, level] = pixel[..] else {
+            return Err(format!("pixel {line}"));
+        };
+        let at = at as usize;
+        drawn[at] = node;
+        let [ix, iy, iz, shown] = voxels[4 * at..][..4] else {
+            unreachable!("four numbers a sample");
+        };
+        let by = [ix - x, iy - y, iz - z];
+        if shown != level || *moved.get_or_insert(by) != by {
+            return Err(format!("sample {at} shows voxel {x}, {y}, {z}, {level}"));
+        }
+    }
+    if drawn != nodes {
+        return Err("other samples are drawn".to_owned());
+    }
+    Ok(Agreement {
+        events: simulated.len(),
+        samples: drawn.iter().filter(|&&node| node >= 0).count(),
+        cycles: [cycles, model["cycles"]["cycles"].as_u64().unwrap_or_default()],
+        hash: hash.trim().to_owned(),
+    })
+}
+
+const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
+/// In the middle of the sponge's hollow, looking at a corner of it.
+const INSIDE: [&str; 7] = [
+    "gen:menger,depth=3", "--size", "64", "--eye", "13.4,12.7,13.5", "--target", "20,16,11",
+];
+
+#[test]
+fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
+    if !is_there("verilator") {
+        return;
+    }
+    let agreement = compare(right(), &[TREE, "--size", "64"]).unwrap();
+    eprintln!("{agreement:?}");
+    assert!(agreement.events > 1_000_000 && agreement.samples > 1000);
+    assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+}
+
+#[test]
+fn an_eye_inside_too() {
+    if !is_there("verilator") {
+        return;
+    }
+    let agreement = compare(right(), &INSIDE).unwrap();
+    eprintln!("{agreement:?}");
+    assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+}
