@@ -147,3 +147,114 @@ fn a_fault_in_any_block_is_found() {
         }
     }
 }
+
+/// What a text of a block may become by a slip.
+const SLIPS: [(&str, &str); 16] = [
+    (" + ", " - "),
+    (" - ", " + "),
+    (" < ", " <= "),
+    (" <= ", " < "),
+    (" > ", " >= "),
+    (" >= ", " > "),
+    (" & ", " | "),
+    (" | ", " & "),
+    (" == ", " != "),
+    (" << ", " >> "),
+    (" >>> ", " >> "),
+    ("= ~|", "= |"),
+    ("= ~", "= "),
+    ("[W:1]", "[W-1:0]"),
+    ("1'b1", "1'b0"),
+    (" ? ", " ? ~"),
+];
+
+/// All ways to make one slip in a block.
+fn mutants(source: &str) -> Vec<String> {
+    let is_code = |line: &str| {
+        let declares = ["//", "for (", "module", "input", "output", "localparam", "`", "if (", "function"];
+        !declares.iter().any(|word| line.trim_start().starts_with(word))
+    };
+    let mut mutants = Vec::new();
+    let mut begun = 0;
+    for line in source.split_inclusive('\n') {
+        // What stands in an index or behind a comment is no arithmetic of the block.
+        let code = line.split("//").next().unwrap_or_default();
+        for (right, wrong) in SLIPS.iter().filter(|_| is_code(line)) {
+            for (at, _) in code.match_indices(right) {
+                let open = code[..at].matches('[').count() - code[..at].matches(']').count();
+                if open == 0 {
+                    let (before, after) = source.split_at(begun + at);
+                    mutants.push(format!("{before}{wrong}{}", &after[right.len()..]));
+                }
+            }
+        }
+        begun += line.len();
+    }
+    mutants
+}
+
+/// The testbenches' mutation score. Blocks have their first slip at once, then their second, ...
+#[test]
+#[ignore = "takes minutes"]
+fn mutation_score() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(view, "32")).collect();
+    let mut sources = BTreeMap::new();
+    // By testbench: file and text.
+    let mut slips: BTreeMap<&str, Vec<(String, String)>> = BTreeMap::new();
+    for file in fs::read_dir(rtl().join("blocks")).unwrap() {
+        let path = file.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let source = fs::read_to_string(&path).unwrap();
+        let bench = match name.as_str() {
+            "midpoints" | "child_vertices" => "vertex_pool",
+            "divide_step" => "to_screen_divide",
+            // Registers and counters of the divide: a slip may make it endless.
+            "divide_lane" | "divide_control" | "to_screen_divide" => "",
+            other => other,
+        };
+        if !bench.is_empty() {
+            let mutants = mutants(&source).into_iter().map(|text| (name.clone(), text));
+            slips.entry(bench.to_owned().leak()).or_default().extend(mutants);
+        }
+        sources.insert(name, source);
+    }
+    let (mut found, mut missed) = (0, Vec::new());
+    for round in 0..slips.values().map(Vec::len).max().unwrap() {
+        let shelter = tempfile::tempdir().unwrap();
+        let mut texts = sources.clone();
+        let mut under_test = BTreeMap::new();
+        for (bench, slips) in &slips {
+            if let Some((file, text)) = slips.get(round) {
+                texts.insert(file.clone(), text.clone());
+                under_test.insert(*bench, (file, text));
+            }
+        }
+        for (name, text) in &texts {
+            fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
+        }
+        let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
+        for rows in &all {
+            for (block, count) in wrong_rows(rows, shelter.path()) {
+                *wrong.entry(block).or_default() += count;
+            }
+        }
+        for (bench, (file, text)) in under_test {
+            if wrong.get(bench).is_some_and(|&count| count > 0) {
+                found += 1;
+            } else {
+                let lines = text.lines().zip(sources[file].lines());
+                let slip = lines.filter(|(slip, right)| slip != right).map(|(slip, _)| slip.trim());
+                missed.push(format!("{file}: {}", slip.collect::<String>()));
+            }
+        }
+    }
+    for missed in &missed {
+        eprintln!("not found: {missed}");
+    }
+    let all = found + missed.len();
+    eprintln!("{found} of {all} slips found, {:.1} %", 100.0 * found as f64 / all as f64);
+    assert!(found * 100 >= all * 95);
+}

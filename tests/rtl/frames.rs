@@ -181,3 +181,59 @@ fn an_eye_inside_too() {
     eprintln!("{agreement:?}");
     assert_eq!(agreement.cycles[0], agreement.cycles[1]);
 }
+
+/// The bundled tree, a sponge, terrain, and an eye within them; sizes that fill the picture's quadtree and that do not.
+#[test]
+#[ignore = "takes minutes"]
+fn many_scenes() {
+    if !is_there("verilator") {
+        return;
+    }
+    let views: [&[&str]; 6] = [
+        &[TREE, "--size", "128"],
+        &[TREE, "--size", "200x90", "--azimuth", "80", "--elevation", "-20"],
+        &["gen:menger,depth=4", "--size", "96"],
+        &["gen:terrain,depth=7", "--size", "128x64", "--lod", "0"],
+        &["gen:terrain,depth=6", "--size", "64", "--eye", "20.2,30.7,25.1", "--target", "40,40,10"],
+        &["gen:menger,depth=3", "--size", "50x70", "--lod", "4", "--zoom", "6"],
+    ];
+    for view in views {
+        let agreement = compare(right(), view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
+        eprintln!("{view:?}: {agreement:?}");
+        assert_eq!(agreement.cycles[0], agreement.cycles[1], "{view:?}");
+    }
+}
+
+/// Scattered voxels by seed, from all sides and from within, at random sizes and levels of detail.
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_random_views() {
+    if !is_there("verilator") {
+        return;
+    }
+    let mut state = 1u64;
+    let mut next = |most: u64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) % most
+    };
+    let mut unlike = 0;
+    for at in 0..200 {
+        let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
+        let size = format!("{}x{}", 1 + next(60), 1 + next(60));
+        let lod = ["0", "1", "3"][next(3) as usize];
+        let [azimuth, elevation, zoom] = [next(360), next(180), 1 + next(8)].map(|n| n.to_string());
+        let elevation = (elevation.parse::<i64>().unwrap() - 90).to_string();
+        let elevation = format!("--elevation={elevation}");
+        let view = [
+            &scene, "--size", &size, "--lod", lod, "--azimuth", &azimuth, &elevation, "--zoom", &zoom,
+        ];
+        let agreement = compare(right(), &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
+        let [simulated, model] = agreement.cycles;
+        if simulated != model {
+            eprintln!("{at} {view:?}: {simulated} cycles, {model} in the model");
+            unlike += 1;
+        }
+    }
+    eprintln!("200 random views: all events and pictures equal; cycles unlike in {unlike}");
+    assert_eq!(unlike, 0);
+}
