@@ -12,3 +12,7 @@
 `define PLACE_BITS 20
 // An octree node.
 `define NODE_BITS 32
+// A number of a silhouette plane: twice a word, at most 64.
+`ifndef WIDE_BITS
+  `define WIDE_BITS 64
+`endif
