@@ -21,28 +21,36 @@ struct Rows {
     _shelter: TempDir,
     folder: PathBuf,
     manifest: Value,
-    defines: [String; 2],
+    defines: [String; 3],
 }
 
-fn rows(view: &[&str], bits: &str) -> Rows {
+/// Settings of stage A, and of the blocks of exact coverage.
+const PAPER: &[&str] = &["--paper"];
+const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
+
+fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("rows");
-    let rest = ["--paper", "--bits", bits, "--vectors", text(&folder), "--vector-records", "400"];
-    shiftvox(shelter.path(), &[&["model"], view, &rest].concat());
+    let rest = ["--bits", bits, "--vectors", text(&folder), "--vector-records", "400"];
+    shiftvox(shelter.path(), &[&["model"], view, rules, &rest].concat());
     let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
     let manifest: Value = serde_json::from_str(&manifest).unwrap();
-    let fraction = manifest["word"]["screen_fraction_bits"].as_u64().unwrap();
+    let of_word = |key: &str| manifest["word"][key].as_u64().unwrap();
+    let (fraction, wide) = (of_word("screen_fraction_bits"), of_word("wide_bits"));
     Rows {
         _shelter: shelter,
-        defines: [format!("-DWORD_BITS={bits}"), format!("-DFRACTION_BITS={fraction}")],
+        defines: [
+            format!("-DWORD_BITS={bits}"),
+            format!("-DFRACTION_BITS={fraction}"),
+            format!("-DWIDE_BITS={wide}"),
+        ],
         folder,
         manifest,
     }
 }
 
-/// Runs all blocks of a folder of modules through their rows; how many were wrong, by block. `None`: some
-/// module is no Verilog.
-fn wrong_rows(rows: &Rows, modules: &Path) -> BTreeMap<String, u64> {
+/// Runs all blocks through their rows, their modules from the first folder that has them; how many were wrong, by block.
+fn wrong_rows(rows: &Rows, folders: &[&Path]) -> BTreeMap<String, u64> {
     let blocks = rows.manifest["blocks"].as_array().unwrap();
     let with_rows = || blocks.iter().filter(|block| block["rows"].as_u64() != Some(0));
     let benches: String = with_rows().map(testbench).collect();
@@ -50,7 +58,8 @@ fn wrong_rows(rows: &Rows, modules: &Path) -> BTreeMap<String, u64> {
     let compiled = rows.folder.with_extension("vvp");
     fs::write(&source, benches).unwrap();
     let rtl = rtl();
-    let mut arguments = vec!["-g2012", "-I", text(&rtl), "-y", text(modules), "-o", text(&compiled)];
+    let mut arguments = vec!["-g2012", "-I", text(&rtl), "-o", text(&compiled)];
+    arguments.extend(folders.iter().flat_map(|folder| ["-y", text(folder)]));
     arguments.extend(rows.defines.iter().map(String::as_str));
     let tops: Vec<String> = with_rows()
         .map(|block| format!("{}_tb", block["name"].as_str().unwrap()))
@@ -72,9 +81,12 @@ fn every_row_of_every_block_in_two_formats() {
     }
     for bits in ["24", "32"] {
         for view in VIEWS {
-            let wrong = wrong_rows(&rows(view, bits), &rtl().join("blocks"));
-            assert!(wrong.len() >= 22, "{wrong:?}");
-            assert!(wrong.values().all(|&wrong| wrong == 0), "{bits} {view:?}: {wrong:?}");
+            let (exact, others) = (rtl().join("blocks_exact"), rtl().join("blocks"));
+            for (rules, folders) in [(PAPER, &[&*others][..]), (EXACT, &[&*exact, &*others])] {
+                let wrong = wrong_rows(&rows(rules, view, bits), folders);
+                assert!(wrong.len() >= 22, "{wrong:?}");
+                assert!(wrong.values().all(|&wrong| wrong == 0), "{bits} {view:?}: {wrong:?}");
+            }
         }
     }
 }
@@ -115,7 +127,7 @@ fn a_fault_in_any_block_is_found() {
     if !is_there("iverilog") {
         return;
     }
-    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(view, "32")).collect();
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(PAPER, view, "32")).collect();
     // The two that other blocks consist of go one by one.
     for parts in [&["child_vertices"][..], &["midpoints"], &[]] {
         let shelter = tempfile::tempdir().unwrap();
@@ -134,7 +146,7 @@ fn a_fault_in_any_block_is_found() {
         }
         let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
         for rows in &all {
-            for (block, count) in wrong_rows(rows, shelter.path()) {
+            for (block, count) in wrong_rows(rows, &[shelter.path()]) {
                 *wrong.entry(block).or_default() += count;
             }
         }
@@ -200,7 +212,7 @@ fn mutation_score() {
     if !is_there("iverilog") {
         return;
     }
-    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(view, "32")).collect();
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(PAPER, view, "32")).collect();
     let mut sources = BTreeMap::new();
     // By testbench: file and text.
     let mut slips: BTreeMap<&str, Vec<(String, String)>> = BTreeMap::new();
@@ -237,7 +249,7 @@ fn mutation_score() {
         }
         let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
         for rows in &all {
-            for (block, count) in wrong_rows(rows, shelter.path()) {
+            for (block, count) in wrong_rows(rows, &[shelter.path()]) {
                 *wrong.entry(block).or_default() += count;
             }
         }

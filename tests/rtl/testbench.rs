@@ -19,7 +19,7 @@ struct Port {
 /// A field's name without its last part, and that.
 fn split(name: &str) -> Option<(&str, &str)> {
     name.rsplit_once('_')
-        .filter(|(_, end)| matches!(*end, "x" | "y" | "z") || "01234567".contains(*end))
+        .filter(|(_, end)| matches!(*end, "a" | "b" | "c" | "x" | "y" | "z") || "01234567".contains(*end))
 }
 
 fn ports(fields: &Value) -> Vec<Port> {
@@ -29,9 +29,11 @@ fn ports(fields: &Value) -> Vec<Port> {
         let number = |key: &str| field[key].as_u64().unwrap();
         let (bits, lowest) = (number("bits"), number("lowest_bit"));
         let after = |end: &str| match end {
+            "a" => Some("b".to_owned()),
+            "b" => Some("c".to_owned()),
             "x" => Some("y".to_owned()),
             "y" => Some("z".to_owned()),
-            "z" => None,
+            "c" | "z" => None,
             number => Some((number.parse::<u32>().unwrap() + 1).to_string()),
         };
         if let (Some((stem, end)), Some(port)) = (split(name), ports.last_mut()) {
@@ -48,7 +50,7 @@ fn ports(fields: &Value) -> Vec<Port> {
             name: name.to_owned(),
             bits,
             lowest,
-            next: split(name).filter(|(_, end)| matches!(*end, "x" | "0")).and_then(|(_, end)| after(end)),
+            next: split(name).filter(|(_, end)| matches!(*end, "a" | "x" | "0")).and_then(|(_, end)| after(end)),
         });
     }
     ports
