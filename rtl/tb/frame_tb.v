@@ -2,11 +2,11 @@
 // Draws a frame: writes the constants, starts the machine, answers its memory port, writes down what
 // happens. It runs in a folder that `shiftvox model --paper --vectors` wrote, of whose files it reads
 // frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
-// the cycles. +most=N ends a frame that takes more; +wave (in Icarus Verilog) makes frame.vcd.
+// the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in Icarus Verilog) makes frame.vcd.
 module frame_tb;
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word.
-  localparam LATENCY = 51;
+  localparam LATENCY = 50;
   // Nodes that there is room for, levels of the picture, records on the stack.
   localparam NODES = 1 << 20, PICTURE_LEVELS = 8, STACK_LOG2 = 8;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
@@ -61,9 +61,11 @@ module frame_tb;
 
   // ------------------------------------------------ events
   integer events, pixels, i, cycles, most, nothing;
+  integer in_state [0:63];
   reg has_events;
   always @(posedge clk) if (busy) begin
     cycles <= cycles + 1;
+    in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
       if (dut.state == dut.POP) $fwrite(events, "0 %0d\n", dut.top);
       if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h\n", dut.stacked, dut.child_record);
@@ -95,6 +97,7 @@ module frame_tb;
     most = 100_000_000;
     nothing = $value$plusargs("most=%d", most);
     cycles = 0;
+    for (i = 0; i < 64; i = i + 1) in_state[i] = 0;
     repeat (2) @(posedge clk);
     #1 reset = 0;
     for (i = 0; i < 128; i = i + 1) begin
@@ -108,6 +111,9 @@ module frame_tb;
     @(posedge clk) #1;
     start = 0;
     while (!done && cycles < most) @(posedge clk) #1;
+    if ($test$plusargs("states"))
+      for (i = 0; i < 64; i = i + 1)
+        if (in_state[i] != 0) $display("state %0d: %0d", i, in_state[i]);
     if (done && !failed) $display("%0d cycles", cycles);
     else $display("failed: %s", done ? "the stack is full" : "no end");
     $finish;

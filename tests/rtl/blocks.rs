@@ -13,7 +13,15 @@ use super::tools::{is_there, rtl, run, shiftvox, text};
 /// Views: from outside, where records change to screen space; and with the eye within, where they stay.
 const VIEWS: [&[&str]; 2] = [
     &["gen:menger,depth=3", "--size", "48"],
-    &["gen:menger,depth=3", "--size", "48", "--eye", "13.4,12.7,3.5", "--target", "20,14,9"],
+    &[
+        "gen:menger,depth=3",
+        "--size",
+        "48",
+        "--eye",
+        "13.4,12.7,3.5",
+        "--target",
+        "20,14,9",
+    ],
 ];
 
 /// A folder of vectors of a view, its manifest, and definitions of its widths.
@@ -31,7 +39,14 @@ const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
 fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("rows");
-    let rest = ["--bits", bits, "--vectors", text(&folder), "--vector-records", "400"];
+    let rest = [
+        "--bits",
+        bits,
+        "--vectors",
+        text(&folder),
+        "--vector-records",
+        "400",
+    ];
     shiftvox(shelter.path(), &[&["model"], view, rules, &rest].concat());
     let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
     let manifest: Value = serde_json::from_str(&manifest).unwrap();
@@ -52,7 +67,11 @@ fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
 /// Runs all blocks through their rows, their modules from the first folder that has them; how many were wrong, by block.
 fn wrong_rows(rows: &Rows, folders: &[&Path]) -> BTreeMap<String, u64> {
     let blocks = rows.manifest["blocks"].as_array().unwrap();
-    let with_rows = || blocks.iter().filter(|block| block["rows"].as_u64() != Some(0));
+    let with_rows = || {
+        blocks
+            .iter()
+            .filter(|block| block["rows"].as_u64() != Some(0))
+    };
     let benches: String = with_rows().map(testbench).collect();
     let source = rows.folder.with_extension("v");
     let compiled = rows.folder.with_extension("vvp");
@@ -85,7 +104,10 @@ fn every_row_of_every_block_in_two_formats() {
             for (rules, folders) in [(PAPER, &[&*others][..]), (EXACT, &[&*exact, &*others])] {
                 let wrong = wrong_rows(&rows(rules, view, bits), folders);
                 assert!(wrong.len() >= 22, "{wrong:?}");
-                assert!(wrong.values().all(|&wrong| wrong == 0), "{bits} {view:?}: {wrong:?}");
+                assert!(
+                    wrong.values().all(|&wrong| wrong == 0),
+                    "{bits} {view:?}: {wrong:?}"
+                );
             }
         }
     }
@@ -104,7 +126,11 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ("octant_order", "eye < middle", "eye <= middle"),
     ("midpoints", "sum = a + b", "sum = a + b + 1"),
     ("child_vertices", "9*(v/4) + 3*(v/2%2)", "9*(v/4) + 3*(v%2)"),
-    ("child_corners", "octant[k] ? centre", "octant[2 - k] ? centre"),
+    (
+        "child_corners",
+        "octant[k] ? centre",
+        "octant[2 - k] ? centre",
+    ),
     ("child_span", "a <= b", "a >= b"),
     ("border_clip", "left_high < 0", "left_high <= 0"),
     ("bisector_clip", "lowered <= 0", "lowered < 0"),
@@ -112,8 +138,16 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ("half_clip", "right ? far", "~right ? far"),
     ("border_screen", "right < low", "right <= low"),
     ("bisector_screen", "middle < high", "middle <= high"),
-    ("quadrants", "{high_half_x, low_half_x}", "{low_half_x, high_half_x}"),
-    ("node_choice", "overlapped[3] | overlapped[1]", "overlapped[1]"),
+    (
+        "quadrants",
+        "{high_half_x, low_half_x}",
+        "{low_half_x, high_half_x}",
+    ),
+    (
+        "node_choice",
+        "overlapped[3] | overlapped[1]",
+        "overlapped[1]",
+    ),
     ("cage_centre", "sum[W:1]", "sum[W-1:0]"),
     ("centre_half", "beyond >= 0", "beyond > 0"),
     ("centre_sample", "- 1'b1", "- 1'b0"),
@@ -183,8 +217,20 @@ const SLIPS: [(&str, &str); 16] = [
 /// All ways to make one slip in a block.
 fn mutants(source: &str) -> Vec<String> {
     let is_code = |line: &str| {
-        let declares = ["//", "for (", "module", "input", "output", "localparam", "`", "if (", "function"];
-        !declares.iter().any(|word| line.trim_start().starts_with(word))
+        let declares = [
+            "//",
+            "for (",
+            "module",
+            "input",
+            "output",
+            "localparam",
+            "`",
+            "if (",
+            "function",
+        ];
+        !declares
+            .iter()
+            .any(|word| line.trim_start().starts_with(word))
     };
     let mut mutants = Vec::new();
     let mut begun = 0;
@@ -228,8 +274,13 @@ fn mutation_score() {
             other => other,
         };
         if !bench.is_empty() {
-            let mutants = mutants(&source).into_iter().map(|text| (name.clone(), text));
-            slips.entry(bench.to_owned().leak()).or_default().extend(mutants);
+            let mutants = mutants(&source)
+                .into_iter()
+                .map(|text| (name.clone(), text));
+            slips
+                .entry(bench.to_owned().leak())
+                .or_default()
+                .extend(mutants);
         }
         sources.insert(name, source);
     }
@@ -258,7 +309,9 @@ fn mutation_score() {
                 found += 1;
             } else {
                 let lines = text.lines().zip(sources[file].lines());
-                let slip = lines.filter(|(slip, right)| slip != right).map(|(slip, _)| slip.trim());
+                let slip = lines
+                    .filter(|(slip, right)| slip != right)
+                    .map(|(slip, _)| slip.trim());
                 missed.push(format!("{file}: {}", slip.collect::<String>()));
             }
         }
@@ -267,6 +320,9 @@ fn mutation_score() {
         eprintln!("not found: {missed}");
     }
     let all = found + missed.len();
-    eprintln!("{found} of {all} slips found, {:.1} %", 100.0 * found as f64 / all as f64);
+    eprintln!(
+        "{found} of {all} slips found, {:.1} %",
+        100.0 * found as f64 / all as f64
+    );
     assert!(found * 100 >= all * 95);
 }

@@ -13,7 +13,10 @@ use super::tools::{is_there, rtl, run, shiftvox, text};
 fn simulator(hardware: &Path, folder: &Path) -> PathBuf {
     let arguments = "--binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH \
                      -I. -Iblocks -Istage_a --top-module frame_tb tb/frame_tb.v -o frame --Mdir";
-    let mut arguments: Vec<&str> = arguments.split(' ').filter(|word| !word.is_empty()).collect();
+    let mut arguments: Vec<&str> = arguments
+        .split(' ')
+        .filter(|word| !word.is_empty())
+        .collect();
     arguments.push(text(folder));
     run(hardware, "verilator", &arguments);
     folder.join("frame")
@@ -74,7 +77,11 @@ fn simulated_events(folder: &Path) -> Vec<Event> {
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
             let data = next();
-            let data = if port == 1 { data.trim_start_matches('0') } else { data };
+            let data = if port == 1 {
+                data.trim_start_matches('0')
+            } else {
+                data
+            };
             (port, address, data.to_owned())
         })
         .collect()
@@ -104,24 +111,54 @@ fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
     let folder = shelter.path().join("frame");
     let hardware = rtl().join("stage_a.toml");
     let common = [view, &["--paper", "--bits", "32"]].concat();
-    let rows = ["--vectors", text(&folder), "--vector-records", "100000000", "--json"];
+    let rows = [
+        "--vectors",
+        text(&folder),
+        "--vector-records",
+        "100000000",
+        "--json",
+    ];
     let of_model = [&["model", "--hw", text(&hardware)], &common[..], &rows].concat();
     let model: Value = serde_json::from_str(&shiftvox(shelter.path(), &of_model)).unwrap();
-    let of_render = ["--engine", "machine", "-o", "picture.png", "--aov", "node,voxel", "--hash"];
-    let hash = shiftvox(shelter.path(), &[&["render"], &common[..], &of_render].concat());
+    let of_render = [
+        "--engine",
+        "machine",
+        "-o",
+        "picture.png",
+        "--aov",
+        "node,voxel",
+        "--hash",
+    ];
+    let hash = shiftvox(
+        shelter.path(),
+        &[&["render"], &common[..], &of_render].concat(),
+    );
 
     let printed = run(&folder, simulator, &["+events", "+most=200000000"]);
-    let cycles = printed.lines().find_map(|line| line.strip_suffix(" cycles"));
-    let cycles = cycles.ok_or_else(|| printed.clone())?.trim().parse().unwrap();
+    let cycles = printed
+        .lines()
+        .find_map(|line| line.strip_suffix(" cycles"));
+    let cycles = cycles
+        .ok_or_else(|| printed.clone())?
+        .trim()
+        .parse()
+        .unwrap();
 
     let (expected, simulated) = (expected_events(&folder), simulated_events(&folder));
     let pairs = expected.iter().zip(&simulated);
-    if let Some(at) = pairs.clone().position(|(expected, simulated)| expected != simulated) {
+    if let Some(at) = pairs
+        .clone()
+        .position(|(expected, simulated)| expected != simulated)
+    {
         let (expected, simulated) = (&expected[at], &simulated[at]);
         return Err(format!("event {at}: {simulated:?}, not {expected:?}"));
     }
     if expected.len() != simulated.len() {
-        return Err(format!("{} events, not {}", simulated.len(), expected.len()));
+        return Err(format!(
+            "{} events, not {}",
+            simulated.len(),
+            expected.len()
+        ));
     }
 
     let nodes = numbers(&shelter.path().join("picture.node.npy"));
@@ -129,7 +166,10 @@ fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
     let mut drawn = vec![-1i32; nodes.len()];
     // From the object's lowest corner to the file's indices: the same for all.
     let mut moved = None;
-    for line in fs::read_to_string(folder.join("pixels.txt")).unwrap().lines() {
+    for line in fs::read_to_string(folder.join("pixels.txt"))
+        .unwrap()
+        .lines()
+    {
         let pixel: Vec<i32> = line.split(' ').map(|word| word.parse().unwrap()).collect();
         let [at, node, x, y, z, level] = pixel[..] else {
             return Err(format!("pixel {line}"));
@@ -150,7 +190,10 @@ fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
     Ok(Agreement {
         events: simulated.len(),
         samples: drawn.iter().filter(|&&node| node >= 0).count(),
-        cycles: [cycles, model["cycles"]["cycles"].as_u64().unwrap_or_default()],
+        cycles: [
+            cycles,
+            model["cycles"]["cycles"].as_u64().unwrap_or_default(),
+        ],
         hash: hash.trim().to_owned(),
     })
 }
@@ -158,7 +201,13 @@ fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
 const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
 /// In the middle of the sponge's hollow, looking at a corner of it.
 const INSIDE: [&str; 7] = [
-    "gen:menger,depth=3", "--size", "64", "--eye", "13.4,12.7,13.5", "--target", "20,16,11",
+    "gen:menger,depth=3",
+    "--size",
+    "64",
+    "--eye",
+    "13.4,12.7,13.5",
+    "--target",
+    "20,16,11",
 ];
 
 #[test]
@@ -191,11 +240,35 @@ fn many_scenes() {
     }
     let views: [&[&str]; 6] = [
         &[TREE, "--size", "128"],
-        &[TREE, "--size", "200x90", "--azimuth", "80", "--elevation", "-20"],
+        &[
+            TREE,
+            "--size",
+            "200x90",
+            "--azimuth",
+            "80",
+            "--elevation",
+            "-20",
+        ],
         &["gen:menger,depth=4", "--size", "96"],
         &["gen:terrain,depth=7", "--size", "128x64", "--lod", "0"],
-        &["gen:terrain,depth=6", "--size", "64", "--eye", "20.2,30.7,25.1", "--target", "40,40,10"],
-        &["gen:menger,depth=3", "--size", "50x70", "--lod", "4", "--zoom", "6"],
+        &[
+            "gen:terrain,depth=6",
+            "--size",
+            "64",
+            "--eye",
+            "20.2,30.7,25.1",
+            "--target",
+            "40,40,10",
+        ],
+        &[
+            "gen:menger,depth=3",
+            "--size",
+            "50x70",
+            "--lod",
+            "4",
+            "--zoom",
+            "6",
+        ],
     ];
     for view in views {
         let agreement = compare(right(), view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
@@ -213,7 +286,9 @@ fn two_hundred_random_views() {
     }
     let mut state = 1u64;
     let mut next = |most: u64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) % most
     };
     let mut unlike = 0;
@@ -225,9 +300,19 @@ fn two_hundred_random_views() {
         let elevation = (elevation.parse::<i64>().unwrap() - 90).to_string();
         let elevation = format!("--elevation={elevation}");
         let view = [
-            &scene, "--size", &size, "--lod", lod, "--azimuth", &azimuth, &elevation, "--zoom", &zoom,
+            &scene,
+            "--size",
+            &size,
+            "--lod",
+            lod,
+            "--azimuth",
+            &azimuth,
+            &elevation,
+            "--zoom",
+            &zoom,
         ];
-        let agreement = compare(right(), &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
+        let agreement =
+            compare(right(), &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
         let [simulated, model] = agreement.cycles;
         if simulated != model {
             eprintln!("{at} {view:?}: {simulated} cycles, {model} in the model");

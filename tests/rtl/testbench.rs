@@ -18,8 +18,9 @@ struct Port {
 
 /// A field's name without its last part, and that.
 fn split(name: &str) -> Option<(&str, &str)> {
-    name.rsplit_once('_')
-        .filter(|(_, end)| matches!(*end, "a" | "b" | "c" | "x" | "y" | "z") || "01234567".contains(*end))
+    name.rsplit_once('_').filter(|(_, end)| {
+        matches!(*end, "a" | "b" | "c" | "x" | "y" | "z") || "01234567".contains(*end)
+    })
 }
 
 fn ports(fields: &Value) -> Vec<Port> {
@@ -50,7 +51,9 @@ fn ports(fields: &Value) -> Vec<Port> {
             name: name.to_owned(),
             bits,
             lowest,
-            next: split(name).filter(|(_, end)| matches!(*end, "a" | "x" | "0")).and_then(|(_, end)| after(end)),
+            next: split(name)
+                .filter(|(_, end)| matches!(*end, "a" | "x" | "0"))
+                .and_then(|(_, end)| after(end)),
         });
     }
     ports
@@ -66,7 +69,10 @@ pub fn testbench(block: &Value) -> String {
     let (into, out) = (bits(&stimulus), bits(&expected));
     let mut connections = String::new();
     for (ports, from) in [(&stimulus, "row"), (&expected, "result")] {
-        for Port { name, bits, lowest, .. } in ports {
+        for Port {
+            name, bits, lowest, ..
+        } in ports
+        {
             let _ = write!(connections, ", .{name}({from}[{lowest} +: {bits}])");
         }
     }

@@ -135,8 +135,10 @@ pub struct TurnLog {
     child_level: u32,
     /// Most passes of a visit, by stage and class.
     most_passes: [[u64; CLASSES]; STAGES],
+    sequential: bool,
     /// Of a sequential hardware: the visits that are over, and the stage that the turn is in.
-    steps: Option<(TurnVisits, Stage)>,
+    over: TurnVisits,
+    stage: Stage,
 }
 
 /// A unit as the log needs it; `count` 0: wires.
@@ -179,27 +181,27 @@ impl TurnLog {
             latencies: Latencies::new(hardware),
             child_level: 0,
             most_passes: [[0; CLASSES]; STAGES],
-            steps: (hardware.sequential).then(|| (TurnVisits::default(), Stage::Pop)),
+            sequential: hardware.sequential,
+            over: TurnVisits::default(),
+            stage: Stage::Pop,
         }
     }
 
     /// The turn goes on in a stage: on a sequential hardware what it did in another is a visit that is over.
     #[inline(always)]
     fn enter(&mut self, stage: Stage) {
-        if self.steps.as_ref().is_some_and(|&(_, last)| last != stage) {
+        if self.sequential && self.stage != stage {
             self.end_step(stage);
         }
     }
 
-    #[cold]
     fn end_step(&mut self, next: Stage) {
-        let Some((mut over, last)) = self.steps.take() else {
-            return;
-        };
+        let last = std::mem::replace(&mut self.stage, next);
         if self.met[last as usize] != 0 {
+            let mut over = std::mem::take(&mut self.over);
             self.take_stage(last, &mut over);
+            self.over = over;
         }
-        self.steps = Some((over, next));
     }
 
     #[inline]
@@ -225,7 +227,7 @@ impl TurnLog {
         plan.accesses.clear();
         plan.alone = 0;
         plan.worst = 0;
-        let changed = self.steps.is_some() && self.take_steps(plan);
+        let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
         // As `memory::RecordProbe` has it.
         let divides = 1 << OpClass::DivideStep as u16;
@@ -240,10 +242,8 @@ impl TurnLog {
     /// Takes the visits of a turn on a sequential hardware. Returns whether there were divides.
     fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
         self.end_step(Stage::Pop);
-        if let Some((over, _)) = &mut self.steps {
-            std::mem::swap(over, plan);
-            std::mem::take(&mut over.changed_to_screen);
-        }
+        std::mem::swap(&mut self.over, plan);
+        self.over.changed_to_screen = false;
         std::mem::take(&mut plan.changed_to_screen)
     }
 
@@ -279,7 +279,7 @@ impl TurnLog {
         let first = plan.accesses.len();
         let accesses = &mut self.accesses[stage as usize];
         let mut alone = occupied + latency;
-        if self.steps.is_some() {
+        if self.sequential {
             let reads = accesses.iter().filter(|access| !access.write).count() as u64;
             let operated = if sum.operations == 0 { 0 } else { occupied };
             // Each read takes a cycle of the operations, in which its result is looked at.
