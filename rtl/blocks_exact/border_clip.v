@@ -19,10 +19,14 @@ module border_clip #(parameter W = `WORD_BITS) (
   endgenerate
   wire [W-1:0] to_right = x_corner - w_corner;
   wire signed [W-1:0] left_high, left_low, right_high, right_low, a, b, c, d;
-  child_span #(W) of_left_up    (.child_corner(x_corner + margin_corner), .child_edge(left_up), .low(a), .high(left_high));
-  child_span #(W) of_left_down  (.child_corner(x_corner - margin_corner), .child_edge(left_down), .low(left_low), .high(b));
-  child_span #(W) of_right_up   (.child_corner(to_right + margin_corner), .child_edge(right_up), .low(c), .high(right_high));
-  child_span #(W) of_right_down (.child_corner(to_right - margin_corner), .child_edge(right_down), .low(right_low), .high(d));
+  child_span #(W) of_left_up (.child_corner(x_corner + margin_corner),
+    .child_edge(left_up), .low(a), .high(left_high));
+  child_span #(W) of_left_down (.child_corner(x_corner - margin_corner),
+    .child_edge(left_down), .low(left_low), .high(b));
+  child_span #(W) of_right_up (.child_corner(to_right + margin_corner),
+    .child_edge(right_up), .low(c), .high(right_high));
+  child_span #(W) of_right_down (.child_corner(to_right - margin_corner),
+    .child_edge(right_down), .low(right_low), .high(d));
   assign outside  = left_high < 0 | right_low > 0;
   assign enclosed = ~outside & (wider ? left_low > 0 & right_high < 0 : left_low >= 0 & right_high <= 0);
 endmodule

@@ -142,8 +142,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .data(constant_data), .root(root), .levels(levels), .depth(depth), .level_bound(level_bound),
     .sub_levels(sub_levels), .width(width), .height(height), .coarse(coarse), .origin(origin), .edges(edges),
     .eye_floor(eye_floor), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
-    .lod_limit(lod_limit), .least_size(least_size), .look_up(state == FILLED), .of_level(r_level), .has_lod_depth(has_lod_depth),
-    .lod_depth(lod_depth));
+    .lod_limit(lod_limit), .least_size(least_size), .look_up(state == FILLED), .of_level(r_level),
+    .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 
   // ---------------------------------------------------------------- the object
   // Eight vertices of a corner and three edges, vertex 0 highest.

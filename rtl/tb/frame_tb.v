@@ -2,7 +2,8 @@
 // Draws a frame: writes the constants, starts the machine, answers its memory port, writes down what
 // happens. It runs in a folder that `shiftvox model --paper --vectors` wrote, of whose files it reads
 // frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
-// the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in Icarus Verilog) makes frame.vcd.
+// the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
+// Icarus Verilog) makes frame.vcd.
 module frame_tb;
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word.

@@ -23,14 +23,14 @@ fn simulator(hardware: &Path, folder: &Path) -> PathBuf {
 }
 
 /// The simulator of the machine as it is, made once.
-fn right() -> &'static Path {
+fn right() -> &'static str {
     static MADE: OnceLock<(TempDir, PathBuf)> = OnceLock::new();
     let (_, path) = MADE.get_or_init(|| {
         let shelter = tempfile::tempdir().unwrap();
         let path = simulator(&rtl(), shelter.path());
         (shelter, path)
     });
-    path
+    text(path)
 }
 
 /// What crossed a port, the first number; and where, and what, as far as the simulation writes it down.
@@ -105,8 +105,9 @@ struct Agreement {
     hash: String,
 }
 
-/// Draws a view on the hardware and on the machine, and compares all but the cycles. `Err`: what differs.
-fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
+/// Draws a view on the hardware and on the machine, and compares all but the cycles. `simulator`: the command that
+/// runs it. `Err`: what differs.
+fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("frame");
     let hardware = rtl().join("stage_a.toml");
@@ -134,7 +135,8 @@ fn compare(simulator: &Path, view: &[&str]) -> Result<Agreement, String> {
         &[&["render"], &common[..], &of_render].concat(),
     );
 
-    let printed = run(&folder, simulator, &["+events", "+most=200000000"]);
+    let (program, arguments) = simulator.split_first().unwrap();
+    let printed = run(&folder, program, &[arguments, &["+events"]].concat());
     let cycles = printed
         .lines()
         .find_map(|line| line.strip_suffix(" cycles"));
@@ -215,7 +217,7 @@ fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
     if !is_there("verilator") {
         return;
     }
-    let agreement = compare(right(), &[TREE, "--size", "64"]).unwrap();
+    let agreement = compare(&[right()], &[TREE, "--size", "64"]).unwrap();
     eprintln!("{agreement:?}");
     assert!(agreement.events > 1_000_000 && agreement.samples > 1000);
     assert_eq!(agreement.cycles[0], agreement.cycles[1]);
@@ -226,9 +228,60 @@ fn an_eye_inside_too() {
     if !is_there("verilator") {
         return;
     }
-    let agreement = compare(right(), &INSIDE).unwrap();
+    let agreement = compare(&[right()], &INSIDE).unwrap();
     eprintln!("{agreement:?}");
     assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+}
+
+/// Faults in what connects the blocks: file, text, what somebody might have written.
+const FAULTS: [(&str, &str, &str); 9] = [
+    ("machine", "r_node : first + count", "r_node : first"),
+    ("machine", "marked <= after", "marked <= vector"),
+    (
+        "machine",
+        "for (r = 7; r >= 0; r = r - 1)",
+        "for (r = 0; r < 8; r = r + 1)",
+    ),
+    ("cache", "hit & ~missing", "hit"),
+    ("memory", "else if (read)", "else"),
+    ("verdict", "level >= level_bound", "level > level_bound"),
+    ("image_step", ".low_half_x(half[0])", ".low_half_x(half[2])"),
+    ("to_screen", "(column - 4)", "(column - 3)"),
+    ("frame_constants", "vector[12 + i]", "vector[14 - i]"),
+];
+
+/// A small frame, in Icarus Verilog: as it is, and with each fault.
+#[test]
+fn a_fault_between_the_blocks_is_found() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
+    let shelter = tempfile::tempdir().unwrap();
+    let (compiled, modules) = (
+        shelter.path().join("frame.vvp"),
+        shelter.path().join("stage_a"),
+    );
+    fs::create_dir(&modules).unwrap();
+    let nothing = ("", "", "");
+    for (file, right, fault) in [nothing].into_iter().chain(FAULTS) {
+        for path in fs::read_dir(rtl().join("stage_a")).unwrap() {
+            let path = path.unwrap().path();
+            let mut source = fs::read_to_string(&path).unwrap();
+            if path.file_stem().unwrap() == file {
+                assert_eq!(source.matches(right).count(), 1, "{file}: {right}");
+                source = source.replace(right, fault);
+            }
+            fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
+        }
+        let arguments = "-g2012 -I . -y blocks -s frame_tb tb/frame_tb.v -o";
+        let mut arguments: Vec<&str> = arguments.split(' ').collect();
+        arguments.extend([text(&compiled), "-y", text(&modules)]);
+        run(&rtl(), "iverilog", &arguments);
+        let compared = compare(&["vvp", "-n", text(&compiled), "+most=200000"], &view);
+        let is_right = compared.is_ok_and(|agreement| agreement.cycles[0] == agreement.cycles[1]);
+        assert_eq!(is_right, file.is_empty(), "{file}: {fault}");
+    }
 }
 
 /// The bundled tree, a sponge, terrain, and an eye within them; sizes that fill the picture's quadtree and that do not.
@@ -249,8 +302,16 @@ fn many_scenes() {
             "--elevation",
             "-20",
         ],
-        &["gen:menger,depth=4", "--size", "96"],
-        &["gen:terrain,depth=7", "--size", "128x64", "--lod", "0"],
+        &["gen:menger,depth=4", "--size", "96", "--view", "iso"],
+        &[
+            "gen:terrain,depth=7",
+            "--size",
+            "128x64",
+            "--lod",
+            "0",
+            "--view",
+            "right",
+        ],
         &[
             "gen:terrain,depth=6",
             "--size",
@@ -271,7 +332,8 @@ fn many_scenes() {
         ],
     ];
     for view in views {
-        let agreement = compare(right(), view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
+        let agreement =
+            compare(&[right()], view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
         eprintln!("{view:?}: {agreement:?}");
         assert_eq!(agreement.cycles[0], agreement.cycles[1], "{view:?}");
     }
@@ -312,7 +374,7 @@ fn two_hundred_random_views() {
             &zoom,
         ];
         let agreement =
-            compare(right(), &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
+            compare(&[right()], &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
         let [simulated, model] = agreement.cycles;
         if simulated != model {
             eprintln!("{at} {view:?}: {simulated} cycles, {model} in the model");
