@@ -3,7 +3,7 @@
 //! The only module within the machine that multiplies: on the host, once a
 //! frame. Every load checks that the constant fits its word.
 
-use hwmodel::{Datapath, Probe, WideWord, Word};
+use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
 use crate::project::options::ShiftSum;
 use crate::project::vector::cross;
@@ -203,6 +203,54 @@ impl Constants {
         }
     }
 }
+
+/// A frame's constants as the host writes them to the registers of `rtl/stage_a/frame_constants.v`, from number 0
+/// on, of an object whose node is `root`; all ones but the sign where a level has no depth. Those of
+/// silhouette planes are not among them.
+#[must_use]
+pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
+    let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
+    let c = Constants::load(&mut dp, setup);
+    let limits = [&setup.lod_limit, &Some(setup.size_limit.clone())];
+    let [lod, sample] = limits.map(|limit| limit.as_ref().map(ShiftSum::value));
+    let coarse = lod.is_some_and(|lod| sample.is_some_and(|sample| lod >= sample));
+    let has_lod = c.lod_depth.iter().any(Option::is_some);
+    let mut registers = vec![0; REGISTERS];
+    let mut put =
+        |at: usize, values: &[i64]| registers[at..at + values.len()].copy_from_slice(values);
+    put(0, &[i64::from(root)]);
+    let numbers = [
+        c.levels,
+        c.depth,
+        c.level_bound,
+        c.sub_levels,
+        setup.width,
+        setup.height,
+    ];
+    put(1, &numbers.map(i64::from));
+    put(7, &[i64::from(coarse) | i64::from(has_lod) << 1]);
+    let sizes = [c.size_limit_screen, c.lod_limit_screen, c.least_size_screen];
+    put(8, &[c.near, c.near_crossing].map(Word::to_host));
+    put(10, &sizes.map(Word::to_host));
+    put(16, &c.origin.map(Word::to_host));
+    put(
+        19,
+        &c.edges
+            .concat()
+            .iter()
+            .map(|edge| edge.to_host())
+            .collect::<Vec<_>>(),
+    );
+    put(28, &c.eye_floor.map(Word::to_host));
+    let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);
+    let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));
+    put(LEVEL_REGISTERS, &depths.collect::<Vec<_>>());
+    registers
+}
+
+/// Registers of constants, and the first of those that have one for each octree level.
+const REGISTERS: usize = 128;
+const LEVEL_REGISTERS: usize = 64;
 
 /// With 64 bits; beyond them the nearest.
 fn clamped(value: i128) -> i64 {

@@ -58,6 +58,7 @@ mod watch;
 
 pub use crate::project::OCCLUSION_ORDER;
 pub use blocks::{Block, Port};
+pub use constants::frame_registers;
 pub use engine::Machine;
 #[cfg(test)]
 pub(crate) use instruments::mutants;

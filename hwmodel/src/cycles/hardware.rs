@@ -41,6 +41,10 @@ pub struct Hardware {
     pub independence: Independence,
     /// Further cycles to take a record from another lane's stack.
     pub steal_cycles: u32,
+    /// Whether a turn's steps follow one another as the record loop makes them, with nothing at once:
+    /// rule 12 of [this module's parent](super).
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub sequential: bool,
     /// Classes of operation that take no unit and no time.
     #[serde(default)]
     pub wires: Vec<OpClass>,
@@ -368,6 +372,11 @@ impl Hardware {
         if bricks && !leaf_masks {
             let range = "false where leaf_masks is";
             return Err(out_of_range("organisation.bricks", bricks, range));
+        }
+        if self.sequential && self.organisation.stack != StackHolds::Children {
+            // A recording of turns, which other stacks allow, does not keep the order of steps.
+            let range = "false, except where the stack holds children";
+            return Err(out_of_range("sequential", true, range));
         }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;

@@ -271,7 +271,22 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let mut ends = issued + visit.latency;
         let mut cause = Cause::MemoryPort;
         let mut at = now;
-        for &access in &of.plan.accesses[visit.accesses.clone()] {
+        if self.hardware.sequential {
+            // One after the other: an access, a cycle to look at what was read, the next access; at last
+            // the operations that those cycles left.
+            for &access in &of.plan.accesses[visit.accesses.clone()] {
+                let served = self.memories.serve(access, at, from);
+                at = served.done + u64::from(!access.write);
+                cause = served.cause;
+            }
+            ends = (at + visit.latency).max(now + 1);
+            frees = ends;
+        }
+        let overlapped = match self.hardware.sequential {
+            true => 0..0,
+            false => visit.accesses.clone(),
+        };
+        for &access in &of.plan.accesses[overlapped] {
             let served = self.memories.serve(access, at, from);
             at = served.issued;
             frees = frees.max(at + 1);

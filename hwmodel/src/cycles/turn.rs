@@ -135,6 +135,10 @@ pub struct TurnLog {
     child_level: u32,
     /// Most passes of a visit, by stage and class.
     most_passes: [[u64; CLASSES]; STAGES],
+    sequential: bool,
+    /// Of a sequential hardware: the visits that are over, and the stage that the turn is in.
+    over: TurnVisits,
+    stage: Stage,
 }
 
 /// A unit as the log needs it; `count` 0: wires.
@@ -177,11 +181,32 @@ impl TurnLog {
             latencies: Latencies::new(hardware),
             child_level: 0,
             most_passes: [[0; CLASSES]; STAGES],
+            sequential: hardware.sequential,
+            over: TurnVisits::default(),
+            stage: Stage::Pop,
+        }
+    }
+
+    /// The turn goes on in a stage: on a sequential hardware what it did in another is a visit that is over.
+    #[inline(always)]
+    fn enter(&mut self, stage: Stage) {
+        if self.sequential && self.stage != stage {
+            self.end_step(stage);
+        }
+    }
+
+    fn end_step(&mut self, next: Stage) {
+        let last = std::mem::replace(&mut self.stage, next);
+        if self.met[last as usize] != 0 {
+            let mut over = std::mem::take(&mut self.over);
+            self.take_stage(last, &mut over);
+            self.over = over;
         }
     }
 
     #[inline]
     fn access(&mut self, memory: Memory, address: u64, stage: Stage, write: bool) {
+        self.enter(stage);
         self.met[stage as usize] |= ACCESSED;
         self.accesses[stage as usize].push(Access {
             address,
@@ -202,15 +227,24 @@ impl TurnLog {
         plan.accesses.clear();
         plan.alone = 0;
         plan.worst = 0;
+        let changed = self.sequential && self.take_steps(plan);
         plan.child_level = self.child_level;
         // As `memory::RecordProbe` has it.
         let divides = 1 << OpClass::DivideStep as u16;
-        plan.changed_to_screen = self.met[Stage::ToScreen as usize] & divides != 0;
+        plan.changed_to_screen = changed || self.met[Stage::ToScreen as usize] & divides != 0;
         for stage in ROUND {
             if self.met[stage as usize] != 0 {
                 self.take_stage(stage, plan);
             }
         }
+    }
+
+    /// Takes the visits of a turn on a sequential hardware. Returns whether there were divides.
+    fn take_steps(&mut self, plan: &mut TurnVisits) -> bool {
+        self.end_step(Stage::Pop);
+        std::mem::swap(&mut self.over, plan);
+        self.over.changed_to_screen = false;
+        std::mem::take(&mut plan.changed_to_screen)
     }
 
     #[inline]
@@ -219,6 +253,7 @@ impl TurnLog {
         let mut sum = Done::default();
         let of = stage as usize;
         let mut classes = std::mem::take(&mut self.met[of]) & !ACCESSED;
+        plan.changed_to_screen |= classes & 1 << OpClass::DivideStep as u16 != 0;
         while classes != 0 {
             let class = classes.trailing_zeros() as usize % CLASSES;
             classes &= classes - 1;
@@ -241,13 +276,28 @@ impl TurnLog {
             sum.operations += done.operations;
             sum.passes += done.passes;
         }
-        let mut alone = occupied + latency;
-        plan.worst += alone;
         let first = plan.accesses.len();
         let accesses = &mut self.accesses[stage as usize];
-        for &access in accesses.iter() {
-            alone = alone.max(self.latencies.alone(access));
-            plan.worst += self.latencies.worst(access);
+        let mut alone = occupied + latency;
+        if self.sequential {
+            let reads = accesses.iter().filter(|access| !access.write).count() as u64;
+            let operated = if sum.operations == 0 { 0 } else { occupied };
+            // Each read takes a cycle of the operations, in which its result is looked at.
+            latency += operated.max(reads) - reads;
+            occupied = 0;
+            plan.worst += reads + latency;
+            alone = reads + latency;
+            for &access in accesses.iter() {
+                alone += self.latencies.alone(access);
+                plan.worst += self.latencies.worst(access);
+            }
+            alone = alone.max(1);
+        } else {
+            plan.worst += alone;
+            for &access in accesses.iter() {
+                alone = alone.max(self.latencies.alone(access));
+                plan.worst += self.latencies.worst(access);
+            }
         }
         plan.accesses.append(accesses);
         plan.alone += alone;
@@ -266,6 +316,7 @@ impl TurnLog {
 impl Probe for TurnLog {
     #[inline(always)]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
+        self.enter(place.stage);
         let (stage, class) = (place.stage as usize, class as usize);
         let width = (bits as usize).min(WIDTHS - 1);
         let passes = self.passes_of[stage][class][width];
@@ -295,7 +346,7 @@ impl Probe for TurnLog {
 #[derive(Debug, Clone)]
 pub(super) struct Visit {
     pub(super) stage: Stage,
-    /// Cycles during which its operations are issued, at least 1.
+    /// Cycles during which its operations are issued, at least 1; 0 on a sequential hardware.
     pub(super) occupied: u64,
     /// Further cycles until their results are there.
     pub(super) latency: u64,

@@ -30,9 +30,11 @@ fn replay_folder(folder: &Path) -> (Option<String>, BTreeMap<String, usize>) {
     let manifest: Value = serde_json::from_str(&text).unwrap();
     assert_eq!(manifest["schema"], 5);
     let constants = constants_of(&manifest);
-    let mut files = ["manifest.json", "README.txt", "parameters.vh"]
-        .map(str::to_owned)
+    let of_frame = ["parameters.vh", "frame.constants.hex", "frame.nodes.hex"];
+    let mut files = [&["manifest.json", "README.txt"], &of_frame[..]]
+        .concat()
         .into_iter()
+        .map(str::to_owned)
         .collect::<BTreeSet<_>>();
     let mut wrong = None;
     let mut counts = BTreeMap::new();

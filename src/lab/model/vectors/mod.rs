@@ -9,6 +9,7 @@ mod blending;
 mod blocks;
 mod description;
 mod folder;
+mod frame_image;
 mod manifest;
 mod manifest_fields;
 mod ports;
@@ -114,6 +115,13 @@ pub fn write(
         let write =
             |name: &str, text: &str| whole::write(&folder.join(name), text.as_bytes(), false);
         write(folder::PARAMETERS, &readme::parameters(setup))?;
+        write(
+            frame_image::CONSTANTS,
+            &frame_image::constants(setup, graph.root),
+        )?;
+        if let Some(nodes) = frame_image::nodes(graph) {
+            write(frame_image::NODES, &nodes)?;
+        }
         for recording in recordings.iter().filter(|recording| recording.rows > 0) {
             let name = format!("{}_tb.{}", recording.description.name, folder::VERILOG);
             write(&name, &readme::testbench(setup.format, recording))?;

@@ -1,0 +1,105 @@
+`include "widths.vh"
+// A cache of words of 64 bits in lines of eight, set-associative, least recently used goes first.
+//
+// A request is answered in the next cycle on a hit: `ready` with `word`, until the next request. On a
+// miss the line is asked for (`fetch` for one cycle), comes as eight words in order (`fill`), is looked
+// up again in the cycle after the last, and `ready` follows.
+module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2) (
+  input                       clk, reset,
+  input                       request,
+  input  [`NODE_BITS-1:0]     address,     // of a word
+  output                      ready,
+  output [63:0]               word,
+  output                      fetch,
+  output [`NODE_BITS-4:0]     fetch_line,
+  input                       fill,
+  input  [63:0]               fill_word);
+  localparam WAYS = 1 << WAYS_LOG2, SETS = 1 << SETS_LOG2;
+  localparam TAG = `NODE_BITS - 3 - SETS_LOG2;
+  localparam ORDER = WAYS*WAYS_LOG2;
+
+  // What was asked for, and how far it is.
+  reg                   looking, missing, again;
+  reg [`NODE_BITS-1:0]  at;
+  reg [2:0]             filled;
+  wire [SETS_LOG2-1:0]  set = at[3 +: SETS_LOG2];
+  wire [TAG-1:0]        tag = at[`NODE_BITS-1 -: TAG];
+
+  // By set, the ways in order of use, the last used lowest; by set and way, whether there is a line.
+  reg [SETS*ORDER-1:0]  order;
+  reg [SETS*WAYS-1:0]   valid;
+  wire [ORDER-1:0]      now = order[set*ORDER +: ORDER];
+  wire [WAYS-1:0]       valid_here = valid[set*WAYS +: WAYS];
+
+  // Tags and words, a memory of each way.
+  wire look = request | again;
+  wire last_fill = fill & &filled;
+  wire [2+SETS_LOG2:0] look_at = request ? address[2+SETS_LOG2:0] : at[2+SETS_LOG2:0];
+  wire [2+SETS_LOG2:0] fill_at = {set, filled};
+  wire [WAYS*TAG-1:0]  tags;
+  wire [WAYS*64-1:0]   words;
+  wire [WAYS-1:0]      has_line;
+  genvar i;
+  generate
+    for (i = 0; i < WAYS; i = i + 1) begin : ways
+      wire mine = way == i;
+      memory #(.BITS(TAG), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_tags (.clk(clk), .read(look),
+        .write(last_fill & mine), .address(fill ? set : look_at[3 +: SETS_LOG2]), .data_in(tag),
+        .data_out(tags[i*TAG +: TAG]));
+      memory #(.BITS(64), .WORDS(8*SETS), .ADDRESS(3 + SETS_LOG2)) of_words (.clk(clk), .read(look),
+        .write(fill & mine), .address(fill ? fill_at : look_at), .data_in(fill_word),
+        .data_out(words[i*64 +: 64]));
+      assign has_line[i] = valid_here[i] & tags[i*TAG +: TAG] == tag;
+    end
+  endgenerate
+
+  // The way that has the line, or on a miss the least recently used one; its place in the order.
+  wire hit = |has_line;
+  reg [WAYS_LOG2-1:0] place;
+  integer k;
+  always @* begin
+    place = WAYS - 1;
+    for (k = 0; k < WAYS; k = k + 1)
+      if (hit & has_line[now[k*WAYS_LOG2 +: WAYS_LOG2]]) place = k;
+  end
+  wire [WAYS_LOG2-1:0] way = now[place*WAYS_LOG2 +: WAYS_LOG2];
+  // That way comes first, those before it move on by one.
+  reg [ORDER-1:0] used;
+  always @* begin
+    used = now;
+    used[0 +: WAYS_LOG2] = way;
+    for (k = 1; k < WAYS; k = k + 1)
+      if (k <= place) used[k*WAYS_LOG2 +: WAYS_LOG2] = now[(k - 1)*WAYS_LOG2 +: WAYS_LOG2];
+  end
+
+  assign ready = looking & hit & ~missing;
+  assign word = words[way*64 +: 64];
+  assign fetch = looking & ~hit & ~missing;
+  assign fetch_line = at[`NODE_BITS-1:3];
+  integer s;
+  always @(posedge clk)
+    if (reset) begin
+      looking <= 0;
+      missing <= 0;
+      again <= 0;
+      filled <= 0;
+      valid <= 0;
+      for (s = 0; s < SETS*WAYS; s = s + 1)
+        order[s*WAYS_LOG2 +: WAYS_LOG2] <= s;   // modulo the ways
+    end else begin
+      again <= last_fill;
+      if (request) begin
+        looking <= 1;
+        at <= address;
+      end else if (ready)
+        order[set*ORDER +: ORDER] <= used;
+      if (fetch)
+        missing <= 1;
+      else if (again)
+        missing <= 0;
+      if (fill)
+        filled <= filled + 1'b1;
+      if (last_fill)
+        valid[{set, way}] <= 1;
+    end
+endmodule

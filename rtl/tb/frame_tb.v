@@ -1,0 +1,122 @@
+`include "widths.vh"
+// Draws a frame: writes the constants, starts the machine, answers its memory port, writes down what
+// happens. It runs in a folder that `shiftvox model --paper --vectors` wrote, of whose files it reads
+// frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
+// the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
+// Icarus Verilog) makes frame.vcd.
+module frame_tb;
+  localparam W = `WORD_BITS;
+  // Cycles from the request of a line to its first word.
+  localparam LATENCY = 50;
+  // Nodes that there is room for, levels of the picture, records on the stack.
+  localparam NODES = 1 << 20, PICTURE_LEVELS = 8, STACK_LOG2 = 8;
+  reg clk = 0, reset = 1, start = 0, constant_write = 0;
+  always #1 clk = ~clk;
+  reg [6:0] constant_address = 0;
+  reg [W-1:0] constant_data = 0;
+  wire busy, done, failed, fetch, fetch_attribute, pixel;
+  wire [`NODE_BITS-4:0] fetch_line;
+  reg fill = 0;
+  reg [63:0] fill_word = 0;
+  wire [`PLACE_BITS-1:0] pixel_x, pixel_y;
+  wire [`NODE_BITS-1:0] pixel_node;
+  wire [3*W-1:0] pixel_voxel;
+  wire [`LEVEL_BITS-1:0] pixel_level;
+  wire [63:0] pixel_attribute;
+  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2)) dut (
+    .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
+    .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
+    .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill), .fill_word(fill_word),
+    .pixel(pixel), .pixel_x(pixel_x), .pixel_y(pixel_y), .pixel_node(pixel_node), .pixel_voxel(pixel_voxel),
+    .pixel_level(pixel_level), .pixel_attribute(pixel_attribute));
+
+  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  reg [63:0] nodes [0:NODES-1];
+  reg [W-1:0] constants [0:127];
+  integer wait_for, beat;
+  reg of_attribute;
+  reg [`NODE_BITS-1:0] at;
+  initial begin
+    wait_for = -1;
+    beat = 8;
+  end
+  always @(posedge clk) begin
+    fill <= 0;
+    if (fetch) begin
+      wait_for <= LATENCY - 1;
+      of_attribute <= fetch_attribute;
+      at <= {fetch_line, 3'd0};
+    end else if (wait_for > 0)
+      wait_for <= wait_for - 1;
+    else if (wait_for == 0) begin
+      wait_for <= -1;
+      beat <= 1;
+      fill <= 1;
+      fill_word <= of_attribute ? at : at < NODES ? nodes[at] : 0;
+    end else if (beat < 8) begin
+      beat <= beat + 1;
+      fill <= 1;
+      fill_word <= of_attribute ? at + beat : at + beat < NODES ? nodes[at + beat] : 0;
+    end
+  end
+
+  // ------------------------------------------------ events
+  integer events, pixels, i, cycles, most, nothing;
+  integer in_state [0:63];
+  reg has_events;
+  always @(posedge clk) if (busy) begin
+    cycles <= cycles + 1;
+    in_state[dut.state] <= in_state[dut.state] + 1;
+    if (has_events) begin
+      if (dut.state == dut.POP) $fwrite(events, "0 %0d\n", dut.top);
+      if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h\n", dut.stacked, dut.child_record);
+      if (dut.fill_read) $fwrite(events, "2 %0d\n", dut.fill_address);
+      if (dut.state == dut.MARK) $fwrite(events, "3 %0d %h\n", dut.fill_address, dut.marked);
+      if (dut.state == dut.NODE) $fwrite(events, "4 %0d\n", dut.r_node);
+      if (dut.state == dut.ATTRIBUTE) $fwrite(events, "5 %0d\n", dut.r_node);
+      if (pixel) $fwrite(events, "6 %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node);
+    end
+    if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
+      pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
+    if (pixel && pixel_attribute != pixel_node) begin
+      $display("the attributes of node %0d came with a pixel of node %0d", pixel_attribute, pixel_node);
+      $finish;
+    end
+  end
+
+  initial begin
+    $readmemh("frame.constants.hex", constants);
+    $readmemh("frame.nodes.hex", nodes);
+    pixels = $fopen("pixels.txt");
+    has_events = $test$plusargs("events");
+    events = 0;
+    if (has_events) events = $fopen("events.txt");
+    if ($test$plusargs("wave")) begin
+      $dumpfile("frame.vcd");
+      $dumpvars(1, dut);
+    end
+    most = 100_000_000;
+    nothing = $value$plusargs("most=%d", most);
+    cycles = 0;
+    for (i = 0; i < 64; i = i + 1) in_state[i] = 0;
+    repeat (2) @(posedge clk);
+    #1 reset = 0;
+    for (i = 0; i < 128; i = i + 1) begin
+      constant_write = 1;
+      constant_address = i;
+      constant_data = constants[i];
+      @(posedge clk) #1;
+    end
+    constant_write = 0;
+    start = 1;
+    @(posedge clk) #1;
+    start = 0;
+    while (!done && cycles < most) @(posedge clk) #1;
+    if ($test$plusargs("states"))
+      for (i = 0; i < 64; i = i + 1)
+        if (in_state[i] != 0) $display("state %0d: %0d", i, in_state[i]);
+    if (done && !failed) $display("%0d cycles", cycles);
+    else $display("failed: %s", done ? "the stack is full" : "no end");
+    $finish;
+  end
+endmodule

@@ -1,0 +1,41 @@
+//! What a frame's hardware is given before it starts: its constants, and the nodes in its memory.
+//! `rtl/` draws whole frames from these files (`docs/rtl.md`).
+
+use std::fmt::Write;
+
+use crate::graph::GraphView;
+use crate::machine::frame_registers;
+use crate::project::FrameSetup;
+
+/// The file of constants: a register a line, from number 0 on.
+pub(super) const CONSTANTS: &str = "frame.constants.hex";
+/// The file of nodes: a word of 64 bits a line, from node 0 on.
+pub(super) const NODES: &str = "frame.nodes.hex";
+
+/// The constants, each as wide as a word.
+pub(super) fn constants(setup: &FrameSetup, root: u32) -> String {
+    let format = setup.format;
+    let mask = u64::MAX >> (64 - format.bits());
+    let digits = format.bits().div_ceil(4) as usize;
+    let mut text =
+        String::from("// Registers of the frame's constants, from number 0 on: docs/rtl.md.\n");
+    for value in frame_registers(setup, root) {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{:0digits$x}", value as u64 & mask);
+    }
+    text
+}
+
+/// The nodes: which children each has, and where they begin. `None`: children are not side by side, which
+/// a word cannot say.
+pub(super) fn nodes(graph: &GraphView<'_>) -> Option<String> {
+    if !graph.links.is_empty() {
+        return None;
+    }
+    let mut text =
+        String::from("// Nodes from number 0 on: mask of children << 32 | where they begin.\n");
+    for (&mask, &first) in graph.mask.iter().zip(graph.first) {
+        let _ = writeln!(text, "{:016x}", u64::from(mask) << 32 | u64::from(first));
+    }
+    Some(text)
+}

@@ -1,0 +1,328 @@
+//! The blocks against the rows of the vectors.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::testbench::testbench;
+use super::tools::{is_there, rtl, run, shiftvox, text};
+
+/// Views: from outside, where records change to screen space; and with the eye within, where they stay.
+const VIEWS: [&[&str]; 2] = [
+    &["gen:menger,depth=3", "--size", "48"],
+    &[
+        "gen:menger,depth=3",
+        "--size",
+        "48",
+        "--eye",
+        "13.4,12.7,3.5",
+        "--target",
+        "20,14,9",
+    ],
+];
+
+/// A folder of vectors of a view, its manifest, and definitions of its widths.
+struct Rows {
+    _shelter: TempDir,
+    folder: PathBuf,
+    manifest: Value,
+    defines: [String; 3],
+}
+
+/// Settings of stage A, and of the blocks of exact coverage.
+const PAPER: &[&str] = &["--paper"];
+const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
+
+fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
+    let shelter = tempfile::tempdir().unwrap();
+    let folder = shelter.path().join("rows");
+    let rest = [
+        "--bits",
+        bits,
+        "--vectors",
+        text(&folder),
+        "--vector-records",
+        "400",
+    ];
+    shiftvox(shelter.path(), &[&["model"], view, rules, &rest].concat());
+    let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let of_word = |key: &str| manifest["word"][key].as_u64().unwrap();
+    let (fraction, wide) = (of_word("screen_fraction_bits"), of_word("wide_bits"));
+    Rows {
+        _shelter: shelter,
+        defines: [
+            format!("-DWORD_BITS={bits}"),
+            format!("-DFRACTION_BITS={fraction}"),
+            format!("-DWIDE_BITS={wide}"),
+        ],
+        folder,
+        manifest,
+    }
+}
+
+/// Runs all blocks through their rows, their modules from the first folder that has them; how many were wrong, by block.
+fn wrong_rows(rows: &Rows, folders: &[&Path]) -> BTreeMap<String, u64> {
+    let blocks = rows.manifest["blocks"].as_array().unwrap();
+    let with_rows = || {
+        blocks
+            .iter()
+            .filter(|block| block["rows"].as_u64() != Some(0))
+    };
+    let benches: String = with_rows().map(testbench).collect();
+    let source = rows.folder.with_extension("v");
+    let compiled = rows.folder.with_extension("vvp");
+    fs::write(&source, benches).unwrap();
+    let rtl = rtl();
+    let mut arguments = vec!["-g2012", "-I", text(&rtl), "-o", text(&compiled)];
+    arguments.extend(folders.iter().flat_map(|folder| ["-y", text(folder)]));
+    arguments.extend(rows.defines.iter().map(String::as_str));
+    let tops: Vec<String> = with_rows()
+        .map(|block| format!("{}_tb", block["name"].as_str().unwrap()))
+        .collect();
+    arguments.extend(tops.iter().flat_map(|top| ["-s", top]));
+    arguments.push(text(&source));
+    run(&rows.folder, "iverilog", &arguments);
+    run(&rows.folder, "vvp", &["-n", text(&compiled)])
+        .lines()
+        .filter_map(|line| line.split_once(' '))
+        .filter_map(|(block, wrong)| Some((block.to_owned(), wrong.parse().ok()?)))
+        .collect()
+}
+
+#[test]
+fn every_row_of_every_block_in_two_formats() {
+    if !is_there("iverilog") {
+        return;
+    }
+    for bits in ["24", "32"] {
+        for view in VIEWS {
+            let (exact, others) = (rtl().join("blocks_exact"), rtl().join("blocks"));
+            for (rules, folders) in [(PAPER, &[&*others][..]), (EXACT, &[&*exact, &*others])] {
+                let wrong = wrong_rows(&rows(rules, view, bits), folders);
+                assert!(wrong.len() >= 22, "{wrong:?}");
+                assert!(
+                    wrong.values().all(|&wrong| wrong == 0),
+                    "{bits} {view:?}: {wrong:?}"
+                );
+            }
+        }
+    }
+}
+
+/// Texts of the blocks, and a fault that somebody could make in each.
+const FAULTS: [(&str, &str, &str); 26] = [
+    ("filled", "&vector", "|vector"),
+    ("change_depth", "w_min >= least", "w_min > least"),
+    ("detail_depth", "w_min >= least", "w_min > least"),
+    ("change_guard", "wide - at", "wide + at"),
+    ("size_limit", "w_min >>> below", "w_min >> below"),
+    ("size_clip", "here >= there", "here <= there"),
+    ("size_screen", "size <= limit", "size < limit"),
+    ("centre", "signed [W:0]   sum", "signed [W-1:0] sum"),
+    ("octant_order", "eye < middle", "eye <= middle"),
+    ("midpoints", "sum = a + b", "sum = a + b + 1"),
+    ("child_vertices", "9*(v/4) + 3*(v/2%2)", "9*(v/4) + 3*(v%2)"),
+    (
+        "child_corners",
+        "octant[k] ? centre",
+        "octant[2 - k] ? centre",
+    ),
+    ("child_span", "a <= b", "a >= b"),
+    ("border_clip", "left_high < 0", "left_high <= 0"),
+    ("bisector_clip", "lowered <= 0", "lowered < 0"),
+    ("near_node", "to_right > 0", "to_right >= 0"),
+    ("half_clip", "right ? far", "~right ? far"),
+    ("border_screen", "right < low", "right <= low"),
+    ("bisector_screen", "middle < high", "middle <= high"),
+    (
+        "quadrants",
+        "{high_half_x, low_half_x}",
+        "{low_half_x, high_half_x}",
+    ),
+    (
+        "node_choice",
+        "overlapped[3] | overlapped[1]",
+        "overlapped[1]",
+    ),
+    ("cage_centre", "sum[W:1]", "sum[W-1:0]"),
+    ("centre_half", "beyond >= 0", "beyond > 0"),
+    ("centre_sample", "- 1'b1", "- 1'b0"),
+    ("fill_update", "&after", "^after"),
+    ("divide_step", "~left[W+4]", "~left[W+4] & |left"),
+];
+
+/// A fault in each block at once: each has rows that find it. The pool's two parts are one block.
+#[test]
+fn a_fault_in_any_block_is_found() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(PAPER, view, "32")).collect();
+    // The two that other blocks consist of go one by one.
+    for parts in [&["child_vertices"][..], &["midpoints"], &[]] {
+        let shelter = tempfile::tempdir().unwrap();
+        for file in fs::read_dir(rtl().join("blocks")).unwrap() {
+            let path = file.unwrap().path();
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let mut source = fs::read_to_string(&path).unwrap();
+            let is_part = ["child_vertices", "midpoints"].contains(&name);
+            if let Some((_, right, fault)) = FAULTS.iter().find(|(block, ..)| *block == name) {
+                assert_eq!(source.matches(right).count(), 1, "{name}: {right}");
+                if parts.contains(&name) || !is_part && parts.is_empty() {
+                    source = source.replace(right, fault);
+                }
+            }
+            fs::write(shelter.path().join(format!("{name}.v")), source).unwrap();
+        }
+        let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
+        for rows in &all {
+            for (block, count) in wrong_rows(rows, &[shelter.path()]) {
+                *wrong.entry(block).or_default() += count;
+            }
+        }
+        if parts.is_empty() {
+            wrong.remove("vertex_pool");
+            let missed: Vec<_> = wrong.iter().filter(|&(_, &wrong)| wrong == 0).collect();
+            assert!(missed.is_empty(), "{missed:?}");
+        } else {
+            assert!(wrong["vertex_pool"] > 0, "{parts:?}");
+        }
+    }
+}
+
+/// What a text of a block may become by a slip.
+const SLIPS: [(&str, &str); 16] = [
+    (" + ", " - "),
+    (" - ", " + "),
+    (" < ", " <= "),
+    (" <= ", " < "),
+    (" > ", " >= "),
+    (" >= ", " > "),
+    (" & ", " | "),
+    (" | ", " & "),
+    (" == ", " != "),
+    (" << ", " >> "),
+    (" >>> ", " >> "),
+    ("= ~|", "= |"),
+    ("= ~", "= "),
+    ("[W:1]", "[W-1:0]"),
+    ("1'b1", "1'b0"),
+    (" ? ", " ? ~"),
+];
+
+/// All ways to make one slip in a block.
+fn mutants(source: &str) -> Vec<String> {
+    let is_code = |line: &str| {
+        let declares = [
+            "//",
+            "for (",
+            "module",
+            "input",
+            "output",
+            "localparam",
+            "`",
+            "if (",
+            "function",
+        ];
+        !declares
+            .iter()
+            .any(|word| line.trim_start().starts_with(word))
+    };
+    let mut mutants = Vec::new();
+    let mut begun = 0;
+    for line in source.split_inclusive('\n') {
+        // What stands in an index or behind a comment is no arithmetic of the block.
+        let code = line.split("//").next().unwrap_or_default();
+        for (right, wrong) in SLIPS.iter().filter(|_| is_code(line)) {
+            for (at, _) in code.match_indices(right) {
+                let open = code[..at].matches('[').count() - code[..at].matches(']').count();
+                if open == 0 {
+                    let (before, after) = source.split_at(begun + at);
+                    mutants.push(format!("{before}{wrong}{}", &after[right.len()..]));
+                }
+            }
+        }
+        begun += line.len();
+    }
+    mutants
+}
+
+/// The testbenches' mutation score. Blocks have their first slip at once, then their second, ...
+#[test]
+#[ignore = "takes minutes"]
+fn mutation_score() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(PAPER, view, "32")).collect();
+    let mut sources = BTreeMap::new();
+    // By testbench: file and text.
+    let mut slips: BTreeMap<&str, Vec<(String, String)>> = BTreeMap::new();
+    for file in fs::read_dir(rtl().join("blocks")).unwrap() {
+        let path = file.unwrap().path();
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let source = fs::read_to_string(&path).unwrap();
+        let bench = match name.as_str() {
+            "midpoints" | "child_vertices" => "vertex_pool",
+            "divide_step" => "to_screen_divide",
+            // Registers and counters of the divide: a slip may make it endless.
+            "divide_lane" | "divide_control" | "to_screen_divide" => "",
+            other => other,
+        };
+        if !bench.is_empty() {
+            let mutants = mutants(&source)
+                .into_iter()
+                .map(|text| (name.clone(), text));
+            slips
+                .entry(bench.to_owned().leak())
+                .or_default()
+                .extend(mutants);
+        }
+        sources.insert(name, source);
+    }
+    let (mut found, mut missed) = (0, Vec::new());
+    for round in 0..slips.values().map(Vec::len).max().unwrap() {
+        let shelter = tempfile::tempdir().unwrap();
+        let mut texts = sources.clone();
+        let mut under_test = BTreeMap::new();
+        for (bench, slips) in &slips {
+            if let Some((file, text)) = slips.get(round) {
+                texts.insert(file.clone(), text.clone());
+                under_test.insert(*bench, (file, text));
+            }
+        }
+        for (name, text) in &texts {
+            fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
+        }
+        let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
+        for rows in &all {
+            for (block, count) in wrong_rows(rows, &[shelter.path()]) {
+                *wrong.entry(block).or_default() += count;
+            }
+        }
+        for (bench, (file, text)) in under_test {
+            if wrong.get(bench).is_some_and(|&count| count > 0) {
+                found += 1;
+            } else {
+                let lines = text.lines().zip(sources[file].lines());
+                let slip = lines
+                    .filter(|(slip, right)| slip != right)
+                    .map(|(slip, _)| slip.trim());
+                missed.push(format!("{file}: {}", slip.collect::<String>()));
+            }
+        }
+    }
+    for missed in &missed {
+        eprintln!("not found: {missed}");
+    }
+    let all = found + missed.len();
+    eprintln!(
+        "{found} of {all} slips found, {:.1} %",
+        100.0 * found as f64 / all as f64
+    );
+    assert!(found * 100 >= all * 95);
+}

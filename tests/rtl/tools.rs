@@ -1,0 +1,48 @@
+//! The programs that tests run.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The folder of the hardware.
+pub fn rtl() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl")
+}
+
+/// Whether a program is installed; says that a test is skipped if not.
+pub fn is_there(program: &str) -> bool {
+    let is_there = Command::new(program).arg("-V").output().is_ok();
+    if !is_there {
+        eprintln!("skipped: no {program} (apt-get install iverilog verilator)");
+    }
+    is_there
+}
+
+/// Runs a program in a folder; what it prints.
+pub fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) -> String {
+    let program = program.as_ref();
+    let ran = Command::new(program)
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let words = |out: &[u8]| String::from_utf8_lossy(out).into_owned();
+    let (out, errors) = (words(&ran.stdout), words(&ran.stderr));
+    let last = errors.len().saturating_sub(2000);
+    assert!(
+        ran.status.success(),
+        "{} {arguments:?}: {}",
+        program.display(),
+        errors.get(last..).unwrap_or(&errors)
+    );
+    out
+}
+
+/// Runs `shiftvox`.
+pub fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
+    run(folder, env!("CARGO_BIN_EXE_shiftvox"), arguments)
+}
+
+/// A path as a command has it.
+pub fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
