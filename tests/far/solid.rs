@@ -12,7 +12,9 @@ use shiftvox::mesh::{Material, Mesh, MeshBuilder, Surface};
 pub(crate) fn sphere(builder: &mut MeshBuilder, radius: f64, n: u32, material: u32) {
     let at = |i: u32, j: u32| {
         let (sin, cos) = libm::sincos(std::f64::consts::PI * f64::from(i) / f64::from(n));
-        let around = std::f64::consts::TAU * f64::from(j) / f64::from(n);
+        // One pole, one first column: the sphere is closed to the last bit.
+        let sin = if i == n { 0.0 } else { sin };
+        let around = std::f64::consts::TAU * f64::from(j % n) / f64::from(n);
         let (s, c) = libm::sincos(around);
         [sin * c * radius, cos * radius, sin * s * radius].map(|c| c as f32)
     };

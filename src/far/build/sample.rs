@@ -19,10 +19,10 @@ use super::shot::{Aim, NOWHERE, Shot, Target};
 use super::touch::{POINTS, Touched, touched};
 
 /// Most visibility rays from random directions at a voxel that none reached yet.
-pub(super) const MOST_VISIBILITY_RAYS: u32 = 8;
+pub(super) const MOST_VISIBILITY_RAYS: u32 = 16;
 /// Most of them from where neighbours were seen: what one window lets a ray
 /// through to lies side by side, and a random direction seldom finds the window.
-pub(super) const MOST_FOLLOWED: u8 = 8;
+pub(super) const MOST_FOLLOWED: u8 = 12;
 /// A voxel that fewer rays were aimed at, none of which reached it, is not known to be hidden.
 pub(super) const LEAST_TESTS: u8 = 8;
 /// Visibility rays are shot in so many batches a turn: those of one find what the next ones need
