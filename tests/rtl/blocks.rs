@@ -134,7 +134,7 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ("child_span", "a <= b", "a >= b"),
     ("border_clip", "left_high < 0", "left_high <= 0"),
     ("bisector_clip", "beyond < 0", "beyond <= 0"),
-    ("near_node", "from_left < 0", "from_left > 0"),
+    ("near_node", "~|beyond", "|beyond"),
     ("half_clip", "right ? far", "~right ? far"),
     ("border_screen", "right < low", "right <= low"),
     ("bisector_screen", "middle < high", "middle <= high"),

@@ -192,7 +192,9 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
         samples: drawn.iter().filter(|&&node| node >= 0).count(),
         cycles: [
             cycles,
-            model["cycles"]["cycles"].as_u64().unwrap_or_default(),
+            model["simulated"]["cycles"]["cycles"]
+                .as_u64()
+                .unwrap_or_default(),
         ],
     })
 }
