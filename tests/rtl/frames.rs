@@ -241,7 +241,7 @@ const FAULTS: [(&str, &str, &str); 9] = [
         "for (r = 7; r >= 0; r = r - 1)",
         "for (r = 0; r < 8; r = r + 1)",
     ),
-    ("cache", "hit & ~missing", "hit"),
+    ("cache", "looking & hit & ~missing", "looking & hit"),
     ("memory", "else if (read)", "else"),
     ("verdict", "level >= level_bound", "level > level_bound"),
     ("image_step", ".low_half_x(half[0])", ".low_half_x(half[2])"),
