@@ -241,12 +241,12 @@ const FAULTS: [(&str, &str, &str); 9] = [
         "for (r = 7; r >= 0; r = r - 1)",
         "for (r = 0; r < 8; r = r + 1)",
     ),
-    ("cache", "looking & hit & ~missing", "looking & hit"),
-    ("memory", "else if (read)", "else"),
-    ("verdict", "level >= level_bound", "level > level_bound"),
+    ("cache", "valid[{set, way}] <= 1", "valid[{set, way}] <= 0"),
+    ("memory", "<= data_in", "<= ~data_in"),
+    ("verdict", "one & ~before_near", "~before_near"),
     ("image_step", ".low_half_x(half[0])", ".low_half_x(half[2])"),
     ("to_screen", "(column - 4)", "(column - 3)"),
-    ("frame_constants", "vector[12 + i]", "vector[14 - i]"),
+    ("frame_constants", "vector[3 + i]", "vector[4 + i]"),
 ];
 
 /// A small frame, in Icarus Verilog: as it is, and with each fault.
