@@ -174,8 +174,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .below(levels - r_quad_level), .node_x(r_quad_x), .node_y(r_quad_y), .last(divided),
     .screen_x(screen_x), .screen_y(screen_y));
 
-  // A solid in screen space that is one sample, or at the bound, is drawn untested.
-  wire untested = r_quad_level == levels & r_inside | r_level >= level_bound;
+  // A solid in screen space at the bound is drawn untested.
+  wire untested = r_level >= level_bound;
 
   // ---------------------------------------------------------------- the verdict
   wire solid, draw_box, draw_centre, subdivide, look_hidden;

@@ -45,7 +45,7 @@ fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
         "--vectors",
         text(&folder),
         "--vector-records",
-        "400",
+        "60",
     ];
     shiftvox(shelter.path(), &[&["model"], view, rules, &rest].concat());
     let manifest = fs::read_to_string(folder.join("manifest.json")).unwrap();
@@ -118,7 +118,7 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ("filled", "&vector", "|vector"),
     ("change_depth", "w_min >= least", "w_min > least"),
     ("detail_depth", "w_min >= least", "w_min > least"),
-    ("change_guard", "wide - at", "wide + at"),
+    ("change_guard", "~|beyond_left &", "|beyond_left &"),
     ("size_limit", "w_min >>> below", "w_min >> below"),
     ("size_clip", "here >= there", "here <= there"),
     ("size_screen", "size <= limit", "size < limit"),
@@ -133,8 +133,8 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ),
     ("child_span", "a <= b", "a >= b"),
     ("border_clip", "left_high < 0", "left_high <= 0"),
-    ("bisector_clip", "lowered <= 0", "lowered < 0"),
-    ("near_node", "to_right > 0", "to_right >= 0"),
+    ("bisector_clip", "beyond < 0", "beyond <= 0"),
+    ("near_node", "~|beyond", "|beyond"),
     ("half_clip", "right ? far", "~right ? far"),
     ("border_screen", "right < low", "right <= low"),
     ("bisector_screen", "middle < high", "middle <= high"),
@@ -152,7 +152,7 @@ const FAULTS: [(&str, &str, &str); 26] = [
     ("centre_half", "beyond >= 0", "beyond > 0"),
     ("centre_sample", "- 1'b1", "- 1'b0"),
     ("fill_update", "&after", "^after"),
-    ("divide_step", "~left[W+4]", "~left[W+4] & |left"),
+    ("divide_step", "~left[W+4]", "left[W+4]"),
 ];
 
 /// A fault in each block at once: each has rows that find it. The pool's two parts are one block.
