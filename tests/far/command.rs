@@ -245,7 +245,7 @@ fn a_dolly_shows_where_levels_change() {
     // From one percent nearer to the next, to half the distance.
     let film = "bench flicker sheet.obj --families far --motions dolly --depth 3";
     let film: Vec<&str> = film.split(' ').collect();
-    let settings = "--frames 70 --size 160 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
+    let settings = "--frames 40 --size 128 --zoom 0.3 --reference-samples 2 --far-rays 30000 \
         --far-lods 1 --json"
         .split(' ');
     let output = shiftvox(at).args(film).args(settings).assert().success();

@@ -25,7 +25,7 @@ const fn allowed(file: &'static str, line: &'static str, reason: &'static str) -
     Allowed { file, line, reason }
 }
 
-const TO_HOST: [Allowed; 6] = [
+const TO_HOST: [Allowed; 12] = [
     allowed(
         "alpha.rs",
         "*sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host();",
@@ -40,6 +40,32 @@ const TO_HOST: [Allowed; 6] = [
         "constants.rs",
         "let near_crossing = near.to_host() >> NEAR_CROSSING_SHIFT;",
         CONSTANT,
+    ),
+    allowed(
+        "constants.rs",
+        "put(8, &[c.near, c.near_crossing].map(Word::to_host));",
+        REGISTER,
+    ),
+    allowed(
+        "constants.rs",
+        "put(10, &sizes.map(Word::to_host));",
+        REGISTER,
+    ),
+    allowed(
+        "constants.rs",
+        "put(16, &c.origin.map(Word::to_host));",
+        REGISTER,
+    ),
+    allowed("constants.rs", ".map(|edge| edge.to_host())", REGISTER),
+    allowed(
+        "constants.rs",
+        "put(28, &c.eye_floor.map(Word::to_host));",
+        REGISTER,
+    ),
+    allowed(
+        "constants.rs",
+        "let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));",
+        REGISTER,
     ),
     allowed(
         "decide.rs",
@@ -195,6 +221,7 @@ const HOST: [Allowed; 2] = [
     ),
 ];
 
+const REGISTER: &str = "what the host writes into the registers of the Verilog (`rtl/`)";
 const CONSTANT: &str = "a constant of the frame, made by the host before the first record";
 const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const INDEX: &str = "which wire, known when the machine is built";

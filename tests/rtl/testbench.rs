@@ -61,7 +61,7 @@ fn ports(fields: &Value) -> Vec<Port> {
 
 /// A module `NAME_tb` that runs a block through its rows and prints how many were wrong; all such modules may be
 /// simulated at once. A divide takes cycles, all others are functions.
-pub fn testbench(block: &Value) -> String {
+pub(crate) fn testbench(block: &Value) -> String {
     let name = block["name"].as_str().unwrap();
     let rows = block["rows"].as_u64().unwrap();
     let (stimulus, expected) = (ports(&block["stimulus"]), ports(&block["expected"]));

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The folder of the hardware.
-pub fn rtl() -> PathBuf {
+pub(crate) fn rtl() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("rtl")
 }
 
 /// Whether a program is installed; says that a test is skipped if not.
-pub fn is_there(program: &str) -> bool {
+pub(crate) fn is_there(program: &str) -> bool {
     let is_there = Command::new(program).arg("-V").output().is_ok();
     if !is_there {
         eprintln!("skipped: no {program} (apt-get install iverilog verilator)");
@@ -18,7 +18,7 @@ pub fn is_there(program: &str) -> bool {
 }
 
 /// Runs a program in a folder; what it prints.
-pub fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) -> String {
+pub(crate) fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) -> String {
     let program = program.as_ref();
     let ran = Command::new(program)
         .args(arguments)
@@ -38,11 +38,11 @@ pub fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) -> Stri
 }
 
 /// Runs `shiftvox`.
-pub fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
+pub(crate) fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
     run(folder, env!("CARGO_BIN_EXE_shiftvox"), arguments)
 }
 
 /// A path as a command has it.
-pub fn text(path: &Path) -> &str {
+pub(crate) fn text(path: &Path) -> &str {
     path.to_str().unwrap()
 }

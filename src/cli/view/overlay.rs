@@ -12,14 +12,14 @@ use crate::picture::{Buffer, Rows};
 /// What is shown where nothing is seen.
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
 
+/// Colours, row by row, and the least and greatest value that they stand for.
+pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
+
 /// A buffer as colours, and the numbers of its ends if it has any.
 ///
 /// # Errors
 /// When the buffer cannot be made.
-pub(super) fn colors(
-    buffers: &Buffers<'_>,
-    show: Show,
-) -> Result<(Vec<[u8; 4]>, Option<Range<f64>>), CliError> {
+pub(super) fn colors(buffers: &Buffers<'_>, show: Show) -> Result<Painted, CliError> {
     let rows = 0..buffers.size().1;
     let values = buffers.rows(show.buffer().unwrap_or(Buffer::Color), rows)?;
     Ok(match (show, values) {
