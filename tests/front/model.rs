@@ -452,6 +452,7 @@ fn samples_that_the_order_of_children_changes_are_counted() {
 
 /// A claim of growth tells each step, so that no bend is hidden.
 #[test]
+#[ignore = "takes long"]
 fn growth_is_told_step_by_step() {
     let found = document(&with(&["--growth", "--paper"]));
     let claims = found["claims"].as_array().expect("claims");

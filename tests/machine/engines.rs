@@ -325,6 +325,7 @@ fn the_table_has_every_generator_and_every_file() {
 }
 
 #[test]
+#[ignore = "takes long"]
 fn every_engine_draws_every_shared_file_alike() {
     let Some(folder) = shared_data().map(|data| data.join("vox")) else {
         eprintln!("skipped: no shared data beside the repository");
