@@ -195,3 +195,21 @@ fn more_rays_never_raise_the_error_beyond_noise() {
     );
     assert!(errors[3] < errors[0], "{errors:?}");
 }
+
+/// More triangles than a cluster of the ray hierarchy has (2^17).
+#[test]
+fn a_mesh_of_several_clusters_is_built() {
+    let mesh = city();
+    let copies = 140_000usize.div_ceil(mesh.triangles().len());
+    let places =
+        (0..copies).map(|number| DAffine3::from_translation(DVec3::X * 50.0 * number as f64));
+    let many = Instances::new(mesh, places.collect());
+    let options = BuildOptions {
+        rays: Some(20_000),
+        leaf_triangles: 50_000,
+        ..options()
+    };
+    let data = build(&many, &options, &Silent).unwrap();
+    assert!(data.triangles() > 1 << 17, "{}", data.triangles());
+    assert!(data.nodes[0].voxels() > 0);
+}

@@ -72,8 +72,8 @@ pub(super) struct Table {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Counter {
-    /// Counts of each set since it passed to its level.
-    pub(super) fresh: [[CountRow; ROWS]; SETS],
+    /// Counts of each set since it passed to its level; on the heap, for 94 KB moved about would fill small stacks.
+    pub(super) fresh: Box<[[CountRow; ROWS]; SETS]>,
     /// Level at which each set counts, 0..LEVELS.
     pub(super) levels: [usize; SETS],
     /// The set that counts now, 0..SETS.
@@ -89,8 +89,11 @@ pub struct Counter {
 
 impl Default for Counter {
     fn default() -> Self {
+        let fresh = vec![[CountRow::default(); ROWS]; SETS].into_boxed_slice();
         Self {
-            fresh: [[CountRow::default(); ROWS]; SETS],
+            fresh: fresh
+                .try_into()
+                .unwrap_or_else(|_| unreachable!("as many as it says")),
             levels: std::array::from_fn(|set| set),
             set: 0,
             widths: [0; 4],

@@ -443,7 +443,10 @@ fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
     while let Some(number) = waiting.pop() {
         let branch: &Branch = &branches[number];
         match branch.children {
-            Some([near, far]) if branch.count > CLUSTER => waiting.extend([far, near]),
+            // What is above the root has one child; none is the first of all.
+            Some([near, far]) if branch.count > CLUSTER => {
+                waiting.extend([far, near].into_iter().filter(|&child| child != 0));
+            }
             _ => parts.push(Part {
                 triangles: branch.triangles(),
                 around: Around::of(place(branch.low), place(branch.high)),
