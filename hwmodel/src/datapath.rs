@@ -103,6 +103,14 @@ impl<P: Probe> Datapath<P> {
         self.place.stage = stage;
     }
 
+    /// Says that what follows needs what is done, after `idle` cycles without operations ([`Probe::next_step`]).
+    #[inline(always)]
+    pub fn next_step(&mut self, idle: u32) {
+        if P::ENABLED {
+            self.probe.next_step(idle, self.place);
+        }
+    }
+
     /// Reports the read of a memory.
     #[inline(always)]
     pub fn read(&mut self, memory: Memory, address: u64) {

@@ -263,6 +263,13 @@ pub trait Probe {
         let _ = (memory, address, place);
     }
 
+    /// What follows needs what is done: a state machine does it in another cycle, after `idle` cycles in which
+    /// it does what the record loop does without operations (it keeps boxes that hardware makes anew).
+    #[inline]
+    fn next_step(&mut self, idle: u32, place: StageLevel) {
+        let _ = (idle, place);
+    }
+
     /// A record begins its turn; `index` counts the records of a frame.
     #[inline]
     fn record(&mut self, index: u64, level: u32) {
@@ -329,6 +336,11 @@ impl<P: Probe> Probe for &mut P {
     #[inline]
     fn write(&mut self, memory: Memory, address: u64, place: StageLevel) {
         (**self).write(memory, address, place);
+    }
+
+    #[inline]
+    fn next_step(&mut self, idle: u32, place: StageLevel) {
+        (**self).next_step(idle, place);
     }
 
     #[inline]
@@ -412,6 +424,12 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
         if B::ENABLED {
             self.1.write(memory, address, place);
         }
+    }
+
+    #[inline]
+    fn next_step(&mut self, idle: u32, place: StageLevel) {
+        self.0.next_step(idle, place);
+        self.1.next_step(idle, place);
     }
 
     #[inline]

@@ -420,7 +420,12 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           r_w <= 0;
           r_w_min <= 0;
           r_spans <= {x_low, x_high, y_low, y_high};
-          state <= r_solid ? VERDICT : NODE;
+          if (r_solid & untested) begin
+            look_for_sample(1'b1);
+            c_screen <= 1;
+            c_spans <= {x_low, x_high, y_low, y_high};
+          end else
+            state <= r_solid ? VERDICT : NODE;
         end
         NODE: state <= VERDICT;
         VERDICT: if (r_solid | node_ready) begin

@@ -102,6 +102,7 @@ pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
         }
     }
     let mut quad = place.quad;
+    dp.next_step(0);
     while quad.level < constants.levels {
         let mut half = |v: &mut Word| {
             let doubled = dp.shl(*v, 1);
@@ -115,6 +116,7 @@ pub(super) fn clip_sample<P: Probe, L: CageCoordinate>(
         let column = half(&mut x);
         let row = half(&mut y);
         quad = quad.quadrant(row << 1 | column);
+        dp.next_step(0);
     }
     Some(quad)
 }

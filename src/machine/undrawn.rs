@@ -20,10 +20,11 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn first_undrawn(&mut self, record: &Record<L>) -> Option<QuadNode> {
         let fill = &self.canvas.fill;
         let (dp, constants, quad) = (&mut self.dp, &self.constants, record.place.quad);
-        match &record.pose {
+        let found = match &record.pose {
             Pose::Clip(clip, _) => first(dp, constants, fill, quad, *clip),
             Pose::Screen(screen) => first_inlined(dp, constants, fill, quad, screen.spans),
-        }
+        };
+        found.ok()
     }
 }
 
@@ -47,6 +48,9 @@ trait ImageBox: Copy {
         quadrant: u8,
         tested: Self::Tested,
     ) -> Self;
+
+    /// The search goes back up by some levels, and from there on in another quadrant.
+    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32);
 }
 
 /// As [`first`], inlined into the caller: faster for small boxes.
@@ -57,25 +61,25 @@ fn first_inlined<P: Probe, B: ImageBox>(
     fill: &FillStore<'_>,
     mut quad: QuadNode,
     mut of: B,
-) -> Option<QuadNode> {
+) -> Result<QuadNode, u32> {
     dp.stage(Stage::QuadtreeFit);
     loop {
         let open = !fill.read(dp, quad) & FULL;
         if quad.level == constants.levels {
-            return (open != 0).then_some(quad);
+            return if open != 0 { Ok(quad) } else { Err(quad.level) };
         }
         let (overlapped, tested) = of.quadrants(dp, constants, quad);
         let mut candidates = dp.and_bits(4, overlapped, open);
         if candidates == 0 {
-            return None;
+            return Err(quad.level);
         }
         while !candidates.is_power_of_two() {
             let quadrant = candidates.trailing_zeros() as u8;
             candidates &= candidates - 1;
             let inner = of.in_quadrant(dp, quadrant, tested);
-            let found = first(dp, constants, fill, quad.quadrant(quadrant), inner);
-            if found.is_some() {
-                return found;
+            match first(dp, constants, fill, quad.quadrant(quadrant), inner) {
+                Ok(sample) => return Ok(sample),
+                Err(deepest) => B::climb(dp, deepest - quad.level),
             }
         }
         // The last one, most often the only one, takes this node's place.
@@ -85,14 +89,15 @@ fn first_inlined<P: Probe, B: ImageBox>(
     }
 }
 
-/// The first sample of `quad` that a box overlaps and that is not drawn yet.
+/// The first sample of `quad` that a box overlaps and that is not drawn yet; `Err`: there is none, and this is the
+/// level of the last node that was looked at.
 fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     fill: &FillStore<'_>,
     quad: QuadNode,
     of: B,
-) -> Option<QuadNode> {
+) -> Result<QuadNode, u32> {
     first_inlined(dp, constants, fill, quad, of)
 }
 
@@ -110,6 +115,11 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
 
     fn in_quadrant<P: Probe>(&self, dp: &mut Datapath<P>, quadrant: u8, far: [L; 2]) -> Self {
         quadrants::clip_in_quadrant(dp, self, quadrant, far)
+    }
+
+    /// Hardware undoes a level at a time what made a box relative to its node: here the boxes above are kept.
+    fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
+        dp.next_step(levels + 1);
     }
 }
 
@@ -131,4 +141,7 @@ impl ImageBox for Spans {
     fn in_quadrant<P: Probe>(&self, _: &mut Datapath<P>, _: u8, (): ()) -> Self {
         *self
     }
+
+    #[inline]
+    fn climb<P: Probe>(_: &mut Datapath<P>, _: u32) {}
 }

@@ -327,6 +327,30 @@ impl Probe for TurnLog {
     }
 
     #[inline]
+    fn next_step(&mut self, idle: u32, place: StageLevel) {
+        if !self.sequential {
+            return;
+        }
+        self.end_step(place.stage);
+        if idle > 0 {
+            let cycles = u64::from(idle);
+            let over = &mut self.over;
+            over.worst += cycles;
+            over.alone += cycles;
+            let none = over.accesses.len();
+            over.visits.push(Visit {
+                stage: place.stage,
+                occupied: 0,
+                latency: cycles,
+                alone: cycles,
+                accesses: none..none,
+                operations: 0,
+                passes: 0,
+            });
+        }
+    }
+
+    #[inline]
     fn record(&mut self, _: u64, level: u32) {
         self.child_level = level + 1;
     }
