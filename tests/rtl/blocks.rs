@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use rayon::prelude::*;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -36,6 +37,27 @@ struct Rows {
 /// Settings of stage A, and of the blocks of exact coverage.
 const PAPER: &[&str] = &["--paper"];
 const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
+/// Rules with margins, whose blocks stage A shares.
+const WIDENED: &[&str] = &[
+    "--coverage",
+    "any",
+    "--cage",
+    "corners",
+    "--tolerance",
+    "0.125",
+];
+const CENTRES: &[&str] = &[
+    "--coverage",
+    "center",
+    "--cage",
+    "corners",
+    "--tolerance",
+    "0.125",
+];
+/// Words so short that sums are often equal to what they are compared with.
+const SHORT: &[&str] = &["--paper", "--frac", "1"];
+/// Boxes across the picture's edges.
+const NEAR: &[&str] = &["gen:menger,depth=3", "--size", "48", "--zoom", "6"];
 
 fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
     let shelter = tempfile::tempdir().unwrap();
@@ -74,8 +96,11 @@ fn wrong_rows(rows: &Rows, folders: &[&Path]) -> BTreeMap<String, u64> {
             .filter(|block| block["rows"].as_u64() != Some(0))
     };
     let benches: String = with_rows().map(testbench).collect();
-    let source = rows.folder.with_extension("v");
-    let compiled = rows.folder.with_extension("vvp");
+    let shelter = tempfile::tempdir().unwrap();
+    let (source, compiled) = (
+        shelter.path().join("rows.v"),
+        shelter.path().join("rows.vvp"),
+    );
     fs::write(&source, benches).unwrap();
     let rtl = rtl();
     let mut arguments = vec!["-g2012", "-I", text(&rtl), "-o", text(&compiled)];
@@ -102,7 +127,14 @@ fn every_row_of_every_block_in_two_formats() {
     for bits in ["24", "32"] {
         for view in VIEWS {
             let (exact, others) = (rtl().join("blocks_exact"), rtl().join("blocks"));
-            for (rules, folders) in [(PAPER, &[&*others][..]), (EXACT, &[&*exact, &*others])] {
+            let of_corners = &[&*others][..];
+            let settings = [
+                (PAPER, of_corners),
+                (WIDENED, of_corners),
+                (CENTRES, of_corners),
+                (EXACT, &[&*exact, &*others]),
+            ];
+            for (rules, folders) in settings {
                 let wrong = wrong_rows(&rows(rules, view, bits), folders);
                 assert!(wrong.len() >= 22, "{wrong:?}");
                 assert!(
@@ -215,6 +247,18 @@ const SLIPS: [(&str, &str); 16] = [
     (" ? ", " ? ~"),
 ];
 
+/// Whether the slip makes no difference: of two that are compared one is chosen, and they are equal.
+fn chooses_of_equals(code: &str, at: usize, compare: &str) -> bool {
+    let before = code[..at].rsplit(' ').next().unwrap_or_default();
+    let mut after = code[at + compare.len()..].trim_end().splitn(3, ' ');
+    let (Some(right), Some("?"), Some(chosen)) = (after.next(), after.next(), after.next()) else {
+        return false;
+    };
+    let chosen: Vec<&str> = chosen.trim_end_matches(';').split(" : ").collect();
+    matches!(compare, " < " | " <= " | " > " | " >= ")
+        && (chosen == [before, right] || chosen == [right, before])
+}
+
 /// All ways to make one slip in a block.
 fn mutants(source: &str) -> Vec<String> {
     let is_code = |line: &str| {
@@ -241,7 +285,7 @@ fn mutants(source: &str) -> Vec<String> {
         for (right, wrong) in SLIPS.iter().filter(|_| is_code(line)) {
             for (at, _) in code.match_indices(right) {
                 let open = code[..at].matches('[').count() - code[..at].matches(']').count();
-                if open == 0 {
+                if open == 0 && !chooses_of_equals(code, at, right) {
                     let (before, after) = source.split_at(begun + at);
                     mutants.push(format!("{before}{wrong}{}", &after[right.len()..]));
                 }
@@ -281,7 +325,13 @@ fn mutation_score() {
     if !is_there("iverilog") {
         return;
     }
-    let all: Vec<Rows> = VIEWS.iter().map(|view| rows(PAPER, view, "32")).collect();
+    let all = [
+        rows(PAPER, VIEWS[0], "32"),
+        rows(PAPER, VIEWS[1], "32"),
+        rows(SHORT, NEAR, "16"),
+        rows(WIDENED, NEAR, "24"),
+        rows(CENTRES, NEAR, "24"),
+    ];
     let mut sources = BTreeMap::new();
     // By testbench: file and text.
     let mut slips: BTreeMap<&str, Vec<(String, String)>> = BTreeMap::new();
@@ -308,42 +358,48 @@ fn mutation_score() {
         }
         sources.insert(name, source);
     }
-    let (mut found, mut missed) = (0, Vec::new());
-    for round in 0..slips.values().map(Vec::len).max().unwrap() {
-        let shelter = tempfile::tempdir().unwrap();
-        let mut texts = sources.clone();
-        let mut under_test = BTreeMap::new();
-        for (bench, slips) in &slips {
-            if let Some((file, text)) = slips.get(round) {
-                texts.insert(file.clone(), text.clone());
-                under_test.insert(*bench, (file, text));
+    let rounds = slips.values().map(Vec::len).max().unwrap();
+    let results: Vec<(String, bool)> = (0..rounds)
+        .into_par_iter()
+        .flat_map(|round| {
+            let shelter = tempfile::tempdir().unwrap();
+            let mut texts = sources.clone();
+            let mut under_test = BTreeMap::new();
+            for (bench, slips) in &slips {
+                if let Some((file, text)) = slips.get(round) {
+                    texts.insert(file.clone(), text.clone());
+                    under_test.insert(*bench, (file, text));
+                }
             }
-        }
-        for (name, text) in &texts {
-            fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
-        }
-        let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
-        for rows in &all {
-            for (block, count) in wrong_rows(rows, &[shelter.path()]) {
-                *wrong.entry(block).or_default() += count;
+            for (name, text) in &texts {
+                fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
             }
-        }
-        for (bench, (file, text)) in under_test {
-            if wrong.get(bench).is_some_and(|&count| count > 0) {
-                found += 1;
-            } else {
-                let lines = text.lines().zip(sources[file].lines());
-                let slip = lines
-                    .filter(|(slip, right)| slip != right)
-                    .map(|(slip, _)| slip.trim());
-                missed.push(format!("{file}: {}", slip.collect::<String>()));
+            let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
+            for rows in &all {
+                for (block, count) in wrong_rows(rows, &[shelter.path()]) {
+                    *wrong.entry(block).or_default() += count;
+                }
             }
-        }
+            under_test
+                .into_iter()
+                .map(|(bench, (file, text))| {
+                    let lines = text.lines().zip(sources[file].lines());
+                    let slip: String = lines
+                        .filter(|(slip, right)| slip != right)
+                        .map(|(slip, _)| slip.trim())
+                        .collect();
+                    let is_found = wrong.get(bench).is_some_and(|&count| count > 0);
+                    (format!("{file}: {slip}"), is_found)
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    let missed: Vec<_> = results.iter().filter(|(_, is_found)| !is_found).collect();
+    for (slip, _) in &missed {
+        eprintln!("not found: {slip}");
     }
-    for missed in &missed {
-        eprintln!("not found: {missed}");
-    }
-    let all = found + missed.len();
+    let all = results.len();
+    let found = all - missed.len();
     eprintln!(
         "{found} of {all} slips found, {:.1} %",
         100.0 * found as f64 / all as f64

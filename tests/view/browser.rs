@@ -108,6 +108,31 @@ fn the_page_turns_compares_and_shows_what_render_draws() {
     );
     assert!(assert_is_renders(browser, &tab).contains("--coverage=center"));
 
+    // A scene chosen while a still picture of another is drawn has a camera of its own; so has the first view.
+    let while_drawn = |what: &str| {
+        format!(
+            "new Promise((done) => {{ fast.ask = (question, act) => {{ Line.prototype.ask.call(fast, question, act);
+               if (question.hash) {{ delete fast.ask; {what}; done(1); }} }}; turn(0.4, 0.2); }})"
+        )
+    };
+    let first = browser.value(&tab, "$('first').click()");
+    assert!(first.is_null());
+    let placed = |command: &str| command.split("--eye").nth(1).unwrap().to_owned();
+    let fitted = placed(&assert_is_renders(browser, &tab));
+    browser.value(&tab, &while_drawn("$('first').click()"));
+    assert_eq!(placed(&assert_is_renders(browser, &tab)), fitted);
+    browser.value(&tab, "$('scene').value = 0; $('scene').onchange()");
+    assert!(assert_is_renders(browser, &tab).contains("tree.vox"));
+    browser.value(
+        &tab,
+        &while_drawn("$('scene').value = 1; $('scene').onchange()"),
+    );
+    let seen = assert_is_renders(browser, &tab);
+    assert!(
+        seen.contains("axes.vox") && placed(&seen) == fitted,
+        "{seen}"
+    );
+
     // A second page, with a camera of its own.
     let other = browser.open(&program.address);
     browser.wait(&other, STILL);
@@ -179,5 +204,31 @@ fn the_slider_shows_the_papers_rule() {
     browser.wait(&tab, "$('model').innerText.includes('energy')");
     browser.value(&tab, "$('slider').value = 500; compare()");
     shot(browser, &tab, "view.png");
+    // A refusal stays while other things are answered, and nothing old is said of it.
+    let bits = |bits: &str| format!("$('bits').value = '{bits}'; $('bits').onchange()");
+    let whole =
+        "shown.paperWhole === view.version && $('difference').textContent.includes('differ')";
+    browser.value(&tab, &bits("99"));
+    browser.wait(
+        &tab,
+        "shown.still === view.version && shown.figures === view.version && slow.isFree",
+    );
+    let error = browser.value(&tab, "$('error').textContent");
+    assert!(error.as_str().unwrap().contains("16 to 64"), "{error}");
+    assert_eq!(browser.value(&tab, "$('command').value"), "");
+    let said = browser.value(&tab, "$('difference').textContent");
+    assert_eq!(said, "one of them is not drawn");
+    browser.value(&tab, &bits(""));
+    browser.wait(&tab, whole);
+    assert_eq!(browser.value(&tab, "$('error').textContent"), "");
+    // Nothing but the rule differs: with the paper's own there is nothing.
+    browser.value(
+        &tab,
+        "view.aa = 2; view.flags = { bits: '40', lod: '2', coverage: 'any', cage: 'corners', tolerance: 'inf' };
+         changed()",
+    );
+    browser.wait(&tab, whole);
+    let said = browser.value(&tab, "$('difference').textContent");
+    assert!(said.as_str().unwrap().starts_with("0 of 118,800"), "{said}");
     assert!(browser.complaints.is_empty(), "{:?}", browser.complaints);
 }

@@ -1,6 +1,7 @@
 //! What is refused, and that nothing else suffers from it.
 
-use std::net::TcpListener;
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
 use std::os::unix::process::ExitStatusExt;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -330,6 +331,57 @@ fn of_questions_that_wait_the_newest_is_answered() {
     assert!(answers < 60, "{answers} of 100 pictures were sent");
 }
 
+/// Reads of a stream what comes, a little at a time for so many seconds, then all: how many bytes.
+fn read_slowly(stream: &mut TcpStream, seconds: u32) -> usize {
+    let mut part = vec![0; 32 << 10];
+    let mut count = 0;
+    for _ in 0..10 * seconds {
+        count += stream.read(&mut part).unwrap_or_default();
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let mut rest = Vec::new();
+    let _ = stream.read_to_end(&mut rest);
+    count + rest.len()
+}
+
+#[test]
+fn a_slow_link_gets_a_large_picture() {
+    let program = scene();
+    let mut page = program.page();
+    page.send(&question(json!({ "size": [2048, 2048] })).to_string());
+    // The stream itself, below the messages; a second without anything is its end.
+    let stream = page.socket.get_mut();
+    stream
+        .set_read_timeout(Some(Duration::from_secs(1)))
+        .unwrap();
+    let count = read_slowly(stream, 13);
+    assert!(count > 4 * 2048 * 2048, "{count} bytes came");
+}
+
+#[test]
+fn who_asks_for_pages_and_does_not_read_loses_the_place() {
+    let program = scene();
+    let mut stream = TcpStream::connect(("127.0.0.1", program.port)).unwrap();
+    let (port, token) = (program.port, &program.token);
+    let request = format!("GET /?token={token} HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\n\r\n");
+    let length = program
+        .raw(&request.replace("\r\n\r\n", "\r\nConnection: close\r\n\r\n"))
+        .len();
+    stream
+        .set_write_timeout(Some(Duration::from_secs(2)))
+        .unwrap();
+    let _ = stream.write_all(request.repeat(2000).as_bytes());
+    std::thread::sleep(Duration::from_secs(22));
+    let mut all = Vec::new();
+    let _ = stream.read_to_end(&mut all);
+    assert!(
+        all.len() < 1900 * length,
+        "{} bytes came of pages of {length}",
+        all.len()
+    );
+    assert_serves(&program);
+}
+
 #[test]
 fn pages_have_a_number() {
     let program = scene();
@@ -397,6 +449,8 @@ fn a_port_in_use_and_wrong_flags_are_told() {
         (&["tests/data/axes.vox", "--aov", "depth"], 2),
         (&["tests/data/axes.vox", "--far-opacity", "six"], 2),
         (&["tests/data/axes.vox", "--bind", "192.0.2.1"], 1),
+        (&["tests/data/axes.vox", "--size", "2049x2048"], 5),
+        (&["tests/data/axes.vox", "--size", "2048", "--aa", "4"], 5),
     ] {
         let (code, text, _) = told(words);
         assert_eq!(code, Some(expected), "{words:?}: {text}");

@@ -1,7 +1,7 @@
 //! The thread of a socket: it draws what is asked for, one question after the other.
 
-use std::sync::mpsc::Receiver;
-use std::time::Instant;
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::{Duration, Instant};
 
 use axum::body::Bytes;
 use serde_json::{Value, json};
@@ -19,6 +19,8 @@ use crate::project::Camera;
 
 /// Drawings that are kept: of a picture that moves, and of the same when it stands still.
 const KEPT: usize = 2;
+/// After so long without a question nothing is kept: buffers of large pictures take hundreds of megabytes.
+const IDLE: Duration = Duration::from_secs(10);
 
 /// What a drawing depends on, but for camera and size.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +47,15 @@ pub(super) fn run(shared: &Shared, questions: &Receiver<String>, answers: &Sende
     if answers.blocking_send(message(&hello(shared), &[])).is_err() {
         return;
     }
-    while let Ok(question) = questions.recv() {
+    loop {
+        let question = match questions.recv_timeout(IDLE) {
+            Ok(question) => question,
+            Err(RecvTimeoutError::Timeout) => {
+                drawer.kept.clear();
+                continue;
+            }
+            Err(RecvTimeoutError::Disconnected) => return,
+        };
         let newest = questions.try_iter().last().unwrap_or(question);
         if answers.blocking_send(drawer.answer(&newest)).is_err() {
             return;

@@ -116,21 +116,31 @@ pub(super) fn run(
             "--aov is for render; the page shows the same buffers as overlays",
         ));
     }
+    request::check_first(&args.picture)?;
     let at = SocketAddr::new(args.bind, args.port);
     let listener = listen(at)?;
     let token = random_word()?;
     let opened = names.iter().map(|name| Listed::open(name, &args, console));
     let scenes = opened.collect::<Result<Vec<_>, _>>()?;
     let bound = listener.local_addr().map_err(|e| failed(&e))?;
-    let address = format!("http://{bound}/?token={token}");
+    // All addresses are no address: others put this computer's name before the port.
+    let shown = match bound.ip() {
+        ip if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
+        _ => bound,
+    };
+    let address = format!("http://{shown}/?token={token}");
     match console.json {
         true => console.line(&report::document("view", json!({ "address": address })).to_string()),
         false => console.data(&address),
     }?;
     console.note("open this address in a browser; Ctrl-C ends the program");
     if !bound.ip().is_loopback() {
-        console
-            .note("who knows this address can look from other computers, and nothing is encrypted");
+        let mut note =
+            "who knows the token can look from other computers, and nothing is encrypted";
+        if bound.ip().is_unspecified() {
+            note = "who knows the token can look from other computers, under this one's address, and nothing is encrypted";
+        }
+        console.note(note);
     }
     let shared = Arc::new(Shared {
         args,
@@ -157,8 +167,11 @@ fn listen(at: SocketAddr) -> Result<TcpListener, CliError> {
         Ok(listener)
     };
     listen().map_err(|error: std::io::Error| {
-        CliError::new(Kind::Run, format!("cannot listen on {at}: {error}"))
-            .advise("leave --port out: a free one is found")
+        let advice = match error.kind() {
+            std::io::ErrorKind::AddrNotAvailable => "--bind takes an address of this computer",
+            _ => "leave --port out: a free one is found",
+        };
+        CliError::new(Kind::Run, format!("cannot listen on {at}: {error}")).advise(advice)
     })
 }
 

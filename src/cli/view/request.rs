@@ -140,6 +140,31 @@ pub(super) struct Settings {
     pub(super) engine: EngineArgs,
 }
 
+/// Refuses a picture of so many samples a pixel across that is too large for a page.
+fn check_size((width, height): (u32, u32), aa: u32) -> Result<(), CliError> {
+    let pixels = u64::from(width) * u64::from(height);
+    let samples = pixels.saturating_mul(u64::from(aa).pow(2));
+    if pixels <= MOST_PIXELS && samples <= MOST_SAMPLES {
+        return Ok(());
+    }
+    Err(CliError::new(
+        Kind::Limit,
+        format!("a page's picture has at most {MOST_PIXELS} pixels and {MOST_SAMPLES} samples"),
+    ))
+}
+
+/// Refuses what the command line would have a page begin with, if that is too large. A size that follows the window
+/// is made small enough there.
+///
+/// # Errors
+/// A picture that is too large.
+pub(super) fn check_first(picture: &PictureArgs) -> Result<(), CliError> {
+    match picture.size {
+        Some(size) => check_size((size.width, size.height), 1 << picture.aa_log2()),
+        None => Ok(()),
+    }
+}
+
 impl Request {
     /// Reads a message.
     ///
@@ -165,16 +190,7 @@ impl Request {
             }
         }
         let [width, height] = self.size;
-        let pixels = u64::from(width) * u64::from(height);
-        let samples = pixels.saturating_mul(u64::from(self.aa).pow(2));
-        if pixels > MOST_PIXELS || samples > MOST_SAMPLES {
-            return Err(CliError::new(
-                Kind::Limit,
-                format!(
-                    "a page's picture has at most {MOST_PIXELS} pixels and {MOST_SAMPLES} samples"
-                ),
-            ));
-        }
+        check_size((width, height), self.aa)?;
         let mut words: Vec<String> = self.words(&FLAGS).collect();
         words.push(format!("--size={width}x{height}"));
         words.push(format!("--aa={}", self.aa));

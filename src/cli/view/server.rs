@@ -26,6 +26,7 @@ use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::time::timeout;
+use tokio_io_timeout::TimeoutStream;
 
 use super::{Shared, drawer, random_word};
 
@@ -39,8 +40,10 @@ const MOST_CONNECTIONS: usize = 64;
 const MOST_BYTES: usize = 4096;
 /// Most messages in a second.
 const MOST_MESSAGES: u32 = 250;
-/// For how long a request's head may come, and an answer go.
+/// For how long a request's head may come, and nothing of an answer may go.
 const PATIENCE: Duration = Duration::from_secs(10);
+/// For how long a connection may last that is not a socket's.
+const LONGEST: Duration = Duration::from_secs(20);
 
 /// What the server knows.
 #[derive(Clone)]
@@ -73,6 +76,9 @@ pub(super) async fn serve(listener: std::net::TcpListener, shared: Arc<Shared>) 
         };
         // Answers are waited for.
         let _ = stream.set_nodelay(true);
+        // A slow link gets large pictures too, as long as some of them goes.
+        let mut stream = TimeoutStream::new(stream);
+        stream.set_write_timeout(Some(PATIENCE));
         let service = TowerToHyperService::new(app.clone());
         tokio::spawn(async move {
             let _place = place;
@@ -80,9 +86,9 @@ pub(super) async fn serve(listener: std::net::TcpListener, shared: Arc<Shared>) 
                 .timer(TokioTimer::new())
                 .header_read_timeout(PATIENCE)
                 .max_buf_size(16 << 10)
-                .serve_connection(TokioIo::new(stream), service);
-            // What a client does wrong is its own affair.
-            let _ = connection.with_upgrades().await;
+                .serve_connection(TokioIo::new(Box::pin(stream)), service);
+            // What a client does wrong is its own affair. A socket goes on without this.
+            let _ = timeout(LONGEST, connection.with_upgrades()).await;
         });
     }
 }
@@ -229,8 +235,7 @@ async fn talk(socket: WebSocket, shared: Arc<Shared>, place: OwnedSemaphorePermi
         });
         let writing = pin!(async {
             while let Some(answer) = answers.recv().await {
-                let sent = timeout(PATIENCE, sink.send(Message::Binary(answer))).await;
-                if !matches!(sent, Ok(Ok(()))) {
+                if sink.send(Message::Binary(answer)).await.is_err() {
                     return;
                 }
             }

@@ -1,0 +1,17 @@
+`include "widths.vh"
+// What boxes are widened by under a tolerance: w / 2^places of each vertex, rounded up. SPEC.md, 6.
+// No part of stage A, whose tolerance is infinite: its rows show the margins of border_clip and bisector_clip.
+module margin_grow #(parameter W = `WORD_BITS) (
+  input [8*W-1:0]    w,
+  input signed [7:0] places,
+  output [8*W-1:0]   margin);
+  wire [7:0] up = -places;
+  genvar i;
+  generate
+    for (i = 0; i < 8; i = i + 1) begin : vertex
+      wire signed [W-1:0] wide = w[i*W +: W];
+      wire signed [W-1:0] part = wide >>> places;
+      assign margin[i*W +: W] = places > 0 ? part + 1'b1 : wide << up;
+    end
+  endgenerate
+endmodule
