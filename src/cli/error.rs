@@ -253,7 +253,9 @@ impl From<FileError> for CliError {
 impl From<far::BuildError> for CliError {
     fn from(error: far::BuildError) -> Self {
         let kind = match error {
-            far::BuildError::Empty | far::BuildError::Range => Kind::Input,
+            far::BuildError::Empty | far::BuildError::Range | far::BuildError::FarAway { .. } => {
+                Kind::Input
+            }
             far::BuildError::TooMany(_)
             | far::BuildError::Surface(_)
             | far::BuildError::Memory { .. } => Kind::Limit,

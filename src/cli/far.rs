@@ -65,7 +65,10 @@ pub(super) fn convert(
         }
     };
     let mut built = built.map_err(|error| {
-        let is_memory = matches!(error, BuildError::Memory { .. });
+        let short = match error {
+            BuildError::Memory { needed, given } => Some(needed.saturating_sub(given)),
+            _ => None,
+        };
         let is_of_mesh = !matches!(error, BuildError::File { .. });
         let error = CliError::from(error);
         let error = if is_of_mesh {
@@ -73,9 +76,12 @@ pub(super) fn convert(
         } else {
             error
         };
-        match is_memory {
-            true => error.advise("give it more --memory, or build on fewer --threads"),
-            false => error,
+        match resources.memory.zip(short) {
+            Some((memory, short)) => {
+                let enough = (memory + short).div_ceil(1 << 20);
+                error.advise(format!("give it --memory {enough}M or more"))
+            }
+            None => error,
         }
     })?;
     built.data.y_up = up == Up::Y;

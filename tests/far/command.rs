@@ -96,6 +96,85 @@ fn convert_info_render() {
     assert!(at.join("a.png").exists());
 }
 
+/// The JSON of `info` of a file, and its text.
+fn info(at: &Path, file: &str) -> (serde_json::Value, String) {
+    let told = |more: &[&str]| {
+        let told = shiftvox(at).args(["info", file]).args(more).assert();
+        told.success().get_output().stdout.clone()
+    };
+    let document: serde_json::Value = serde_json::from_slice(&told(&["--json"])).unwrap();
+    let text = String::from_utf8(told(&[])).unwrap();
+    (document["scenes"][0].clone(), text)
+}
+
+#[test]
+fn a_hybrid_is_converted_told_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.obj"), sheet_of(24)).unwrap();
+    for (output, more) in [("h.far", &["--hybrid"][..]), ("f.far", &[])] {
+        let settings = "--leaf-triangles 50 --grid 16 --rays 20000 -q".split(' ');
+        let convert = ["convert", "sheet.obj", output];
+        let mut command = shiftvox(at);
+        command.args(convert).args(settings).args(more);
+        command.assert().success();
+    }
+    // A sheet is wide everywhere: surfaces, and no voxels.
+    let ((hybrid, text), (voxels, other)) = (info(at, "h.far"), info(at, "f.far"));
+    assert_eq!(hybrid["voxels_kept"], 0, "{hybrid}");
+    assert!(voxels["voxels_kept"].as_u64() > Some(1000), "{voxels}");
+    assert!(
+        text.contains("decimated triangles of inner nodes"),
+        "{text}"
+    );
+    assert!(!other.contains("decimated triangles"), "{other}");
+    let inner = |of: &serde_json::Value| of["levels"][0]["surface_triangles"].as_u64().unwrap();
+    let (kept, all) = (inner(&hybrid), hybrid["triangles"].as_u64().unwrap());
+    assert!(
+        kept > 0 && kept < all && inner(&voxels) == 0,
+        "{kept} {all}"
+    );
+    // From afar both are drawn by their roots, in other ways.
+    let hashes = ["h.far", "f.far"].map(|file| {
+        let view = "--size 64 --eye 200,200,200 --target 5,1,5 --hash -q -o {stem}.png".split(' ');
+        let drawn = shiftvox(at).args(["render", file]).args(view).assert();
+        drawn.success().get_output().stdout.clone()
+    });
+    assert!(hashes[0] != hashes[1]);
+}
+
+#[test]
+fn what_cannot_be_built_is_told_before_anything_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    // A sheet of twelve steps, so far away that its file could not be read.
+    let far_away = sheet().replace("v ", "v 3000000000000");
+    fs::write(at.join("away.obj"), far_away).unwrap();
+    fs::write(at.join("sheet.obj"), sheet_of(60)).unwrap();
+    fs::write(at.join("old.far"), "kept").unwrap();
+    let told = |words: &str, code: i32| {
+        let mut command = shiftvox(at);
+        let output = command.args(words.split(' ')).assert().code(code);
+        String::from_utf8(output.get_output().stderr.clone()).unwrap()
+    };
+    for more in ["", " --hybrid", " --resume"] {
+        let text = told(&format!("convert away.obj old.far --force{more}"), 4);
+        assert!(
+            text.contains("away.obj") && text.contains("move it to the origin"),
+            "{text}"
+        );
+        assert_eq!(fs::read(at.join("old.far")).unwrap(), b"kept");
+    }
+    // The advice is enough.
+    let text = told("convert sheet.obj a.far --memory 16M", 5);
+    let (_, advised) = text.split_once("--memory ").unwrap();
+    let advised = advised.split(' ').next().unwrap();
+    told(
+        &format!("convert sheet.obj a.far --rays 20000 --memory {advised}"),
+        0,
+    );
+}
+
 #[test]
 fn turntables_and_samples() {
     let folder = tempfile::tempdir().unwrap();

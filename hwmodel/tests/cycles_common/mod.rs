@@ -16,6 +16,8 @@ pub enum Does {
     Read(Stage, Memory, u64),
     /// A write.
     Write(Stage, Memory, u64),
+    /// The next step needs this one, after so many cycles.
+    Step(Stage, u32),
 }
 
 /// A record: what it does, and its children: record, place, region.
@@ -50,6 +52,7 @@ impl<'a> Listed<'a> {
                 Does::Ops(stage, class, bits, times) => self.log.op(class, bits, at(stage), times),
                 Does::Read(stage, memory, address) => self.log.read(memory, address, at(stage)),
                 Does::Write(stage, memory, address) => self.log.write(memory, address, at(stage)),
+                Does::Step(stage, idle) => self.log.next_step(idle, at(stage)),
             }
         }
         let child = |&(item, place, image_node): &(u32, u8, ImageNode)| Child {

@@ -123,6 +123,17 @@ pub enum BuildError {
     /// Coordinates that single precision does not hold.
     #[error("the mesh is too large or too small for numbers of single precision")]
     Range,
+    /// So far from the origin that the parts of the mesh have the same coordinates.
+    #[error(
+        "the mesh spans {extent} units {distance} units from the origin: too little for its coordinates; \
+         move it to the origin"
+    )]
+    FarAway {
+        /// Its longest side, world units.
+        extent: f64,
+        /// Of its farthest coordinate.
+        distance: f64,
+    },
     /// A budget that is too small.
     #[error(
         "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
@@ -476,7 +487,7 @@ fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(),
             "the least distance is 1 to 1,000,000 voxels",
         ));
     }
-    Ok(())
+    centre(surface).map(drop)
 }
 
 /// What coordinates are relative to, and what makes them about 1.
@@ -486,6 +497,12 @@ fn centre<S: Surface + ?Sized>(surface: &S) -> Result<(DVec3, f64), BuildError> 
     let farthest = low.abs().max(high.abs()).max_element();
     if !(farthest < 1e30 && extent > 1e-30) {
         return Err(BuildError::Range);
+    }
+    // As the reader has it of the root's box, which is rounded outwards.
+    let finest = 0.99 * extent / place::MOST_PARTS;
+    if !place::can_be_seen(low.to_array(), high.to_array(), finest) {
+        let distance = farthest;
+        return Err(BuildError::FarAway { extent, distance });
     }
     let centre = place::centre(low.to_array(), high.to_array()).into();
     let (_, power) = libm::frexp(extent);
