@@ -70,16 +70,10 @@ pub(crate) fn size(size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
 
 /// Red, green and blue.
 pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
-    let [red, green, blue] = color
-        .extract::<[i64; 3]>()
-        .ok()
-        .and_then(|color| Some([byte(color[0])?, byte(color[1])?, byte(color[2])?]))
-        .ok_or_else(|| Error::new_err(format!("{what}: three numbers, 0 to 255")))?;
-    Ok([red, green, blue])
-}
-
-fn byte(number: i64) -> Option<u8> {
-    number.try_into().ok()
+    let refuse = || Error::new_err(format!("{what}: three numbers, 0 to 255"));
+    let [red, green, blue] = color.extract::<[i64; 3]>().map_err(|_| refuse())?;
+    let byte = |number: i64| u8::try_from(number).map_err(|_| refuse());
+    Ok([byte(red)?, byte(green)?, byte(blue)?])
 }
 
 /// A kind of numbers that rows are read as.
@@ -132,9 +126,9 @@ pub(crate) fn rows_of_three<T: Entry>(
     if rows == 0 {
         return Ok(Vec::new());
     }
-    let kind = array.getattr("dtype")?;
-    if !T::KINDS.contains(&kind.getattr("kind")?.extract::<String>()?) {
-        return Err(refuse(format!("{kind} is not converted to {}", T::NAME)));
+    let dtype = array.getattr("dtype")?;
+    if !T::KINDS.contains(&dtype.getattr("kind")?.extract::<String>()?) {
+        return Err(refuse(format!("{dtype} is not converted to {}", T::NAME)));
     }
     if let Some([lowest, highest]) = T::RANGE {
         let least: i128 = array.call_method0("min")?.extract()?;

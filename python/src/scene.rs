@@ -109,7 +109,6 @@ impl Scene {
     /// Raises `Error` for other shapes and numbers, for no triangles, and for a corner that is no row of positions.
     #[staticmethod]
     #[pyo3(signature = (positions, triangles, colors=None, *, depth=9, opacities=false, up=None))]
-    #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn from_mesh(
         py: Python<'_>,
         positions: &Bound<'_, PyAny>,
