@@ -7,6 +7,7 @@
     nearest = picture.depth.min()      # arrays of NumPy: rgba, depth, normals, voxels, nodes
 """
 
+import hashlib
 import json
 import os
 import tempfile
@@ -17,30 +18,62 @@ __all__ = ["Camera", "Error", "Picture", "Scene", "explore", "hardware", "model"
 
 
 def _words(options):
-    """Keywords as flags: `size=128` is `--size 128`, `rules=True` is `--rules`."""
+    """Keywords as flags: `size=(32, 24)` is `--size 32x24`, `bits=[24, 32]` `--bits 24,32`, `rules=True` `--rules`."""
     words = []
     for name, value in options.items():
         flag = "--" + name.rstrip("_").replace("_", "-")
         if value is True:
             words.append(flag)
         elif isinstance(value, (list, tuple)):
-            words += [flag, ",".join(map(str, value))]
+            words += [flag, ("x" if name == "size" else ",").join(map(str, value))]
         elif value is not None and value is not False:
             words += [flag, str(value)]
     return words
 
 
+def _refused(told):
+    """A command line that the program would end with exit code 2."""
+    error = Error(told)
+    error.exit_code = 2
+    return error
+
+
+def _kept(path, folder):
+    """Moves a scene's file into a folder. Its name is made of its content: the same scene has the same one again."""
+    with open(path, "rb") as file:
+        content = hashlib.blake2b(digest_size=8)
+        while piece := file.read(1 << 20):
+            content.update(piece)
+    kept = os.path.join(folder, f"scene-{content.hexdigest()}.vxg")
+    os.replace(path, kept)
+    return kept
+
+
 def _run(command, scenes, options, parse):
-    with tempfile.TemporaryDirectory() as folder:
+    words = command.split()
+    if not words or words[0].startswith("-"):
+        raise _refused(f"{command!r} is no command, such as \"info\" or \"bench error\"")
+    if words[0] in ("completions", "man"):
+        raise _refused(f"{words[0]}: it prints no JSON")
+    # Results name their scenes: the file of one that is in memory stays beside them.
+    results = options.get("results")
+    beside = None if results is None else os.path.dirname(os.path.abspath(results))
+    if beside is not None:
+        os.makedirs(beside, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=beside) as folder:
         names = []
         for number, scene in enumerate(scenes):
             if isinstance(scene, Scene):
                 # A command knows scenes by their files.
                 path = os.path.join(folder, f"scene-{number}.vxg")
                 scene.save(path)
-                scene = path
+                scene = path if beside is None else _kept(path, beside)
             names.append(os.fspath(scene))
-        return parse(documents(["--json", *command.split(), *_words(options), "--", *names]))
+        text = documents(["--json", *words, *_words(options), "--", *names])
+    try:
+        return parse(text)
+    except json.JSONDecodeError:
+        raise _refused(f"{command}: with these flags it prints no JSON document") from None
 
 
 def run(command, *scenes, **options):
@@ -50,7 +83,8 @@ def run(command, *scenes, **options):
     `shiftvox COMMAND --help` lists, with underscores for dashes. Scenes are files, generators, or
     `Scene` objects.
 
-    Raises `Error`; its `exit_code` is what the program would have ended with.
+    Raises `Error`; its `exit_code` is what the program would have ended with. Commands without JSON (man,
+    completions) are refused.
     """
     return _run(command, scenes, options, json.loads)
 
@@ -74,7 +108,8 @@ def explore(*scenes, space="bundled", points=None, results=None, **options):
 
     Returns a list of dictionaries in the order of measurement: one of kind "space" for each scene, one of
     kind "point" for each design, one of kind "front" for each scene. `points` are numbers, such as "0..9";
-    `results` is a file to which points are appended and from which those are taken that it has.
+    `results` is a file to which points are appended and from which those are taken that it has. A scene that is a
+    `Scene` object is kept beside it, as scene-HASH.vxg, because results name their scenes.
     """
     options = {"explore": space, "points": points, "results": results, **options}
     return _run("model", scenes, options, lambda text: [json.loads(line) for line in text.splitlines()])

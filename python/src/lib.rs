@@ -1,11 +1,14 @@
 //! The Python package: scenes, cameras and pictures as objects, buffers as NumPy arrays, experiments
-//! as dictionaries. What things mean is said once, in the stubs (`shiftvox/_core.pyi`).
+//! as dictionaries. Comments of what Python sees are its docstrings; the stubs (`shiftvox/_core.pyi`)
+//! repeat them for editors.
 
+mod arguments;
 mod camera;
 mod commands;
 mod picture;
+mod ply;
+mod pool;
 mod scene;
-mod settings;
 
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
@@ -15,7 +18,8 @@ create_exception!(
     shiftvox,
     Error,
     PyException,
-    "What shiftvox refuses or cannot do."
+    "What shiftvox refuses or cannot do, in the words of the program. Errors of `run`, `model`, `hardware` and \
+     `explore` have an `exit_code`: what the program would have ended with."
 );
 
 /// An error of the library, with its words.

@@ -8,20 +8,34 @@ use pyo3::prelude::*;
 use pyo3::types::PyAny;
 use shiftvox::{Background, Renderer, Shading};
 
+use crate::arguments::{self, color, count, whole};
 use crate::camera::Camera;
+use crate::pool::on_all_threads;
 use crate::scene::Scene;
-use crate::settings::{cage, coverage, engine};
 use crate::{Error, refused};
 
+/// A finished picture. The arrays are its buffers: nothing is copied, and each access gives the same array. Cannot be
+/// pickled; its arrays can.
 #[pyclass(frozen, get_all, module = "shiftvox")]
 pub(crate) struct Picture {
+    /// uint8 (height, width, 4): red, green, blue in sRGB, and alpha, not premultiplied.
     rgba: Py<PyArray3<u8>>,
+    /// float32 (height, width): along the view axis, world units; infinity where nothing is seen.
     depth: Py<PyArray2<f32>>,
+    /// float32 (height, width, 3): unit length, world directions; zero where nothing is seen.
     normals: Py<PyArray3<f32>>,
+    /// int32 (height, width, 4): index of the voxel seen, and its level (0 the root); (0, 0, 0, -1) where nothing is.
     voxels: Py<PyArray3<i32>>,
+    /// int32 (height, width): the node of the graph seen; -1 where nothing is.
     nodes: Py<PyArray2<i32>>,
+    /// What the engine counted, by name.
     counters: BTreeMap<&'static str, u64>,
+    /// Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer.
     hash: String,
+    /// Pixels across.
+    width: u32,
+    /// Pixels down.
+    height: u32,
 }
 
 /// Pixels and their entries as an array that owns them.
@@ -36,27 +50,16 @@ fn grid<T: Element, const N: usize>(
 
 #[pymethods]
 impl Picture {
-    #[getter]
-    fn width(&self, py: Python<'_>) -> usize {
-        self.depth.bind(py).dims()[1]
-    }
-
-    #[getter]
-    fn height(&self, py: Python<'_>) -> usize {
-        self.depth.bind(py).dims()[0]
-    }
-
+    /// Write the colours as a PNG, replacing what is there. Raises `Error` where the system refuses.
     fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let rgba: PyReadonlyArray<'_, u8, _> =
             self.rgba.bind(py).try_readonly().map_err(refused)?;
-        let pixels = rgba
-            .as_slice()
-            .map_err(refused)?
-            .as_chunks::<4>()
-            .0
-            .to_vec();
-        let (width, height) = (self.width(py) as u32, self.height(py) as u32);
-        let pixels = shiftvox::picture::png::Pixels::new(width, height, pixels);
+        let pixels = rgba.as_slice().map_err(refused)?;
+        let pixels = pixels.as_chunks::<4>().0.to_vec();
+        if pixels.len() != self.width as usize * self.height as usize {
+            return Err(Error::new_err("rgba: another type or size was given to it"));
+        }
+        let pixels = shiftvox::picture::png::Pixels::new(self.width, self.height, pixels);
         let write = || {
             shiftvox::whole::write_with(&path, true, |file| {
                 pixels.write(file).map_err(std::io::Error::other)
@@ -65,27 +68,25 @@ impl Picture {
         py.detach(write).map_err(refused)
     }
 
-    fn __repr__(&self, py: Python<'_>) -> String {
-        format!(
-            "<shiftvox.Picture of {} x {} pixels>",
-            self.width(py),
-            self.height(py)
-        )
+    fn __repr__(&self) -> String {
+        let Self { width, height, .. } = self;
+        format!("<shiftvox.Picture of {width} x {height} pixels>")
     }
 }
 
-/// Pixels across and down: one number for a square.
-fn size_of(size: &Bound<'_, PyAny>) -> PyResult<(u32, u32)> {
-    if let Ok(side) = size.extract::<u32>() {
-        return Ok((side, side));
-    }
-    size.extract::<(u32, u32)>()
-        .map_err(|_| Error::new_err("size: one number, or (width, height), in pixels"))
-}
-
+/// Draw a scene, by default with a fitted camera, 512 x 512. Other Python threads run meanwhile.
+///
+/// size: pixels, one number or (width, height). samples: 1, 2 or 4 along each axis of a pixel. engine: "fast",
+/// "machine" (the counted words of the hardware) or "rays" (the oracle). coverage: "exact" (the default), "alpha",
+/// "center" or "any". lod: size in pixels up to which nodes are drawn as one voxel. tolerance: pixels, of the
+/// coverages center and any. cage: "frame" (the default) or "corners". bits, frac: width of a word, 16 to 64, and its
+/// fraction. paper: the rules of the image-order paper, which set coverage, tolerance and cage. background: three
+/// numbers, 0 to 255 in sRGB; or transparent, not both. threads: up to 1024, 0 for all; never changes the picture.
+///
+/// Raises `Error` for settings that are out of range or exclude each other, and where a word overflows.
 #[pyfunction]
-#[pyo3(signature = (scene, camera=None, size=None, *, samples=1, engine="fast", coverage="exact", lod=None,
-    tolerance=None, cage="frame", bits=64, frac=None, paper=false, shaded=true, background=None, transparent=false,
+#[pyo3(signature = (scene, camera=None, size=None, *, samples=1, engine="fast", coverage=None, lod=None,
+    tolerance=None, cage=None, bits=64, frac=None, paper=false, shaded=true, background=None, transparent=false,
     threads=0))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn render(
@@ -93,30 +94,45 @@ pub(crate) fn render(
     scene: &Scene,
     camera: Option<&Camera>,
     size: Option<&Bound<'_, PyAny>>,
-    samples: u32,
+    #[pyo3(from_py_with = whole)] samples: i64,
     engine: &str,
-    coverage: &str,
+    coverage: Option<&str>,
     lod: Option<f64>,
     tolerance: Option<f64>,
-    cage: &str,
-    bits: u32,
-    frac: Option<u32>,
+    cage: Option<&str>,
+    #[pyo3(from_py_with = whole)] bits: i64,
+    frac: Option<&Bound<'_, PyAny>>,
     paper: bool,
     shaded: bool,
-    background: Option<[u8; 3]>,
+    background: Option<&Bound<'_, PyAny>>,
     transparent: bool,
-    threads: usize,
+    #[pyo3(from_py_with = whole)] threads: i64,
 ) -> PyResult<Picture> {
-    let (width, height) = size.map_or(Ok((512, 512)), size_of)?;
+    let [width, height] = size.map_or(Ok([512, 512]), arguments::size)?;
+    let frac = frac.map(whole).transpose()?;
+    let frac = frac.map(|frac| count("frac", frac)).transpose()?;
     let mut renderer = Renderer::new()
-        .engine(self::engine(engine)?)
-        .coverage(self::coverage(coverage)?)
-        .cage(self::cage(cage)?)
-        .samples(samples)
-        .word(bits, frac)
-        .threads(threads);
+        .engine(arguments::engine(engine)?)
+        .samples(count("samples", samples)?)
+        .word(count("bits", bits)?, frac)
+        .threads(count("threads", threads)? as usize);
+    let rules = [
+        ("coverage", coverage.is_some()),
+        ("tolerance", tolerance.is_some()),
+        ("cage", cage.is_some()),
+    ];
     if paper {
+        if let Some((rule, _)) = rules.iter().find(|(_, is_given)| *is_given) {
+            let told = format!("{rule}: paper=True sets it, leave one of them out");
+            return Err(Error::new_err(told));
+        }
         renderer = renderer.paper();
+    }
+    if let Some(word) = coverage {
+        renderer = renderer.coverage(arguments::coverage(word)?);
+    }
+    if let Some(word) = cage {
+        renderer = renderer.cage(arguments::cage(word)?);
     }
     if let Some(pixels) = lod {
         renderer = renderer.level_of_detail(pixels);
@@ -127,21 +143,25 @@ pub(crate) fn render(
     if !shaded {
         renderer = renderer.shading(Shading::Flat);
     }
-    if let Some(color) = background {
-        renderer = renderer.background(Background::Color(color));
-    }
-    if transparent {
-        renderer = renderer.background(Background::None);
-    }
+    renderer = match (background, transparent) {
+        (None, false) => renderer,
+        (None, true) => renderer.background(Background::None),
+        (Some(given), false) => renderer.background(Background::Color(color("background", given)?)),
+        (Some(_), true) => {
+            let told = "background: transparent=True has none, leave one of them out";
+            return Err(Error::new_err(told));
+        }
+    };
     let camera = camera.map_or_else(|| shiftvox::Camera::fit(&scene.scene), |c| c.camera.clone());
-    let drawn = py.detach(|| {
+    let drawn = on_all_threads(py, || {
         let picture = renderer.render(&scene.scene, &camera, width, height)?;
         Ok::<_, shiftvox::Error>((picture.hash(), picture))
-    });
+    })?;
     let (hash, picture) = drawn.map_err(refused)?;
     let counters = picture.counters().iter().copied().collect();
     let buffers = picture.into_buffers();
-    let shape = [buffers.height as usize, buffers.width as usize];
+    let (width, height) = (buffers.width, buffers.height);
+    let shape = [height as usize, width as usize];
     Ok(Picture {
         rgba: grid(py, buffers.rgba, shape)?,
         depth: buffers.depth.into_pyarray(py).reshape(shape)?.unbind(),
@@ -150,5 +170,7 @@ pub(crate) fn render(
         nodes: buffers.node.into_pyarray(py).reshape(shape)?.unbind(),
         counters,
         hash,
+        width,
+        height,
     })
 }

@@ -2,46 +2,33 @@
 
 use std::path::PathBuf;
 
-use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use pyo3::types::PyAny;
 use shiftvox::{SceneOptions, Up, Voxel};
 
+use crate::arguments::{count, rows_of_three, up, whole};
+use crate::ply::ply;
+use crate::pool::on_all_threads;
 use crate::{Error, refused};
 
+/// A graph of voxels. World units are those of the file; a voxel of index i fills [i, i + 1) along each axis unless
+/// the file says another size and place. Cannot be pickled: give other processes the name of a file.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Scene {
     pub(crate) scene: shiftvox::Scene,
 }
 
-fn options(depth: u32, opacities: bool, up: Option<&str>) -> PyResult<SceneOptions> {
+fn options(depth: i64, opacities: bool, axis: Option<&str>) -> PyResult<SceneOptions> {
+    let depth = count("depth", depth)?;
     let options = SceneOptions::new().mesh_depth(depth).opacities(opacities);
-    Ok(match up {
+    Ok(match axis {
         None => options,
-        Some("y") => options.up(Up::Y),
-        Some("z") => options.up(Up::Z),
-        Some(other) => return Err(Error::new_err(format!("up: {other:?} is none of y, z"))),
+        Some(axis) => options.up(up(axis)?),
     })
 }
 
-/// Rows of an array that must have three columns.
-fn rows_of_three<T: Copy + numpy::Element>(
-    what: &str,
-    array: &PyReadonlyArray2<'_, T>,
-) -> PyResult<Vec<[T; 3]>> {
-    let [_, 3] = array.shape() else {
-        let told = format!("{what}: the shape is {:?}, not (N, 3)", array.shape());
-        return Err(Error::new_err(told));
-    };
-    let rows = array.as_array();
-    let rows = rows.rows();
-    Ok(rows
-        .into_iter()
-        .map(|row| [row[0], row[1], row[2]])
-        .collect())
-}
-
 /// A colour for each of `rows`, or grey.
-fn colors_of(colors: Option<&PyReadonlyArray2<'_, u8>>, rows: usize) -> PyResult<Vec<[u8; 3]>> {
+fn colors_of(colors: Option<&Bound<'_, PyAny>>, rows: usize) -> PyResult<Vec<[u8; 3]>> {
     let Some(colors) = colors else {
         return Ok(vec![[200; 3]; rows]);
     };
@@ -55,138 +42,114 @@ fn colors_of(colors: Option<&PyReadonlyArray2<'_, u8>>, rows: usize) -> PyResult
     }
 }
 
-/// A binary PLY file of a mesh, which the library reads.
-fn ply(positions: &[[f64; 3]], colors: &[[u8; 3]], triangles: &[[i64; 3]]) -> PyResult<Vec<u8>> {
-    let properties = [
-        "double x",
-        "double y",
-        "double z",
-        "uchar red",
-        "uchar green",
-        "uchar blue",
-    ];
-    let properties: String = properties.map(|p| format!("property {p}\n")).concat();
-    let mut bytes = format!(
-        "ply\nformat binary_little_endian 1.0\nelement vertex {}\n{properties}element face {}\n\
-         property list uchar uint vertex_indices\nend_header\n",
-        positions.len(),
-        triangles.len()
-    )
-    .into_bytes();
-    for (position, color) in positions.iter().zip(colors) {
-        bytes.extend(position.iter().flat_map(|x| x.to_le_bytes()));
-        bytes.extend(color);
-    }
-    for (number, triangle) in triangles.iter().enumerate() {
-        bytes.push(3);
-        for &corner in triangle {
-            let is_there = usize::try_from(corner).is_ok_and(|c| c < positions.len());
-            let corner = u32::try_from(corner).ok().filter(|_| is_there);
-            let corner = corner.ok_or_else(|| {
-                Error::new_err(format!(
-                    "triangles: row {number} has a corner that is no row of positions"
-                ))
-            })?;
-            bytes.extend(corner.to_le_bytes());
-        }
-    }
-    Ok(bytes)
+/// Makes a scene on all threads.
+fn made(
+    py: Python<'_>,
+    make: impl FnOnce() -> Result<shiftvox::Scene, shiftvox::Error> + Send,
+) -> PyResult<Scene> {
+    let scene = on_all_threads(py, make)?.map_err(refused)?;
+    Ok(Scene { scene })
 }
 
 #[pymethods]
 impl Scene {
+    /// Open a voxel file (.vox, .ply, .npy, .vxg) or a mesh (.obj, .ply, .stl, .gltf, .glb), which is voxelised with
+    /// 2**depth voxels along its longest side, depth 1 to 20. `opacities`: as `coverage="alpha"` blends them. `up`:
+    /// another axis than the format's custom.
+    ///
+    /// Raises `Error` where the file is missing, damaged, unknown or too large.
     #[staticmethod]
     #[pyo3(signature = (path, *, depth=9, opacities=false, up=None))]
     fn open(
         py: Python<'_>,
         path: PathBuf,
-        depth: u32,
+        #[pyo3(from_py_with = whole)] depth: i64,
         opacities: bool,
         up: Option<&str>,
     ) -> PyResult<Self> {
         let options = options(depth, opacities, up)?;
-        let scene = py.detach(|| options.open(path)).map_err(refused)?;
-        Ok(Self { scene })
+        made(py, || options.open(path))
     }
 
+    /// A generated scene, such as "terrain,depth=7,seed=1"; spec/generators.md lists them.
+    ///
+    /// Raises `Error` where no generator has the name, or a parameter is wrong.
     #[staticmethod]
     fn generate(py: Python<'_>, specification: &str) -> PyResult<Self> {
-        let scene = py
-            .detach(|| shiftvox::Scene::generate(specification))
-            .map_err(refused)?;
-        Ok(Self { scene })
+        made(py, || shiftvox::Scene::generate(specification))
     }
 
+    /// A scene of voxels: indices (N, 3), any integers of 32 bits, and colours (N, 3), integers 0 to 255 in sRGB; grey
+    /// without. Of rows with the same index the last one counts.
+    ///
+    /// Raises `Error` for other shapes and numbers, for no rows, and for voxels more than 2**21 apart.
     #[staticmethod]
     #[pyo3(signature = (indices, colors=None, *, up="z"))]
     fn from_numpy(
         py: Python<'_>,
-        indices: PyReadonlyArray2<'_, i32>,
-        colors: Option<PyReadonlyArray2<'_, u8>>,
+        indices: &Bound<'_, PyAny>,
+        colors: Option<&Bound<'_, PyAny>>,
         up: &str,
     ) -> PyResult<Self> {
-        let indices = rows_of_three("indices", &indices)?;
-        let colors = colors_of(colors.as_ref(), indices.len())?;
-        let up = match up {
-            "y" => Up::Y,
-            "z" => Up::Z,
-            other => return Err(Error::new_err(format!("up: {other:?} is none of y, z"))),
-        };
+        let indices = rows_of_three("indices", indices)?;
+        let colors = colors_of(colors, indices.len())?;
+        let up: Up = self::up(up)?;
         let voxels = indices.into_iter().zip(colors);
         let voxels = voxels.map(|(index, color)| Voxel {
             index,
             color,
             normal: None,
         });
-        let scene = py
-            .detach(|| shiftvox::Scene::from_voxels(voxels))
-            .map_err(refused)?;
-        Ok(Self {
-            scene: scene.with_up(up),
-        })
+        made(py, || Ok(shiftvox::Scene::from_voxels(voxels)?.with_up(up)))
     }
 
+    /// A mesh, voxelised as `open` does it: positions (V, 3), any numbers; triangles (T, 3), integers: rows of
+    /// positions; colours (V, 3), integers 0 to 255 in sRGB; grey without.
+    ///
+    /// Raises `Error` for other shapes and numbers, for no triangles, and for a corner that is no row of positions.
     #[staticmethod]
     #[pyo3(signature = (positions, triangles, colors=None, *, depth=9, opacities=false, up=None))]
     fn from_mesh(
         py: Python<'_>,
-        positions: PyReadonlyArray2<'_, f64>,
-        triangles: PyReadonlyArray2<'_, i64>,
-        colors: Option<PyReadonlyArray2<'_, u8>>,
-        depth: u32,
+        positions: &Bound<'_, PyAny>,
+        triangles: &Bound<'_, PyAny>,
+        colors: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = whole)] depth: i64,
         opacities: bool,
         up: Option<&str>,
     ) -> PyResult<Self> {
-        let positions = rows_of_three("positions", &positions)?;
-        let triangles = rows_of_three("triangles", &triangles)?;
-        let colors = colors_of(colors.as_ref(), positions.len())?;
+        let positions = rows_of_three("positions", positions)?;
+        let triangles = rows_of_three("triangles", triangles)?;
+        let colors = colors_of(colors, positions.len())?;
         let options = options(depth, opacities, up)?;
         let bytes = ply(&positions, &colors, &triangles)?;
-        let scene = py
-            .detach(|| options.from_bytes(&bytes, "the mesh"))
-            .map_err(refused)?;
-        Ok(Self { scene })
+        made(py, || options.from_bytes(&bytes, "the mesh"))
     }
 
+    /// Write a .vxg file, replacing what is there. Raises `Error` where the system refuses.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| self.scene.save_vxg(path)).map_err(refused)
+        on_all_threads(py, || self.scene.save_vxg(path))?.map_err(refused)
     }
 
+    /// Voxels of the finest level.
     #[getter]
     fn voxels(&self) -> u64 {
         self.scene.voxels()
     }
 
+    /// Levels below the root: the cube around the voxels has 2**depth of them a side.
     #[getter]
     fn depth(&self) -> u32 {
         self.scene.depth()
     }
 
+    /// Bytes of the graph, in memory or in the file that it is mapped from.
     #[getter]
     fn bytes(&self) -> u64 {
         self.scene.bytes()
     }
 
+    /// The lowest and the highest corner of the voxels, world units.
     #[getter]
     fn bounds(&self) -> [[f64; 3]; 2] {
         self.scene.bounds()

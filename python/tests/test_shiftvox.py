@@ -1,8 +1,11 @@
 """The package against the program's own pictures and figures."""
 
+import ast
+import inspect
 import json
 import os
 import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -97,6 +100,10 @@ def test_a_mesh_of_arrays(tmp_path):
         shiftvox.Scene.from_mesh(positions, np.array([[0, 1, 2], [0, 1, 4]]))
 
 
+def small(**settings):
+    return shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), size=8, **settings)
+
+
 @pytest.mark.parametrize(
     "act, told",
     [
@@ -109,11 +116,109 @@ def test_a_mesh_of_arrays(tmp_path):
         (lambda: shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), samples=3), "1, 2 or 4"),
         (lambda: shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), size="big"), "size"),
         (lambda: shiftvox.Scene.open(TREE, up="x"), "none of y, z"),
+        (lambda: shiftvox.Scene.open(TREE, depth=-1), "depth: a number from 0"),
+        (lambda: small(samples=-1), "samples: a number from 0"),
+        (lambda: small(threads=-1), "threads: a number from 0"),
+        (lambda: small(threads=2**70), "threads: a number from 0"),
+        (lambda: small(threads=1025), "threads: 0 to 1024, not 1025"),
+        (lambda: small(bits=-1), "bits: a number from 0"),
+        (lambda: small(frac=-1), "frac: a number from 0"),
+        (lambda: small(paper=True, coverage="exact"), "coverage: paper"),
+        (lambda: small(paper=True, cage="frame"), "cage: paper"),
+        (lambda: small(paper=True, tolerance=0.5), "tolerance: paper"),
+        (lambda: small(background=(0, 0, 0), transparent=True), "background: transparent"),
+        (lambda: small(background=(0, 0, 256)), "background: three numbers"),
+        (lambda: shiftvox.run(""), "no command"),
+        (lambda: shiftvox.run("--quiet"), "no command"),
+        (lambda: shiftvox.run("man"), "man: it prints no JSON"),
+        (lambda: shiftvox.run("model", print_hw=True), "no JSON document"),
+        (lambda: shiftvox.Scene.from_numpy([[0, 0, 2**40]]), "indices: numbers from -2147483648"),
+        (lambda: shiftvox.Scene.from_numpy([[0, 0, 0.5]]), "indices: float64"),
+        (lambda: shiftvox.Scene.from_numpy([[0, 0, 0]], [[0, 0, 256]]), "colors: numbers from 0 to 255"),
+        (lambda: shiftvox.Scene.from_mesh([["a", "b", "c"]], [[0, 0, 0]]), "positions: <U1"),
+        (lambda: shiftvox.Scene.from_mesh(np.zeros((3, 3)), np.zeros((0, 3), int)), "triangles: there are none"),
     ],
 )
 def test_what_is_refused(act, told):
     with pytest.raises(shiftvox.Error, match=told):
         act()
+
+
+def test_numbers_of_any_type_and_sizes_of_any_sequence(tmp_path):
+    index = np.array([[0, 0, 0], [0, 1, -1]])
+    color = np.array([[255, 0, 0], [0, 0, 255]])
+    hashes = set()
+    for kind in (np.int8, np.int32, np.int64):
+        scene = shiftvox.Scene.from_numpy(index.astype(kind), color)
+        hashes.add(shiftvox.render(scene, size=16).hash)
+    hashes.add(shiftvox.render(shiftvox.Scene.from_numpy(index.tolist(), color.tolist()), size=[16, 16]).hash)
+    assert len(hashes) == 1
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]])
+    meshes = [
+        shiftvox.Scene.from_mesh(corners.astype(kind), np.array([[0, 1, 2]], rows), depth=3)
+        for kind, rows in [(np.float64, np.int64), (np.float32, np.uint32), (np.int64, np.uint8)]
+    ]
+    assert len({shiftvox.render(mesh, size=16).hash for mesh in meshes}) == 1
+    assert small(background=[1, 2, 3]).hash == small(background=(1, 2, 3)).hash != small().hash
+    for size in ((32, 24), [32, 24]):
+        assert shiftvox.model("gen:menger,depth=1", size=size)["height"] == 24
+
+
+def test_sizes_are_the_pictures_whatever_becomes_of_its_arrays(tmp_path):
+    picture = shiftvox.render(shiftvox.Scene.generate("menger,depth=1"), size=(32, 24))
+    picture.depth.shape = (32 * 24,)
+    picture.rgba.shape = (32 * 24 * 4,)
+    assert (picture.width, picture.height) == (32, 24)
+    assert repr(picture) == "<shiftvox.Picture of 32 x 24 pixels>"
+    picture.save_png(tmp_path / "p.png")
+    assert (tmp_path / "p.png").read_bytes()[16:24] == bytes([0, 0, 0, 32, 0, 0, 0, 24])
+
+
+FORKING = """
+import multiprocessing
+import shiftvox
+scene = shiftvox.Scene.generate("menger,depth=2")
+def draw(_):
+    return shiftvox.render(scene, size=64, threads=0).hash, shiftvox.model("gen:menger,depth=1", size=16)["height"]
+here = draw(0)
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    there = pool.map_async(draw, range(4)).get(timeout=20)  # the children end with the pool
+assert there == [here] * 4, there
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="this system does not fork")
+def test_a_child_by_fork_draws_after_its_parent_drew():
+    subprocess.run([sys.executable, "-c", FORKING], check=True)
+
+
+def public():
+    """All that a user may call or read, by its name."""
+    for name in shiftvox.__all__:
+        thing = getattr(shiftvox, name)
+        yield name, thing
+        if inspect.isclass(thing) and thing is not shiftvox.Error:
+            yield from ((f"{name}.{m}", getattr(thing, m)) for m in vars(thing) if not m.startswith("_"))
+
+
+def test_everything_public_says_what_it_is_and_the_stubs_repeat_it():
+    told = {name: inspect.getdoc(thing) for name, thing in public()}
+    assert {"Scene.from_mesh", "Scene.bounds", "Picture.depth", "Picture.width", "Camera.fit", "render"} <= set(told)
+    assert [name for name, text in told.items() if not text] == []
+    stubs = ast.parse((Path(shiftvox.__file__).parent / "_core.pyi").read_text())
+    repeated = {}
+    for node in stubs.body:
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef)) and node.name in told:
+            repeated[node.name] = ast.get_docstring(node)
+            parts = node.body if isinstance(node, ast.ClassDef) and node.name != "Error" else []
+            for part, after in zip(parts, parts[1:] + [None]):
+                if isinstance(part, ast.FunctionDef):
+                    repeated[f"{node.name}.{part.name}"] = ast.get_docstring(part)
+                elif isinstance(part, ast.AnnAssign):
+                    repeated[f"{node.name}.{part.target.id}"] = after.value.value
+    compiled = {name: text for name, text in told.items() if name.split(".")[0] in repeated}
+    plain = lambda texts: {name: " ".join(text.split()) for name, text in texts.items()}
+    assert plain(repeated) == plain(compiled)
 
 
 def test_other_threads_run_while_it_draws():
@@ -160,6 +265,21 @@ def test_exploration_goes_on_where_it_stopped(tmp_path):
     assert both[-1]["kind"] == "front" and both[-1]["front"]
 
 
+def test_exploration_of_a_scene_in_memory_goes_on(tmp_path):
+    results = tmp_path / "results.jsonl"
+    explored = [
+        shiftvox.explore(shiftvox.Scene.generate("menger,depth=2"), size=16, points=points, results=results)
+        for points in ("0..1", "0..2")
+    ]
+    assert explored[1][:3] == explored[0][:3]
+    assert [line["kind"] for line in map(json.loads, results.read_text().splitlines())] == ["space"] + 3 * ["point"]
+    # By its file the exploration goes on too.
+    (kept,) = tmp_path.glob("scene-*.vxg")
+    written = results.read_text()
+    assert shiftvox.explore(kept, size=16, points="0..2", results=results) == explored[1]
+    assert results.read_text() == written
+
+
 def test_nothing_is_printed(capfd):
     shiftvox.run("info", "gen:menger,depth=1")
     shiftvox.run("bench error", "gen:menger,depth=1", size=16, runs=1, coverages=["exact"], bits=[64])
@@ -174,4 +294,4 @@ def test_nothing_is_printed(capfd):
 def test_examples_run(script, tmp_path):
     path = ROOT / "python" / "examples" / script
     env = {**os.environ, "SHIFTVOX_ASSETS": str(ROOT / "assets")}
-    subprocess.run(["python3", path], cwd=tmp_path, check=True, env=env)
+    subprocess.run([sys.executable, path], cwd=tmp_path, check=True, env=env)

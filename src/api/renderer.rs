@@ -14,6 +14,9 @@ use crate::picture::{Background, Shading, lights, resolve};
 use crate::project::{CageKind, Coverage, Engine, FrameSetup, SetupOptions};
 use crate::rays::Rays;
 
+/// Most threads that a picture may ask for, as on the command line.
+const MOST_THREADS: usize = 1024;
+
 /// Which engine draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[non_exhaustive]
@@ -169,7 +172,7 @@ impl Renderer {
         self
     }
 
-    /// Threads that draw; 0: as many as there are. Never changes the picture.
+    /// Threads that draw, up to 1024; 0: as many as there are. Never changes the picture.
     #[must_use]
     pub fn threads(mut self, threads: usize) -> Self {
         self.threads = threads;
@@ -190,8 +193,8 @@ impl Renderer {
     /// # Errors
     /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
     /// [`Error::Setting`] for samples other than 1, 2 and 4, for more than 2^27 samples in all, for a zoom of 0 or
-    /// less and for what camera or engine do not have, [`Error::Engine`] where a word overflows, [`Error::Threads`]
-    /// where the system gives no threads.
+    /// less, for more than 1024 threads and for what camera or engine do not have, [`Error::Engine`] where a word
+    /// overflows, [`Error::Threads`] where the system gives no threads.
     pub fn render(
         &self,
         scene: &Scene,
@@ -202,6 +205,10 @@ impl Renderer {
         let draw = || self.render_here(scene, camera, width, height);
         match self.threads {
             0 => draw(),
+            // Refused before any is made.
+            threads if threads > MOST_THREADS => Err(Error::Setting(format!(
+                "threads: 0 to {MOST_THREADS}, not {threads}"
+            ))),
             threads => {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).build();
                 pool.map_err(|e| Error::Threads(e.into()))?.install(draw)
@@ -394,5 +401,7 @@ mod tests {
         }
         let samples = renderer.samples(3);
         assert!(refusal(&samples, &Camera::fit(&scene), &scene).contains("1, 2 or 4"));
+        let threads = Renderer::new().threads(MOST_THREADS + 1);
+        assert!(refusal(&threads, &Camera::fit(&scene), &scene).contains("0 to 1024"));
     }
 }

@@ -1,0 +1,150 @@
+//! Arguments: numbers and arrays of any type that holds the values, and words. Errors name the argument.
+
+use numpy::{Element, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyOverflowError;
+use pyo3::prelude::*;
+use pyo3::types::PyAny;
+use shiftvox::{CageKind, Coverage, EngineKind, Up};
+
+use crate::{Error, refused};
+
+const ENGINES: [(&str, EngineKind); 3] = [
+    ("fast", EngineKind::Fast),
+    ("machine", EngineKind::Machine),
+    ("rays", EngineKind::Rays),
+];
+const COVERAGES: [(&str, Coverage); 4] = [
+    ("exact", Coverage::Exact),
+    ("alpha", Coverage::Alpha),
+    ("center", Coverage::Center),
+    ("any", Coverage::Any),
+];
+const CAGES: [(&str, CageKind); 2] = [("frame", CageKind::Frame), ("corners", CageKind::Corners)];
+const AXES: [(&str, Up); 2] = [("y", Up::Y), ("z", Up::Z)];
+
+fn one_of<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
+    let found = known.iter().find(|(name, _)| *name == word);
+    found.map(|&(_, value)| value).ok_or_else(|| {
+        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        Error::new_err(format!("{what}: {word:?} is none of {}", names.join(", ")))
+    })
+}
+
+pub(crate) fn engine(word: &str) -> PyResult<EngineKind> {
+    one_of("engine", word, &ENGINES)
+}
+
+pub(crate) fn coverage(word: &str) -> PyResult<Coverage> {
+    one_of("coverage", word, &COVERAGES)
+}
+
+pub(crate) fn cage(word: &str) -> PyResult<CageKind> {
+    one_of("cage", word, &CAGES)
+}
+
+pub(crate) fn up(word: &str) -> PyResult<Up> {
+    one_of("up", word, &AXES)
+}
+
+/// Reads a whole number. One that 64 bits do not hold becomes the largest: it is out of every range too.
+pub(crate) fn whole(number: &Bound<'_, PyAny>) -> PyResult<i64> {
+    number.extract().or_else(|error: PyErr| {
+        let is_too_large = error.is_instance_of::<PyOverflowError>(number.py());
+        is_too_large.then_some(i64::MAX).ok_or(error)
+    })
+}
+
+/// A number that is 0 or more.
+pub(crate) fn count(what: &str, number: i64) -> PyResult<u32> {
+    u32::try_from(number)
+        .map_err(|_| Error::new_err(format!("{what}: a number from 0 to {}", u32::MAX)))
+}
+
+/// Pixels across and down: one number for a square.
+pub(crate) fn size(size: &Bound<'_, PyAny>) -> PyResult<[u32; 2]> {
+    let square = size.extract().map(|side: u32| [side, side]);
+    square
+        .or_else(|_| size.extract())
+        .map_err(|_| Error::new_err("size: one number, or (width, height), in pixels"))
+}
+
+/// Red, green and blue.
+pub(crate) fn color(what: &str, color: &Bound<'_, PyAny>) -> PyResult<[u8; 3]> {
+    let refuse = || Error::new_err(format!("{what}: three numbers, 0 to 255"));
+    let [red, green, blue] = color.extract::<[i64; 3]>().map_err(|_| refuse())?;
+    let byte = |number: i64| u8::try_from(number).map_err(|_| refuse());
+    Ok([byte(red)?, byte(green)?, byte(blue)?])
+}
+
+/// A kind of numbers that rows are read as.
+pub(crate) trait Entry: Element + Copy {
+    /// Its name in NumPy.
+    const NAME: &'static str;
+    /// Kinds of NumPy's types that are converted.
+    const KINDS: &'static str;
+    /// Lowest and highest whole number; none where all are taken.
+    const RANGE: Option<[i128; 2]>;
+}
+
+impl Entry for f64 {
+    const NAME: &'static str = "float64";
+    const KINDS: &'static str = "fiu";
+    const RANGE: Option<[i128; 2]> = None;
+}
+
+impl Entry for i64 {
+    const NAME: &'static str = "int64";
+    const KINDS: &'static str = "iu";
+    const RANGE: Option<[i128; 2]> = Some([i64::MIN as i128, i64::MAX as i128]);
+}
+
+impl Entry for i32 {
+    const NAME: &'static str = "int32";
+    const KINDS: &'static str = "iu";
+    const RANGE: Option<[i128; 2]> = Some([i32::MIN as i128, i32::MAX as i128]);
+}
+
+impl Entry for u8 {
+    const NAME: &'static str = "uint8";
+    const KINDS: &'static str = "iu";
+    const RANGE: Option<[i128; 2]> = Some([0, 255]);
+}
+
+/// Rows of an array, or of what NumPy makes an array of, that must have three columns.
+pub(crate) fn rows_of_three<T: Entry>(
+    what: &str,
+    array: &Bound<'_, PyAny>,
+) -> PyResult<Vec<[T; 3]>> {
+    let refuse = |told: String| Error::new_err(format!("{what}: {told}"));
+    let numpy = array.py().import("numpy")?;
+    let array = numpy.call_method1("asarray", (array,));
+    let array = array.map_err(|error| refuse(error.to_string()))?;
+    let shape: Vec<usize> = array.getattr("shape")?.extract()?;
+    let [rows, 3] = shape[..] else {
+        return Err(refuse(format!("the shape is {shape:?}, not (N, 3)")));
+    };
+    if rows == 0 {
+        return Ok(Vec::new());
+    }
+    let dtype = array.getattr("dtype")?;
+    if !T::KINDS.contains(&dtype.getattr("kind")?.extract::<String>()?) {
+        return Err(refuse(format!("{dtype} is not converted to {}", T::NAME)));
+    }
+    if let Some([lowest, highest]) = T::RANGE {
+        let least: i128 = array.call_method0("min")?.extract()?;
+        let most: i128 = array.call_method0("max")?.extract()?;
+        if least < lowest || most > highest {
+            let told = format!("numbers from {lowest} to {highest}, not {least} to {most}");
+            return Err(refuse(told));
+        }
+    }
+    let array = array.call_method1("astype", (T::NAME,))?;
+    let array = array.cast_into::<PyArray2<T>>().map_err(refused)?;
+    let array = array.try_readonly().map_err(refused)?;
+    let rows = array.as_array();
+    Ok(rows
+        .rows()
+        .into_iter()
+        .map(|row| [row[0], row[1], row[2]])
+        .collect())
+}
