@@ -19,7 +19,7 @@ pub enum Error {
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// A setting that the camera or the engine does not have, samples of a pixel along an axis other than 1, 2 and 4,
-    /// a picture of more than 2^27 samples, or a zoom that is not above 0.
+    /// a picture of more than 2^27 samples, more than 1024 threads, or a zoom that is not above 0.
     #[error("{0}")]
     Setting(String),
     /// The system gives no threads.
