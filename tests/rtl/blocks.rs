@@ -173,11 +173,13 @@ fn every_row_of_every_block_in_two_formats() {
             let of_corners = &[&*others][..];
             let settings = [
                 (PAPER, of_corners),
+                (EXACT, &[&*exact, &*others]),
                 (WIDENED, of_corners),
                 (CENTRES, of_corners),
-                (EXACT, &[&*exact, &*others]),
             ];
-            for (rules, folders) in settings {
+            // Of the last two the margins alone are new.
+            let settings = settings.iter().take(if bits == "24" { 4 } else { 2 });
+            for &(rules, folders) in settings {
                 let rows = rows(rules, view, bits);
                 let wrong = wrong_rows(&rows, folders);
                 assert_eq!(wrong.len(), rows.blocks().count(), "{wrong:?}");
