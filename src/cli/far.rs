@@ -51,7 +51,7 @@ pub(super) fn convert(
         // What is resident are the mesh and the program itself.
         memory: resources.memory.map(|memory| {
             let loaded = budget::resident().unwrap_or_else(|| mesh.bytes());
-            memory.saturating_sub(loaded)
+            (memory - memory / ALLOCATORS_SHARE).saturating_sub(loaded)
         }),
         folder: resources.temporary.unwrap_or(beside),
         part: part.as_deref(),
@@ -78,7 +78,8 @@ pub(super) fn convert(
         };
         match resources.memory.zip(short) {
             Some((memory, short)) => {
-                let enough = (memory + short).div_ceil(1 << 20);
+                let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
+                let enough = enough.div_ceil(1 << 20);
                 error.advise(format!("give it --memory {enough}M or more"))
             }
             None => error,
@@ -122,6 +123,10 @@ pub(super) fn convert(
     }
     Ok(())
 }
+
+/// One part of so many of a budget is left to the allocator: what it holds beyond what it was asked
+/// for, and what was freed between things that are not.
+const ALLOCATORS_SHARE: u64 = 8;
 
 /// Fewer rays through a voxel are warned of.
 const LEAST_RAYS_PER_VOXEL: f64 = 8.0;

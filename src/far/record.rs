@@ -454,6 +454,12 @@ impl Node {
         self.is_leaf != 0
     }
 
+    /// Whether it has a grid. Without one it stands for its children: it is never drawn itself.
+    #[must_use]
+    pub fn has_grid(&self) -> bool {
+        self.voxel > 0.0
+    }
+
     /// Numbers of its children: two, or a coarser node's one, or a leaf's none.
     pub fn below(&self) -> impl Iterator<Item = usize> + use<> {
         let children = self.children.into_iter();
@@ -495,12 +501,12 @@ impl Node {
         lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
     }
 
-    /// Lowest and highest corner of its grid, or of a leaf's triangles, relative to the file's
-    /// centre.
+    /// Lowest and highest corner of its grid, or of its triangles where it has none, relative to the
+    /// file's centre.
     #[must_use]
     pub fn bounds(&self) -> (DVec3, DVec3) {
         let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
-        if self.is_leaf() {
+        if !self.has_grid() {
             return (point(self.low), point(self.high));
         }
         let cells = DVec3::from_array(self.cells.map(f64::from));

@@ -77,15 +77,28 @@ fn bad_options_are_refused() {
 #[test]
 fn voxels_shrink_from_level_to_level() {
     let data = far(&options());
-    let mut levels = 0;
-    for node in &data.nodes {
-        levels = levels.max(node.level);
+    // The voxel of the next node above that has any. Parents come first.
+    let mut above = vec![f32::INFINITY; data.nodes.len()];
+    let (mut sizes, mut without) = (Vec::new(), 0);
+    for (number, node) in data.nodes.iter().enumerate() {
+        let is_inner = !node.is_leaf();
+        without += usize::from(is_inner && !node.has_grid());
+        if node.has_grid() {
+            // The root of the hierarchy and what is above it have halves; rounded layers add a little.
+            assert!(node.voxel <= 0.75 * above[number], "{number}");
+            sizes.push(node.voxel);
+        }
         for child in node.below() {
-            let child = &data.nodes[child];
-            assert!(child.is_leaf() || child.voxel <= node.voxel);
+            above[child] = if node.has_grid() {
+                node.voxel
+            } else {
+                above[number]
+            };
         }
     }
-    assert!(levels >= 4, "{levels}");
+    let shrunk = sizes[0] / sizes.iter().copied().fold(f32::INFINITY, f32::min);
+    assert!(shrunk > 8.0, "{shrunk}");
+    assert!(without > 3, "boxes halved across another axis: {without}");
 }
 
 /// However large or small the numbers of a mesh are, it has the same voxels and looks the same.

@@ -38,7 +38,7 @@ fn convert_info_render() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let settings = "--leaf-triangles 50 --grid 16 --rays 20000 -q".split(' ');
+    let settings = "--leaf-triangles 300 --grid 32 --rays 60000 -q".split(' ');
     for (output, threads) in [("a.far", "1"), ("b.far", "2")] {
         let command = ["convert", "sheet.obj", output, "--threads", threads];
         shiftvox(at)
@@ -111,9 +111,9 @@ fn info(at: &Path, file: &str) -> (serde_json::Value, String) {
 fn a_hybrid_is_converted_told_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    fs::write(at.join("sheet.obj"), sheet_of(24)).unwrap();
+    fs::write(at.join("sheet.obj"), sheet_of(60)).unwrap();
     for (output, more) in [("h.far", &["--hybrid"][..]), ("f.far", &[])] {
-        let settings = "--leaf-triangles 50 --grid 16 --rays 20000 -q".split(' ');
+        let settings = "--leaf-triangles 300 --grid 32 --rays 200000 -q".split(' ');
         let convert = ["convert", "sheet.obj", output];
         let mut command = shiftvox(at);
         command.args(convert).args(settings).args(more);

@@ -127,7 +127,7 @@ fn fields_are_checked_behind_their_checksums() {
     version[8] = 4;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
     assert!(
-        error.to_string().contains("version 5 to 5, not 4"),
+        error.to_string().contains("version 6 to 6, not 4"),
         "{error}"
     );
     // Every byte of the header and of the root, but for those that may have any

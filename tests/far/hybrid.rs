@@ -33,7 +33,7 @@ fn inner(data: &FarData) -> impl Iterator<Item = &Node> {
     data.nodes.iter().filter(|node| !node.is_leaf())
 }
 
-/// A solid has no voxels, and ever fewer triangles; its coarser nodes stand above each other.
+/// A solid has no voxels, and fewer triangles in coarser nodes, which stand above each other.
 #[test]
 fn a_solid_is_triangles_alone_and_fewer_from_level_to_level() {
     let data = hybrid(&generate(Kind::Scan, 3), 1000);
@@ -45,9 +45,8 @@ fn a_solid_is_triangles_alone_and_fewer_from_level_to_level() {
         [16, 32, 64]
     );
     assert_eq!([0, 1, 2].map(|n| chain[n].below().count()), [1, 1, 2]);
-    for pair in chain.windows(2) {
-        assert!(pair[0].drawn_bytes() * 2 < pair[1].drawn_bytes());
-    }
+    let bytes = [0, 1, 2].map(|n| chain[n].drawn_bytes());
+    assert!(bytes[0].max(bytes[1]) * 2 < bytes[2], "{bytes:?}");
     assert!(chain[2].surface * 2 < data.nodes[0].triangles);
 }
 
@@ -100,15 +99,22 @@ fn damaged_files_are_refused() {
 }
 
 /// Nodes of several levels join without a gap: through a white ball nothing shows of the red one in
-/// it, nor of the red behind it.
+/// it, nor of the red behind it, also where their surfaces are close together.
 #[test]
 #[ignore = "takes long"]
 fn no_background_shows_between_nodes() {
+    for inner in [8.0, 9.9] {
+        nothing_shows_through(inner);
+    }
+}
+
+/// Of a red ball of a radius in a white one of 10.
+fn nothing_shows_through(inner: f64) {
     let mut builder = MeshBuilder::new();
     let white = builder.material(Material::of_srgb("white".to_owned(), [255; 3]));
     let red = builder.material(Material::of_srgb("red".to_owned(), [255, 0, 0]));
     sphere(&mut builder, 10.0, 96, white);
-    sphere(&mut builder, 8.0, 40, red);
+    sphere(&mut builder, inner, 40, red);
     let mesh = builder.finish("balls").unwrap();
     let data = hybrid(&mesh, 300);
     let file = file_of(&data);
@@ -137,7 +143,7 @@ fn no_background_shows_between_nodes() {
                 })
                 .sum();
             if reds + gaps > 0 {
-                told += &format!("{reds} red, {gaps} gaps: {size}, {towards}\n");
+                told += &format!("{inner}: {reds} red, {gaps} gaps: {size}, {towards}\n");
             }
             let level = |&node: &i32| usize::try_from(node).ok().map(|n| file.nodes()[n].level);
             let mut levels: Vec<u32> = picture.node.iter().filter_map(level).collect();

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -146,19 +146,22 @@ impl Cache {
             *place = end;
         }
         self.sections.push(places);
+        self.make_room(cluster.bytes());
         self.keep(self.sections.len() - 1, Arc::new(cluster));
         Ok(())
     }
 
-    /// Holds a cluster, and lets go of those that were not used for longest until it fits.
-    fn keep(&mut self, number: usize, cluster: Arc<Cluster>) {
-        let bytes = cluster.bytes();
+    /// Lets go of the clusters that were not used for longest until so many bytes fit.
+    fn make_room(&mut self, bytes: u64) {
         while self.bytes + bytes > self.most
             && let Some((_, old)) = self.here.pop_front()
         {
             self.bytes -= old.bytes();
         }
-        self.bytes += bytes;
+    }
+
+    fn keep(&mut self, number: usize, cluster: Arc<Cluster>) {
+        self.bytes += cluster.bytes();
         self.here.push_back((number, cluster));
     }
 
@@ -170,13 +173,11 @@ impl Cache {
             self.here.push_back(found);
             return Ok(cluster);
         }
-        let [begin, nodes, numbers, end] = self.sections[number];
-        let mut bytes = vec![0; (end - begin) as usize];
+        let sections @ [begin, .., end] = self.sections[number];
+        self.make_room(end - begin);
         self.file.seek(SeekFrom::Start(begin))?;
-        self.file.read_exact(&mut bytes)?;
-        let (nodes, rest) = bytes.split_at((nodes - begin) as usize);
-        let (numbers, triangles) = rest.split_at(((numbers - begin) as usize) - nodes.len());
-        let cluster = Arc::new(Cluster::of([nodes, numbers, triangles]));
+        let lengths = [0, 1, 2].map(|k| (sections[k + 1] - sections[k]) as usize);
+        let cluster = Arc::new(Cluster::read(&mut self.file, lengths)?);
         self.keep(number, cluster.clone());
         Ok(cluster)
     }

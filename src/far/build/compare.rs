@@ -1,7 +1,7 @@
 //! Which of several ways to hold a node's triangles is the best for its bytes.
 //!
-//! Each is drawn alone, from four sides, with pixels of the node's voxel, and compared with the
-//! triangles: light, and how much of each pixel is covered.
+//! Each is drawn alone, from four sides, with the largest pixels for which it is used, and compared
+//! with the triangles: light, and how much of each pixel is covered.
 
 use glam::{DVec3, DVec4};
 use xxhash_rust::xxh3::xxh3_64;
@@ -28,8 +28,12 @@ const DIRECTIONS: [DVec3; 4] = [
     DVec3::new(-0.8, 0.2, -0.6),
     DVec3::new(0.3, 1.0, -0.7),
 ];
-/// Samples along each axis of a pixel: of the triangles, which are right, and of a candidate.
-const SAMPLES_ACROSS: [u32; 2] = [4, 2];
+/// Side of a pixel, in voxels of the node: from there on nodes of the next coarser voxels are drawn.
+const PIXEL: f64 = 2.0;
+/// Samples along each axis of a pixel: of the triangles, which are right, and of a candidate. Fewer
+/// of these would hide small errors behind their own; as many would not show that triangles which
+/// are smaller than pixels need samples, and voxels do not.
+const SAMPLES_ACROSS: [u32; 2] = [8, 4];
 
 /// One way to hold a node's triangles.
 pub(super) struct Candidate {
@@ -81,7 +85,7 @@ impl<'o> Comparison<'o> {
             triangles: Vec::new(),
         };
         let (truth, _) = of.file(&empty)?;
-        let pixel = f64::from(node.voxel);
+        let pixel = PIXEL * f64::from(node.voxel);
         // At most 255 pixels by the root of three.
         let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
         for direction in DIRECTIONS {
@@ -104,9 +108,8 @@ impl<'o> Comparison<'o> {
                 towards: (towards + up * 0.7 + right * 0.4).normalize_or(up),
                 ambient: AMBIENT,
             };
-            // Voxels of no size: the leaf.
-            let picture = draw(&truth, &view, light, SAMPLES_ACROSS[0], f64::MIN_POSITIVE)?;
-            of.views.push((view, light, light_and_cover(&picture)));
+            let right = draw(&truth, &view, light, SAMPLES_ACROSS[0], NO_VOXEL)?;
+            of.views.push((view, light, right));
         }
         Ok(of)
     }
@@ -126,12 +129,11 @@ impl<'o> Comparison<'o> {
     /// Mean over the cameras.
     fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
         let mut sum = 0.0;
-        for (view, light, truth) in &self.views {
-            // Voxels of any size: the candidate.
-            let picture = draw(file, view, *light, SAMPLES_ACROSS[1], f64::MAX.sqrt())?;
-            let errors = light_and_cover(&picture).into_iter().zip(truth);
-            let errors = errors.map(|(seen, right)| (seen - *right).length_squared());
-            sum += errors.sum::<f64>() / truth.len() as f64;
+        for (view, light, right) in &self.views {
+            sum += square_error(
+                &draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?,
+                right,
+            );
         }
         Ok(sum / self.views.len() as f64)
     }
@@ -205,13 +207,18 @@ fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
     triangles.iter().map(triangle).collect()
 }
 
+/// Most pixels of a voxel that is drawn: none are, but the leaf is; any are, the candidate's.
+const NO_VOXEL: f64 = f64::MIN_POSITIVE;
+const ANY_VOXEL: f64 = 1e150;
+
+/// Light and cover of each pixel.
 fn draw(
     file: &FarFile,
     view: &RasterCamera,
     light: Light,
     samples_across: u32,
     voxel_px: f64,
-) -> Result<FarPicture, BuildError> {
+) -> Result<Vec<DVec4>, BuildError> {
     let options = ViewOptions {
         voxel_px,
         samples_across,
@@ -220,7 +227,16 @@ fn draw(
         ..ViewOptions::default()
     };
     let drawn = FarViewer::new(file).draw(view, &options);
-    drawn.map(|(picture, _)| picture).map_err(failed)
+    drawn
+        .map(|(picture, _)| light_and_cover(&picture))
+        .map_err(failed)
+}
+
+/// Mean over the pixels.
+fn square_error(seen: &[DVec4], right: &[DVec4]) -> f64 {
+    let both = seen.iter().zip(right);
+    let sum: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
+    sum / right.len().max(1) as f64
 }
 
 /// Light before black, and how much of each pixel is covered, which light or dark grounds show.

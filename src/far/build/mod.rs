@@ -9,6 +9,7 @@ mod coarser;
 mod compare;
 mod count;
 mod grid;
+mod levels;
 mod parts;
 mod rays;
 mod room;
@@ -291,6 +292,10 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let (mut branches, order) = split(surface, options.leaf_triangles as usize);
     let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
     progress.end();
+    let has_voxels = match options.hybrid {
+        true => vec![true; branches.len()],
+        false => levels::with_voxels(&branches, coarser),
+    };
     if u32::try_from(branches.len()).is_err() {
         return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
     }
@@ -337,6 +342,8 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
                 .map(|(number, branch)| {
                     if branch.children.is_none() {
                         progress.advance(branch.count as u64);
+                    }
+                    if branch.children.is_none() || !has_voxels[number] {
                         return 0;
                     }
                     touch::count(&target(number, branch).grid, corners(branch.triangles()))
@@ -361,6 +368,9 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
                 }
             };
             return Ok((node, data));
+        }
+        if !has_voxels[number] {
+            return Ok((node, pack(&Default::default(), &[])));
         }
         let target = target(number, branch);
         set_grid(&mut node, &target.grid, scale);

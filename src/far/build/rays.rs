@@ -7,8 +7,10 @@
 //! ones that of the lowest number, and whatever may be nearer than the nearest yet is tested,
 //! with a margin for rounding.
 
+use std::io::{self, Read};
 use std::time::Duration;
 
+use bytemuck::Pod;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::cwbvh::CwBvh;
@@ -142,17 +144,20 @@ impl Cluster {
         ]
     }
 
-    /// Of the bytes that it gave.
-    pub(super) fn of(sections: [&[u8]; 3]) -> Self {
-        let [nodes, numbers, triangles] = sections;
-        Self {
+    /// Reads the bytes that it gave.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub(super) fn read(from: &mut impl Read, bytes: [usize; 3]) -> io::Result<Self> {
+        let [nodes, numbers, triangles] = bytes;
+        Ok(Self {
             bvh: CwBvh {
-                nodes: bytemuck::pod_collect_to_vec::<u8, CwBvhNode>(nodes),
-                primitive_indices: bytemuck::pod_collect_to_vec(numbers),
+                nodes: read_all::<CwBvhNode>(from, nodes)?,
+                primitive_indices: read_all(from, numbers)?,
                 ..CwBvh::default()
             },
-            triangles: bytemuck::pod_collect_to_vec(triangles),
-        }
+            triangles: read_all(from, triangles)?,
+        })
     }
 
     /// Takes what a ray meets, if it is nearer than what it met before. `first` is the number of
@@ -189,6 +194,13 @@ impl Cluster {
             }
         }
     }
+}
+
+/// Items of so many bytes in all, read where they stay.
+fn read_all<T: Pod>(from: &mut impl Read, bytes: usize) -> io::Result<Vec<T>> {
+    let mut items = vec![T::zeroed(); bytes / size_of::<T>()];
+    from.read_exact(bytemuck::cast_slice_mut(&mut items))?;
+    Ok(items)
 }
 
 /// Whether any of some rays has to be tested against what is in a box.

@@ -24,11 +24,13 @@ use crate::mesh::{Mesh, Surface, srgb_to_linear};
 const THIN: f64 = 2.0;
 /// How far triangles may be from the mesh, in voxels of the node.
 const ERROR: f64 = 0.3;
-/// Shares of this error at which small parts are kept, and thin ones.
+/// Shares of this error to which finer candidates are decimated; thin parts to the last.
 const FINER: f64 = 1.0 / 3.0;
 const FINEST: f64 = 0.1;
 /// Bytes of the smallest voxel's record.
 const LEAST_VOXEL_BYTES: f64 = 12.0;
+/// A finer candidate takes at most so many times the least bytes that voxels of the same could.
+const MOST_BYTES: f64 = 4.0;
 /// Nodes of more triangles have voxels alone: what decimating takes of memory is kept to.
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
@@ -80,13 +82,9 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
         own: Range<usize>,
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<(Node, Vec<u8>), BuildError> {
-        let mut candidates = self.candidates(node, &own, voxels)?;
-        let chosen = if candidates.len() == 1 {
-            candidates.swap_remove(0)
-        } else {
-            let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-            Comparison::of(node, &all, self.options)?.best(candidates)?
-        };
+        let candidates = self.candidates(node, &own, voxels)?;
+        let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
+        let chosen = Comparison::of(node, &all, self.options)?.best(candidates)?;
         let mut node = chosen.node;
         let is_shared = |p| self.parts.shared(&own, p).is_some();
         let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);
@@ -113,29 +111,34 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
             let taken: Vec<usize> = own.clone().filter(|&place| is_taken(place)).collect();
             self.decimated(own, &taken, error * voxel)
         };
-        let all = decimated(&|place| is_seen(place, ERROR), ERROR)?;
-        let mut candidates = vec![surface(all)];
+        let bytes = |candidate: &Candidate| {
+            let mut counted = candidate.node;
+            let _ = surface::lay_out(&mut counted, &candidate.triangles, |_| false);
+            counted.drawn_bytes() as f64
+        };
+        // There is a voxel at the least for each square of a voxel's face.
+        let least_of = |is_taken: &dyn Fn(usize) -> bool| {
+            let taken = own.clone().filter(|&place| is_taken(place));
+            let area: f64 = taken.map(|place| self.area(place)).sum();
+            area / (voxel * voxel) * LEAST_VOXEL_BYTES
+        };
+        let mut candidates = Vec::new();
+        for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
+            let all = decimated(&|place| is_seen(place, error), error)?;
+            let all = surface(all);
+            // What takes many times the bytes of voxels is not worth it, however near it is.
+            if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
+                candidates.push(all);
+            }
+        }
         let thin: Vec<bool> = own.clone().map(is_thin).collect();
         if thin.iter().all(|is_thin| !is_thin) {
             return Ok(candidates);
         }
-        // Small parts may matter.
-        let finer = ERROR * FINER;
-        let all = decimated(&|place| is_seen(place, finer), finer)?;
-        candidates.push(surface(all));
         let wide = decimated(&|place| !is_thin(place) && is_seen(place, ERROR), ERROR)?;
         let lines = decimated(&is_thin, ERROR * FINEST)?;
         let both = surface([&wide[..], &lines].concat());
-        // There is a voxel at the least for each square of a voxel's face.
-        let area: f64 = own
-            .clone()
-            .filter(|&p| is_thin(p))
-            .map(|p| self.area(p))
-            .sum();
-        let least = area / (voxel * voxel) * LEAST_VOXEL_BYTES;
-        let mut counted = both.node;
-        let _ = surface::lay_out(&mut counted, &both.triangles, |_| false);
-        if least < counted.drawn_bytes() as f64 {
+        if least_of(&is_thin) < bytes(&both) {
             let mut node = *node;
             let lists = voxels(&mut node, &thin)?;
             candidates.push(Candidate {

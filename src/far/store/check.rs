@@ -75,7 +75,10 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
     )?;
     if node.is_leaf() {
         ensure(node.surface == node.triangles, "all of a leaf's triangles")?;
-        let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
+        ensure(node.children == [0; 2], "a leaf without children")?;
+    }
+    let is_plain = node.origin == [0.0; 3] && node.voxel == 0.0 && node.cells == [0; 3];
+    if node.is_leaf() || is_plain {
         let counts = [
             node.touched,
             node.untested,
@@ -83,10 +86,11 @@ fn check_alone(node: &Node) -> Result<(), &'static str> {
             node.hits,
             node.crossings,
         ];
-        let is_empty = counts == [0; 5] && node.counts == [0; 6] && node.children == [0; 2];
+        let is_empty = counts == [0; 5] && node.counts == [0; 6];
+        ensure(is_plain && is_empty, "no voxels or rays without a grid")?;
         return ensure(
-            is_plain && is_empty,
-            "a leaf without grid, voxels, rays or children",
+            node.is_leaf() || node.surface == 0,
+            "no surface without a grid",
         );
     }
     let is_grid = node.voxel > 0.0

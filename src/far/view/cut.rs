@@ -95,7 +95,7 @@ impl CutNode {
     }
 }
 
-/// Where a node's children's voxels may reach beyond its own grid, in its voxels.
+/// Where the voxels below a node may reach beyond its own box, in voxels of its size.
 const BRANCH_MARGIN: f64 = 2.0;
 
 /// Decides of each node whether it is drawn.
@@ -123,12 +123,14 @@ impl Cut<'_> {
         // Nearer, things that were taken to hide it may be behind the eye; but there is nothing
         // behind an eye outside the box of everything.
         let is_far = from >= self.file.distance_voxels() * voxel || self.is_outside_all();
-        let is_drawn = node.is_leaf() || is_small && is_far;
+        let is_drawn = node.is_leaf() || node.has_grid() && is_small && is_far;
         // Voxels are drawn as squares that reach beyond their cubes.
         let margin = if is_drawn {
             voxel
         } else {
-            BRANCH_MARGIN * voxel
+            // Those of nodes without a grid as those that it would have.
+            let least = (high - low).max_element() / f64::from(self.file.grid() - 1);
+            BRANCH_MARGIN * voxel.max(least)
         };
         let outline = Outline::of(&self.view, low, high, margin);
         if outline.is_outside(&self.view) {

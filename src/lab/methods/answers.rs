@@ -36,12 +36,12 @@ pub struct Answer {
     pub limit: f64,
     /// Of which methods.
     pub family: &'static str,
-    /// The one with the least error.
-    pub method: String,
+    /// The one with the least error; `None`: none keeps to the limit.
+    pub method: Option<String>,
     /// Decibel against the reference; infinite numbers are written as `null`.
-    pub psnr: f64,
+    pub psnr: Option<f64>,
     /// Mean FLIP.
-    pub flip: f64,
+    pub flip: Option<f64>,
 }
 
 /// For each criterion, limit and family the method of the highest PSNR.
@@ -58,14 +58,14 @@ pub fn answers(facts: &[Facts], distance: &Distance) -> Vec<Answer> {
                     is_within.then_some((facts, outcome.picture))
                 });
                 let best = able.min_by(|(_, a), (_, b)| a.rms_linear.total_cmp(&b.rms_linear));
-                answers.extend(best.map(|(facts, picture)| Answer {
+                answers.push(Answer {
                     criterion,
                     limit,
                     family,
-                    method: facts.label.clone(),
-                    psnr: picture.psnr_linear,
-                    flip: picture.flip,
-                }));
+                    method: best.map(|(facts, _)| facts.label.clone()),
+                    psnr: best.map(|(_, picture)| picture.psnr_linear),
+                    flip: best.map(|(_, picture)| picture.flip),
+                });
             }
         }
     }
@@ -159,10 +159,11 @@ pub fn tables(mesh: &MeshMethods, distance: &Distance) -> Vec<Table> {
                 let answer = answers.iter().find(|answer| {
                     (answer.criterion, answer.limit, answer.family) == (criterion, *limit, family)
                 });
-                answer.map_or(Cell::None, |answer| {
-                    let Answer {
-                        psnr, flip, method, ..
-                    } = answer;
+                let of = answer.and_then(|answer| {
+                    let method = answer.method.as_ref()?;
+                    Some((answer.psnr?, answer.flip?, method))
+                });
+                of.map_or(Cell::None, |(psnr, flip, method)| {
                     Cell::Text(format!("{psnr:.1}, {flip:.3}: {method}"))
                 })
             };
@@ -250,7 +251,7 @@ mod tests {
         let answers = answers(&facts, &distance);
         let find = |criterion: &str, limit: f64, family: &str| {
             let is = |a: &&Answer| (a.criterion, a.limit, a.family) == (criterion, limit, family);
-            answers.iter().find(is).map(|answer| answer.method.as_str())
+            answers.iter().find(is).and_then(|a| a.method.as_deref())
         };
         assert_eq!(find("kB of a frame", 4.0, "decimated"), Some("few"));
         assert_eq!(find("kB of a frame", 8.0, "far voxels"), None);

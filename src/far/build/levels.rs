@@ -1,0 +1,67 @@
+//! Which nodes have voxels.
+//!
+//! A box is halved across one axis, so its longest side, and with it the size of its voxels, is
+//! often that of the box above. Such a node would hold the voxels of the one above once more: it has
+//! none, and its children stand for it.
+
+use super::split::Branch;
+
+/// A node has voxels if they are at most this share of those of the next node above that has.
+const STEP: f64 = 0.7;
+
+/// Of each node whether it is a leaf or has voxels. `coarser`: how many nodes are above the root of
+/// the hierarchy; all of these have, and the root.
+pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
+    let mut has_voxels = vec![true; branches.len()];
+    // The longest side of the next box above that has voxels; parents come first.
+    let mut above = vec![f64::INFINITY; branches.len()];
+    for (number, branch) in branches.iter().enumerate() {
+        let Some(children) = branch.children else {
+            continue;
+        };
+        let side = (branch.high - branch.low).max_element();
+        has_voxels[number] = number <= coarser || side <= STEP * above[number];
+        let nearest = if has_voxels[number] {
+            side
+        } else {
+            above[number]
+        };
+        // A second child of number 0 is none.
+        for child in children.into_iter().filter(|&child| child > 0) {
+            above[child] = nearest;
+        }
+    }
+    has_voxels
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn a_box_halved_across_another_axis_has_no_voxels() {
+        // A coarser node, the root, a chain of halves across x, y, z and x, and a leaf.
+        let branch = |level: u32, size: [f64; 3], children: Option<[usize; 2]>| Branch {
+            low: DVec3::ZERO,
+            high: size.into(),
+            level,
+            first: 0,
+            count: 1,
+            children,
+        };
+        let below = |number: usize| Some([number + 1, 6]);
+        let branches = [
+            branch(0, [8.0, 8.0, 8.0], Some([1, 0])),
+            branch(1, [8.0, 8.0, 8.0], below(1)),
+            branch(2, [4.0, 8.0, 8.0], below(2)),
+            branch(3, [4.0, 4.0, 8.0], below(3)),
+            branch(4, [4.0, 4.0, 4.0], below(4)),
+            branch(5, [2.0, 4.0, 4.0], below(5)),
+            branch(6, [2.0, 2.0, 4.0], None),
+        ];
+        let expected = [true, true, false, false, true, false, true];
+        assert_eq!(with_voxels(&branches, 1), expected);
+    }
+}
