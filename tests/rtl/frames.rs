@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use serde_json::Value;
+use shiftvox::graph::{LinkedGraph, vxg};
 use tempfile::TempDir;
 
 use super::tools::{is_there, rtl, run, shiftvox, text};
@@ -97,16 +98,26 @@ fn numbers(path: &Path) -> Vec<i32> {
 
 /// What a frame showed.
 #[derive(Debug)]
-struct Agreement {
+pub(crate) struct Agreement {
     events: usize,
     samples: usize,
     /// Simulated hardware, cycle model.
-    cycles: [u64; 2],
+    pub(crate) cycles: [u64; 2],
 }
 
 /// Draws a view on the hardware and on the machine, and compares all but the cycles. `simulator`: the command that
 /// runs it. `Err`: what differs.
-fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
+pub(crate) fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
+    compare_linked(simulator, view, None)
+}
+
+/// As [`compare`]. `links`: those of a linked graph, whose nodes the hardware has side by side in its memory, one
+/// after the other as they stand there, behind the root; the picture has the graph's own.
+fn compare_linked(
+    simulator: &[&str],
+    view: &[&str],
+    links: Option<&[u32]>,
+) -> Result<Agreement, String> {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("frame");
     let hardware = rtl().join("stage_a.toml");
@@ -162,6 +173,11 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
     }
 
     let nodes = numbers(&shelter.path().join("picture.node.npy"));
+    let node_of = |word: i32| match (links, word) {
+        (Some(links), 1..) => links[word as usize - 1] as i32,
+        // The root of a graph made by hand is the node added first.
+        _ => word,
+    };
     let voxels = numbers(&shelter.path().join("picture.voxel.npy"));
     let mut drawn = vec![-1i32; nodes.len()];
     // From the object's lowest corner to the file's indices: the same for all.
@@ -175,7 +191,7 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
             return Err(format!("pixel {line}"));
         };
         let at = at as usize;
-        drawn[at] = node;
+        drawn[at] = node_of(node);
         let [ix, iy, iz, shown] = voxels[4 * at..][..4] else {
             unreachable!("four numbers a sample");
         };
@@ -199,7 +215,7 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
     })
 }
 
-const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
+pub(crate) const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
 /// In the middle of the sponge's hollow, looking at a corner of it.
 const INSIDE: [&str; 7] = [
     "gen:menger,depth=3",
@@ -209,6 +225,17 @@ const INSIDE: [&str; 7] = [
     "13.4,12.7,13.5",
     "--target",
     "20,16,11",
+];
+
+/// Between hills, from where much is near enough to stay in clip space.
+const WITHIN: [&str; 7] = [
+    "gen:terrain,depth=6",
+    "--size",
+    "64",
+    "--eye",
+    "20.2,30.7,25.1",
+    "--target",
+    "40,40,10",
 ];
 
 #[test]
@@ -311,15 +338,7 @@ fn many_scenes() {
             "--view",
             "right",
         ],
-        &[
-            "gen:terrain,depth=6",
-            "--size",
-            "64",
-            "--eye",
-            "20.2,30.7,25.1",
-            "--target",
-            "40,40,10",
-        ],
+        &WITHIN,
         &[
             "gen:menger,depth=3",
             "--size",
@@ -335,6 +354,69 @@ fn many_scenes() {
             compare(&[right()], view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
         eprintln!("{view:?}: {agreement:?}");
         assert_eq!(agreement.cycles[0], agreement.cycles[1], "{view:?}");
+    }
+}
+
+/// Graphs with shared nodes and with cycles: each node's children, by octant.
+fn linked_graphs() -> Vec<(&'static str, u32, Vec<[Option<u32>; 8]>)> {
+    let no = None;
+    let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
+    vec![
+        (
+            "one node, four times below itself",
+            6,
+            vec![[a, no, no, a, no, a, a, no]],
+        ),
+        (
+            "two nodes in turns, and a solid",
+            7,
+            vec![
+                [b, no, no, a, no, c, b, no],
+                [no, a, b, no, no, no, no, a],
+                [no; 8],
+            ],
+        ),
+        (
+            "one solid, shared by three, one of them shared by the root",
+            3,
+            vec![
+                [b, c, no, b, b, no, c, b],
+                [d, no, d, no, no, d, no, d],
+                [no, d, b, no, d, no, no, no],
+                [no; 8],
+            ],
+        ),
+    ]
+}
+
+/// The hardware draws linked graphs from a memory in which lists of children lie side by side, shared ones once.
+#[test]
+#[ignore = "takes minutes"]
+fn linked_and_cyclic_graphs() {
+    if !is_there("verilator") {
+        return;
+    }
+    let shelter = tempfile::tempdir().unwrap();
+    for (name, depth, nodes) in linked_graphs() {
+        let mut graph = LinkedGraph::new(depth);
+        for (at, &children) in nodes.iter().enumerate() {
+            graph.add_node([40 * at as u8 + 30, 90, 160], children);
+        }
+        let graph = graph.build().unwrap();
+        let file = shelter.path().join("linked.vxg");
+        vxg::write(&graph, &file, true).unwrap();
+        for view in [
+            &["--size", "64", "--view", "iso"][..],
+            &["--size", "40x60", "--azimuth", "130", "--lod", "0"],
+            &["--size", "33", "--view", "right", "--zoom", "5"],
+        ] {
+            let view = [&[text(&file)], view].concat();
+            let agreement = compare_linked(&[right()], &view, Some(&graph.links))
+                .unwrap_or_else(|error| panic!("{name}, {view:?}: {error}"));
+            eprintln!("{name}, {:?}: {agreement:?}", &view[1..]);
+            assert!(agreement.samples > 0);
+            assert_eq!(agreement.cycles[0], agreement.cycles[1], "{name}, {view:?}");
+        }
     }
 }
 
