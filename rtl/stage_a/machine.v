@@ -10,8 +10,13 @@
 //
 // Outside are the memory of nodes and attributes, behind one port that moves a line of eight words, and
 // the memory of pixels. The host writes the frame's constants, then sets `start` for a cycle.
+//
+// Built for pictures of at most 2^PICTURE_LEVELS samples a side, and objects of at most DEPTH levels, of
+// which records go LEVEL_BOUND levels down, with numbers of nodes of NODE_WIDTH bits, in a memory of
+// 2^OUTER_ADDRESS bytes: what the machine's own memories need.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = 8,
-                 NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5) (
+                 NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
+                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
@@ -77,15 +82,42 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   localparam RECORD = 3 + 3*L + N + 2*P + 6*W + 24*W + W + 4*W;
   wire [RECORD-1:0] child_record = {c_solid, c_inside, c_screen, c_level, c_voxel_level, c_quad_level, c_node,
     c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_spans};
-  wire [RECORD-1:0] popped;
+
+  // As it lies on the stack: numbers as wide as the machine's greatest ones. What only one of the poses has
+  // shares its bits: in screen space w and w_min are 0, in clip space spans.
+  localparam LEVEL = $clog2(LEVEL_BOUND + 1), VOXEL_LEVEL = $clog2(DEPTH + 1);
+  localparam QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
+  localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
+  localparam ENTRY = 3 + LEVEL + VOXEL_LEVEL + QUAD_LEVEL + NODE_WIDTH + 2*QUAD_PLACE + 6*CORNER + 25*W;
+  function [3*CORNER-1:0] corner_bits(input [3*W-1:0] v);
+    corner_bits = {v[2*W +: CORNER], v[W +: CORNER], v[0 +: CORNER]};
+  endfunction
+  wire [ENTRY-1:0] pushed = {c_solid, c_inside, c_screen, c_level[LEVEL-1:0], c_voxel_level[VOXEL_LEVEL-1:0],
+    c_quad_level[QUAD_LEVEL-1:0], c_node[NODE_WIDTH-1:0], c_quad_x[QUAD_PLACE-1:0], c_quad_y[QUAD_PLACE-1:0],
+    corner_bits(c_min), corner_bits(c_max), c_x, c_y, c_screen ? {c_spans, {(5*W){1'b0}}} : {c_w, c_w_min}};
+  wire [ENTRY-1:0] popped;
+  wire             p_solid, p_inside, p_screen;
+  wire [LEVEL-1:0] p_level;
+  wire [VOXEL_LEVEL-1:0] p_voxel_level;
+  wire [QUAD_LEVEL-1:0]  p_quad_level;
+  wire [NODE_WIDTH-1:0]  p_node;
+  wire [QUAD_PLACE-1:0]  p_quad_x, p_quad_y;
+  wire [CORNER-1:0]      p_min_x, p_min_y, p_min_z, p_max_x, p_max_y, p_max_z;
+  wire [8*W-1:0]         p_x, p_y;
+  wire [9*W-1:0]         p_pose;
+  assign {p_solid, p_inside, p_screen, p_level, p_voxel_level, p_quad_level, p_node, p_quad_x, p_quad_y,
+    p_min_x, p_min_y, p_min_z, p_max_x, p_max_y, p_max_z, p_x, p_y, p_pose} = popped;
+  function [W-1:0] corner_word(input [CORNER-1:0] v);
+    corner_word = v;
+  endfunction
 
   // ---------------------------------------------------------------- memories on the chip
   reg [STACK_LOG2:0] stacked;                   // records on the stack
   wire stack_full = stacked[STACK_LOG2];
   wire [STACK_LOG2-1:0] top = stacked[STACK_LOG2-1:0] - 1'b1;
-  memory #(.BITS(RECORD), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
+  memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
     .read(state == POP), .write(state == PUSH & ~stack_full),
-    .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(child_record), .data_out(popped));
+    .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
   // Fill vectors, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
   localparam FILL_ADDRESS = 2*PICTURE_LEVELS + 1;
@@ -123,13 +155,14 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
 
   wire        node_ready, node_fetch, attribute_ready, attribute_fetch;
   wire [63:0] node_word, attribute_word;
-  wire [N-4:0] node_line, attribute_line;
+  localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
+  wire [A-4:0] node_line, attribute_line;
   reg         filling_attributes;
-  cache #(.SETS_LOG2(NODE_SETS_LOG2)) node_cache (.clk(clk), .reset(reset), .request(state == NODE),
-    .address(r_node), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
+  cache #(.SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk), .reset(reset), .request(state == NODE),
+    .address(r_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
     .fill(fill & ~filling_attributes), .fill_word(fill_word));
-  cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2)) attribute_cache (.clk(clk), .reset(reset),
-    .request(state == ATTRIBUTE), .address(r_node), .ready(attribute_ready), .word(attribute_word),
+  cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk), .reset(reset),
+    .request(state == ATTRIBUTE), .address(r_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
     .fetch(attribute_fetch), .fetch_line(attribute_line), .fill(fill & filling_attributes),
     .fill_word(fill_word));
   assign fetch = node_fetch | attribute_fetch;
@@ -146,17 +179,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 
   // ---------------------------------------------------------------- the object
-  // Eight vertices of a corner and three edges, vertex 0 highest.
-  function [8*W-1:0] parallelepiped(input [W-1:0] corner, input [3*W-1:0] edge_xyz);
-    reg [W-1:0] x, y, z, v2, v4, v6;
-    begin
-      {x, y, z} = edge_xyz;
-      v4 = corner + x;
-      v2 = corner + y;
-      v6 = v4 + y;
-      parallelepiped = {corner, corner + z, v2, v2 + z, v4, v4 + z, v6, v6 + z};
-    end
-  endfunction
+  wire [8*W-1:0] object_x, object_y, object_w;
+  object_cage #(W) cage_x (.corner(origin[2*W +: W]), .edges(edges[6*W +: 3*W]), .cage(object_x));
+  object_cage #(W) cage_y (.corner(origin[W +: W]), .edges(edges[3*W +: 3*W]), .cage(object_y));
+  object_cage #(W) cage_w (.corner(origin[0 +: W]), .edges(edges[0 +: 3*W]), .cage(object_w));
 
   // ---------------------------------------------------------------- is a record full, does it change
   wire full, deep, guarded;
@@ -276,15 +302,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       quadrant = chosen_from[0] ? 2'd0 : chosen_from[1] ? 2'd1 : chosen_from[2] ? 2'd2 : 2'd3;
   end
   wire [L-1:0] up = c_quad_level - back_level;
-  // In clip space a level up undoes what going down did, exactly.
-  function [8*W-1:0] undone(input [8*W-1:0] x, input [8*W-1:0] w, input far);
-    integer v;
-    reg signed [W-1:0] sum;
-    for (v = 0; v < 8; v = v + 1) begin
-      sum = x[v*W +: W] + (far ? w[v*W +: W] : {W{1'b0}});
-      undone[v*W +: W] = sum >>> 1;
-    end
-  endfunction
+  wire [8*W-1:0] outer_x, outer_y;              // relative to the node above
+  whole_clip #(W) outer_of_x (.x(c_x), .w(c_w), .right(c_quad_x[0]), .outer(outer_x));
+  whole_clip #(W) outer_of_y (.x(c_y), .w(c_w), .right(c_quad_y[0]), .outer(outer_y));
 
   // ---------------------------------------------------------------- the sample of a centre
   reg  signed [W-1:0] m_x, m_y, m_w;
@@ -383,9 +403,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           c_node <= root;
           c_min <= 0;
           c_max <= {3{{{(W-1){1'b0}}, 1'b1} << depth << sub_levels}};
-          c_x <= parallelepiped(origin[2*W +: W], edges[6*W +: 3*W]);
-          c_y <= parallelepiped(origin[W +: W], edges[3*W +: 3*W]);
-          c_w <= parallelepiped(origin[0 +: W], edges[0 +: 3*W]);
+          c_x <= object_x;
+          c_y <= object_y;
+          c_w <= object_w;
           c_spans <= 0;
           left <= 0;
           state <= OBJECT_BOX;
@@ -400,8 +420,21 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           state <= POPPED;
         end
         POPPED: begin
-          {r_solid, r_inside, r_screen, r_level, r_voxel_level, r_quad_level, r_node, r_quad_x, r_quad_y,
-           r_min, r_max, r_x, r_y, r_w, r_w_min, r_spans} <= popped;
+          r_solid <= p_solid;
+          r_inside <= p_inside;
+          r_screen <= p_screen;
+          r_level <= p_level;
+          r_voxel_level <= p_voxel_level;
+          r_quad_level <= p_quad_level;
+          r_node <= p_node;
+          r_quad_x <= p_quad_x;
+          r_quad_y <= p_quad_y;
+          r_min <= {corner_word(p_min_x), corner_word(p_min_y), corner_word(p_min_z)};
+          r_max <= {corner_word(p_max_x), corner_word(p_max_y), corner_word(p_max_z)};
+          r_x <= p_x;
+          r_y <= p_y;
+          {r_w, r_w_min} <= p_screen ? {(9*W){1'b0}} : p_pose;
+          r_spans <= p_screen ? p_pose[5*W +: 4*W] : {(4*W){1'b0}};
           state <= FILLED;
         end
         FILLED: state <= OPEN;
@@ -456,8 +489,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= BACK;
         BACK:
           if (c_quad_level != back_level) begin
-            c_x <= undone(c_x, c_w, c_quad_x[0]);
-            c_y <= undone(c_y, c_w, c_quad_y[0]);
+            c_x <= outer_x;
+            c_y <= outer_y;
             c_quad_x <= c_quad_x >> 1;
             c_quad_y <= c_quad_y >> 1;
             c_quad_level <= c_quad_level - 1'b1;

@@ -4,12 +4,13 @@
 // frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
 // the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
 // Icarus Verilog) makes frame.vcd.
-module frame_tb;
+module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
+                  NODE_WIDTH = `NODE_BITS);   // as `machine` has them
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word.
   localparam LATENCY = 50;
-  // Nodes that there is room for, levels of the picture, records on the stack.
-  localparam NODES = 1 << 20, PICTURE_LEVELS = 8, STACK_LOG2 = 8;
+  // Nodes that there is room for, records on the stack.
+  localparam NODES = 1 << 20, STACK_LOG2 = 8;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [6:0] constant_address = 0;
@@ -23,7 +24,8 @@ module frame_tb;
   wire [3*W-1:0] pixel_voxel;
   wire [`LEVEL_BITS-1:0] pixel_level;
   wire [63:0] pixel_attribute;
-  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2)) dut (
+  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH),
+            .NODE_WIDTH(NODE_WIDTH)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
     .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill), .fill_word(fill_word),

@@ -8,6 +8,7 @@
 //! ```
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod area;
 mod blocks;
 mod frames;
 mod testbench;

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
 use hwmodel::count::Counter;
-use hwmodel::cycles::{self, Cache, CycleReport, Hardware};
+use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
 use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
@@ -205,7 +205,12 @@ pub fn light(
     }
     for ((stage, width), times) in shifters(&frame, prices) {
         let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
-        let busy = report.map_or(1, |of| of.busy).max(1);
+        // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
+        let cycles_of = |of: &StageReport| match hardware.sequential {
+            true => of.alone,
+            false => of.busy,
+        };
+        let busy = report.map_or(1, cycles_of).max(1);
         let of = Units {
             operation: operation_of(OpClass::Shift, ShiftUnits::Variable),
             width,
