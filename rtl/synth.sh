@@ -32,10 +32,12 @@ whole_machine() {
   own='select -set own machine/c:* machine/c:*flatten* %d; select -set sums machine/t:$add machine/t:$sub machine/t:$neg
     select -set shifts machine/t:$shl machine/t:$shr machine/t:$shift machine/t:$shiftx
     submod -name part_sums @own @sums %i; submod -name part_shifters @own @shifts %i'
-  synthesize "$read
-    $cut
+  # Cutting loses no cell and counts none twice: all parts together have as many as before.
+  synthesize "$read; stat; $cut
     $own
-    synth -top machine; $cells"
+    stat; synth -top machine; $cells"
+  awk '/Printing statistics/ { at++ } /Number of cells/ { if (at == 1) before = $NF; if (at == 2) after = $NF }
+    END { if (before != after) { print before " cells, cut into " after > "/dev/stderr"; exit 1 } }' "$log"
   awk '
     FNR == NR { if (!/^#/) stage["part_" $2] = $1; next }
     /Printing statistics/ { registers = 0 }

@@ -10,6 +10,7 @@
 
 mod area;
 mod blocks;
+mod energy;
 mod frames;
 mod testbench;
 mod tools;
