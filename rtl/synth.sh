@@ -10,7 +10,7 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
 for top in "$@"; do
-  yosys -p "read_verilog -sv -I. ${DEFINES:-} blocks/*.v stage_a/*.v; hierarchy -top $top; ${BOX:-}
+  yosys -p "read_verilog -sv -I. -Istage_a ${DEFINES:-} blocks/*.v machine/*.v stage_a/*.v; hierarchy -top $top; ${BOX:-}
     synth -flatten -top $top; dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge
     stat -liberty $lib" > "$log" 2>&1 || { tail -5 "$log" >&2; exit 1; }
   awk -v top="$top" '

@@ -9,32 +9,54 @@ use tempfile::TempDir;
 
 use super::tools::{is_there, rtl, run, shiftvox, text};
 
-/// The simulator of the machine in a folder, of words of 32 bits, for pictures up to 256 x 256.
-fn simulator(hardware: &Path, folder: &Path) -> PathBuf {
-    let arguments = "--binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH \
-                     -I. -Iblocks -Istage_a --top-module frame_tb tb/frame_tb.v -o frame --Mdir";
-    let mut arguments: Vec<&str> = arguments
-        .split(' ')
-        .filter(|word| !word.is_empty())
-        .collect();
-    arguments.push(text(folder));
-    run(hardware, "verilator", &arguments);
-    folder.join("frame")
+/// A machine of `rtl/`: its folder and its hardware's file, the rules that it draws by, where its modules are.
+struct Machine {
+    name: &'static str,
+    rules: &'static [&'static str],
+    folders: &'static [&'static str],
+    /// Its simulator, made once.
+    made: OnceLock<(TempDir, PathBuf)>,
 }
 
-/// The simulator of the machine as it is, made once.
-fn right() -> &'static str {
-    static MADE: OnceLock<(TempDir, PathBuf)> = OnceLock::new();
-    let (_, path) = MADE.get_or_init(|| {
-        let shelter = tempfile::tempdir().unwrap();
-        let path = simulator(&rtl(), shelter.path());
-        (shelter, path)
-    });
-    text(path)
+static STAGE_A: Machine = Machine {
+    name: "stage_a",
+    rules: &["--paper"],
+    folders: &["machine", "stage_a", "blocks"],
+    made: OnceLock::new(),
+};
+static STAGE_B: Machine = Machine {
+    name: "stage_b",
+    rules: &["--coverage", "exact", "--cage", "frame"],
+    folders: &["machine", "stage_b", "blocks_exact", "blocks"],
+    made: OnceLock::new(),
+};
+
+impl Machine {
+    /// The simulator of words of 32 bits, for pictures up to 256 x 256.
+    fn simulator(&self) -> &str {
+        let (_, path) = self.made.get_or_init(|| {
+            let shelter = tempfile::tempdir().unwrap();
+            let arguments = "--binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH \
+                             --top-module frame_tb tb/frame_tb.v -o frame -I. --Mdir";
+            let mut arguments: Vec<String> =
+                arguments.split_whitespace().map(str::to_owned).collect();
+            arguments.push(text(shelter.path()).to_owned());
+            arguments.extend(self.folders.iter().map(|folder| format!("-I{folder}")));
+            let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+            run(&rtl(), "verilator", &arguments);
+            let path = shelter.path().join("frame");
+            (shelter, path)
+        });
+        text(path)
+    }
 }
 
 /// What crossed a port, the first number; and where, and what, as far as the simulation writes it down.
 type Event = (u8, u64, String);
+
+/// Hexadecimal digits of a record's box in screen space, and of its planes, which come last: words of 32 and 64 bits.
+const BOX: usize = 4 * 8;
+const PLANES: usize = 12 * 16;
 
 /// Events of a frame from its vectors.
 fn expected_events(folder: &Path) -> Vec<Event> {
@@ -52,13 +74,7 @@ fn expected_events(folder: &Path) -> Vec<Event> {
             let (port, address) = ((row >> 72) as u8, (row >> 40) as u64 & 0xffff_ffff);
             let data = row as u64 & 0xff_ffff_ffff;
             let data = match port {
-                // Twelve wide words of planes, zeros under this rule, come last.
-                1 => {
-                    let record = &records[data as usize];
-                    let (record, planes) = record.split_at(record.len() - 12 * 16);
-                    assert!(planes.bytes().all(|digit| digit == b'0'));
-                    record.trim_start_matches('0').to_owned()
-                }
+                1 => records[data as usize].trim_start_matches('0').to_owned(),
                 3 => format!("{data:x}"),
                 6 => data.to_string(),
                 _ => String::new(),
@@ -68,21 +84,28 @@ fn expected_events(folder: &Path) -> Vec<Event> {
         .collect()
 }
 
-/// Events that the simulation wrote down.
-fn simulated_events(folder: &Path) -> Vec<Event> {
+/// Events that the simulation wrote down. Of a record stage A has no planes, and B no box in screen space.
+fn simulated_events(folder: &Path, machine: &Machine) -> Vec<Event> {
     let text = fs::read_to_string(folder.join("events.txt")).unwrap();
     text.lines()
         .map(|line| {
             let mut words = line.split(' ');
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
-            let data = next();
-            let data = if port == 1 {
-                data.trim_start_matches('0')
-            } else {
-                data
-            };
-            (port, address, data.to_owned())
+            let mut data = next().to_owned();
+            if port == 1 {
+                let more = next();
+                let (no_box, no_planes) = match machine.name {
+                    "stage_a" => (0, PLANES),
+                    _ => (BOX, 0),
+                };
+                data += &"0".repeat(no_box);
+                // Before the box is a bit that was written down already.
+                data += &more[more.len() - (BOX + PLANES - no_box - no_planes)..];
+                data += &"0".repeat(no_planes);
+                data = data.trim_start_matches('0').to_owned();
+            }
+            (port, address, data)
         })
         .collect()
 }
@@ -106,11 +129,15 @@ struct Agreement {
 
 /// Draws a view on the hardware and on the machine, and compares all but the cycles. `simulator`: the command that
 /// runs it. `Err`: what differs.
-fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
+fn compare(
+    machine: &Machine,
+    simulator: &[&str],
+    view: &[&str],
+) -> Result<Agreement, String> {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("frame");
-    let hardware = rtl().join("stage_a.toml");
-    let common = [view, &["--paper", "--bits", "32"]].concat();
+    let hardware = rtl().join(format!("{}.toml", machine.name));
+    let common = [view, machine.rules, &["--bits", "32"]].concat();
     let rows = [
         "--vectors",
         text(&folder),
@@ -144,7 +171,7 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
         .parse()
         .unwrap();
 
-    let (expected, simulated) = (expected_events(&folder), simulated_events(&folder));
+    let (expected, simulated) = (expected_events(&folder), simulated_events(&folder, machine));
     let pairs = expected.iter().zip(&simulated);
     if let Some(at) = pairs
         .clone()
@@ -199,6 +226,19 @@ fn compare(simulator: &[&str], view: &[&str]) -> Result<Agreement, String> {
     })
 }
 
+/// As [`compare`], on the machine's own simulator; the cycles are equal, too.
+fn agree(machine: &Machine, view: &[&str]) -> Agreement {
+    let agreement = compare(machine, &[machine.simulator()], view)
+        .unwrap_or_else(|error| panic!("{} {view:?}: {error}", machine.name));
+    eprintln!("{} {view:?}: {agreement:?}", machine.name);
+    assert_eq!(
+        agreement.cycles[0], agreement.cycles[1],
+        "{} {view:?}",
+        machine.name
+    );
+    agreement
+}
+
 const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
 /// In the middle of the sponge's hollow, looking at a corner of it.
 const INSIDE: [&str; 7] = [
@@ -216,10 +256,8 @@ fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
     if !is_there("verilator") {
         return;
     }
-    let agreement = compare(&[right()], &[TREE, "--size", "64"]).unwrap();
-    eprintln!("{agreement:?}");
+    let agreement = agree(&STAGE_A, &[TREE, "--size", "64"]);
     assert!(agreement.events > 1_000_000 && agreement.samples > 1000);
-    assert_eq!(agreement.cycles[0], agreement.cycles[1]);
 }
 
 #[test]
@@ -227,9 +265,7 @@ fn an_eye_inside_too() {
     if !is_there("verilator") {
         return;
     }
-    let agreement = compare(&[right()], &INSIDE).unwrap();
-    eprintln!("{agreement:?}");
-    assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+    agree(&STAGE_A, &INSIDE);
 }
 
 /// Faults in what connects the blocks: file, text, what somebody might have written.
@@ -255,29 +291,32 @@ fn a_fault_between_the_blocks_is_found() {
     if !is_there("iverilog") {
         return;
     }
+    let machine = &STAGE_A;
     let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
     let shelter = tempfile::tempdir().unwrap();
-    let (compiled, modules) = (
-        shelter.path().join("frame.vvp"),
-        shelter.path().join("stage_a"),
-    );
-    fs::create_dir(&modules).unwrap();
+    let modules = shelter.path();
+    let compiled = modules.join("frame.vvp");
     let nothing = ("", "", "");
     for (file, right, fault) in [nothing].into_iter().chain(FAULTS) {
-        for path in fs::read_dir(rtl().join("stage_a")).unwrap() {
-            let path = path.unwrap().path();
-            let mut source = fs::read_to_string(&path).unwrap();
-            if path.file_stem().unwrap() == file {
-                assert_eq!(source.matches(right).count(), 1, "{file}: {right}");
-                source = source.replace(right, fault);
+        // Of modules in several folders the first counts.
+        for folder in machine.folders.iter().rev() {
+            for path in fs::read_dir(rtl().join(folder)).unwrap() {
+                let path = path.unwrap().path();
+                let mut source = fs::read_to_string(&path).unwrap();
+                if path.file_stem().unwrap() == file {
+                    assert_eq!(source.matches(right).count(), 1, "{file}: {right}");
+                    source = source.replace(right, fault);
+                }
+                fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
             }
-            fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
         }
-        let arguments = "-g2012 -I . -y blocks -s frame_tb tb/frame_tb.v -o";
+        let arguments = "-g2012 -I . -s frame_tb tb/frame_tb.v -o";
         let mut arguments: Vec<&str> = arguments.split(' ').collect();
-        arguments.extend([text(&compiled), "-y", text(&modules)]);
+        let modules = text(modules);
+        arguments.extend([text(&compiled), "-I", modules, "-y", modules]);
         run(&rtl(), "iverilog", &arguments);
-        let compared = compare(&["vvp", "-n", text(&compiled), "+most=200000"], &view);
+        let simulator = ["vvp", "-n", text(&compiled), "+most=200000"];
+        let compared = compare(machine, &simulator, &view);
         let is_right = compared.is_ok_and(|agreement| agreement.cycles[0] == agreement.cycles[1]);
         assert_eq!(is_right, file.is_empty(), "{file}: {fault}");
     }
@@ -331,10 +370,7 @@ fn many_scenes() {
         ],
     ];
     for view in views {
-        let agreement =
-            compare(&[right()], view).unwrap_or_else(|error| panic!("{view:?}: {error}"));
-        eprintln!("{view:?}: {agreement:?}");
-        assert_eq!(agreement.cycles[0], agreement.cycles[1], "{view:?}");
+        agree(&STAGE_A, view);
     }
 }
 
@@ -373,7 +409,7 @@ fn two_hundred_random_views() {
             &zoom,
         ];
         let agreement =
-            compare(&[right()], &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
+            compare(&STAGE_A, &[STAGE_A.simulator()], &view).unwrap_or_else(|error| panic!("{at} {view:?}: {error}"));
         let [simulated, model] = agreement.cycles;
         if simulated != model {
             eprintln!("{at} {view:?}: {simulated} cycles, {model} in the model");

@@ -4,7 +4,7 @@
 module frame_constants #(parameter W = `WORD_BITS) (
   input                         clk,
   input                         write,
-  input  [6:0]                  address,
+  input  [7:0]                  address,
   input  [W-1:0]                data,
   output reg [`NODE_BITS-1:0]   root,
   output reg [`LEVEL_BITS-1:0]  levels,        // of the samples, in the image quadtree
@@ -38,12 +38,12 @@ module frame_constants #(parameter W = `WORD_BITS) (
   endgenerate
   // All ones above the greatest depth: no node of the level is a solid by its depth.
   wire [W-1:0] found;
-  memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[6]),
+  memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[7:6] == 1),
     .address(look_up ? of_level : address[5:0]), .data_in(data), .data_out(found));
   assign has_lod_depth = has_lod & found != {1'b0, {(W-1){1'b1}}};
   assign lod_depth = found;
   always @(posedge clk)
-    if (write & ~address[6])
+    if (write & address[7:6] == 0)
         case (address[5:0])
           6'd0: root <= data;
           6'd1: levels <= data[`LEVEL_BITS-1:0];

@@ -1,0 +1,6 @@
+// Widths of stage A's records: eight vertices, the pool of all children's, and in screen space the box.
+`define CAGE_WORDS 8
+`define POOL_WORDS 27
+`define MORE_BITS (1 + 4*W)
+// Registers of constants.
+`define CONSTANTS 128
