@@ -44,8 +44,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [N-1:0] root;
   wire [L-1:0] levels, depth, level_bound, sub_levels;
   wire [P-1:0] width, height;
-  wire         coarse, has_lod_depth;
-  wire [3*W-1:0] origin, eye_floor;
+  wire         coarse, has_lod_depth, positive;
+  wire [3*W-1:0] origin, eye_floor, eye_ceil;
   wire [9*W-1:0] edges;
   wire signed [W-1:0] near, near_crossing, size_limit, lod_limit, least_size, lod_depth;
 
@@ -147,7 +147,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   frame_constants #(W) constants (.clk(clk), .write(constant_write), .address(constant_address),
     .data(constant_data), .root(root), .levels(levels), .depth(depth), .level_bound(level_bound),
     .sub_levels(sub_levels), .width(width), .height(height), .coarse(coarse), .origin(origin), .edges(edges),
-    .eye_floor(eye_floor), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
+    .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
     .lod_limit(lod_limit), .least_size(least_size), .look_up(state == FILLED), .of_level(r_level),
     .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 

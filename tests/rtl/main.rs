@@ -10,5 +10,6 @@
 
 mod blocks;
 mod frames;
+mod machines;
 mod testbench;
 mod tools;
