@@ -127,7 +127,7 @@ pub(crate) struct Expected<'m> {
     nodes: Vec<i32>,
     voxels: Vec<i32>,
     /// Of the cycle model.
-    cycles: u64,
+    pub(crate) cycles: u64,
 }
 
 /// What a frame showed.
