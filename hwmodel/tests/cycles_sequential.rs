@@ -137,7 +137,10 @@ fn what_is_done_beside_takes_no_step_of_its_own() {
     // Three adds on the two adders of one stage: 2 cycles, and their latency.
     assert_eq!(found[2..], [(Stage::Centre, 3, 6)]);
     // Were it a step of its own, each of three would take a cycle and a latency.
-    let (apart, _) = visits(vec![read, centre.clone(), ops(Stage::Order, 1), centre], HARDWARE);
+    let (apart, _) = visits(
+        vec![read, centre.clone(), ops(Stage::Order, 1), centre],
+        HARDWARE,
+    );
     let by_hand = [
         (Stage::Centre, 3, 5),
         (Stage::Order, 5, 7),

@@ -1,5 +1,6 @@
 //! Whole frames in Verilog against the machine: every event with all its bits, in order; the picture; the cycles.
 
+use std::collections::BTreeMap;
 use std::fs;
 
 use super::machines::{Expected, Machine, STAGE_A, STAGE_B, agree};
@@ -56,8 +57,8 @@ const FAULTS_A: [Fault; 9] = [
     ("to_screen", "(column - 4)", "(column - 3)"),
     ("frame_constants", "vector[3 + i]", "vector[4 + i]"),
 ];
-/// And in what stage B has of its own: small voxels, and cubes about the eye.
-const FAULTS_B: [&[Fault]; 2] = [
+/// And in what stage B has of its own: small voxels, cubes about the eye, an eye on a corner of some.
+const FAULTS_B: [&[Fault]; 3] = [
     &[
         ("machine", "c_more <= inner_more", "c_more <= c_more"),
         ("plane_constants", "low[3*i + 2]}", "low[3*i + 1]}"),
@@ -76,6 +77,10 @@ const FAULTS_B: [&[Fault]; 2] = [
             "wanted <= front_side",
             "wanted <= ~front_side",
         ),
+    ],
+    &[
+        ("parts", ".before_eye(r_w_min > 0)", ".before_eye(1'b1)"),
+        ("plane_side", "none ? 2'd3", "none ? 2'd0"),
     ],
 ];
 
@@ -124,7 +129,7 @@ fn a_fault_between_the_blocks_is_found() {
 
 #[test]
 fn a_fault_of_stage_b_is_found() {
-    let views: [&[&str]; 2] = [
+    let views: [&[&str]; 3] = [
         &[
             "gen:menger,depth=3",
             "--size",
@@ -143,9 +148,50 @@ fn a_fault_of_stage_b_is_found() {
             "--target",
             "2.9,1.9,1.8",
         ],
+        &[
+            "gen:random,depth=2,seed=1",
+            "--size",
+            "12x9",
+            "--fov",
+            "100",
+            "--eye",
+            "2,1,2",
+            "--target",
+            "2.4,3.1,1.3",
+        ],
     ];
     for (view, faults) in views.into_iter().zip(FAULTS_B) {
         faults_are_found(&STAGE_B, view, faults);
+    }
+}
+
+/// Synthesis takes both machines: no latch, no loop, no signal with two drivers.
+#[test]
+#[ignore = "takes minutes"]
+fn yosys_takes_both_machines() {
+    if !is_there("yosys") {
+        return;
+    }
+    for machine in [&STAGE_A, &STAGE_B] {
+        // Of modules in several folders the first counts.
+        let mut files = BTreeMap::new();
+        for folder in machine.folders {
+            for path in fs::read_dir(rtl().join(folder)).unwrap() {
+                let name = path.unwrap().file_name().into_string().unwrap();
+                if name.ends_with(".v") {
+                    files
+                        .entry(name.clone())
+                        .or_insert(format!("{folder}/{name}"));
+                }
+            }
+        }
+        let files: Vec<String> = files.into_values().collect();
+        let (name, files) = (machine.name, files.join(" "));
+        let script = format!(
+            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top machine; proc; check -assert; \
+             select -assert-none t:$dlatch"
+        );
+        run(&rtl(), "yosys", &["-q", "-p", &script]);
     }
 }
 
@@ -203,8 +249,42 @@ fn many_scenes() {
     }
 }
 
-/// Scattered voxels by seed, from all sides and from within, at random sizes and levels of detail.
-fn random_views(machine: &Machine) {
+/// A number below another, from the seed.
+type Dice<'d> = &'d mut dyn FnMut(u64) -> u64;
+
+/// Scattered voxels by seed, from all sides and from near by, at random sizes and levels of detail.
+fn any_view(next: Dice<'_>) -> Vec<String> {
+    let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
+    let size = format!("{}x{}", 1 + next(60), 1 + next(60));
+    let lod = ["0", "1", "3"][next(3) as usize];
+    let (azimuth, elevation, zoom) = (next(360), next(180) as i64 - 90, 1 + next(8));
+    let camera = format!("--azimuth={azimuth} --elevation={elevation} --zoom={zoom}");
+    words(&format!("{scene} --size {size} --lod {lod} {camera}"))
+}
+
+/// From between them; every other eye has a voxel's corner for its place.
+fn view_from_within(next: Dice<'_>) -> Vec<String> {
+    let (depth, on_corner) = (2 + next(3), next(2) == 0);
+    let scene = format!("gen:random,depth={depth},seed={}", next(1000));
+    let size = format!("{}x{}", 1 + next(30), 1 + next(30));
+    let mut place = |tenths: u64| {
+        let mut coordinate = || next(10 << depth) / tenths * tenths;
+        let [x, y, z] = [(); 3].map(|()| coordinate() as f64 / 10.0);
+        format!("{x:.1},{y:.1},{z:.1}")
+    };
+    let (eye, target) = (place(if on_corner { 10 } else { 1 }), place(1));
+    let fov = 40 + next(100);
+    words(&format!(
+        "{scene} --size {size} --fov {fov} --eye {eye} --target {target}5"
+    ))
+}
+
+fn words(line: &str) -> Vec<String> {
+    line.split(' ').map(str::to_owned).collect()
+}
+
+/// Two hundred views by seed.
+fn random_views(machine: &Machine, make: &mut dyn FnMut(Dice<'_>) -> Vec<String>) {
     if !is_there("verilator") {
         return;
     }
@@ -217,24 +297,8 @@ fn random_views(machine: &Machine) {
     };
     let mut unlike = 0;
     for at in 0..200 {
-        let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
-        let size = format!("{}x{}", 1 + next(60), 1 + next(60));
-        let lod = ["0", "1", "3"][next(3) as usize];
-        let [azimuth, elevation, zoom] = [next(360), next(180), 1 + next(8)].map(|n| n.to_string());
-        let elevation = (elevation.parse::<i64>().unwrap() - 90).to_string();
-        let elevation = format!("--elevation={elevation}");
-        let view = [
-            &scene,
-            "--size",
-            &size,
-            "--lod",
-            lod,
-            "--azimuth",
-            &azimuth,
-            &elevation,
-            "--zoom",
-            &zoom,
-        ];
+        let view = make(&mut next);
+        let view: Vec<&str> = view.iter().map(String::as_str).collect();
         let agreement = Expected::new(machine, &view)
             .compare(&[machine.simulator()])
             .unwrap_or_else(|error| panic!("{} {at} {view:?}: {error}", machine.name));
@@ -252,11 +316,18 @@ fn random_views(machine: &Machine) {
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_random_views() {
-    random_views(&STAGE_A);
+    random_views(&STAGE_A, &mut any_view);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_random_views_of_stage_b() {
-    random_views(&STAGE_B);
+    random_views(&STAGE_B, &mut any_view);
+}
+
+/// Where planes are degenerate, and cubes reach behind the eye.
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_wide_views_of_stage_b_from_between_the_voxels() {
+    random_views(&STAGE_B, &mut view_from_within);
 }

@@ -11,5 +11,6 @@
 mod blocks;
 mod frames;
 mod machines;
+mod mutants;
 mod testbench;
 mod tools;
