@@ -8,9 +8,15 @@ lib=${LIBERTY:-/usr/share/qflow/tech/osu018/osu018_stdcells.lib}
 [ -f "$lib" ] || { echo "no $lib: apt-get install qflow-tech-osu018" >&2; exit 1; }
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+# STAGE=stage_b: modules of exact coverage in the place of those of the same name.
+stage=${STAGE:-stage_a}
+folders="machine $stage blocks"
+[ "$stage" = stage_a ] || folders="machine $stage blocks_exact blocks"
+files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++')
+files=$(echo $files)
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
 for top in "$@"; do
-  yosys -p "read_verilog -sv -I. -Istage_a ${DEFINES:-} blocks/*.v machine/*.v stage_a/*.v; hierarchy -top $top; ${BOX:-}
+  yosys -p "read_verilog -sv -I. -I$stage ${DEFINES:-} $files; hierarchy -top $top; ${BOX:-}
     synth -flatten -top $top; dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge
     stat -liberty $lib" > "$log" 2>&1 || { tail -5 "$log" >&2; exit 1; }
   awk -v top="$top" '
