@@ -2,7 +2,7 @@
 // a cache knows that a line is there are registers; they count with the tags, as the model counts them.
 module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEVEL_BOUND, NODE_WIDTH = 32);
   reg clk, reset, constant_write, start, fill;
-  reg [6:0] constant_address;
+  reg [7:0] constant_address;
   reg [31:0] constant_data;
   reg [63:0] fill_word;
   machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (

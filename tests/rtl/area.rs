@@ -5,15 +5,16 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::frames::{TREE, compare};
+use super::frames::TREE;
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B};
 use super::tools::{is_there, rtl, run, shiftvox, text};
 
 /// What the model says of the machine for a view, words of 32 bits.
-fn modelled(view: &[&str]) -> Value {
+fn modelled(machine: &Machine, view: &[&str]) -> Value {
     let shelter = tempfile::tempdir().unwrap();
-    let hardware = rtl().join("stage_a.toml");
-    let hardware = ["--hw", text(&hardware), "--paper", "--bits", "32", "--json"];
-    let arguments = [&["model"], view, &hardware].concat();
+    let hardware = rtl().join(format!("{}.toml", machine.name));
+    let hardware = ["--hw", text(&hardware), "--bits", "32", "--json"];
+    let arguments = [&["model"], view, machine.rules, &hardware].concat();
     serde_json::from_str(&shiftvox(shelter.path(), &arguments)).unwrap()
 }
 
@@ -36,11 +37,11 @@ fn parameters(model: &Value, top: &str) -> Vec<String> {
 }
 
 /// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
-fn compiled(top: &str, parameters: &[String], into: &str) {
+fn compiled(machine: &Machine, top: &str, parameters: &[String], into: &str) {
     let source = format!("tb/{top}.v");
-    let common = "-g2012 -I . -y blocks -y stage_a -s".split(' ');
-    let mut arguments: Vec<&str> = common.collect();
-    arguments.extend([top, &source, "-o", into]);
+    let mut arguments = vec!["-g2012", "-I", ".", "-I", machine.name];
+    arguments.extend(machine.folders.iter().flat_map(|folder| ["-y", folder]));
+    arguments.extend(["-s", top, &source, "-o", into]);
     arguments.extend(parameters.iter().map(String::as_str));
     run(&rtl(), "iverilog", &arguments);
 }
@@ -57,9 +58,13 @@ fn memories_have_the_bits_that_the_model_says() {
         &["gen:menger,depth=4", "--size", "96x20"],
         &["gen:terrain,depth=6", "--size", "300", "--lod", "0"],
     ];
-    for view in views {
-        let model = modelled(view);
+    for (machine, view) in [&STAGE_A, &STAGE_B]
+        .into_iter()
+        .flat_map(|machine| views.map(|view| (machine, view)))
+    {
+        let model = modelled(machine, view);
         compiled(
+            machine,
             "memories_tb",
             &parameters(&model, "memories_tb"),
             text(&into),
@@ -81,7 +86,7 @@ fn memories_have_the_bits_that_the_model_says() {
                 )
             })
             .collect();
-        assert_eq!(of_verilog, of_model, "{view:?}");
+        assert_eq!(of_verilog, of_model, "{} {view:?}", machine.name);
         assert_eq!(of_model.len(), 6);
     }
 }
@@ -94,13 +99,13 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     let shelter = tempfile::tempdir().unwrap();
     let into = shelter.path().join("frame.vvp");
     let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
-    compiled(
-        "frame_tb",
-        &parameters(&modelled(&view), "frame_tb"),
-        text(&into),
-    );
-    let agreement = compare(&["vvp", "-n", text(&into), "+most=200000"], &view).unwrap();
-    assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+    for machine in [&STAGE_A, &STAGE_B] {
+        let parameters = parameters(&modelled(machine, &view), "frame_tb");
+        compiled(machine, "frame_tb", &parameters, text(&into));
+        let simulator = ["vvp", "-n", text(&into), "+most=200000"];
+        let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
+        assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+    }
 }
 
 /// The row of `predictions.csv` that was written before the machine was synthesized.
@@ -112,7 +117,7 @@ fn the_prediction_of_the_machine_stands() {
         .find(|row| row.starts_with("machine,"))
         .unwrap();
     let predicted: f64 = row.rsplit(',').next().unwrap().parse().unwrap();
-    let area = &modelled(&[TREE, "--size", "64"])["area"];
+    let area = &modelled(&STAGE_A, &[TREE, "--size", "64"])["area"];
     let parts = ["units", "registers", "control"];
     let said: f64 = parts
         .iter()

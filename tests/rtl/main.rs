@@ -12,5 +12,7 @@ mod area;
 mod blocks;
 mod energy;
 mod frames;
+mod machines;
+mod mutants;
 mod testbench;
 mod tools;
