@@ -1,18 +1,69 @@
 #!/bin/sh
-# Area and delay of modules, as the rows of hwmodel/tables/area.toml were made: Yosys, OSU 0.18 um cells.
-# synth.sh FILE MODULE...  prints `module,nand2,registers_nand2,delay_ps` for each; areas are in NAND2X1 of
-# 24 um2, delays of gates alone. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
+# Area and delay of modules, as the rows of hwmodel/tables/area.toml were made: Yosys, OSU 0.18 um cells. Areas are in
+# NAND2X1 of 24 um2, delays of gates alone. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
+#
+#   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each; NETLIST=FILE writes the cells of the last
+#   synth.sh machine     the whole machine without its memories, for the bundled tree at 64 x 64 unless PARAMETERS says
+#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt and of what connects
+#                        them, their sum, and the same in one piece; minutes
+#
+# Modules are stage A's; STAGE=stage_b: those of exact coverage in the place of those of the same name.
 set -e
 cd "$(dirname "$0")"
 lib=${LIBERTY:-/usr/share/qflow/tech/osu018/osu018_stdcells.lib}
 [ -f "$lib" ] || { echo "no $lib: apt-get install qflow-tech-osu018" >&2; exit 1; }
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
+stage=${STAGE:-stage_a}
+folders="machine $stage blocks"
+[ "$stage" = stage_a ] || folders="machine $stage blocks_exact blocks"
+files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++')
+files=$(echo $files)
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
+cells="dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge; stat -liberty $lib"
+
+# synthesize COMMANDS: runs Yosys; what it prints is in $log
+synthesize() {
+  yosys -p "$1" > "$log" 2>&1 || { tail -5 "$log" >&2; exit 1; }
+}
+
+whole_machine() {
+  parameters=${PARAMETERS:--chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND 13 -chparam DEPTH 8 -chparam NODE_WIDTH 21}
+  [ "$stage" = stage_a ] || { echo "parts.txt has the parts of stage_a alone" >&2; exit 1; }
+  # Memories are black boxes. Constants are passed on before the parts are cut out, and nothing else is.
+  without_memory=$(echo "$files" | tr ' ' '\n' | grep -v memory.v | tr '\n' ' ')
+  read="read_verilog -sv -I. -I$stage ${DEFINES:-} $without_memory; read_verilog -lib machine/memory.v
+    hierarchy -top machine $parameters; proc; flatten; opt_expr; opt_clean; memory; opt_clean; rename -top machine"
+  cut=$(awk '!/^#/ { list = ""
+      for (i = 3; i <= NF; i++) list = list " machine/c:*" $i ".*"
+      print "submod -name part_" $2 list }' parts.txt)
+  own='select -set own machine/c:* machine/c:*flatten* %d; select -set sums machine/t:$add machine/t:$sub machine/t:$neg
+    select -set shifts machine/t:$shl machine/t:$shr machine/t:$shift machine/t:$shiftx
+    submod -name part_sums @own @sums %i; submod -name part_shifters @own @shifts %i'
+  # Cutting loses no cell and counts none twice: all parts together have as many as before.
+  synthesize "$read; stat; $cut
+    $own
+    stat; synth -top machine; $cells"
+  awk '/Printing statistics/ { at++ } /Number of cells/ { if (at == 1) before = $NF; if (at == 2) after = $NF }
+    END { if (before != after) { print before " cells, cut into " after > "/dev/stderr"; exit 1 } }' "$log"
+  awk '
+    FNR == NR { if (!/^#/) stage["part_" $2] = $1; next }
+    /Printing statistics/ { registers = 0 }
+    /^=== / { of = $2; registers = 0 }
+    /^ +DFF/ { registers += $2 * 96 / 24 }
+    /Chip area for module/ {
+      area = $NF / 24; sum += area; sum_registers += registers; name = of; sub("part_", "", name)
+      printf "%s,%s,%.0f,%.0f\n", of in stage ? stage[of] : "-", of == "machine" ? "states" : name, area, registers }
+    END { printf "all,sum,%.0f,%.0f\n", sum, sum_registers }' parts.txt "$log"
+  synthesize "$read; synth -flatten -top machine; $cells"
+  awk '/^ +DFF/ { registers += $2 * 96 / 24 } /Chip area/ { area = $NF / 24 }
+    END { printf "all,one piece,%.0f,%.0f\n", area, registers }' "$log"
+}
+
 for top in "$@"; do
-  yosys -p "read_verilog -sv -I. ${DEFINES:-} blocks/*.v stage_a/*.v; hierarchy -top $top; ${BOX:-}
-    synth -flatten -top $top; dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge
-    stat -liberty $lib" > "$log" 2>&1 || { tail -5 "$log" >&2; exit 1; }
+  if [ "$top" = machine ]; then whole_machine; continue; fi
+  synthesize "read_verilog -sv -I. -I$stage ${DEFINES:-} $files; hierarchy -top $top; ${BOX:-}
+    synth -flatten -top $top; $cells${NETLIST:+; write_verilog -noattr $NETLIST}"
   awk -v top="$top" '
     /Delay *=/ { for (i = 1; i <= NF; i++) if ($i == "Delay") { v = $(i + 2); if (v > delay) delay = v } }
     /^ +DFF/ { registers += $2 }

@@ -111,6 +111,21 @@ impl<P: Probe> Datapath<P> {
         }
     }
 
+    /// Does work of another stage, which hardware does beside that of this one ([`Probe::beside`]).
+    #[inline(always)]
+    pub fn beside<T>(&mut self, stage: Stage, work: impl FnOnce(&mut Self) -> T) -> T {
+        let before = std::mem::replace(&mut self.place.stage, stage);
+        if P::ENABLED {
+            self.probe.beside(true);
+        }
+        let done = work(self);
+        if P::ENABLED {
+            self.probe.beside(false);
+        }
+        self.place.stage = before;
+        done
+    }
+
     /// Reports the read of a memory.
     #[inline(always)]
     pub fn read(&mut self, memory: Memory, address: u64) {

@@ -270,6 +270,13 @@ pub trait Probe {
         let _ = (idle, place);
     }
 
+    /// What follows, or no longer follows, is work of another stage that needs nothing of the stage before and is not
+    /// needed in it: a state machine does it in the same cycles.
+    #[inline]
+    fn beside(&mut self, begins: bool) {
+        let _ = begins;
+    }
+
     /// A record begins its turn; `index` counts the records of a frame.
     #[inline]
     fn record(&mut self, index: u64, level: u32) {
@@ -341,6 +348,11 @@ impl<P: Probe> Probe for &mut P {
     #[inline]
     fn next_step(&mut self, idle: u32, place: StageLevel) {
         (**self).next_step(idle, place);
+    }
+
+    #[inline]
+    fn beside(&mut self, begins: bool) {
+        (**self).beside(begins);
     }
 
     #[inline]
@@ -430,6 +442,12 @@ impl<A: Probe, B: Probe> Probe for (A, B) {
     fn next_step(&mut self, idle: u32, place: StageLevel) {
         self.0.next_step(idle, place);
         self.1.next_step(idle, place);
+    }
+
+    #[inline]
+    fn beside(&mut self, begins: bool) {
+        self.0.beside(begins);
+        self.1.beside(begins);
     }
 
     #[inline]

@@ -123,3 +123,33 @@ fn a_step_after_the_other() {
     assert_eq!((count(Stage::Centre), count(Stage::Filled)), (1, 1));
     assert_eq!(stages.len(), 6);
 }
+
+#[test]
+fn what_is_done_beside_takes_no_step_of_its_own() {
+    let ops = |stage, times| Does::Ops(stage, OpClass::Add, 16, times);
+    let (read, centre) = (
+        Does::Read(Stage::Pop, Memory::Stack, 0),
+        ops(Stage::Centre, 1),
+    );
+    let beside = Does::Beside(Stage::Order, OpClass::Add, 16, 1);
+    let does = vec![read.clone(), centre.clone(), beside, centre.clone()];
+    let (found, _) = visits(does.clone(), HARDWARE);
+    // Three adds on the two adders of one stage: 2 cycles, and their latency.
+    assert_eq!(found[2..], [(Stage::Centre, 3, 6)]);
+    // Were it a step of its own, each of three would take a cycle and a latency.
+    let (apart, _) = visits(
+        vec![read, centre.clone(), ops(Stage::Order, 1), centre],
+        HARDWARE,
+    );
+    let by_hand = [
+        (Stage::Centre, 3, 5),
+        (Stage::Order, 5, 7),
+        (Stage::Centre, 7, 9),
+    ];
+    assert_eq!(apart[2..], by_hand);
+    // Pipelines do it in its own block.
+    let pipelined = HARDWARE.replace("sequential = true", "");
+    let (found, _) = visits(does, &pipelined);
+    let stages: Vec<Stage> = found[2..].iter().map(|&(stage, ..)| stage).collect();
+    assert_eq!(stages, [Stage::Centre, Stage::Order]);
+}

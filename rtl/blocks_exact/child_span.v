@@ -1,19 +1,19 @@
 `include "widths.vh"
 // The least and the greatest of a cage's vertices, one coordinate: the corner and all edges on one side
-// of it. SPEC.md, 4.
+// of it. SPEC.md, 4. A cage: the corner, highest, and the edges along x, y, z.
 module child_span #(parameter W = `WORD_BITS) (
-  input  [W-1:0]   child_corner,
-  input  [3*W-1:0] child_edge,
+  input  [4*W-1:0] child,
   output [W-1:0]   low, high);
   wire [3*W-1:0] below, above;
   genvar k;
   generate
     for (k = 0; k < 3; k = k + 1) begin : along
-      wire [W-1:0] edge_k = child_edge[k*W +: W];
+      wire [W-1:0] edge_k = child[k*W +: W];
       assign below[k*W +: W] = edge_k & {W{edge_k[W-1]}};
       assign above[k*W +: W] = edge_k & {W{~edge_k[W-1]}};
     end
   endgenerate
-  assign low  = child_corner + below[0 +: W] + below[W +: W] + below[2*W +: W];
-  assign high = child_corner + above[0 +: W] + above[W +: W] + above[2*W +: W];
+  wire [W-1:0] corner = child[3*W +: W];
+  assign low  = corner + below[0 +: W] + below[W +: W] + below[2*W +: W];
+  assign high = corner + above[0 +: W] + above[W +: W] + above[2*W +: W];
 endmodule

@@ -11,7 +11,7 @@ module plane_side #(parameter V = `WIDE_BITS) (
   wire signed [V-1:0] low = c + least, high = c + greatest;
   wire signed [V-1:0] middle = (c << 1) + a + b;
   wire signed [V-1:0] decides = middle != 0 ? middle : a != 0 ? a : b;
-  wire none = a == 0 & b == 0 & c == 0 | low == 0 & high == 0;
-  wire [1:0] of_sample = decides < 0 ? 2'd2 : decides > 0 ? 2'd1 : 2'd3;
+  wire none = a == 0 & b == 0 & c == 0;
+  wire [1:0] of_sample = decides < 0 ? 2'd2 : 2'd1;
   assign side = none ? 2'd3 : low >= 0 ? 2'd1 : high <= 0 ? 2'd2 : sample ? of_sample : 2'd0;
 endmodule

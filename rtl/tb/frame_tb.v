@@ -1,18 +1,20 @@
 `include "widths.vh"
+`include "stage.vh"
 // Draws a frame: writes the constants, starts the machine, answers its memory port, writes down what
-// happens. It runs in a folder that `shiftvox model --paper --vectors` wrote, of whose files it reads
+// happens. It runs in a folder that `shiftvox model --vectors` wrote under the stage's rules, of whose files it reads
 // frame.constants.hex and frame.nodes.hex, and makes pixels.txt and, with +events, events.txt. It prints
 // the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
 // Icarus Verilog) makes frame.vcd.
-module frame_tb;
+module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
+                  NODE_WIDTH = `NODE_BITS);   // as `machine` has them
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word.
   localparam LATENCY = 50;
-  // Nodes that there is room for, levels of the picture, records on the stack.
-  localparam NODES = 1 << 20, PICTURE_LEVELS = 8, STACK_LOG2 = 8;
+  // Nodes that there is room for, records on the stack.
+  localparam NODES = 1 << 20, STACK_LOG2 = 8;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
-  reg [6:0] constant_address = 0;
+  reg [7:0] constant_address = 0;
   reg [W-1:0] constant_data = 0;
   wire busy, done, failed, fetch, fetch_attribute, pixel;
   wire [`NODE_BITS-4:0] fetch_line;
@@ -23,7 +25,8 @@ module frame_tb;
   wire [3*W-1:0] pixel_voxel;
   wire [`LEVEL_BITS-1:0] pixel_level;
   wire [63:0] pixel_attribute;
-  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2)) dut (
+  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH),
+            .NODE_WIDTH(NODE_WIDTH)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
     .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill), .fill_word(fill_word),
@@ -32,7 +35,7 @@ module frame_tb;
 
   // ------------------------------------------------ memory: nodes; attributes are the node's number
   reg [63:0] nodes [0:NODES-1];
-  reg [W-1:0] constants [0:127];
+  reg [W-1:0] constants [0:`CONSTANTS-1];
   integer wait_for, beat;
   reg of_attribute;
   reg [`NODE_BITS-1:0] at;
@@ -69,7 +72,9 @@ module frame_tb;
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
       if (dut.state == dut.POP) $fwrite(events, "0 %0d\n", dut.top);
-      if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h\n", dut.stacked, dut.child_record);
+      if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h %h\n", dut.stacked,
+        {dut.c_solid, dut.c_inside, dut.c_screen, dut.c_level, dut.c_voxel_level, dut.c_quad_level, dut.c_node,
+         dut.c_quad_x, dut.c_quad_y, dut.c_min, dut.c_max, dut.c_x, dut.c_y, dut.c_w, dut.c_w_min}, dut.c_more);
       if (dut.fill_read) $fwrite(events, "2 %0d\n", dut.fill_address);
       if (dut.state == dut.MARK) $fwrite(events, "3 %0d %h\n", dut.fill_address, dut.marked);
       if (dut.state == dut.NODE) $fwrite(events, "4 %0d\n", dut.r_node);
@@ -101,7 +106,7 @@ module frame_tb;
     for (i = 0; i < 64; i = i + 1) in_state[i] = 0;
     repeat (2) @(posedge clk);
     #1 reset = 0;
-    for (i = 0; i < 128; i = i + 1) begin
+    for (i = 0; i < `CONSTANTS; i = i + 1) begin
       constant_write = 1;
       constant_address = i;
       constant_data = constants[i];

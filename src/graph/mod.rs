@@ -18,6 +18,7 @@ mod opacity;
 pub(crate) mod place;
 mod progress;
 mod pushed;
+mod side_by_side;
 mod store;
 pub mod validate;
 mod voxel;

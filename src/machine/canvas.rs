@@ -103,26 +103,33 @@ impl<'f> Canvas<'f> {
         taken.is_full
     }
 
-    /// Draws all samples of `quad` inside a silhouette that are not full yet.
+    /// Draws all samples of `quad` inside a silhouette that are not full yet. Returns the level of the last node
+    /// that was divided, at or below `quad`; its parent's if that was not.
     pub(super) fn draw_silhouette<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
         quad: QuadNode,
         mut silhouette: Silhouette,
         paint: &Paint,
-    ) {
+    ) -> u32 {
         dp.stage(Stage::Draw);
         let below = self.fill.levels() - quad.level;
+        let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {
             Cover::None => {}
             Cover::All => self.draw_all(dp, quad, paint),
             Cover::Some => {
+                divided = quad.level;
                 for quadrant in self.open_quadrants(dp, quad) {
+                    // Hardware has the planes of one node, and takes them back up a level at a time.
+                    dp.next_step(divided - quad.level);
                     let inner = silhouette.in_quadrant(dp, quadrant);
-                    self.draw_silhouette(dp, quad.quadrant(quadrant), inner, paint);
+                    dp.next_step(0);
+                    divided = self.draw_silhouette(dp, quad.quadrant(quadrant), inner, paint);
                 }
             }
         }
+        divided
     }
 
     /// Draws all samples of a node that are not full yet.

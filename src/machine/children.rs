@@ -142,9 +142,10 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     ) -> bool {
         let (w_min, w_max) = child_span(&mut self.dp, &w);
         let planes = if self.constants.coverage == Coverage::Exact {
-            self.dp.stage(Stage::VertexPool);
-            let parent_level = child.level - 1;
-            planes::of_child(&mut self.dp, &self.constants, planes, parent_level, octant)
+            let (constants, parent_level) = (&self.constants, child.level - 1);
+            self.dp.beside(Stage::VertexPool, |dp| {
+                planes::of_child(dp, constants, planes, parent_level, octant)
+            })
         } else {
             *planes
         };

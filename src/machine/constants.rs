@@ -204,9 +204,9 @@ impl Constants {
     }
 }
 
-/// A frame's constants as the host writes them to the registers of `rtl/stage_a/frame_constants.v`, from number 0
-/// on, of an object whose node is `root`; all ones but the sign where a level has no depth. Those of
-/// silhouette planes are not among them.
+/// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
+/// on, of an object whose node is `root`; all ones but the sign where a level has no depth. Under the rules that draw
+/// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
 #[must_use]
 pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
@@ -228,7 +228,14 @@ pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
         setup.height,
     ];
     put(1, &numbers.map(i64::from));
-    put(7, &[i64::from(coarse) | i64::from(has_lod) << 1]);
+    let flags = [coarse, has_lod, c.positive];
+    put(
+        7,
+        &[(0..)
+            .zip(flags)
+            .map(|(at, flag)| i64::from(flag) << at)
+            .sum()],
+    );
     let sizes = [c.size_limit_screen, c.lod_limit_screen, c.least_size_screen];
     put(8, &[c.near, c.near_crossing].map(Word::to_host));
     put(10, &sizes.map(Word::to_host));
@@ -241,14 +248,23 @@ pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
             .map(|edge| edge.to_host())
             .collect::<Vec<_>>(),
     );
+    put(13, &c.eye_ceil.map(Word::to_host));
     put(28, &c.eye_floor.map(Word::to_host));
     let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);
     let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));
     put(LEVEL_REGISTERS, &depths.collect::<Vec<_>>());
+    if c.coverage == Coverage::Exact {
+        let across = c.axis_ab.iter().zip(&c.axis_c);
+        let across = across.flat_map(|(&[a, b], &c)| [a, b, c]);
+        for number in across.chain(c.edge_planes.concat()) {
+            let number = number.to_host();
+            registers.extend([number, number >> setup.format.bits().min(63)]);
+        }
+    }
     registers
 }
 
-/// Registers of constants, and the first of those that have one for each octree level.
+/// Registers of constants but those of planes, and the first of those that have one for each octree level.
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 

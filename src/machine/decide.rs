@@ -148,6 +148,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         }
         let paint = self.paint(record, ink);
         let silhouette = Silhouette::new(&mut self.dp, &self.constants, cube, planes, clip.w_min);
+        self.dp.next_step(0);
         self.canvas
             .draw_silhouette(&mut self.dp, record.place.quad, silhouette, &paint);
     }

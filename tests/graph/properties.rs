@@ -370,6 +370,53 @@ fn a_sierpinski_tetrahedron_is_one_node() {
     assert_eq!(sierpinski(30).voxels().take(1000).count(), 1000);
 }
 
+/// Random graphs, cyclic ones among them, with their lists side by side: the same cells and colours; a node is where
+/// `links` had it.
+#[test]
+fn lists_side_by_side_are_the_same_object() {
+    for seed in 1..60u64 {
+        let mut numbers = seed;
+        let mut below = |most: u64| {
+            numbers = numbers
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(99);
+            (numbers >> 40) % most
+        };
+        let nodes = 1 + below(7) as u32;
+        let mut linked = LinkedGraph::new(3);
+        for node in 0..nodes {
+            let children =
+                std::array::from_fn(|_| (below(3) == 0).then(|| below(u64::from(nodes)) as u32));
+            linked.add_node([node as u8, 0, 0], children);
+        }
+        let linked = linked.build().unwrap();
+        let laid_out = linked.side_by_side().unwrap();
+        laid_out.validate().unwrap();
+        assert_eq!(laid_out.len(), 1 + linked.links.len());
+        assert_eq!(laid_out.voxels, linked.voxels);
+        let (mut of_linked, mut of_laid_out) = (linked.voxels(), laid_out.voxels());
+        loop {
+            let (expected, found) = (of_linked.next(), of_laid_out.next());
+            assert_eq!(expected.is_some(), found.is_some());
+            let (Some(expected), Some(found)) = (expected, found) else {
+                break;
+            };
+            assert_eq!(
+                (found.corner, found.level),
+                (expected.corner, expected.level)
+            );
+            let at = found.node as usize;
+            let node = if at == 0 {
+                linked.root
+            } else {
+                linked.links[at - 1]
+            };
+            assert_eq!(node, expected.node);
+            assert_eq!(laid_out.color_of(found.node), linked.color_of(node));
+        }
+    }
+}
+
 #[test]
 fn equal_nodes_of_cyclic_graphs_merge() {
     // Two nodes that take turns, with equal colours: one node would do.

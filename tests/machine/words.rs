@@ -25,7 +25,7 @@ const fn allowed(file: &'static str, line: &'static str, reason: &'static str) -
     Allowed { file, line, reason }
 }
 
-const TO_HOST: [Allowed; 12] = [
+const TO_HOST: [Allowed; 14] = [
     allowed(
         "alpha.rs",
         "*sum = plus_product(dp, LIGHT_BITS, before, light, share, WEIGHT_BITS).to_host();",
@@ -59,9 +59,15 @@ const TO_HOST: [Allowed; 12] = [
     allowed("constants.rs", ".map(|edge| edge.to_host())", REGISTER),
     allowed(
         "constants.rs",
+        "put(13, &c.eye_ceil.map(Word::to_host));",
+        REGISTER,
+    ),
+    allowed(
+        "constants.rs",
         "put(28, &c.eye_floor.map(Word::to_host));",
         REGISTER,
     ),
+    allowed("constants.rs", "let number = number.to_host();", REGISTER),
     allowed(
         "constants.rs",
         "let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));",

@@ -3,9 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
-use rayon::prelude::*;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -13,7 +11,7 @@ use super::testbench::testbench;
 use super::tools::{is_there, rtl, run, shiftvox, text};
 
 /// Views: from outside, where records change to screen space; and with the eye within, where they stay.
-const VIEWS: [&[&str]; 2] = [
+pub(crate) const VIEWS: [&[&str]; 2] = [
     &["gen:menger,depth=3", "--size", "48"],
     &[
         "gen:menger,depth=3",
@@ -27,7 +25,7 @@ const VIEWS: [&[&str]; 2] = [
 ];
 
 /// A folder of vectors of a view, its manifest, and definitions of its widths.
-struct Rows {
+pub(crate) struct Rows {
     _shelter: TempDir,
     folder: PathBuf,
     manifest: Value,
@@ -36,10 +34,10 @@ struct Rows {
 }
 
 /// Settings of stage A, and of the blocks of exact coverage.
-const PAPER: &[&str] = &["--paper"];
-const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
+pub(crate) const PAPER: &[&str] = &["--paper"];
+pub(crate) const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
 /// Rules with margins, whose blocks stage A shares.
-const WIDENED: &[&str] = &[
+pub(crate) const WIDENED: &[&str] = &[
     "--coverage",
     "any",
     "--cage",
@@ -48,7 +46,7 @@ const WIDENED: &[&str] = &[
     "0.125",
 ];
 /// Margins wider than a node, and words so short that sums are often equal to what they are compared with.
-const WIDE: &[&str] = &[
+pub(crate) const WIDE: &[&str] = &[
     "--coverage",
     "any",
     "--cage",
@@ -59,8 +57,8 @@ const WIDE: &[&str] = &[
     "1",
 ];
 /// Boxes that must hold a sample.
-const CORNERS: &[&str] = &["--coverage", "exact", "--cage", "corners"];
-const CENTRES: &[&str] = &[
+pub(crate) const CORNERS: &[&str] = &["--coverage", "exact", "--cage", "corners"];
+pub(crate) const CENTRES: &[&str] = &[
     "--coverage",
     "center",
     "--cage",
@@ -69,9 +67,9 @@ const CENTRES: &[&str] = &[
     "0.125",
 ];
 /// Short words, too.
-const SHORT: &[&str] = &["--paper", "--frac", "1"];
+pub(crate) const SHORT: &[&str] = &["--paper", "--frac", "1"];
 /// Boxes across the picture's edges.
-const NEAR: &[&str] = &["gen:menger,depth=3", "--size", "48", "--zoom", "6"];
+pub(crate) const NEAR: &[&str] = &["gen:menger,depth=3", "--size", "48", "--zoom", "6"];
 
 impl Rows {
     /// The blocks that have rows. Under a tolerance the limit of size is not one sample, which stage A's is.
@@ -84,7 +82,7 @@ impl Rows {
     }
 }
 
-fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
+pub(crate) fn rows(rules: &[&str], view: &[&str], bits: &str) -> Rows {
     let shelter = tempfile::tempdir().unwrap();
     let folder = shelter.path().join("rows");
     let rest = [
@@ -123,7 +121,7 @@ fn wrong_rows(rows: &Rows, folders: &[&Path]) -> BTreeMap<String, u64> {
 }
 
 /// [`wrong_rows`] of some blocks, of each at most so many rows.
-fn wrong_rows_of(
+pub(crate) fn wrong_rows_of(
     rows: &Rows,
     folders: &[&Path],
     is_run: impl Fn(&str) -> bool,
@@ -272,191 +270,4 @@ fn a_fault_in_any_block_is_found() {
             assert!(wrong["vertex_pool"] > 0, "{parts:?}");
         }
     }
-}
-
-/// What a text of a block may become by a slip.
-const SLIPS: [(&str, &str); 16] = [
-    (" + ", " - "),
-    (" - ", " + "),
-    (" < ", " <= "),
-    (" <= ", " < "),
-    (" > ", " >= "),
-    (" >= ", " > "),
-    (" & ", " | "),
-    (" | ", " & "),
-    (" == ", " != "),
-    (" << ", " >> "),
-    (" >>> ", " >> "),
-    ("= ~|", "= |"),
-    ("= ~", "= "),
-    ("[W:1]", "[W-1:0]"),
-    ("1'b1", "1'b0"),
-    (" ? ", " ? ~"),
-];
-
-/// Whether the slip makes no difference: of two that are compared one is chosen, and they are equal.
-fn chooses_of_equals(code: &str, at: usize, compare: &str) -> bool {
-    let before = code[..at].rsplit(' ').next().unwrap_or_default();
-    let mut after = code[at + compare.len()..].trim_end().splitn(3, ' ');
-    let (Some(right), Some("?"), Some(chosen)) = (after.next(), after.next(), after.next()) else {
-        return false;
-    };
-    let chosen: Vec<&str> = chosen.trim_end_matches(';').split(" : ").collect();
-    matches!(compare, " < " | " <= " | " > " | " >= ")
-        && (chosen == [before, right] || chosen == [right, before])
-}
-
-/// All ways to make one slip in a block.
-fn mutants(source: &str) -> Vec<String> {
-    let is_code = |line: &str| {
-        let declares = [
-            "//",
-            "for (",
-            "module",
-            "input",
-            "output",
-            "localparam",
-            "`",
-            "if (",
-            "function",
-        ];
-        !declares
-            .iter()
-            .any(|word| line.trim_start().starts_with(word))
-    };
-    let mut mutants = Vec::new();
-    let mut begun = 0;
-    for line in source.split_inclusive('\n') {
-        // What stands in an index or behind a comment is no arithmetic of the block.
-        let code = line.split("//").next().unwrap_or_default();
-        for (right, wrong) in SLIPS.iter().filter(|_| is_code(line)) {
-            for (at, _) in code.match_indices(right) {
-                let open = code[..at].matches('[').count() - code[..at].matches(']').count();
-                if open == 0 && !chooses_of_equals(code, at, right) {
-                    let (before, after) = source.split_at(begun + at);
-                    mutants.push(format!("{before}{wrong}{}", &after[right.len()..]));
-                }
-            }
-        }
-        begun += line.len();
-    }
-    mutants
-}
-
-/// Whether a block's text is Verilog: a slip may be none.
-fn compiles(name: &str, text_of_block: &str) -> bool {
-    let shelter = tempfile::tempdir().unwrap();
-    let file = shelter.path().join(format!("{name}.v"));
-    fs::write(&file, text_of_block).unwrap();
-    let (rtl, blocks) = (rtl(), rtl().join("blocks"));
-    Command::new("iverilog")
-        .args([
-            "-g2012",
-            "-t",
-            "null",
-            "-DWORD_BITS=32",
-            "-DFRACTION_BITS=16",
-        ])
-        .args(["-DWIDE_BITS=64", "-I", text(&rtl), "-y", text(&blocks)])
-        .arg(&file)
-        .output()
-        .unwrap()
-        .status
-        .success()
-}
-
-/// The testbenches' mutation score. Blocks have their first slip at once, then their second, ...
-#[test]
-#[ignore = "takes minutes"]
-fn mutation_score() {
-    if !is_there("iverilog") {
-        return;
-    }
-    let all = [
-        rows(PAPER, VIEWS[0], "32"),
-        rows(PAPER, VIEWS[1], "32"),
-        rows(SHORT, NEAR, "16"),
-        rows(WIDENED, NEAR, "24"),
-        rows(WIDE, NEAR, "16"),
-        rows(CENTRES, NEAR, "24"),
-        rows(CORNERS, VIEWS[0], "32"),
-    ];
-    let mut sources = BTreeMap::new();
-    // By testbench: file and text.
-    let mut slips: BTreeMap<&str, Vec<(String, String)>> = BTreeMap::new();
-    for file in fs::read_dir(rtl().join("blocks")).unwrap() {
-        let path = file.unwrap().path();
-        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
-        let source = fs::read_to_string(&path).unwrap();
-        let bench = match name.as_str() {
-            "midpoints" | "child_vertices" => "vertex_pool",
-            "divide_step" => "to_screen_divide",
-            // Registers and counters of the divide: a slip may make it endless.
-            "divide_lane" | "divide_control" | "to_screen_divide" => "",
-            other => other,
-        };
-        if !bench.is_empty() {
-            let mutants = mutants(&source)
-                .into_iter()
-                .filter(|text| compiles(&name, text))
-                .map(|text| (name.clone(), text));
-            slips
-                .entry(bench.to_owned().leak())
-                .or_default()
-                .extend(mutants);
-        }
-        sources.insert(name, source);
-    }
-    let rounds = slips.values().map(Vec::len).max().unwrap();
-    let results: Vec<(String, bool)> = (0..rounds)
-        .into_par_iter()
-        .flat_map(|round| {
-            let shelter = tempfile::tempdir().unwrap();
-            let mut texts = sources.clone();
-            let mut under_test = BTreeMap::new();
-            for (bench, slips) in &slips {
-                if let Some((file, text)) = slips.get(round) {
-                    texts.insert(file.clone(), text.clone());
-                    under_test.insert(*bench, (file, text));
-                }
-            }
-            for (name, text) in &texts {
-                fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
-            }
-            let mut wrong: BTreeMap<String, u64> = BTreeMap::new();
-            for rows in &all {
-                for (block, count) in wrong_rows_of(
-                    rows,
-                    &[shelter.path()],
-                    |name| under_test.contains_key(name),
-                    3000,
-                ) {
-                    *wrong.entry(block).or_default() += count;
-                }
-            }
-            under_test
-                .into_iter()
-                .map(|(bench, (file, text))| {
-                    let lines = text.lines().zip(sources[file].lines());
-                    let slip: String = lines
-                        .filter(|(slip, right)| slip != right)
-                        .map(|(slip, _)| slip.trim())
-                        .collect();
-                    let is_found = wrong.get(bench).is_some_and(|&count| count > 0);
-                    (format!("{file}: {slip}"), is_found)
-                })
-                .collect::<Vec<_>>()
-        })
-        .collect();
-    let missed: Vec<_> = results.iter().filter(|(_, is_found)| !is_found).collect();
-    for (slip, _) in &missed {
-        eprintln!("not found: {slip}");
-    }
-    let all = results.len();
-    let found = all - missed.len();
-    eprintln!(
-        "{found} of {all} slips found, {:.1} %",
-        100.0 * found as f64 / all as f64
-    );
-    assert!(found * 100 >= all * 95);
 }

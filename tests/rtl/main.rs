@@ -8,7 +8,11 @@
 //! ```
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod area;
 mod blocks;
+mod energy;
 mod frames;
+mod machines;
+mod mutants;
 mod testbench;
 mod tools;

@@ -1,7 +1,7 @@
 //! Testbenches of the blocks, from the manifest of a folder of vectors.
 //!
-//! Fields that belong together are one port: a cage's vertices (`x_0` to `x_7`), an object's coordinates (`min_x`,
-//! `min_y`, `min_z`), as they lie in the row.
+//! Fields that belong together are one port: a cage's vertices (`x_0` to `x_7`), its corner and edges (`x_corner`,
+//! `x_edge_x` to `x_edge_z`), an object's coordinates (`min_x`, `min_y`, `min_z`), as they lie in the row.
 
 use std::fmt::Write;
 
@@ -12,6 +12,8 @@ struct Port {
     name: String,
     bits: u64,
     lowest: u64,
+    /// Whether it is a cage of a corner and edges.
+    is_corner: bool,
     /// The ending that the next field must have to belong to it.
     next: Option<String>,
 }
@@ -37,6 +39,15 @@ fn ports(fields: &Value) -> Vec<Port> {
             "c" | "z" => None,
             number => Some((number.parse::<u32>().unwrap() + 1).to_string()),
         };
+        if let Some(port) = ports.last_mut() {
+            let edge = name.strip_prefix(port.name.as_str());
+            if port.is_corner && edge.is_some_and(|edge| edge.starts_with("_edge_")) {
+                port.bits += bits;
+                port.lowest = lowest;
+                continue;
+            }
+        }
+        let corner = name.strip_suffix("_corner");
         if let (Some((stem, end)), Some(port)) = (split(name), ports.last_mut()) {
             let is_first = split(&port.name).is_some_and(|(first, _)| first == stem);
             if port.next.as_deref() == Some(end) && (is_first || port.name == stem) {
@@ -48,7 +59,8 @@ fn ports(fields: &Value) -> Vec<Port> {
             }
         }
         ports.push(Port {
-            name: name.to_owned(),
+            name: corner.unwrap_or(name).to_owned(),
+            is_corner: corner.is_some(),
             bits,
             lowest,
             next: split(name)

@@ -12,7 +12,7 @@ pub(crate) fn rtl() -> PathBuf {
 pub(crate) fn is_there(program: &str) -> bool {
     let is_there = Command::new(program).arg("-V").output().is_ok();
     if !is_there {
-        eprintln!("skipped: no {program} (apt-get install iverilog verilator)");
+        eprintln!("skipped: no {program} (apt-get install iverilog verilator yosys)");
     }
     is_there
 }

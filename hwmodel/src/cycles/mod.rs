@@ -72,8 +72,9 @@
 //! 12. **Sequential hardware** ([`Hardware::sequential`]) has a block work on one thing at a time, in the order in
 //!     which the record loop makes the steps: wherever the loop goes on to another stage, or says that the next step
 //!     needs this one ([`Probe::next_step`](crate::Probe::next_step)), a visit ends and the next begins (so a stage
-//!     may be visited several times a turn). In a visit an access is issued when the one before
-//!     is done; a read takes one more cycle, in which its result is looked at. These cycles issue operations; what
+//!     may be visited several times a turn). What it does *beside* the stage that it is in
+//!     ([`Probe::beside`](crate::Probe::beside)) is done in the visit of that. In a visit an access is issued when the
+//!     one before is done; a read takes one more cycle, in which its result is looked at. These cycles issue operations; what
 //!     they leave of the visit's occupancy, and its latency, comes after the last access. A visit takes at least a
 //!     cycle, and its block is free when it ends. This is what a simple state machine does: `rtl/` is one.
 //!

@@ -139,6 +139,8 @@ pub struct TurnLog {
     /// Of a sequential hardware: the visits that are over, and the stage that the turn is in.
     over: TurnVisits,
     stage: Stage,
+    /// Whether it does work of another stage beside.
+    beside: bool,
 }
 
 /// A unit as the log needs it; `count` 0: wires.
@@ -184,6 +186,7 @@ impl TurnLog {
             sequential: hardware.sequential,
             over: TurnVisits::default(),
             stage: Stage::Pop,
+            beside: false,
         }
     }
 
@@ -316,8 +319,12 @@ impl TurnLog {
 impl Probe for TurnLog {
     #[inline(always)]
     fn op(&mut self, class: OpClass, bits: u32, place: StageLevel, times: u32) {
-        self.enter(place.stage);
-        let (stage, class) = (place.stage as usize, class as usize);
+        let at = match self.beside {
+            true => self.stage,
+            false => place.stage,
+        };
+        self.enter(at);
+        let (stage, class) = (at as usize, class as usize);
         let width = (bits as usize).min(WIDTHS - 1);
         let passes = self.passes_of[stage][class][width];
         let done = &mut self.done[stage][class];
@@ -348,6 +355,11 @@ impl Probe for TurnLog {
                 passes: 0,
             });
         }
+    }
+
+    #[inline]
+    fn beside(&mut self, begins: bool) {
+        self.beside = self.sequential && begins;
     }
 
     #[inline]

@@ -12,6 +12,8 @@ use hwmodel::{Memory, OpClass, Probe, Stage, StageLevel};
 pub enum Does {
     /// So many operations of a class and width.
     Ops(Stage, OpClass, u32, u32),
+    /// The same, done beside the stage in which the turn is.
+    Beside(Stage, OpClass, u32, u32),
     /// A read.
     Read(Stage, Memory, u64),
     /// A write.
@@ -50,6 +52,11 @@ impl<'a> Listed<'a> {
             let at = |stage| StageLevel { stage, level: 0 };
             match *does {
                 Does::Ops(stage, class, bits, times) => self.log.op(class, bits, at(stage), times),
+                Does::Beside(stage, class, bits, times) => {
+                    self.log.beside(true);
+                    self.log.op(class, bits, at(stage), times);
+                    self.log.beside(false);
+                }
                 Does::Read(stage, memory, address) => self.log.read(memory, address, at(stage)),
                 Does::Write(stage, memory, address) => self.log.write(memory, address, at(stage)),
                 Does::Step(stage, idle) => self.log.next_step(idle, at(stage)),

@@ -73,13 +73,16 @@ pub(super) fn find(
     console: &Console,
 ) -> Result<Findings, CliError> {
     let size = (args.size.width, args.size.height);
-    let subject = subjects::open(
+    let mut subject = subjects::open(
         name,
         &args.camera,
         &args.rules.scene_args(&args.scene),
         size,
         console,
     )?;
+    if args.files.vectors.is_some() {
+        vectors::lay_out(&mut subject.graph, console);
+    }
     let options = setup_options(args);
     let overflow = args.rules.overflow();
     let setup = subject.setup(size, &options)?;

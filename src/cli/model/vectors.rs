@@ -18,6 +18,17 @@ pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {
     }
 }
 
+/// Lays a linked graph out as the memory of `frame.nodes.hex` holds it; it is then drawn and counted like this.
+pub(super) fn lay_out(graph: &mut Graph, console: &Console) {
+    if graph.links.is_empty() {
+        return;
+    }
+    match graph.side_by_side() {
+        Some(laid_out) => *graph = laid_out,
+        None => console.note("too many links to lay children side by side: no frame.nodes.hex"),
+    }
+}
+
 /// Writes the vectors that are asked for.
 pub(super) fn write(
     args: &ModelArgs,

@@ -3,7 +3,7 @@
 //! - *Units*: of every class of operation that the frame uses in a stage, as many as
 //!   the hardware has, but no more than any visit of the stage has passes for: what a
 //!   description gives to a stage that never uses it is not built. Shifts that are not wires have
-//!   shifters, as many as keep pace with the stage: shifts over its busy cycles.
+//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its).
 //! - *Registers*: a pipeline of latency `l` that takes operations every `i` cycles keeps
 //!   `l / i` results of its width, rounded up; a context keeps the record, or the ray, that it works on.
 //! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours whoever has them.
@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
 use hwmodel::count::Counter;
-use hwmodel::cycles::{self, Cache, CycleReport, Hardware};
+use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
 use hwmodel::shifts::ShiftProbe;
 use hwmodel::{OpClass, Stage};
 use serde::Serialize;
@@ -205,7 +205,12 @@ pub fn light(
     }
     for ((stage, width), times) in shifters(&frame, prices) {
         let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
-        let busy = report.map_or(1, |of| of.busy).max(1);
+        // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
+        let cycles_of = |of: &StageReport| match hardware.sequential {
+            true => of.alone,
+            false => of.busy,
+        };
+        let busy = report.map_or(1, cycles_of).max(1);
         let of = Units {
             operation: operation_of(OpClass::Shift, ShiftUnits::Variable),
             width,

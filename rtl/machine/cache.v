@@ -3,36 +3,38 @@
 //
 // A request is answered in the next cycle on a hit: `ready` with `word`, until the next request. On a
 // miss the line is asked for (`fetch` for one cycle), comes as eight words in order (`fill`), is looked
-// up again in the cycle after the last, and `ready` follows.
-module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2) (
+// up again in the cycle after the last, and `ready` follows. Requests are at least two cycles apart.
+module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                       clk, reset,
   input                       request,
-  input  [`NODE_BITS-1:0]     address,     // of a word
+  input  [ADDRESS-1:0]        address,     // of a word
   output                      ready,
   output [63:0]               word,
   output                      fetch,
-  output [`NODE_BITS-4:0]     fetch_line,
+  output [ADDRESS-4:0]        fetch_line,
   input                       fill,
   input  [63:0]               fill_word);
   localparam WAYS = 1 << WAYS_LOG2, SETS = 1 << SETS_LOG2;
-  localparam TAG = `NODE_BITS - 3 - SETS_LOG2;
+  localparam TAG = ADDRESS - 3 - SETS_LOG2;
   localparam ORDER = WAYS*WAYS_LOG2;
 
   // What was asked for, and how far it is.
   reg                   looking, missing, again;
-  reg [`NODE_BITS-1:0]  at;
+  reg [ADDRESS-1:0]     at;
   reg [2:0]             filled;
   wire [SETS_LOG2-1:0]  set = at[3 +: SETS_LOG2];
-  wire [TAG-1:0]        tag = at[`NODE_BITS-1 -: TAG];
+  wire [TAG-1:0]        tag = at[ADDRESS-1 -: TAG];
 
-  // By set, the ways in order of use, the last used lowest; by set and way, whether there is a line.
-  reg [SETS*ORDER-1:0]  order;
+  // By set, the ways in order of use, the last used lowest, 0 to WAYS - 1 before the first use; by set and
+  // way, whether there is a line: registers, since a reset clears them all at once.
+  wire look = request | again;
+  reg                   looked;      // in the cycle before
   reg [SETS*WAYS-1:0]   valid;
-  wire [ORDER-1:0]      now = order[set*ORDER +: ORDER];
   wire [WAYS-1:0]       valid_here = valid[set*WAYS +: WAYS];
+  wire [ORDER-1:0]      stored, unused;
+  wire [ORDER-1:0]      now = |valid_here ? stored : unused;
 
   // Tags and words, a memory of each way.
-  wire look = request | again;
   wire last_fill = fill & &filled;
   wire [2+SETS_LOG2:0] look_at = request ? address[2+SETS_LOG2:0] : at[2+SETS_LOG2:0];
   wire [2+SETS_LOG2:0] fill_at = {set, filled};
@@ -42,6 +44,7 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2) (
   genvar i;
   generate
     for (i = 0; i < WAYS; i = i + 1) begin : ways
+      assign unused[i*WAYS_LOG2 +: WAYS_LOG2] = i;
       wire mine = way == i;
       memory #(.BITS(TAG), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_tags (.clk(clk), .read(look),
         .write(last_fill & mine), .address(fill ? set : look_at[3 +: SETS_LOG2]), .data_in(tag),
@@ -72,11 +75,14 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2) (
       if (k <= place) used[k*WAYS_LOG2 +: WAYS_LOG2] = now[(k - 1)*WAYS_LOG2 +: WAYS_LOG2];
   end
 
+  memory #(.BITS(ORDER), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_order (.clk(clk), .read(look),
+    .write(looked & hit | last_fill), .address(look ? look_at[3 +: SETS_LOG2] : set), .data_in(used),
+    .data_out(stored));
+
   assign ready = looking & hit & ~missing;
   assign word = words[way*64 +: 64];
   assign fetch = looking & ~hit & ~missing;
-  assign fetch_line = at[`NODE_BITS-1:3];
-  integer s;
+  assign fetch_line = at[ADDRESS-1:3];
   always @(posedge clk)
     if (reset) begin
       looking <= 0;
@@ -84,15 +90,14 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2) (
       again <= 0;
       filled <= 0;
       valid <= 0;
-      for (s = 0; s < SETS*WAYS; s = s + 1)
-        order[s*WAYS_LOG2 +: WAYS_LOG2] <= s;   // modulo the ways
+      looked <= 0;
     end else begin
       again <= last_fill;
+      looked <= look;
       if (request) begin
         looking <= 1;
         at <= address;
-      end else if (ready)
-        order[set*ORDER +: ORDER] <= used;
+      end
       if (fetch)
         missing <= 1;
       else if (again)

@@ -4,7 +4,7 @@
 module frame_constants #(parameter W = `WORD_BITS) (
   input                         clk,
   input                         write,
-  input  [6:0]                  address,
+  input  [7:0]                  address,
   input  [W-1:0]                data,
   output reg [`NODE_BITS-1:0]   root,
   output reg [`LEVEL_BITS-1:0]  levels,        // of the samples, in the image quadtree
@@ -16,6 +16,8 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output [3*W-1:0]              origin,        // clip vector of the object's lowest corner: X, Y, W
   output [9*W-1:0]              edges,         // of its edges: X along x, y, z; Y; W
   output [3*W-1:0]              eye_floor,     // the eye in object space, rounded down
+  output [3*W-1:0]              eye_ceil,      // and up
+  output reg                    positive,      // the edges' clip vectors have a positive determinant
   output reg signed [W-1:0]     near, near_crossing,
   output reg signed [W-1:0]     size_limit, lod_limit, least_size, // screen-space sizes
   // By octree level: the least depth of a node that level of detail takes for a solid, if there is one;
@@ -25,12 +27,14 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output                        has_lod_depth,
   output signed [W-1:0]         lod_depth);
   reg [W-1:0] vector [0:14];  // origin, edges, eye
+  reg [W-1:0] ceil [0:2];
   reg         has_lod;
   genvar i;
   generate
     for (i = 0; i < 3; i = i + 1) begin : three
       assign origin[(2 - i)*W +: W]    = vector[i];
       assign eye_floor[(2 - i)*W +: W] = vector[12 + i];
+      assign eye_ceil[(2 - i)*W +: W]  = ceil[i];
     end
     for (i = 0; i < 9; i = i + 1) begin : nine
       assign edges[(8 - i)*W +: W] = vector[3 + i];
@@ -38,12 +42,12 @@ module frame_constants #(parameter W = `WORD_BITS) (
   endgenerate
   // All ones above the greatest depth: no node of the level is a solid by its depth.
   wire [W-1:0] found;
-  memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[6]),
+  memory #(.BITS(W), .WORDS(64), .ADDRESS(6)) lod (.clk(clk), .read(look_up), .write(write & address[7:6] == 1),
     .address(look_up ? of_level : address[5:0]), .data_in(data), .data_out(found));
   assign has_lod_depth = has_lod & found != {1'b0, {(W-1){1'b1}}};
   assign lod_depth = found;
   always @(posedge clk)
-    if (write & ~address[6])
+    if (write & address[7:6] == 0)
         case (address[5:0])
           6'd0: root <= data;
           6'd1: levels <= data[`LEVEL_BITS-1:0];
@@ -52,12 +56,15 @@ module frame_constants #(parameter W = `WORD_BITS) (
           6'd4: sub_levels <= data[`LEVEL_BITS-1:0];
           6'd5: width <= data[`PLACE_BITS-1:0];
           6'd6: height <= data[`PLACE_BITS-1:0];
-          6'd7: {has_lod, coarse} <= data[1:0];
+          6'd7: {positive, has_lod, coarse} <= data[2:0];
           6'd8: near <= data;
           6'd9: near_crossing <= data;
           6'd10: size_limit <= data;
           6'd11: lod_limit <= data;
           6'd12: least_size <= data;
+          6'd13: ceil[0] <= data;
+          6'd14: ceil[1] <= data;
+          6'd15: ceil[2] <= data;
           default:
             if (address[5:0] >= 6'd16 && address[5:0] < 6'd31)
               vector[address[3:0]] <= data;

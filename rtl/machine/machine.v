@@ -1,21 +1,29 @@
 `include "widths.vh"
-// Stage A: the machine of the image-order paper, one lane, one record at a time (`--paper`: corners,
-// coverage any, infinite tolerance). docs/rtl.md has its states and its cycles.
+`include "stage.vh"
+// The machine, one lane, one record at a time. docs/rtl.md has its states and its cycles.
 //
 //     push the object
 //     pop a record; drop it if its node of the picture is full
-//     change it to screen space, if it is far enough
 //     read its octree node; draw it, drop it, or else
 //     make its children, the farthest first; fit each; push those that can be seen
 //
+// What a stage has of its own stands in its folder: `stage.vh` the widths of its records, `parts.vh` the
+// registers and blocks that this file does not have, `steps.vh` their states. Stage A changes records to screen
+// space and draws samples; stage B draws the silhouettes of solids.
+//
 // Outside are the memory of nodes and attributes, behind one port that moves a line of eight words, and
 // the memory of pixels. The host writes the frame's constants, then sets `start` for a cycle.
+//
+// Built for pictures of at most 2^PICTURE_LEVELS samples a side, and objects of at most DEPTH levels, of
+// which records go LEVEL_BOUND levels down, with numbers of nodes of NODE_WIDTH bits, in a memory of
+// 2^OUTER_ADDRESS bytes: what the machine's own memories need.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = 8,
-                 NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5) (
+                 NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
+                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
-  input [6:0]                  constant_address,
+  input [7:0]                  constant_address,
   input [W-1:0]                constant_data,
   input                        start,
   output                       busy, done,
@@ -33,59 +41,87 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute);
-  localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS;
+  localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, V = `WIDE_BITS;
+  // One coordinate of a record's vertices, of all that its children have, and what else it has in the picture.
+  localparam CAGE = `CAGE_WORDS*W, POOL_BITS = `POOL_WORDS*W, MORE = `MORE_BITS;
 
   // ---------------------------------------------------------------- constants of the frame
   wire [N-1:0] root;
   wire [L-1:0] levels, depth, level_bound, sub_levels;
   wire [P-1:0] width, height;
-  wire         coarse, has_lod_depth;
-  wire [3*W-1:0] origin, eye_floor;
+  wire         coarse, has_lod_depth, positive;
+  wire [3*W-1:0] origin, eye_floor, eye_ceil;
   wire [9*W-1:0] edges;
   wire signed [W-1:0] near, near_crossing, size_limit, lod_limit, least_size, lod_depth;
 
   // ---------------------------------------------------------------- states
   localparam IDLE = 0, CLEAR = 1, OBJECT = 2, OBJECT_BOX = 3, FIT = 4, CHOOSE = 5, PUSH = 6, POP = 7,
-    POPPED = 8, FILLED = 9, OPEN = 10, CHANGE = 11, DIVIDE = 12, MOVE = 13, NODE = 14, VERDICT = 15,
-    WALK = 16, WALKED = 17, BACK = 18, CENTRE = 19, ORDER = 20, POOL = 21, CHILD = 22, MIDDLE = 23,
-    HALVE = 24, DRAW = 25, DRAWN = 26, ATTRIBUTE = 27, SHOW = 28, PIXEL = 29, MARK = 30, ABOVE = 31,
-    SET = 32, DONE = 33;
+    POPPED = 8, FILLED = 9, OPEN = 10, NODE = 11, VERDICT = 12, WALK = 13, WALKED = 14, BACK = 15, CENTRE = 16,
+    ORDER = 17, POOL = 18, CHILD = 19, DRAWN = 20, ATTRIBUTE = 21, SHOW = 22, PIXEL = 23, MARK = 24, ABOVE = 25,
+    SET = 26, DONE = 27;
+  // Those of the stage are numbers from 32 on.
   reg [5:0] state;
   assign busy = state != IDLE & state != DONE;
   assign done = state == DONE;
 
   // ---------------------------------------------------------------- the record that has its turn
-  reg              r_solid, r_inside, r_screen;
+  reg              r_solid, r_inside;
   reg [L-1:0]      r_level, r_voxel_level, r_quad_level;
   reg [N-1:0]      r_node;
   reg [P-1:0]      r_quad_x, r_quad_y;
   reg [3*W-1:0]    r_min, r_max;
-  reg [8*W-1:0]    r_x, r_y, r_w;
+  reg [CAGE-1:0]   r_x, r_y, r_w;
   reg signed [W-1:0] r_w_min;
-  reg [4*W-1:0]    r_spans;
+  reg [MORE-1:0]   r_more;
 
   // The child in the making. While a record's samples are searched, its box and a node of the picture.
-  reg              c_solid, c_inside, c_screen;
+  reg              c_solid, c_inside;
   reg [L-1:0]      c_level, c_voxel_level, c_quad_level;
   reg [N-1:0]      c_node;
   reg [P-1:0]      c_quad_x, c_quad_y;
   reg [3*W-1:0]    c_min, c_max;
-  reg [8*W-1:0]    c_x, c_y, c_w;
+  reg [CAGE-1:0]   c_x, c_y, c_w;
   reg signed [W-1:0] c_w_min;
-  reg [4*W-1:0]    c_spans;
+  reg [MORE-1:0]   c_more;
 
-  localparam RECORD = 3 + 3*L + N + 2*P + 6*W + 24*W + W + 4*W;
-  wire [RECORD-1:0] child_record = {c_solid, c_inside, c_screen, c_level, c_voxel_level, c_quad_level, c_node,
-    c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_spans};
-  wire [RECORD-1:0] popped;
+  // As it lies on the stack: numbers as wide as the machine's greatest ones. The stage packs the rest.
+  localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
+  localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
+  localparam REST = `REST_BITS;
+  localparam ENTRY = 2 + LEVEL + QUAD_LEVEL + NODE_WIDTH + 2*QUAD_PLACE + 6*CORNER + 2*CAGE + REST;
+  function [3*CORNER-1:0] corner_bits(input [3*W-1:0] v);
+    corner_bits = {v[2*W +: CORNER], v[W +: CORNER], v[0 +: CORNER]};
+  endfunction
+  wire [REST-1:0]  pushed_rest, popped_rest;
+  wire [ENTRY-1:0] pushed = {c_solid, c_inside, c_level[LEVEL-1:0], c_quad_level[QUAD_LEVEL-1:0],
+    c_node[NODE_WIDTH-1:0], c_quad_x[QUAD_PLACE-1:0], c_quad_y[QUAD_PLACE-1:0], corner_bits(c_min),
+    corner_bits(c_max), c_x, c_y, pushed_rest};
+  wire [ENTRY-1:0] popped;
+  wire             p_solid, p_inside;
+  wire [LEVEL-1:0] p_level;
+  wire [QUAD_LEVEL-1:0]  p_quad_level;
+  wire [NODE_WIDTH-1:0]  p_node;
+  wire [QUAD_PLACE-1:0]  p_quad_x, p_quad_y;
+  wire [CORNER-1:0]      p_min_x, p_min_y, p_min_z, p_max_x, p_max_y, p_max_z;
+  wire [CAGE-1:0]        p_x, p_y;
+  assign {p_solid, p_inside, p_level, p_quad_level, p_node, p_quad_x, p_quad_y, p_min_x, p_min_y, p_min_z,
+    p_max_x, p_max_y, p_max_z, p_x, p_y, popped_rest} = popped;
+  function [W-1:0] corner_word(input [CORNER-1:0] v);
+    corner_word = v;
+  endfunction
+  // Of the rest.
+  wire [L-1:0]     p_voxel_level;
+  wire [CAGE-1:0]  p_w;
+  wire [W-1:0]     p_w_min;
+  wire [MORE-1:0]  p_more;
 
   // ---------------------------------------------------------------- memories on the chip
   reg [STACK_LOG2:0] stacked;                   // records on the stack
   wire stack_full = stacked[STACK_LOG2];
   wire [STACK_LOG2-1:0] top = stacked[STACK_LOG2-1:0] - 1'b1;
-  memory #(.BITS(RECORD), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
+  memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
     .read(state == POP), .write(state == PUSH & ~stack_full),
-    .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(child_record), .data_out(popped));
+    .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
   // Fill vectors, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
   localparam FILL_ADDRESS = 2*PICTURE_LEVELS + 1;
@@ -96,11 +132,12 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [3:0] vector;
   reg  [3:0] marked;                            // what is written next
   reg  [3:0] outside_picture;
-  wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == WALK | state == DRAW | state == ABOVE;
+  wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == WALK | state == ABOVE | draw_read;
   wire fill_write = state == CLEAR | state == MARK;
   wire of_record  = state == FILLED;
-  wire [FILL_ADDRESS-1:0] fill_address = fill_place(of_record ? r_quad_level : c_quad_level,
-    of_record ? r_quad_x : c_quad_x, of_record ? r_quad_y : c_quad_y);
+  wire [FILL_ADDRESS-1:0] fill_address =
+    of_record ? fill_place(r_quad_level, r_quad_x, r_quad_y) :
+    draw_read ? fill_place(draw_level, draw_x, draw_y) : fill_place(c_quad_level, c_quad_x, c_quad_y);
   memory #(.BITS(4), .WORDS(FILL_WORDS), .ADDRESS(FILL_ADDRESS)) fill_vectors (.clk(clk),
     .read(fill_read), .write(fill_write), .address(fill_address),
     .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector));
@@ -123,13 +160,14 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
 
   wire        node_ready, node_fetch, attribute_ready, attribute_fetch;
   wire [63:0] node_word, attribute_word;
-  wire [N-4:0] node_line, attribute_line;
+  localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
+  wire [A-4:0] node_line, attribute_line;
   reg         filling_attributes;
-  cache #(.SETS_LOG2(NODE_SETS_LOG2)) node_cache (.clk(clk), .reset(reset), .request(state == NODE),
-    .address(r_node), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
+  cache #(.SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk), .reset(reset), .request(state == NODE),
+    .address(r_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
     .fill(fill & ~filling_attributes), .fill_word(fill_word));
-  cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2)) attribute_cache (.clk(clk), .reset(reset),
-    .request(state == ATTRIBUTE), .address(r_node), .ready(attribute_ready), .word(attribute_word),
+  cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk), .reset(reset),
+    .request(state == ATTRIBUTE), .address(r_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
     .fetch(attribute_fetch), .fetch_line(attribute_line), .fill(fill & filling_attributes),
     .fill_word(fill_word));
   assign fetch = node_fetch | attribute_fetch;
@@ -141,52 +179,24 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   frame_constants #(W) constants (.clk(clk), .write(constant_write), .address(constant_address),
     .data(constant_data), .root(root), .levels(levels), .depth(depth), .level_bound(level_bound),
     .sub_levels(sub_levels), .width(width), .height(height), .coarse(coarse), .origin(origin), .edges(edges),
-    .eye_floor(eye_floor), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
+    .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
     .lod_limit(lod_limit), .least_size(least_size), .look_up(state == FILLED), .of_level(r_level),
     .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 
   // ---------------------------------------------------------------- the object
-  // Eight vertices of a corner and three edges, vertex 0 highest.
-  function [8*W-1:0] parallelepiped(input [W-1:0] corner, input [3*W-1:0] edge_xyz);
-    reg [W-1:0] x, y, z, v2, v4, v6;
-    begin
-      {x, y, z} = edge_xyz;
-      v4 = corner + x;
-      v2 = corner + y;
-      v6 = v4 + y;
-      parallelepiped = {corner, corner + z, v2, v2 + z, v4, v4 + z, v6, v6 + z};
-    end
-  endfunction
+  wire [CAGE-1:0] object_x, object_y, object_w;
+  object_cage #(W) cage_x (.corner(origin[2*W +: W]), .edges(edges[6*W +: 3*W]), .cage(object_x));
+  object_cage #(W) cage_y (.corner(origin[W +: W]), .edges(edges[3*W +: 3*W]), .cage(object_y));
+  object_cage #(W) cage_w (.corner(origin[0 +: W]), .edges(edges[0 +: 3*W]), .cage(object_w));
 
-  // ---------------------------------------------------------------- is a record full, does it change
-  wire full, deep, guarded;
-  wire [1:0] guard;
+  // ---------------------------------------------------------------- is a record full
+  wire full;
   filled is_filled (.vector(vector), .full(full));
-  change_depth #(W) is_deep (.w_min(r_w_min), .least(near), .deep(deep));
-  // Four pictures, at the root of the quadtree; below it no box leaves its node by more than its width.
-  change_guard #(W) guard_x (.x(r_x), .w(r_w), .places(-8'sd2), .enclosed(guard[0]));
-  change_guard #(W) guard_y (.x(r_y), .w(r_w), .places(-8'sd2), .enclosed(guard[1]));
-  assign guarded = r_inside | r_quad_level != 0 | &guard;
-  wire changes = deep & guarded;
-  wire divided;
-  wire [8*W-1:0] screen_x, screen_y;
-  to_screen #(W, F) change (.clk(clk), .start(state == CHANGE & changes), .x(r_x), .y(r_y), .w(r_w),
-    .below(levels - r_quad_level), .node_x(r_quad_x), .node_y(r_quad_y), .last(divided),
-    .screen_x(screen_x), .screen_y(screen_y));
 
-  // A solid in screen space at the bound is drawn untested.
-  wire untested = r_level >= level_bound;
-
-  // ---------------------------------------------------------------- the verdict
-  wire solid, draw_box, draw_centre, subdivide, look_hidden;
+  // ---------------------------------------------------------------- the verdict, by a module of the stage
+  wire solid, subdivide, look_hidden;
   wire [7:0]   mask_read = node_word[39:32];
   wire leaf = ~r_solid & (r_level >= depth | mask_read == 0);
-  verdict #(W) rule (.screen(r_screen), .solid_before(r_solid), .leaf(leaf), .in_node(r_inside), .level(r_level),
-    .quad_level(r_quad_level), .x(r_x), .y(r_y), .w(r_w), .w_min(r_w_min), .spans(r_spans), .levels(levels),
-    .level_bound(level_bound), .coarse(coarse), .has_lod_depth(has_lod_depth), .near(near),
-    .near_crossing(near_crossing), .lod_depth(lod_depth), .size_limit(size_limit), .lod_limit(lod_limit),
-    .least_size(least_size), .solid(solid), .draw_box(draw_box), .draw_centre(draw_centre),
-    .subdivide(subdivide), .look_hidden(look_hidden));
   reg [7:0]   mask;
   reg [N-1:0] first;
 
@@ -198,8 +208,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [23:0] order_now;
   octant_order #(W) order_of (.centre(middle), .eye_floor(eye_floor), .octant(octant_now), .child(order_now));
   reg  [23:0] order;                            // the nearest highest
-  wire [27*W-1:0] pool_x_now, pool_y_now, pool_w_now;
-  reg  [27*W-1:0] pool_x, pool_y, pool_w;
+  wire [POOL_BITS-1:0] pool_x_now, pool_y_now, pool_w_now;
+  reg  [POOL_BITS-1:0] pool_x, pool_y, pool_w;
   midpoints #(W) midpoints_x (.parent(r_x), .pool(pool_x_now));
   midpoints #(W) midpoints_y (.parent(r_y), .pool(pool_y_now));
   midpoints #(W) midpoints_w (.parent(r_w), .pool(pool_w_now));
@@ -220,42 +230,31 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   // Children before this one in the node's list.
   wire [7:0] earlier = mask & ~(8'hff << octant);
   wire [3:0] count = earlier[0] + earlier[1] + earlier[2] + earlier[3] + earlier[4] + earlier[5] + earlier[6];
-  wire [8*W-1:0] child_x, child_y, child_w;
+  wire [CAGE-1:0] child_x, child_y, child_w;
   child_vertices #(W) vertices_x (.pool(pool_x), .octant(octant), .child(child_x));
   child_vertices #(W) vertices_y (.pool(pool_y), .octant(octant), .child(child_y));
   child_vertices #(W) vertices_w (.pool(pool_w), .octant(octant), .child(child_w));
   wire [3*W-1:0] child_min, child_max;
   child_corners #(W) corners (.min(r_min), .max(r_max), .centre(middle), .octant(octant),
     .child_min(child_min), .child_max(child_max));
-  // Least and greatest of a box: of the child, of a record that changes, of the object's depths.
-  wire [8*W-1:0] span_x_of = state == MOVE ? screen_x : child_x;
-  wire [8*W-1:0] span_y_of = state == MOVE ? screen_y : child_y;
-  wire [8*W-1:0] span_w_of = state == OBJECT_BOX ? c_w : child_w;
-  wire signed [W-1:0] x_low, x_high, y_low, y_high, w_low, w_high;
-  child_span #(W) span_x (.child(span_x_of), .low(x_low), .high(x_high));
-  child_span #(W) span_y (.child(span_y_of), .low(y_low), .high(y_high));
-  child_span #(W) span_w (.child(span_w_of), .low(w_low), .high(w_high));
-  wire behind = ~c_or_r_screen & w_high < near;
-  wire c_or_r_screen = state == CHILD & r_screen;
+  // The least and greatest depth, of the child or of the object.
+  wire signed [W-1:0] w_low, w_high;
+  child_span #(W) span_w (.child(state == OBJECT_BOX ? c_w : child_w), .low(w_low), .high(w_high));
 
   // ---------------------------------------------------------------- a box down the picture's quadtree
   reg  fresh;                                   // the node's edges are not tested yet
   wire box_outside_now, box_enclosed, box_near, rejected, single;
   wire [3:0] overlapped;
   wire [1:0] only;
-  wire [8*W-1:0] inner_x, inner_y;
+  wire [CAGE-1:0] inner_x, inner_y;
   reg  [1:0] quadrant;                          // to go on in
   wire box_outside = fresh & ~c_inside & box_outside_now;
-  image_step #(W, F) box (.screen(c_screen), .x(c_x), .y(c_y), .w(c_w), .spans(c_spans), .node_x(c_quad_x),
-    .node_y(c_quad_y), .below(levels - c_quad_level), .quadrant(quadrant), .outside(box_outside_now),
-    .enclosed(box_enclosed), .overlapped(overlapped), .inner_x(inner_x), .inner_y(inner_y), .near(box_near));
   node_choice choice (.overlapped(overlapped), .vector(vector), .rejected(rejected), .single(single),
     .quadrant(only));
   wire goes_down = single & c_quad_level < levels & (c_inside | c_screen | box_near);
 
   // The search for an undrawn sample: by level the quadrants that are left.
   reg  [4*(PICTURE_LEVELS + 1)-1:0] waiting;
-  reg  to_draw;                                 // the sample is drawn; else the record is only hidden or not
   wire [3:0] open = ~vector;
   wire [3:0] found = overlapped & open;
   reg  [3:0] chosen_from;
@@ -276,29 +275,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       quadrant = chosen_from[0] ? 2'd0 : chosen_from[1] ? 2'd1 : chosen_from[2] ? 2'd2 : 2'd3;
   end
   wire [L-1:0] up = c_quad_level - back_level;
-  // In clip space a level up undoes what going down did, exactly.
-  function [8*W-1:0] undone(input [8*W-1:0] x, input [8*W-1:0] w, input far);
-    integer v;
-    reg signed [W-1:0] sum;
-    for (v = 0; v < 8; v = v + 1) begin
-      sum = x[v*W +: W] + (far ? w[v*W +: W] : {W{1'b0}});
-      undone[v*W +: W] = sum >>> 1;
-    end
-  endfunction
-
-  // ---------------------------------------------------------------- the sample of a centre
-  reg  signed [W-1:0] m_x, m_y, m_w;
-  wire [W-1:0] middle_x, middle_y, middle_w;
-  cage_centre #(W) middle_of_x (.cage(r_x), .centre(middle_x));
-  cage_centre #(W) middle_of_y (.cage(r_y), .centre(middle_y));
-  cage_centre #(W) middle_of_w (.cage(r_w), .centre(middle_w));
-  wire signed [W-1:0] mid_x = middle_x, mid_y = middle_y, mid_w = middle_w;
-  wire middle_shown = mid_w >= near
-    & (r_inside | mid_x >= 0 & mid_x < mid_w & mid_y >= 0 & mid_y < mid_w);
-  wire right, lower;
-  wire signed [W-1:0] half_x, half_y;
-  centre_half #(W) half_of_x (.value(m_x), .w(m_w), .right(right), .inner(half_x));
-  centre_half #(W) half_of_y (.value(m_y), .w(m_w), .right(lower), .inner(half_y));
+  wire [CAGE-1:0] outer_x, outer_y;             // relative to the node above
+  whole_clip #(W) outer_of_x (.x(c_x), .w(c_w), .right(c_quad_x[0]), .outer(outer_x));
+  whole_clip #(W) outer_of_y (.x(c_y), .w(c_w), .right(c_quad_y[0]), .outer(outer_y));
 
   // ---------------------------------------------------------------- pixels and fill vectors
   wire [3:0] after;
@@ -324,18 +303,16 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [5:0] next_record = stacked == 0 ? DONE : POP;
   wire [5:0] next_child = left_after != 0 ? CHILD : next_record;    // after this one had its turn
 
-  task look_for_sample(input draws);
+  task look_for_sample;
     begin
-      to_draw <= draws;
       waiting <= 0;
-      c_screen <= r_screen;
       c_quad_level <= r_quad_level;
       c_quad_x <= r_quad_x;
       c_quad_y <= r_quad_y;
       c_x <= r_x;
       c_y <= r_y;
       c_w <= r_w;
-      c_spans <= r_spans;
+      c_more <= r_more;
       state <= WALK;
     end
   endtask
@@ -352,6 +329,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       end
     end
   endtask
+
+  // ---------------------------------------------------------------- the stage's own
+  `include "parts.vh"
 
   always @(posedge clk)
     if (reset) begin
@@ -374,7 +354,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           if (last_of_level & c_quad_level == levels) state <= OBJECT;
         end
         OBJECT: begin
-          {c_solid, c_inside, c_screen} <= 3'b0;
+          {c_solid, c_inside} <= 2'b0;
           c_level <= 0;
           c_voxel_level <= 0;
           c_quad_level <= 0;
@@ -383,10 +363,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           c_node <= root;
           c_min <= 0;
           c_max <= {3{{{(W-1){1'b0}}, 1'b1} << depth << sub_levels}};
-          c_x <= parallelepiped(origin[2*W +: W], edges[6*W +: 3*W]);
-          c_y <= parallelepiped(origin[W +: W], edges[3*W +: 3*W]);
-          c_w <= parallelepiped(origin[0 +: W], edges[0 +: 3*W]);
-          c_spans <= 0;
+          c_x <= object_x;
+          c_y <= object_y;
+          c_w <= object_w;
+          c_more <= object_more;
           left <= 0;
           state <= OBJECT_BOX;
         end
@@ -400,46 +380,39 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           state <= POPPED;
         end
         POPPED: begin
-          {r_solid, r_inside, r_screen, r_level, r_voxel_level, r_quad_level, r_node, r_quad_x, r_quad_y,
-           r_min, r_max, r_x, r_y, r_w, r_w_min, r_spans} <= popped;
+          r_solid <= p_solid;
+          r_inside <= p_inside;
+          r_level <= p_level;
+          r_voxel_level <= p_voxel_level;
+          r_quad_level <= p_quad_level;
+          r_node <= p_node;
+          r_quad_x <= p_quad_x;
+          r_quad_y <= p_quad_y;
+          r_min <= {corner_word(p_min_x), corner_word(p_min_y), corner_word(p_min_z)};
+          r_max <= {corner_word(p_max_x), corner_word(p_max_y), corner_word(p_max_z)};
+          r_x <= p_x;
+          r_y <= p_y;
+          r_w <= p_w;
+          r_w_min <= p_w_min;
+          r_more <= p_more;
           state <= FILLED;
         end
         FILLED: state <= OPEN;
         OPEN:
           if (full) state <= next_record;
-          else if (~r_screen) state <= CHANGE;
-          else if (~r_solid) state <= NODE;
-          else if (untested) look_for_sample(1'b1);
-          else state <= VERDICT;
-        CHANGE: state <= changes ? DIVIDE : r_solid ? VERDICT : NODE;
-        DIVIDE: if (divided) state <= MOVE;
-        MOVE: begin
-          r_screen <= 1;
-          r_x <= screen_x;
-          r_y <= screen_y;
-          r_w <= 0;
-          r_w_min <= 0;
-          r_spans <= {x_low, x_high, y_low, y_high};
-          if (r_solid & untested) begin
-            look_for_sample(1'b1);
-            c_screen <= 1;
-            c_spans <= {x_low, x_high, y_low, y_high};
-          end else
-            state <= r_solid ? VERDICT : NODE;
-        end
+          else take_up;
         NODE: state <= VERDICT;
         VERDICT: if (r_solid | node_ready) begin
           if (~r_solid) {mask, first} <= node_word[39:0];
           r_solid <= solid;
-          if (draw_box) look_for_sample(1'b1);
-          else if (draw_centre) state <= MIDDLE;
-          else if (subdivide & look_hidden) look_for_sample(1'b0);
+          if (draws) begin_drawing;
+          else if (subdivide & look_hidden) look_for_sample;
           else state <= subdivide ? CENTRE : next_record;
         end
         WALK: state <= WALKED;
         WALKED:
           if (c_quad_level == levels & |open)
-            state <= to_draw ? DRAW : CENTRE;
+            state <= found_sample;
           else if (c_quad_level != levels & |found) begin
             waiting[4*c_quad_level +: 4] <= found & (found - 4'd1);
             go_to_quadrant(quadrant);
@@ -456,8 +429,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= BACK;
         BACK:
           if (c_quad_level != back_level) begin
-            c_x <= undone(c_x, c_w, c_quad_x[0]);
-            c_y <= undone(c_y, c_w, c_quad_y[0]);
+            c_x <= outer_x;
+            c_y <= outer_y;
             c_quad_x <= c_quad_x >> 1;
             c_quad_y <= c_quad_y >> 1;
             c_quad_level <= c_quad_level - 1'b1;
@@ -484,7 +457,6 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         CHILD: begin
           c_solid <= r_solid;
           c_inside <= r_inside;
-          c_screen <= r_screen;
           c_level <= r_level + 1'b1;
           c_voxel_level <= r_solid ? r_voxel_level : r_level + 1'b1;
           c_quad_level <= r_quad_level;
@@ -495,9 +467,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           c_max <= child_max;
           c_x <= child_x;
           c_y <= child_y;
-          c_w <= r_screen ? {(8*W){1'b0}} : child_w;
+          c_w <= r_screen ? {CAGE{1'b0}} : child_w;
           c_w_min <= r_screen ? {W{1'b0}} : w_low;
-          c_spans <= r_screen ? {x_low, x_high, y_low, y_high} : {(4*W){1'b0}};
+          c_more <= child_more;
           fresh <= 1;
           if (behind) begin
             left <= left_after;
@@ -520,6 +492,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= next_child;
           end else if (goes_down) begin
             go_to_quadrant(quadrant);
+            c_more <= inner_more;
             state <= FIT;
           end else
             state <= PUSH;
@@ -529,26 +502,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           left <= left_after;
           state <= stack_full ? DONE : left_after != 0 ? CHILD : POP;
         end
-        MIDDLE: begin
-          m_x <= mid_x;
-          m_y <= mid_y;
-          m_w <= mid_w;
-          c_quad_level <= r_quad_level;
-          c_quad_x <= r_quad_x;
-          c_quad_y <= r_quad_y;
-          to_draw <= 0;
-          state <= ~middle_shown ? next_record : r_quad_level == levels ? DRAW : HALVE;
-        end
-        HALVE: begin
-          m_x <= half_x;
-          m_y <= half_y;
-          c_quad_level <= c_quad_level + 1'b1;
-          c_quad_x <= {c_quad_x[P-2:0], right};
-          c_quad_y <= {c_quad_y[P-2:0], lower};
-          if (c_quad_level + 1'b1 == levels) state <= DRAW;
-        end
-        DRAW: state <= DRAWN;
-        DRAWN: state <= full ? next_record : ATTRIBUTE;
+        DRAWN:
+          if (full) draw_on;
+          else state <= ATTRIBUTE;
         ATTRIBUTE: state <= SHOW;
         SHOW: if (attribute_ready) state <= PIXEL;
         PIXEL: begin
@@ -562,15 +518,14 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             c_quad_x <= c_quad_x >> 1;
             c_quad_y <= c_quad_y >> 1;
             state <= ABOVE;
-          end else if (to_draw)
-            look_for_sample(1'b1);
-          else
-            state <= next_record;
+          end else
+            draw_on;
         ABOVE: state <= SET;
         SET: begin
           marked <= after;
           state <= MARK;
         end
+        `include "steps.vh"
         default: state <= IDLE;
       endcase
 endmodule

@@ -1,0 +1,8 @@
+`include "widths.vh"
+// One coordinate of the object's cage: its lowest corner and its edges along x, y, z, as the host computed them.
+module object_cage #(parameter W = `WORD_BITS) (
+  input  [W-1:0]   corner,
+  input  [3*W-1:0] edges,
+  output [4*W-1:0] cage);
+  assign cage = {corner, edges};
+endmodule

@@ -1,0 +1,83 @@
+`include "widths.vh"
+// The silhouette of a cube down the image quadtree: planes of its twelve edges, and of a cube that is not wholly
+// before the eye the plane through the eye on whose one side rays reach it. SPEC.md, 8.
+//
+// Two sets of constants: those of the node that was divided last, from which those of a quadrant are made, and
+// of the node that is looked at. `a` and `b` are the same in all nodes. A plane whose side is known in the divided node
+// stays as it was there, so that its number does not outgrow the word; so the sides are kept by level.
+module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10) (
+  input                        clk,
+  // Of a record's cube; the node looked at is the record's.
+  input                        load,
+  input [9*V-1:0]              edge_abc,    // along x, y, z
+  input [6*V-1:0]              axis_ab,
+  input [3*V-1:0]              axis_c,
+  input [`LEVEL_BITS-1:0]      side,        // log2 of the cube's side
+  input [3*W-1:0]              min, max, eye_floor, eye_ceil,
+  input                        positive, before_eye,
+  // The node looked at is divided; a quadrant of it is looked at; back from a quadrant to the node above.
+  input                        divide, move, climb,
+  input [`LEVEL_BITS-1:0]      level,
+  input [1:0]                  quadrant,    // into which, or out of which
+  output reg [`LEVEL_BITS-1:0] divided,     // level of the divided node
+  input                        sample,      // the node looked at is one
+  output [1:0]                 coverage);      // of it: 0 none, 1 some, 2 all
+  localparam PLANES = 13;                   // the last is the plane through the eye
+
+  wire [12*3*V-1:0] cube;
+  cube_planes #(V) planes (.edge_x(edge_abc[6*V +: 3*V]), .edge_y(edge_abc[3*V +: 3*V]), .edge_z(edge_abc[0 +: 3*V]),
+    .axis_x(axis_ab[4*V +: 2*V]), .axis_y(axis_ab[2*V +: 2*V]), .axis_z(axis_ab[0 +: 2*V]),
+    .axis_x_c(axis_c[2*V +: V]), .axis_y_c(axis_c[V +: V]), .axis_z_c(axis_c[0 +: V]), .side(side),
+    .plane_x0(cube[0 +: 3*V]), .plane_x1(cube[3*V +: 3*V]), .plane_x2(cube[6*V +: 3*V]), .plane_x3(cube[9*V +: 3*V]),
+    .plane_y0(cube[12*V +: 3*V]), .plane_y1(cube[15*V +: 3*V]), .plane_y2(cube[18*V +: 3*V]),
+    .plane_y3(cube[21*V +: 3*V]), .plane_z0(cube[24*V +: 3*V]), .plane_z1(cube[27*V +: 3*V]),
+    .plane_z2(cube[30*V +: 3*V]), .plane_z3(cube[33*V +: 3*V]));
+  wire front_found;
+  wire [1:0] front_axis, front_side;
+  cube_front #(W) of_front (.min(min), .max(max), .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive),
+    .found(front_found), .axis(front_axis), .side(front_side));
+  wire [3*V-1:0] across = front_axis == 0 ? {axis_ab[4*V +: 2*V], axis_c[2*V +: V]} :
+    front_axis == 1 ? {axis_ab[2*V +: 2*V], axis_c[V +: V]} : {axis_ab[0 +: 2*V], axis_c[0 +: V]};
+  wire [PLANES*3*V-1:0] loaded = {across, cube};
+
+  reg has_front;
+  reg [1:0] wanted;                                        // side of the plane through the eye
+  reg [2*PLANES-1:0] sides;                                // in the divided node
+  reg [2*PLANES*(PICTURE_LEVELS + 1)-1:0] sides_of_level;  // in those divided on the way to it
+  wire [2*PLANES-1:0] sides_above = sides_of_level[2*PLANES*(divided - 1'b1) +: 2*PLANES];
+  wire [2*PLANES-1:0] sides_here;
+  genvar i;
+  generate
+    for (i = 0; i < PLANES; i = i + 1) begin : plane
+      reg [V-1:0] a, b, of_divided, here;
+      wire [V-1:0] inner;
+      wire [1:0] found;
+      plane_quadrant #(V) into (.plane({a, b, of_divided}), .quadrant(quadrant), .inner_c(inner));
+      plane_side #(V) which (.plane({a, b, here}), .sample(sample), .side(found));
+      wire known = |sides[2*i +: 2];
+      assign sides_here[2*i +: 2] = known ? sides[2*i +: 2] : found;
+      wire signed [V-1:0] doubled = of_divided - (quadrant[0] ? a : {V{1'b0}}) - (quadrant[1] ? b : {V{1'b0}});
+      always @(posedge clk)
+        if (load) {a, b, here} <= loaded[3*V*i +: 3*V];
+        else if (divide) of_divided <= here;
+        else if (move) here <= known ? of_divided : inner;
+        else if (climb & ~|sides_above[2*i +: 2]) of_divided <= doubled >>> 1;
+    end
+  endgenerate
+  plane_cover of_sides (.side_x(sides_here[0 +: 8]), .side_y(sides_here[8 +: 8]), .side_z(sides_here[16 +: 8]),
+    .front(has_front), .front_side(sides_here[24 +: 2]), .wanted(wanted), .cover_code(coverage));
+
+  always @(posedge clk)
+    if (load) begin
+      has_front <= ~before_eye & front_found;
+      wanted <= front_side;
+      sides <= 0;
+    end else if (divide) begin
+      divided <= level;
+      sides <= sides_here;
+      sides_of_level[2*PLANES*level +: 2*PLANES] <= sides_here;
+    end else if (climb) begin
+      divided <= divided - 1'b1;
+      sides <= sides_above;
+    end
+endmodule

@@ -1,0 +1,27 @@
+// Prints the bits of the machine's memories, under the names that the model has for them. The bits by which
+// a cache knows that a line is there are registers; they count with the tags, as the model counts them.
+module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEVEL_BOUND, NODE_WIDTH = 32);
+  reg clk, reset, constant_write, start, fill;
+  reg [7:0] constant_address;
+  reg [31:0] constant_data;
+  reg [63:0] fill_word;
+  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+    .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
+    .constant_data(constant_data), .start(start), .fill(fill), .fill_word(fill_word));
+  initial begin
+    $display("record stack: %0d", dut.stack.BITS*dut.stack.WORDS);
+    $display("fill vectors: %0d", dut.fill_vectors.BITS*dut.fill_vectors.WORDS);
+    $display("node cache: %0d",
+      dut.node_cache.WAYS*dut.node_cache.ways[0].of_words.BITS*dut.node_cache.ways[0].of_words.WORDS);
+    $display("node cache, tags: %0d",
+      dut.node_cache.WAYS*dut.node_cache.ways[0].of_tags.BITS*dut.node_cache.ways[0].of_tags.WORDS
+      + dut.node_cache.of_order.BITS*dut.node_cache.of_order.WORDS + $bits(dut.node_cache.valid));
+    $display("attribute cache: %0d", dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_words.BITS
+      *dut.attribute_cache.ways[0].of_words.WORDS);
+    $display("attribute cache, tags: %0d",
+      dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_tags.BITS*dut.attribute_cache.ways[0].of_tags.WORDS
+      + dut.attribute_cache.of_order.BITS*dut.attribute_cache.of_order.WORDS + $bits(dut.attribute_cache.valid));
+    // The model has none: the depths of level of detail, a word a level.
+    $display("levels of detail: %0d", dut.constants.lod.BITS*dut.constants.lod.WORDS);
+  end
+endmodule

@@ -1,0 +1,58 @@
+//! A linked graph with every list of children as nodes side by side, as a hardware's memory holds nodes.
+
+use super::{Graph, Store};
+
+impl Graph {
+    /// The same object without lists of links: the children of a node lie side by side, as in a tree. A node in
+    /// several lists stands in each of them, with the same children: what is shared, or leads back, is then the
+    /// list and not the node. The root comes first, then the lists in their order, so node `n` above 0 is the one
+    /// that entry `n - 1` of `links` names. A graph without links is as it is; `None` where nodes would be too many
+    /// for their numbers.
+    ///
+    /// ```
+    /// use shiftvox::graph::LinkedGraph;
+    ///
+    /// // Two nodes, each with the other and itself below it: a root and two lists of two.
+    /// let mut graph = LinkedGraph::new(4);
+    /// graph.add_node([255, 0, 0], [Some(1), None, None, None, None, None, None, Some(0)]);
+    /// graph.add_node([0, 0, 255], [None, Some(0), Some(1), None, None, None, None, None]);
+    /// let graph = graph.build()?.side_by_side().unwrap();
+    /// assert_eq!(graph.mask[..], [0x81, 0x06, 0x81, 0x81, 0x06]);
+    /// assert_eq!(graph.first[..], [1, 3, 1, 1, 3]);
+    /// assert!(graph.links.is_empty() && graph.validate().is_ok());
+    /// # Ok::<(), shiftvox::graph::linked::LinkedError>(())
+    /// ```
+    #[must_use]
+    pub fn side_by_side(&self) -> Option<Self> {
+        if self.links.is_empty() {
+            return Some(self.clone());
+        }
+        if self.links.len() >= u32::MAX as usize - 1 {
+            return None;
+        }
+        let view = self.view();
+        let nodes = || [self.root].into_iter().chain(self.links.iter().copied());
+        // Wraps only in a damaged file, where one wrong place is as good as another.
+        let first_of = |node| match view.mask(node) {
+            0 => 0,
+            _ => view.first(node).wrapping_add(1),
+        };
+        let opacity = match self.opacity.is_empty() {
+            true => Vec::new(),
+            false => nodes().map(|node| view.opacity_of(node)).collect(),
+        };
+        Some(Self {
+            depth: self.depth,
+            root: 0,
+            mask: Store::from(nodes().map(|node| view.mask(node)).collect::<Vec<_>>()),
+            first: Store::from(nodes().map(first_of).collect::<Vec<_>>()),
+            links: Vec::new().into(),
+            color: Store::from(nodes().map(|node| self.color_of(node)).collect::<Vec<_>>()),
+            normal: Store::from(nodes().map(|node| self.normal_of(node)).collect::<Vec<_>>()),
+            opacity: opacity.into(),
+            level_start: Vec::new(),
+            voxels: self.voxels,
+            placement: self.placement,
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! What the area table says of the machine: its memories, bit by bit, and the prediction that the synthesis of
+//! `rtl/synth.sh machine` stands beside.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::frames::TREE;
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B};
+use super::tools::{is_there, rtl, run, shiftvox, text};
+
+/// What the model says of the machine for a view, words of 32 bits.
+fn modelled(machine: &Machine, view: &[&str]) -> Value {
+    let shelter = tempfile::tempdir().unwrap();
+    let hardware = rtl().join(format!("{}.toml", machine.name));
+    let hardware = ["--hw", text(&hardware), "--bits", "32", "--json"];
+    let arguments = [&["model"], view, machine.rules, &hardware].concat();
+    serde_json::from_str(&shiftvox(shelter.path(), &arguments)).unwrap()
+}
+
+/// The parameters of a machine for this view alone: no number is wider than the model's record has it.
+fn parameters(model: &Value, top: &str) -> Vec<String> {
+    let bits = |name: &str| {
+        let fields = model["record"].as_array().unwrap();
+        let field = fields.iter().find(|field| field["field"] == name).unwrap();
+        field["bits"].as_u64().unwrap()
+    };
+    [
+        ("PICTURE_LEVELS", bits("quadtree place") / 2),
+        ("LEVEL_BOUND", bits("lowest vertex") / 3 - 1),
+        // As many bits as the greatest of them.
+        ("DEPTH", (1 << bits("level of the voxel")) - 1),
+        ("NODE_WIDTH", bits("octree node")),
+    ]
+    .map(|(name, value)| format!("-P{top}.{name}={value}"))
+    .to_vec()
+}
+
+/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
+fn compiled(machine: &Machine, top: &str, parameters: &[String], into: &str) {
+    let source = format!("tb/{top}.v");
+    let mut arguments = vec!["-g2012", "-I", ".", "-I", machine.name];
+    arguments.extend(machine.folders.iter().flat_map(|folder| ["-y", folder]));
+    arguments.extend(["-s", top, &source, "-o", into]);
+    arguments.extend(parameters.iter().map(String::as_str));
+    run(&rtl(), "iverilog", &arguments);
+}
+
+#[test]
+fn memories_have_the_bits_that_the_model_says() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let shelter = tempfile::tempdir().unwrap();
+    let into = shelter.path().join("memories.vvp");
+    let views: [&[&str]; 3] = [
+        &[TREE, "--size", "64"],
+        &["gen:menger,depth=4", "--size", "96x20"],
+        &["gen:terrain,depth=6", "--size", "300", "--lod", "0"],
+    ];
+    for (machine, view) in [&STAGE_A, &STAGE_B]
+        .into_iter()
+        .flat_map(|machine| views.map(|view| (machine, view)))
+    {
+        let model = modelled(machine, view);
+        compiled(
+            machine,
+            "memories_tb",
+            &parameters(&model, "memories_tb"),
+            text(&into),
+        );
+        let printed = run(shelter.path(), "vvp", &["-n", text(&into)]);
+        let of_verilog: Vec<(&str, u64)> = printed
+            .lines()
+            .map(|line| line.split_once(": ").unwrap())
+            .map(|(name, bits)| (name, bits.parse().unwrap()))
+            .filter(|(name, _)| *name != "levels of detail")
+            .collect();
+        let lines = model["area"]["memories"]["lines"].as_array().unwrap();
+        let of_model: Vec<(&str, u64)> = lines
+            .iter()
+            .map(|line| {
+                (
+                    line["name"].as_str().unwrap(),
+                    line["times"].as_u64().unwrap(),
+                )
+            })
+            .collect();
+        assert_eq!(of_verilog, of_model, "{} {view:?}", machine.name);
+        assert_eq!(of_model.len(), 6);
+    }
+}
+
+#[test]
+fn a_machine_of_just_a_frames_widths_draws_it() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let shelter = tempfile::tempdir().unwrap();
+    let into = shelter.path().join("frame.vvp");
+    let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
+    for machine in [&STAGE_A, &STAGE_B] {
+        let parameters = parameters(&modelled(machine, &view), "frame_tb");
+        compiled(machine, "frame_tb", &parameters, text(&into));
+        let simulator = ["vvp", "-n", text(&into), "+most=200000"];
+        let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
+        assert_eq!(agreement.cycles[0], agreement.cycles[1]);
+    }
+}
+
+/// The row of `predictions.csv` that was written before the machine was synthesized.
+#[test]
+fn the_prediction_of_the_machine_stands() {
+    let predictions = fs::read_to_string(rtl().join("predictions.csv")).unwrap();
+    let row = predictions
+        .lines()
+        .find(|row| row.starts_with("machine,"))
+        .unwrap();
+    let predicted: f64 = row.rsplit(',').next().unwrap().parse().unwrap();
+    let area = &modelled(&STAGE_A, &[TREE, "--size", "64"])["area"];
+    let parts = ["units", "registers", "control"];
+    let said: f64 = parts
+        .iter()
+        .map(|part| area[part]["total"].as_f64().unwrap())
+        .sum();
+    assert_eq!(said.round(), predicted);
+}

@@ -1,0 +1,346 @@
+//! Energy of the machine's operations by toggles: synthesized blocks, with the delays of their cells, run through the
+//! rows of a frame; every pin of every cell that changes takes what the library of cells says.
+//!
+//! A change of an input charges or discharges the pin, `C V^2 / 2`; one of an output takes the cell's internal energy,
+//! the mean of rise and fall and of the inputs that may cause it, at a load of about 25 fF and the shortest transition.
+//! Wires weigh nothing and registers are left out. 0.18 um says nothing of picojoules at 45 nm: only ratios compare.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use hwmodel::cost::CostTable;
+use serde_json::Value;
+
+use super::frames::TREE;
+use super::testbench::testbench;
+use super::tools::{is_there, rtl, run, shiftvox, text};
+
+const CELLS: &str = "/usr/share/qflow/tech/osu018";
+/// Supply voltage.
+const VOLTS: f64 = 1.8;
+/// Load at which internal energies are taken, pF.
+const LOAD: f64 = 0.025;
+/// Most rows of a block.
+const ROWS: u64 = 400;
+
+/// Blocks; the operations that nearly all of their logic is; and how many rows on the same block of the machine has its
+/// next one. The rows of the others are of x and y in turn.
+const BLOCKS: [(&str, &str, u64); 9] = [
+    ("centre", "add", 1),
+    ("vertex_pool", "add", 2),
+    ("size_screen", "sub, less", 1),
+    ("octant_order", "less", 1),
+    ("child_span", "min", 2),
+    ("child_corners", "select", 1),
+    ("fill_update", "logic", 1),
+    ("size_limit", "shift", 1),
+    ("to_screen_divide", DIVIDE, 1),
+];
+const DIVIDE: &str = "divide step";
+
+/// By cell, what a change of each pin takes, pJ.
+type PinEnergies = BTreeMap<String, Vec<(String, f64)>>;
+
+/// Numbers between quotation marks.
+fn quoted(line: &str) -> Vec<f64> {
+    let inside = line.split('"').nth(1).unwrap_or_default();
+    let numbers = inside.split(',').map(|number| number.trim().parse());
+    numbers.map(Result::unwrap).collect()
+}
+
+/// Reads the library of cells, line by line: it has one value a line, and tables a row a line.
+fn energies_of_pins(liberty: &str) -> PinEnergies {
+    let mut cells = PinEnergies::new();
+    let (mut cell, mut pin) = (String::new(), String::new());
+    let (mut capacitance, mut is_input) = (0.0, false);
+    // Of the pin: sum and number of internal energies.
+    let mut internal = (0.0, 0u32);
+    // In a table of energies of outputs: which row is that of the load, and the next one to come.
+    let mut table: Option<(usize, Option<usize>)> = None;
+    let name_of = |line: &str| {
+        let inside = line.split(['(', ')']).nth(1).unwrap_or_default();
+        inside.trim().to_owned()
+    };
+    let mut take =
+        |cell: &str, pin: &str, is_input: bool, capacitance: f64, internal: (f64, u32)| {
+            if pin.is_empty() {
+                return;
+            }
+            let energy = match is_input {
+                true => capacitance * VOLTS * VOLTS / 2.0,
+                false => internal.0 / f64::from(internal.1.max(1)),
+            };
+            cells
+                .entry(cell.to_owned())
+                .or_default()
+                .push((pin.to_owned(), energy));
+        };
+    for line in liberty.lines().map(str::trim) {
+        if line.starts_with("cell ") || line.starts_with("pin(") {
+            take(&cell, &pin, is_input, capacitance, internal);
+            (pin, internal) = (String::new(), (0.0, 0));
+            match line.starts_with("pin(") {
+                true => pin = name_of(line),
+                false => cell = name_of(line),
+            }
+        } else if line.starts_with("direction") {
+            is_input = line.contains("input");
+        } else if let Some(value) = line.strip_prefix("capacitance :") {
+            capacitance = value.trim().trim_end_matches(';').parse().unwrap();
+        } else if line.starts_with("rise_power(energy") || line.starts_with("fall_power(energy") {
+            table = Some((0, None));
+        } else if let Some((row, next)) = &mut table {
+            if line.starts_with("index_1") {
+                let far = |load: &f64| (load - LOAD).abs();
+                let loads = quoted(line);
+                let nearest = loads.iter().enumerate();
+                let nearest = nearest.min_by(|a, b| far(a.1).total_cmp(&far(b.1)));
+                *row = nearest.unwrap().0;
+            } else if line.starts_with("values") {
+                *next = Some(0);
+            } else if let Some(at) = next {
+                if at == row {
+                    internal.0 += quoted(line)[0];
+                    internal.1 += 1;
+                }
+                *at += 1;
+                if line.ends_with(';') {
+                    table = None;
+                }
+            }
+        }
+    }
+    take(&cell, &pin, is_input, capacitance, internal);
+    cells
+}
+
+/// The cells' Verilog with a sum of energies and changes in each cell that is no register.
+fn counting_cells(verilog: &str, energies: &PinEnergies) -> String {
+    let mut text = String::from(
+        "`timescale 1ns/10ps\nmodule count;\n  real pj = 0;\n  integer outputs = 0, cells = 0;\n  \
+         reg on = 0;\nendmodule\n",
+    );
+    let mut cell = "";
+    for line in verilog.lines() {
+        if let Some(rest) = line.strip_prefix("module ") {
+            cell = rest.split([' ', '(']).next().unwrap();
+        }
+        let is_counted = !cell.starts_with("DFF") && !cell.starts_with("LATCH");
+        if line.starts_with("endmodule") && is_counted {
+            let pins = energies.get(cell).map_or(&[][..], Vec::as_slice);
+            for (pin, energy) in pins {
+                let output = if pin.starts_with('Y') { 1 } else { 0 };
+                let _ = writeln!(
+                    text,
+                    "  always @({pin}) if (count.on) begin count.pj = count.pj + {energy}; \
+                     count.outputs = count.outputs + {output}; end"
+                );
+            }
+            text += "  initial count.cells = count.cells + 1;\n";
+        }
+        text += line;
+        text += "\n";
+    }
+    text
+}
+
+/// What an operation list of `predictions.csv` takes by the model's table, pJ, and how many operations it has.
+fn by_table(table: &CostTable, operations: &str) -> (f64, f64) {
+    let words: Vec<&str> = operations.split(' ').collect();
+    let (mut energy, mut count) = (0.0, 0.0);
+    let mut at = 0;
+    while at < words.len() {
+        let times: f64 = words[at].parse().unwrap();
+        let width = words.get(at + 2).and_then(|word| word.strip_prefix('('));
+        let bits = width.map_or(32, |word| word.trim_end_matches(')').parse().unwrap());
+        // The table has one price for both bitwise operations.
+        let operation = if words[at + 1] == "or" {
+            "and"
+        } else {
+            words[at + 1]
+        };
+        energy += times * table.energy(operation, bits).unwrap().value;
+        count += times;
+        at += if width.is_some() { 3 } else { 2 };
+    }
+    (energy, count)
+}
+
+/// Steps of the frame's divides, the mean of all but the first: four, and one for each fraction bit, a row's last field.
+fn divide_steps(rows: &Path) -> f64 {
+    let text = fs::read_to_string(rows.join("to_screen_divide.in.hex")).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with("//"));
+    let steps = rows.map(|row| 4 + (u32::from_str_radix(&row[row.len() - 2..], 16).unwrap() & 63));
+    let steps: Vec<u32> = steps.take(ROWS as usize).skip(1).collect();
+    f64::from(steps.iter().sum::<u32>()) / steps.len() as f64
+}
+
+/// What a run of a block's netlist took.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    /// Energy of all rows but the first, pJ.
+    pj: f64,
+    /// Changes of outputs of a cell and row.
+    activity: f64,
+}
+
+/// Runs a netlist through rows, of the frame or random ones.
+fn run_rows(files: [&Path; 3], block: &Value, step: u64, random: bool) -> Run {
+    let [folder, netlist, cells] = files;
+    let name = block["name"].as_str().unwrap();
+    // Where the frame has next to none, those made for the block: ends of ranges, and random numbers.
+    let number = |key: &str| block[key].as_u64().unwrap();
+    let rows = match number("frame_rows") {
+        0..=2 => number("rows"),
+        rows => rows,
+    };
+    let rows = rows.min(ROWS);
+    // The first row is not counted.
+    let taken = (rows.div_ceil(step) - 1) as f64;
+    let wrong = "if (result !== expected[i]) wrong = wrong + 1;";
+    let mut bench = testbench(block, rows);
+    assert!(bench.contains(wrong));
+    bench = bench.replace(wrong, &format!("{wrong}\n      count.on = 1;"));
+    let next = "i = i + 1";
+    assert_eq!(bench.matches(next).count(), 1);
+    bench = bench.replace(next, &format!("i = i + {step}"));
+    if random {
+        let words = block["stimulus"]["bits"].as_u64().unwrap().div_ceil(32);
+        let numbers = vec!["$random"; words as usize].join(", ");
+        let row = "row = stimulus[i];";
+        assert!(bench.contains(row));
+        bench = bench.replace(row, &format!("row = {{{numbers}}};"));
+    }
+    let show = "$display(\"pj %f outputs %0d cells %0d\", count.pj, count.outputs, count.cells);";
+    let last = bench.rfind("  end\nendmodule").unwrap();
+    bench.insert_str(last, &format!("    {show}\n"));
+    // A row lasts longer than the longest path.
+    let bench = format!("`timescale 1us/10ps\n{bench}");
+    let (source, compiled) = (folder.join("bench.v"), folder.join("bench.vvp"));
+    fs::write(&source, bench).unwrap();
+    let top = format!("{name}_tb");
+    let arguments = ["-g2012", "-gspecify", "-s", &top, "-s", "count", "-o"];
+    let files = [&compiled, &source, netlist, cells].map(text);
+    run(folder, "iverilog", &[&arguments[..], &files].concat());
+    let printed = run(folder, "vvp", &["-n", text(&compiled)]);
+    let line = printed
+        .lines()
+        .find(|line| line.starts_with("pj "))
+        .unwrap();
+    let words: Vec<f64> = line
+        .split(' ')
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    if !random {
+        assert!(
+            printed.contains(&format!("{name} 0\n")),
+            "{name}: the netlist's rows are wrong"
+        );
+    }
+    let [pj, outputs, cells] = words[..] else {
+        panic!("{line}");
+    };
+    Run {
+        pj: pj / taken,
+        activity: outputs / cells / taken,
+    }
+}
+
+/// Prints by block: changes of an output a row, and energy an operation, with the frame's rows and with random ones;
+/// that of random rows by a centre's addition; what the model's table says of the operations by its addition.
+#[test]
+#[ignore = "takes minutes"]
+fn energy_by_toggles_beside_the_table() {
+    let liberty = Path::new(CELLS).join("osu018_stdcells.lib");
+    if !is_there("iverilog") || !is_there("yosys") || !liberty.exists() {
+        eprintln!("skipped: it needs yosys and qflow-tech-osu018");
+        return;
+    }
+    let energies = energies_of_pins(&fs::read_to_string(liberty).unwrap());
+    let verilog = fs::read_to_string(Path::new(CELLS).join("osu018_stdcells.v")).unwrap();
+    let shelter = tempfile::tempdir().unwrap();
+    let cells = shelter.path().join("cells.v");
+    fs::write(&cells, counting_cells(&verilog, &energies)).unwrap();
+
+    let rows = shelter.path().join("rows");
+    let vectors = [
+        "--paper",
+        "--bits",
+        "32",
+        "--vectors",
+        text(&rows),
+        "--vector-records",
+        "4000",
+    ];
+    shiftvox(
+        shelter.path(),
+        &[&["model", TREE, "--size", "64"], &vectors[..]].concat(),
+    );
+    let manifest = fs::read_to_string(rows.join("manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_str(&manifest).unwrap();
+    let predictions = fs::read_to_string(rtl().join("predictions.csv")).unwrap();
+    let table = CostTable::load_shipped().unwrap();
+
+    let mut adder = None;
+    for (name, class, step) in BLOCKS {
+        let netlist = shelter.path().join(format!("{name}.v"));
+        let synthesize = format!("NETLIST={} ./synth.sh {name}", text(&netlist));
+        run(&rtl(), "sh", &["-c", &synthesize]);
+        let blocks = manifest["blocks"].as_array().unwrap();
+        let block = blocks.iter().find(|block| block["name"] == name).unwrap();
+        let operations = match class {
+            DIVIDE => format!("{:.1} divide_step (36)", divide_steps(&rows)),
+            _ => {
+                let mut all = predictions.lines();
+                let of_block = all.find_map(|row| row.strip_prefix(&format!("{name},")));
+                of_block.unwrap().split(',').next().unwrap().to_owned()
+            }
+        };
+        let (by_table, count) = by_table(&table, &operations);
+        let files = [&rows, &netlist, &cells].map(PathBuf::as_path);
+        let of_frame = run_rows(files, block, step, false);
+        // Random numerators and divisors make no quotients.
+        let random = match class {
+            DIVIDE => of_frame,
+            _ => run_rows(files, block, step, true),
+        };
+        let [of_frame_pj, random_pj, table_pj] =
+            [of_frame.pj, random.pj, by_table].map(|pj| pj / count);
+        let (unit, table_unit) = *adder.get_or_insert((random_pj, table_pj));
+        let (ratio, by_table) = (random_pj / unit, table_pj / table_unit);
+        // A row is a visit of a block, but of the divider as many cycles as steps.
+        let steps = if class == DIVIDE { count } else { 1.0 };
+        eprintln!(
+            "| `{name}` | {class} | {operations} | {:.2}, {:.2} | {of_frame_pj:.2}, {random_pj:.2} | {ratio:.2} | \
+             {by_table:.2} | {:+.0} % |",
+            of_frame.activity / steps,
+            random.activity / steps,
+            100.0 * (ratio / by_table - 1.0),
+        );
+        // Four bits are next to nothing; a step of the divide is larger than the table's, section 5 of `docs/rtl.md`.
+        if !["logic", DIVIDE].contains(&class) {
+            assert!((ratio / by_table - 1.0).abs() < 0.3, "{name}");
+        }
+    }
+}
+
+/// The parts of the sum, of a cell by hand.
+#[test]
+fn energies_of_a_cell_by_hand() {
+    let liberty = "cell (INV) {\n pin(A) {\n direction : input;\n capacitance : 0.01;\n }\n pin(Y) {\n \
+                   direction : output;\n capacitance : 0;\n internal_power() {\n \
+                   rise_power(energy_template_5x5) {\n index_1 (\"0.005, 0.02, 0.15\");\n \
+                   index_2 (\"0.06, 0.18\");\n values ( \\\n \"1, 2\", \\\n \"3, 4\", \\\n \"5, 6\");\n }\n \
+                   fall_power(energy_template_5x5) {\n index_1 (\"0.005, 0.02, 0.15\");\n \
+                   index_2 (\"0.06, 0.18\");\n values ( \\\n \"7, 8\", \\\n \"9, 10\", \\\n \"11, 12\");\n }\n";
+    let energies = energies_of_pins(liberty);
+    let pins = &energies["INV"];
+    assert_eq!(pins.len(), 2);
+    assert!((pins[0].1 - 0.01 * 1.8 * 1.8 / 2.0).abs() < 1e-12);
+    // At a load of 20 fF and the first transition: rise 3, fall 9.
+    assert!((pins[1].1 - 6.0).abs() < 1e-12);
+    let counting = counting_cells("module INV (A, Y);\nendmodule\n", &energies);
+    assert!(counting.contains("always @(Y) if (count.on) begin count.pj = count.pj + 6;"));
+}
