@@ -38,7 +38,7 @@ fn convert_info_render() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let settings = "--leaf-triangles 300 --grid 32 --rays 60000 -q".split(' ');
+    let settings = "--leaf-triangles 50 --grid 16 --rays 20000 -q".split(' ');
     for (output, threads) in [("a.far", "1"), ("b.far", "2")] {
         let command = ["convert", "sheet.obj", output, "--threads", threads];
         shiftvox(at)
