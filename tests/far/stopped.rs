@@ -167,6 +167,17 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
     assert!(!part.exists());
 }
 
+/// Builds `a.far` of twenty copies of `sheet.stl`, with more settings.
+fn convert_copies(at: &Path, settings: &str) -> Command {
+    let always = "convert sheet.stl a.far --leaf-triangles 5000 --instances 20 --force -q";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    command
+        .current_dir(at)
+        .args(always.split(' '))
+        .args(settings.split(' '));
+    command
+}
+
 #[test]
 fn a_budget_of_memory_changes_no_byte() {
     let folder = tempfile::tempdir().unwrap();
@@ -174,13 +185,8 @@ fn a_budget_of_memory_changes_no_byte() {
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     let convert = |more: &[&str]| {
         // 400,000 triangles, several clusters.
-        let arguments = "--leaf-triangles 5000 --grid 32 --rays 200000 --instances 20 --force -q";
-        let mut command = Command::new(cargo_bin("shiftvox"));
-        let command = command
-            .current_dir(at)
-            .args(["convert", "sheet.stl", "a.far"]);
-        let output = command.args(arguments.split(' ')).args(more).output();
-        let output = output.unwrap();
+        let mut command = convert_copies(at, "--grid 32 --rays 200000");
+        let output = command.args(more).output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
         (
             output.status.code(),
@@ -219,13 +225,8 @@ fn a_budget_of_memory_is_kept() {
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     let most = |more: &[&str]| {
         // 400,000 triangles: 32 MB of clusters, and nodes of a hundred thousand rays.
-        let arguments = "--leaf-triangles 5000 --rays 3000000 --instances 20 --force -q";
-        let mut command = Command::new(cargo_bin("shiftvox"));
-        let command = command
-            .current_dir(at)
-            .args(["convert", "sheet.stl", "a.far"]);
-        let command = command.args(arguments.split(' ')).args(more);
-        let mut child = command.spawn().unwrap();
+        let mut command = convert_copies(at, "--rays 3000000");
+        let mut child = command.args(more).spawn().unwrap();
         let mut most = None;
         while child.try_wait().unwrap().is_none() {
             most = most_memory(child.id()).max(most);

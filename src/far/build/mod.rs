@@ -43,10 +43,10 @@ use super::store::surface::lay_out;
 use super::store::write_parts;
 use crate::graph::{PackedNormal, Progress, place};
 use crate::mesh::{Surface, barycentric, linear_to_srgb, mesh_box};
-use clusters::{CLUSTER, MADE, MAKING, Occluders, Part};
+use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
 use rays::Around;
-use room::Room;
+use room::{Room, shares};
 use sample::{Rays, Triangles};
 use shader_fit::ShaderFit;
 use shot::{Own, Target};
@@ -85,12 +85,6 @@ const MOST_RAYS: u32 = 1 << 22;
 const RAY_BYTES: u64 = 96;
 /// Rays at a touched voxel, where no number of rays is given, or less: few get all.
 const RAYS_AT_VOXEL: u64 = 32;
-/// Bytes a triangle that the parts of a hybrid take while they are found, or less: three vertices
-/// in a table, and what is known of them and of the triangle.
-const PARTS_BYTES: u64 = 160;
-/// Bytes that nodes may take together at the least.
-const LEAST_ROOM: u64 = 48 << 20;
-
 impl Default for BuildOptions {
     fn default() -> Self {
         Self {
@@ -416,45 +410,6 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let mut data = assemble(&spool, centre, options)?;
     data.bevels = mesh_box(surface, data.y_up).bevels;
     Ok((data, spool))
-}
-
-/// How a budget is shared out.
-struct Shares {
-    /// Bytes of clusters in memory; `None`: all of them.
-    clusters: Option<u64>,
-    /// Bytes of nodes that are sampled.
-    nodes: u64,
-}
-
-/// Shares out a budget for so many triangles.
-fn shares(triangles: usize, hybrid: bool, memory: Option<u64>) -> Result<Shares, BuildError> {
-    let Some(given) = memory else {
-        return Ok(Shares {
-            clusters: None,
-            nodes: u64::MAX,
-        });
-    };
-    let triangles = triangles as u64;
-    // Their order, and of the hierarchy, at 1000 triangles a leaf, a branch and a record a node; the
-    // order twice while triangles are split.
-    let fixed = triangles * if hybrid { 10 + PARTS_BYTES } else { 10 };
-    let making = MAKING * triangles.min(CLUSTER as u64);
-    let threads = rayon::current_num_threads() as u64;
-    let cluster = MADE * triangles.min(CLUSTER as u64);
-    let needed = fixed + making.max(LEAST_ROOM + cluster * threads);
-    if given < needed {
-        return Err(BuildError::Memory { needed, given });
-    }
-    let all = triangles * MADE;
-    let rest = given - fixed;
-    // Clusters are worth more than nodes at the same time.
-    let nodes = (rest - cluster * threads - LEAST_ROOM) / 4 + LEAST_ROOM;
-    let room = rest - nodes;
-    let fits = all + making <= room;
-    Ok(Shares {
-        clusters: (!fits).then(|| (room.saturating_sub(making)).max(cluster)),
-        nodes,
-    })
 }
 
 /// The largest subtrees of no more triangles than a cluster may have.

@@ -1,6 +1,58 @@
-//! Memory of the nodes that are sampled at the same time.
+//! Memory of a build: how a budget is shared out, and what nodes that are sampled at the same time take of it.
 
 use std::sync::{Condvar, Mutex, PoisonError};
+
+use super::BuildError;
+use super::clusters::{CLUSTER, MADE, MAKING};
+
+/// Bytes a triangle that the parts of a hybrid take while they are found, or less: three vertices
+/// in a table, and what is known of them and of the triangle.
+const PARTS_BYTES: u64 = 160;
+/// Bytes that nodes may take together at the least.
+const LEAST_ROOM: u64 = 48 << 20;
+
+/// How a budget is shared out.
+pub(super) struct Shares {
+    /// Bytes of clusters in memory; `None`: all of them.
+    pub(super) clusters: Option<u64>,
+    /// Bytes of nodes that are sampled.
+    pub(super) nodes: u64,
+}
+
+/// Shares out a budget for so many triangles.
+pub(super) fn shares(
+    triangles: usize,
+    hybrid: bool,
+    memory: Option<u64>,
+) -> Result<Shares, BuildError> {
+    let Some(given) = memory else {
+        return Ok(Shares {
+            clusters: None,
+            nodes: u64::MAX,
+        });
+    };
+    let triangles = triangles as u64;
+    // Their order, and of the hierarchy, at 1000 triangles a leaf, a branch and a record a node; the
+    // order twice while triangles are split.
+    let fixed = triangles * if hybrid { 10 + PARTS_BYTES } else { 10 };
+    let making = MAKING * triangles.min(CLUSTER as u64);
+    let threads = rayon::current_num_threads() as u64;
+    let cluster = MADE * triangles.min(CLUSTER as u64);
+    let needed = fixed + making.max(LEAST_ROOM + cluster * threads);
+    if given < needed {
+        return Err(BuildError::Memory { needed, given });
+    }
+    let all = triangles * MADE;
+    let rest = given - fixed;
+    // Clusters are worth more than nodes at the same time.
+    let nodes = (rest - cluster * threads - LEAST_ROOM) / 4 + LEAST_ROOM;
+    let room = rest - nodes;
+    let fits = all + making <= room;
+    Ok(Shares {
+        clusters: (!fits).then(|| (room.saturating_sub(making)).max(cluster)),
+        nodes,
+    })
+}
 
 /// Bytes that nodes may take together.
 pub(super) struct Room {
