@@ -251,8 +251,11 @@ fn many_scenes() {
     }
 }
 
-/// Graphs with shared nodes and with cycles: each node's children, by octant.
-fn linked_graphs() -> Vec<(&'static str, u32, Vec<[Option<u32>; 8]>)> {
+/// A graph as this file writes it: its name, its depth, and each node's children by octant.
+type Drawn = (&'static str, u32, Vec<[Option<u32>; 8]>);
+
+/// Graphs with shared nodes and with cycles.
+fn linked_graphs() -> Vec<Drawn> {
     let no = None;
     let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
     vec![
