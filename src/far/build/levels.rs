@@ -3,11 +3,21 @@
 //! A box is halved across one axis, so its longest side, and with it the size of its voxels, is
 //! often that of the box above. Such a node would hold the voxels of the one above once more: it has
 //! none, and its children stand for it.
+//!
+//! Nor has a node whose triangles are so large that each would be many voxels: these would take more
+//! bytes than the triangles, and would be drawn only where a triangle has as many pixels.
 
 use super::split::Branch;
 
 /// A node has voxels if they are at most this share of those of the next node above that has.
 const STEP: f64 = 0.7;
+/// Most voxels of a node for each of its triangles. So many take 180 bytes or more, a triangle 15 to 35.
+const MOST_VOXELS: usize = 16;
+
+/// Whether triangles touch too many voxels; of all the voxels of a grid: whether they could.
+pub(super) fn is_dense(touched: usize, triangles: usize) -> bool {
+    touched / MOST_VOXELS >= triangles
+}
 
 /// Of each node whether it is a leaf or has voxels. `coarser`: how many nodes are above the root of
 /// the hierarchy; all of these have, and the root.
@@ -39,6 +49,13 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+
+    #[test]
+    fn dense_nodes_are_those_of_sixteen_voxels_a_triangle() {
+        assert!(is_dense(160, 10) && !is_dense(159, 10));
+        // A grid of 64 voxels a side holds no more.
+        assert!(is_dense(64 * 64 * 64, 16_384) && !is_dense(64 * 64 * 64, 16_385));
+    }
 
     #[test]
     fn a_box_halved_across_another_axis_has_no_voxels() {

@@ -81,8 +81,8 @@ pub struct BuildOptions {
 pub const RAYS_PER_VOXEL: u32 = 24;
 /// Most rays of a node: what its memory is kept to.
 const MOST_RAYS: u32 = 1 << 22;
-/// Bytes a ray that a node takes while it is sampled, or less.
-const RAY_BYTES: u64 = 96;
+/// Bytes a ray that a node takes while it is sampled, or less: 40 of its own, and 20 of each voxel that it crosses.
+const RAY_BYTES: u64 = 160;
 /// Rays at a touched voxel, where no number of rays is given, or less: few get all.
 const RAYS_AT_VOXEL: u64 = 32;
 impl Default for BuildOptions {
@@ -286,7 +286,7 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     let (mut branches, order) = split(surface, options.leaf_triangles as usize);
     let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
     progress.end();
-    let has_voxels = match options.hybrid {
+    let mut has_voxels = match options.hybrid {
         true => vec![true; branches.len()],
         false => levels::with_voxels(&branches, coarser),
     };
@@ -315,36 +315,47 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
     progress.end();
     let hybrid = options.hybrid;
     let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
+    let grid = |number: usize, branch: &Branch| {
+        let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
+        Grid::around(low, high, coarser::grid_of(number, coarser, options.grid))
+    };
     let target = |number: usize, branch: &Branch| Target {
         occluders: &occluders,
-        grid: {
-            let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
-            Grid::around(low, high, coarser::grid_of(number, coarser, options.grid))
-        },
+        grid: grid(number, branch),
         own: Own::all(branch.triangles()),
         distance: options.distance_voxels,
         opacity_blend: options.opacity_blend,
         shader_blend: options.shader_blend,
     };
+    progress.begin("find voxels", order.len() as u64);
+    let touched: Vec<Option<u32>> = branches
+        .par_iter()
+        .enumerate()
+        .map(|(number, branch)| {
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
+                return None;
+            }
+            let grid = has_voxels[number].then(|| grid(number, branch))?;
+            let may_be_left = !options.hybrid && number > coarser;
+            let is_of_use =
+                options.rays.is_some() || may_be_left && levels::is_dense(grid.len(), branch.count);
+            is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
+        })
+        .collect();
+    if !options.hybrid {
+        for (number, branch) in branches.iter().enumerate().skip(coarser + 1) {
+            has_voxels[number] &=
+                touched[number].is_none_or(|n| !levels::is_dense(n as usize, branch.count));
+        }
+    }
+    progress.end();
     let rays = match options.rays {
         None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
         Some(rays) => {
-            progress.begin("find voxels", order.len() as u64);
-            let touched: Vec<u32> = branches
-                .par_iter()
-                .enumerate()
-                .map(|(number, branch)| {
-                    if branch.children.is_none() {
-                        progress.advance(branch.count as u64);
-                    }
-                    if branch.children.is_none() || !has_voxels[number] {
-                        return 0;
-                    }
-                    touch::count(&target(number, branch).grid, corners(branch.triangles()))
-                })
-                .collect();
-            progress.end();
-            share_rays(&touched, rays)
+            let touched = touched.iter().zip(&has_voxels);
+            let touched = touched.map(|(n, has_voxels)| n.filter(|_| *has_voxels).unwrap_or(0));
+            share_rays(&touched.collect::<Vec<u32>>(), rays)
         }
     };
     progress.begin("shoot rays", order.len() as u64);

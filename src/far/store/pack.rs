@@ -4,26 +4,45 @@
 //! then the second ones, and so on. Neighbours are alike in each. The surface follows
 //! (`surface.rs`).
 
-use miniz_oxide::deflate::compress_to_vec;
+use miniz_oxide::deflate::core::{
+    CompressorOxide, TDEFLFlush, compress_to_output, create_comp_flags_from_zip_params,
+};
 use miniz_oxide::inflate::decompress_to_vec_with_limit;
 
 use super::surface;
 use crate::far::record::{LeafTriangle, Node, RECORD_BYTES};
 
 /// How hard it is tried to make data small, 0 to 10: what other programs do if not told otherwise.
-const EFFORT: u8 = 6;
+const EFFORT: i32 = 6;
+/// Bytes after which the end of a column ends a block of the deflated data, too. Each block has codes of its own, and
+/// columns differ: places run on, normals are noise. Shorter blocks would cost more than their codes save.
+const LEAST_BLOCK: usize = 2048;
 
 /// Packs the records of voxels, list by list, and the bytes of a surface.
 pub(in crate::far) fn pack(lists: &[Vec<u8>; 6], surface: &[u8]) -> Vec<u8> {
-    let voxels: usize = lists.iter().map(Vec::len).sum();
-    let mut columns = Vec::with_capacity(voxels + surface.len());
+    // A negative window: without zlib's header.
+    let flags = create_comp_flags_from_zip_params(EFFORT, -15, 0);
+    let mut compressor = Box::new(CompressorOxide::new(flags));
+    let mut packed = Vec::new();
+    let mut deflate = |bytes: &[u8], flush| {
+        compress_to_output(&mut compressor, bytes, flush, |out| {
+            packed.extend_from_slice(out);
+            true
+        });
+    };
+    let mut block = Vec::new();
     for (list, bytes) in lists.iter().zip(RECORD_BYTES) {
         for column in 0..bytes {
-            columns.extend(list.iter().skip(column).step_by(bytes));
+            block.extend(list.iter().skip(column).step_by(bytes));
+            if block.len() >= LEAST_BLOCK {
+                deflate(&block, TDEFLFlush::Sync);
+                block.clear();
+            }
         }
     }
-    columns.extend(surface);
-    compress_to_vec(&columns, EFFORT)
+    deflate(&block, TDEFLFlush::None);
+    deflate(surface, TDEFLFlush::Finish);
+    packed
 }
 
 /// Unpacks records of voxels and triangles; `None` where it is not they that were packed.
@@ -59,6 +78,9 @@ fn inflate(packed: &[u8], length: usize) -> Option<Vec<u8>> {
 mod tests {
     use super::*;
 
+    /// Voxels of each list: none, less than a block of deflated data, and more.
+    const COUNTS: [u32; 6] = [0, 7, 700, 21, 2800, 35];
+
     fn node(counts: [u32; 6]) -> Node {
         Node {
             low: [-1.0, 0.0, 0.0],
@@ -71,16 +93,18 @@ mod tests {
     #[test]
     fn data_comes_back_and_wrong_lengths_do_not() {
         let lists: [Vec<u8>; 6] = std::array::from_fn(|list| {
-            let bytes = RECORD_BYTES[list] * 7 * list;
+            let bytes = RECORD_BYTES[list] * COUNTS[list] as usize;
             (0..bytes).map(|at| (at * at / 5) as u8).collect()
         });
-        let counts = [0, 7, 14, 21, 28, 35];
         let packed = pack(&lists, &[]);
         let voxels = |counts| unpack(&packed, &node(counts)).map(|(records, _)| records);
-        assert_eq!(voxels(counts), Some(lists.concat()));
-        assert_eq!(voxels([1, 7, 14, 21, 28, 35]), None);
-        assert_eq!(voxels([0, 7, 14, 21, 28, 34]), None);
-        assert_eq!(unpack(&packed[1..], &node(counts)), None);
+        assert_eq!(voxels(COUNTS), Some(lists.concat()));
+        for list in [0, 5] {
+            let mut counts = COUNTS;
+            counts[list] ^= 1;
+            assert_eq!(voxels(counts), None);
+        }
+        assert_eq!(unpack(&packed[1..], &node(COUNTS)), None);
         let packed = pack(&Default::default(), &[]);
         assert_eq!(
             unpack(&packed, &node([0; 6])),
