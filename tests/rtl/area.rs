@@ -12,8 +12,9 @@ use super::tools::{is_there, rtl, run, shiftvox, text};
 /// What the model says of the machine for a view, words of 32 bits.
 fn modelled(machine: &Machine, view: &[&str]) -> Value {
     let shelter = tempfile::tempdir().unwrap();
-    let hardware = rtl().join(format!("{}.toml", machine.name));
-    let hardware = ["--hw", text(&hardware), "--bits", "32", "--json"];
+    let file = shelter.path().join("hardware.toml");
+    fs::write(&file, machine.hardware()).unwrap();
+    let hardware = ["--hw", text(&file), "--bits", "32", "--json"];
     let arguments = [&["model"], view, machine.rules, &hardware].concat();
     serde_json::from_str(&shiftvox(shelter.path(), &arguments)).unwrap()
 }
@@ -39,7 +40,7 @@ fn parameters(model: &Value, top: &str) -> Vec<String> {
 /// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
 fn compiled(machine: &Machine, top: &str, parameters: &[String], into: &str) {
     let source = format!("tb/{top}.v");
-    let mut arguments = vec!["-g2012", "-I", ".", "-I", machine.name];
+    let mut arguments = vec!["-g2012", "-I", ".", "-I", machine.stage];
     arguments.extend(machine.folders.iter().flat_map(|folder| ["-y", folder]));
     arguments.extend(["-s", top, &source, "-o", into]);
     arguments.extend(parameters.iter().map(String::as_str));

@@ -108,6 +108,7 @@ mod observe;
 mod recording;
 mod report;
 mod scaling;
+mod sequential;
 mod simulate;
 mod tasks;
 mod totals;
