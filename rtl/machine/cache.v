@@ -59,7 +59,7 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   wire hit = |has_line;
   wire [WAYS_LOG2-1:0] way;
   wire [ORDER-1:0]     used;
-  use_order #(WAYS_LOG2) choice (.now(now), .has_line(has_line), .way(way), .used(used));
+  use_order #(WAYS_LOG2) ways_used (.now(now), .has_line(has_line), .way(way), .used(used));
 
   memory #(.BITS(ORDER), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_order (.clk(clk), .read(look),
     .write(looked & hit | last_fill), .address(look ? look_at[3 +: SETS_LOG2] : set), .data_in(used),

@@ -150,7 +150,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [3:0] vector;
   reg  [3:0] marked;                            // what is written next
   reg  [3:0] outside_picture;
-  wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == WALK | state == ABOVE | draw_read;
+  wire fill_read  = state == FIT & ~box_outside | state == FILLED | `SEARCHES & state == WALK | state == ABOVE
+    | draw_read;
   wire fill_write = state == CLEAR | state == MARK;
   wire of_record  = state == FILLED;
   wire [FILL_ADDRESS-1:0] fill_address =
@@ -316,9 +317,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         back_any = 1;
         back_level = l;
       end
-    chosen_from = state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
+    chosen_from = `SEARCHES & state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
     quadrant = only;
-    if (state == WALKED | state == BACK)
+    if (`SEARCHES & (state == WALKED | state == BACK))
       quadrant = chosen_from[0] ? 2'd0 : chosen_from[1] ? 2'd1 : chosen_from[2] ? 2'd2 : 2'd3;
   end
   wire [L-1:0] up = c_quad_level - back_level;
@@ -453,11 +454,11 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           if (~r_solid) {mask, first} <= node_word[39:0];
           r_solid <= solid;
           if (draws) begin_drawing;
-          else if (subdivide & look_hidden) look_for_sample;
+          else if (`SEARCHES & subdivide & look_hidden) look_for_sample;
           else state <= subdivide ? CENTRE : next_record;
         end
-        WALK: state <= WALKED;
-        WALKED:
+        WALK: if (`SEARCHES) state <= WALKED;
+        WALKED: if (`SEARCHES)
           if (c_quad_level == levels & |open)
             state <= found_sample;
           else if (c_quad_level != levels & |found) begin
@@ -474,7 +475,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= WALK;
           end else
             state <= BACK;
-        BACK:
+        BACK: if (`SEARCHES)
           if (c_quad_level != back_level) begin
             c_x <= outer_x;
             c_y <= outer_y;

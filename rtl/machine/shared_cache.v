@@ -80,7 +80,7 @@ module shared_cache #(parameter LANES = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
       assign has_line[i] = valid_here[i] & tags[i*TAG +: TAG] == tag;
     end
   endgenerate
-  use_order #(WAYS_LOG2) choice (.now(now), .has_line(has_line), .way(way), .used(used));
+  use_order #(WAYS_LOG2) ways_used (.now(now), .has_line(has_line), .way(way), .used(used));
   memory #(.BITS(ORDER), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_order (.clk(clk), .read(look),
     .write(looking & (hit | fetch_taken)), .address(look ? address_now[3 +: SETS_LOG2] : set), .data_in(used),
     .data_out(stored));

@@ -20,21 +20,26 @@ fn modelled(machine: &Machine, view: &[&str]) -> Value {
 }
 
 /// The parameters of a machine for this view alone: no number is wider than the model's record has it.
-fn parameters(model: &Value, top: &str) -> Vec<String> {
+fn parameters(machine: &Machine, model: &Value, top: &str) -> Vec<String> {
     let bits = |name: &str| {
         let fields = model["record"].as_array().unwrap();
         let field = fields.iter().find(|field| field["field"] == name).unwrap();
         field["bits"].as_u64().unwrap()
     };
-    [
+    let of_frame = [
         ("PICTURE_LEVELS", bits("quadtree place") / 2),
         ("LEVEL_BOUND", bits("lowest vertex") / 3 - 1),
         // As many bits as the greatest of them.
         ("DEPTH", (1 << bits("level of the voxel")) - 1),
         ("NODE_WIDTH", bits("octree node")),
-    ]
-    .map(|(name, value)| format!("-P{top}.{name}={value}"))
-    .to_vec()
+    ];
+    let of_machine = machine.parameters();
+    let of_machine = of_machine.iter().map(|&(name, value)| (name, value.into()));
+    of_frame
+        .into_iter()
+        .chain(of_machine)
+        .map(|(name, value): (_, u64)| format!("-P{top}.{name}={value}"))
+        .collect()
 }
 
 /// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
@@ -59,17 +64,17 @@ fn memories_have_the_bits_that_the_model_says() {
         &["gen:menger,depth=4", "--size", "96x20"],
         &["gen:terrain,depth=6", "--size", "300", "--lod", "0"],
     ];
-    for (machine, view) in [&STAGE_A, &STAGE_B]
+    let lanes = Machine::side_by_side(3, 2);
+    for (machine, view) in [&STAGE_A, &STAGE_B, &lanes]
         .into_iter()
         .flat_map(|machine| views.map(|view| (machine, view)))
     {
         let model = modelled(machine, view);
-        compiled(
-            machine,
-            "memories_tb",
-            &parameters(&model, "memories_tb"),
-            text(&into),
-        );
+        let top = match machine.testbench() {
+            "frame_tb" => "memories_tb",
+            _ => "lanes_memories_tb",
+        };
+        compiled(machine, top, &parameters(machine, &model, top), text(&into));
         let printed = run(shelter.path(), "vvp", &["-n", text(&into)]);
         let of_verilog: Vec<(&str, u64)> = printed
             .lines()
@@ -101,7 +106,7 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     let into = shelter.path().join("frame.vvp");
     let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
     for machine in [&STAGE_A, &STAGE_B] {
-        let parameters = parameters(&modelled(machine, &view), "frame_tb");
+        let parameters = parameters(machine, &modelled(machine, &view), "frame_tb");
         compiled(machine, "frame_tb", &parameters, text(&into));
         let simulator = ["vvp", "-n", text(&into), "+most=200000"];
         let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();

@@ -389,7 +389,10 @@ pub(crate) fn random_views(
         }
     }
     let name = machine.name;
-    eprintln!("{name} {:?}: {number} random views: all events and pictures equal; cycles unlike in {unlike}", machine.parameters());
+    eprintln!(
+        "{name} {:?}: {number} random views: all events and pictures equal; cycles unlike in {unlike}",
+        machine.parameters()
+    );
     assert_eq!(unlike, 0);
 }
 

@@ -12,6 +12,7 @@ mod area;
 mod blocks;
 mod energy;
 mod frames;
+mod hidden;
 mod lanes;
 mod machines;
 mod mutants;

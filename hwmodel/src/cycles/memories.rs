@@ -418,7 +418,11 @@ pub(super) struct Memories {
 
 impl Memories {
     pub(super) fn new(hardware: &Hardware) -> Self {
-        let fills = if hardware.hands_out_tiles() { hardware.lanes } else { 1 } as usize;
+        let fills = if hardware.hands_out_tiles() {
+            hardware.lanes
+        } else {
+            1
+        } as usize;
         Self {
             stacks: vec![Port::new(hardware.stack.ports); hardware.lanes as usize],
             stack_latency: u64::from(hardware.stack.latency),

@@ -202,7 +202,11 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
     }
 
     /// A lane that hands nothing on: its own next record, or else another tile.
-    pub(super) fn go_on(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
+    pub(super) fn go_on(
+        &mut self,
+        now: u64,
+        context: u32,
+    ) -> Result<(), SimulationError<W::Error>> {
         let lane = self.contexts[context as usize].lane as usize;
         if self.lanes[lane].ready.is_empty() {
             self.asked.now.push((Of::Tile, context));
