@@ -174,14 +174,19 @@ fn a_fault_of_stage_b_is_found() {
     }
 }
 
-/// Synthesis takes both machines: no latch, no loop, no signal with two drivers.
+/// Synthesis takes both machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
 #[ignore = "takes minutes"]
-fn yosys_takes_both_machines() {
+fn yosys_takes_the_machines() {
     if !is_there("yosys") {
         return;
     }
-    for machine in [&STAGE_A, &STAGE_B] {
+    let lanes = Machine::side_by_side(2, 1);
+    for (machine, top) in [
+        (&STAGE_A, "machine"),
+        (&STAGE_B, "machine"),
+        (&lanes, "lanes"),
+    ] {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();
         for folder in machine.folders {
@@ -197,7 +202,7 @@ fn yosys_takes_both_machines() {
         let files: Vec<String> = files.into_values().collect();
         let (name, files) = (machine.stage, files.join(" "));
         let script = format!(
-            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top machine; proc; check -assert; \
+            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top {top}; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
         run(&rtl(), "yosys", &["-q", "-p", &script]);
