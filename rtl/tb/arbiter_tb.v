@@ -13,7 +13,7 @@ module arbiter_tb #(parameter N = 4);
     #1 clk = 1;
     #1 clk = 0;
     reset = 0;
-    for (now = 0; now < 20000; now = now + 1) begin
+    for (now = 0; now < 4000; now = now + 1) begin
       for (i = 0; i < N; i = i + 1)
         if (~request[i] & $urandom % 3 == 0) begin
           request[i] = 1;

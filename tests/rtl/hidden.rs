@@ -59,7 +59,7 @@ fn small_ones_that_stop(side: i64) -> u32 {
         low + (state >> 33) as i64 % (high - low + 1)
     };
     let mut found = 0;
-    for _ in 0..3_000_000 {
+    for _ in 0..1_000_000 {
         let below = next(1, 5) as u32;
         let depth = next(1, 12 << below);
         let w = [
