@@ -68,6 +68,8 @@ fn memories_have_the_bits_that_the_model_says() {
     for (machine, view) in [&STAGE_A, &STAGE_B, &lanes]
         .into_iter()
         .flat_map(|machine| views.map(|view| (machine, view)))
+        // Lanes have the memories of a machine, but for the fill vectors: one view is enough.
+        .filter(|(machine, view)| machine.testbench() == "frame_tb" || *view == views[1])
     {
         let model = modelled(machine, view);
         let top = match machine.testbench() {
