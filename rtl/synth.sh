@@ -5,8 +5,7 @@
 #   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each; NETLIST=FILE writes the cells of the last
 #   synth.sh machine     the whole machine without its memories, for the bundled tree at 64 x 64 unless PARAMETERS says
 #                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stage B:
-#                        parts_exact.txt) and of what connects
-#                        them, their sum, and the same in one piece; minutes
+#                        parts_exact.txt) and of what connects them, their sum, and the same in one piece; minutes
 #
 # Modules are stage A's; STAGE=stage_b: those of exact coverage in the place of those of the same name.
 set -e
