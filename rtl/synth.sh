@@ -4,8 +4,8 @@
 #
 #   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each; NETLIST=FILE writes the cells of the last
 #   synth.sh machine     the whole machine without its memories, for the bundled tree at 64 x 64 unless PARAMETERS says
-#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt and of what connects
-#                        them, their sum, and the same in one piece; minutes
+#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stage B:
+#                        parts_exact.txt) and of what connects them, their sum, and the same in one piece; minutes
 #
 # Modules are stage A's; STAGE=stage_b: those of exact coverage in the place of those of the same name.
 set -e
@@ -28,15 +28,19 @@ synthesize() {
 }
 
 whole_machine() {
-  parameters=${PARAMETERS:--chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND 13 -chparam DEPTH 8 -chparam NODE_WIDTH 21}
-  [ "$stage" = stage_a ] || { echo "parts.txt has the parts of stage_a alone" >&2; exit 1; }
+  case $stage in
+    stage_a) parts=parts.txt bound=13 ;;
+    *) parts=parts_exact.txt bound=8 ;;
+  esac
+  widths="-chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND $bound -chparam DEPTH 8 -chparam NODE_WIDTH 21"
+  parameters=${PARAMETERS:-$widths}
   # Memories are black boxes. Constants are passed on before the parts are cut out, and nothing else is.
   without_memory=$(echo "$files" | tr ' ' '\n' | grep -v memory.v | tr '\n' ' ')
   read="read_verilog -sv -I. -I$stage ${DEFINES:-} $without_memory; read_verilog -lib machine/memory.v
     hierarchy -top machine $parameters; proc; flatten; opt_expr; opt_clean; memory; opt_clean; rename -top machine"
   cut=$(awk '!/^#/ { list = ""
       for (i = 3; i <= NF; i++) list = list " machine/c:*" $i ".*"
-      print "submod -name part_" $2 list }' parts.txt)
+      print "submod -name part_" $2 list }' $parts)
   own='select -set own machine/c:* machine/c:*flatten* %d; select -set sums machine/t:$add machine/t:$sub machine/t:$neg
     select -set shifts machine/t:$shl machine/t:$shr machine/t:$shift machine/t:$shiftx
     submod -name part_sums @own @sums %i; submod -name part_shifters @own @shifts %i'
@@ -54,7 +58,7 @@ whole_machine() {
     /Chip area for module/ {
       area = $NF / 24; sum += area; sum_registers += registers; name = of; sub("part_", "", name)
       printf "%s,%s,%.0f,%.0f\n", of in stage ? stage[of] : "-", of == "machine" ? "states" : name, area, registers }
-    END { printf "all,sum,%.0f,%.0f\n", sum, sum_registers }' parts.txt "$log"
+    END { printf "all,sum,%.0f,%.0f\n", sum, sum_registers }' $parts "$log"
   synthesize "$read; synth -flatten -top machine; $cells"
   awk '/^ +DFF/ { registers += $2 * 96 / 24 } /Chip area/ { area = $NF / 24 }
     END { printf "all,one piece,%.0f,%.0f\n", area, registers }' "$log"

@@ -1,4 +1,4 @@
-//! A record on sequential hardware (rule 12 of `hwmodel::cycles`), its cycles worked out by hand.
+//! Records and tiles on sequential hardware (rules 12 and 13 of `hwmodel::cycles`), their cycles worked out by hand.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod cycles_common;
@@ -152,4 +152,104 @@ fn what_is_done_beside_takes_no_step_of_its_own() {
     let (found, _) = visits(does, &pipelined);
     let stages: Vec<Stage> = found[2..].iter().map(|&(stage, ..)| stage).collect();
     assert_eq!(stages, [Stage::Centre, Stage::Order]);
+}
+
+/// Tiles that do what is listed, and the last one's record, on lanes that are given them: lane, stage, first cycle, end.
+fn tiles(lanes: u32, does: Vec<Vec<Does>>) -> (Vec<(u32, Stage, u64, u64)>, u64) {
+    let toml = HARDWARE
+        .replace("lanes = 1", &format!("lanes = {lanes}"))
+        .replace("misses = 1", "misses = 3")
+        .replace("drain_interval = 4", "drain_interval = 4\nown_port = true")
+        + "[organisation]\ntile_levels = 1\n[outer_memory]\nbytes_per_cycle = 8\n";
+    let hardware = Hardware::from_toml(&toml).unwrap();
+    let mut nodes: Vec<Node> = does
+        .into_iter()
+        .map(|does| Node {
+            does,
+            children: Vec::new(),
+        })
+        .collect();
+    let all = nodes.len() as u32;
+    nodes[all as usize - 1].children = vec![(all, 0, ORIGIN)];
+    nodes.push(Node {
+        does: vec![Does::Read(Stage::Pop, Memory::Stack, 0)],
+        children: Vec::new(),
+    });
+    let mut workload = Listed::new(&nodes, &hardware);
+    workload.tiles = (0..all).collect();
+    let mut recorder = Recorder::new(TraceLimit::default());
+    let report = simulate(&hardware, &mut workload, &mut recorder).unwrap();
+    assert!(report.cycles <= report.serial);
+    let row = |visit: &VisitSpan| (visit.lane, visit.stage, visit.begins, visit.ends);
+    let mut rows: Vec<_> = recorder.visits().iter().map(row).collect();
+    rows.sort_by_key(|&(lane, _, begins, _)| (begins, lane));
+    (rows, report.cycles)
+}
+
+fn node(address: u64) -> Does {
+    Does::Read(Stage::OnePixel, Memory::Node, address)
+}
+
+#[test]
+fn tiles_are_handed_out_and_a_cache_serves_who_came_first() {
+    let pixel = Does::Write(Stage::Draw, Memory::Pixel, 0);
+    let (found, cycles) = tiles(
+        3,
+        vec![vec![node(0)], vec![node(0)], vec![node(1)], vec![pixel]],
+    );
+    let by_hand = [
+        // A tile a cycle, begun in the next. A miss: 1 to ask, 10 to wait, 1 to look at it.
+        (0, Stage::OnePixel, 1, 13),
+        // Asks in cycle 2, in which the cache looks at what it found, and in 3 it finds a line on its way.
+        (1, Stage::OnePixel, 2, 13),
+        // Asks in cycle 3, after the other, and is served in 5.
+        (2, Stage::OnePixel, 3, 13),
+        // All ask for a tile in cycle 13, and one is left.
+        (0, Stage::Draw, 14, 15),
+        // Its record lies on its own lane's stack; the others have nothing to do.
+        (0, Stage::Pop, 15, 17),
+    ];
+    assert_eq!(found, by_hand);
+    // The pixel was written in cycle 14 and leaves four later.
+    assert_eq!(cycles, 18);
+}
+
+#[test]
+fn a_line_that_comes_in_takes_the_cache() {
+    let later = |cycles, address| vec![Does::Step(Stage::Centre, cycles), node(address)];
+    // 16 bytes by a port of 8 a cycle: two cycles, the last before the access of cycle 1 is done, 10 and 11.
+    for (waits, begins, ends) in [
+        (7, 9, 11 + 2),
+        (8, 10, 12 + 2),
+        (9, 11, 12 + 2),
+        (10, 12, 12 + 2),
+    ] {
+        let (found, _) = tiles(2, vec![vec![node(0)], later(waits, 1)]);
+        // What is looked up before finds the line on its way, and waits for it.
+        assert_eq!(found[0], (0, Stage::OnePixel, 1, 13));
+        assert!(
+            found.contains(&(1, Stage::OnePixel, begins, ends)),
+            "{waits}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn of_two_misses_in_a_cycle_nodes_come_first_and_the_other_waits_for_the_port() {
+    let attribute = vec![
+        Does::Step(Stage::Centre, 1),
+        Does::Read(Stage::Draw, Memory::Attribute, 0),
+        Does::Read(Stage::Draw, Memory::Attribute, 0),
+    ];
+    let (found, _) = tiles(2, vec![attribute, vec![node(0)]]);
+    assert!(found.contains(&(1, Stage::OnePixel, 2, 14)), "{found:?}");
+    // Its line sets out two cycles later, in 4, and is looked at in 15; then a hit.
+    assert!(found.contains(&(0, Stage::Draw, 2, 18)), "{found:?}");
+}
+
+#[test]
+fn a_sequential_lane_has_one_context() {
+    let toml = HARDWARE.replace("contexts = 1", "contexts = 2");
+    let error = Hardware::from_toml(&toml).unwrap_err().to_string();
+    assert!(error.contains("contexts"), "{error}");
 }

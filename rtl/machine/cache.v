@@ -56,24 +56,10 @@ module cache #(parameter SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
     end
   endgenerate
 
-  // The way that has the line, or on a miss the least recently used one; its place in the order.
   wire hit = |has_line;
-  reg [WAYS_LOG2-1:0] place;
-  integer k;
-  always @* begin
-    place = WAYS - 1;
-    for (k = 0; k < WAYS; k = k + 1)
-      if (hit & has_line[now[k*WAYS_LOG2 +: WAYS_LOG2]]) place = k;
-  end
-  wire [WAYS_LOG2-1:0] way = now[place*WAYS_LOG2 +: WAYS_LOG2];
-  // That way comes first, those before it move on by one.
-  reg [ORDER-1:0] used;
-  always @* begin
-    used = now;
-    used[0 +: WAYS_LOG2] = way;
-    for (k = 1; k < WAYS; k = k + 1)
-      if (k <= place) used[k*WAYS_LOG2 +: WAYS_LOG2] = now[(k - 1)*WAYS_LOG2 +: WAYS_LOG2];
-  end
+  wire [WAYS_LOG2-1:0] way;
+  wire [ORDER-1:0]     used;
+  use_order #(WAYS_LOG2) ways_used (.now(now), .has_line(has_line), .way(way), .used(used));
 
   memory #(.BITS(ORDER), .WORDS(SETS), .ADDRESS(SETS_LOG2)) of_order (.clk(clk), .read(look),
     .write(looked & hit | last_fill), .address(look ? look_at[3 +: SETS_LOG2] : set), .data_in(used),

@@ -17,9 +17,12 @@
 // Built for pictures of at most 2^PICTURE_LEVELS samples a side, and objects of at most DEPTH levels, of
 // which records go LEVEL_BOUND levels down, with numbers of nodes of NODE_WIDTH bits, in a memory of
 // 2^OUTER_ADDRESS bytes: what the machine's own memories need.
+//
+// SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
+// of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = 8,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
-                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
+                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
@@ -40,7 +43,14 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   output [`NODE_BITS-1:0]      pixel_node,
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
-  output [63:0]                pixel_attribute);
+  output [63:0]                pixel_attribute,
+  // Where it is SHARED: the tile, from `start` on; requests, which stay until they are taken; and answers.
+  input [`PLACE_BITS-1:0]      tile_x, tile_y,
+  output                       node_request, attribute_request,
+  output [`NODE_BITS-1:0]      wanted_node,
+  input                        shared_node_taken, shared_node_ready, shared_attribute_taken, shared_attribute_ready,
+  input                        shared_pixel_taken,
+  input [63:0]                 shared_node_word, shared_attribute_word);
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, V = `WIDE_BITS;
   // One coordinate of a record's vertices, of all that its children have, and what else it has in the picture.
   localparam CAGE = `CAGE_WORDS*W, POOL_BITS = `POOL_WORDS*W, MORE = `MORE_BITS;
@@ -123,16 +133,25 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     .read(state == POP), .write(state == PUSH & ~stack_full),
     .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
-  // Fill vectors, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
-  localparam FILL_ADDRESS = 2*PICTURE_LEVELS + 1;
-  localparam FILL_WORDS = ((1 << (2*PICTURE_LEVELS + 2)) - 1) / 3;
+  // Fill vectors of the tile, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
+  // Behind them those of the nodes above the tile.
+  localparam TILE_WORDS = ((1 << (2*(PICTURE_LEVELS - TILE_LEVELS) + 2)) - 1) / 3;
+  localparam FILL_WORDS = TILE_WORDS + TILE_LEVELS, FILL_ADDRESS = $clog2(FILL_WORDS + 1);
   function [FILL_ADDRESS-1:0] fill_place(input [L-1:0] level, input [P-1:0] x, input [P-1:0] y);
-    fill_place = ({(PICTURE_LEVELS + 1){2'b01}} & ~({FILL_ADDRESS{1'b1}} << 2*level)) + (y << level) + x;
+    if (TILE_LEVELS == 0)
+      fill_place = ({(PICTURE_LEVELS + 1){2'b01}} & ~({FILL_ADDRESS{1'b1}} << 2*level)) + (y << level) + x;
+    else if (level < TILE_LEVELS)
+      fill_place = TILE_WORDS + level;
+    else
+      fill_place = ({(PICTURE_LEVELS + 1){2'b01}} & ~({FILL_ADDRESS{1'b1}} << 2*(level - TILE_LEVELS)))
+        + ((y & ~({P{1'b1}} << (level - TILE_LEVELS))) << (level - TILE_LEVELS))
+        + (x & ~({P{1'b1}} << (level - TILE_LEVELS)));
   endfunction
   wire [3:0] vector;
   reg  [3:0] marked;                            // what is written next
   reg  [3:0] outside_picture;
-  wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == WALK | state == ABOVE | draw_read;
+  wire fill_read  = state == FIT & ~box_outside | state == FILLED | `SEARCHES & state == WALK | state == ABOVE
+    | draw_read;
   wire fill_write = state == CLEAR | state == MARK;
   wire of_record  = state == FILLED;
   wire [FILL_ADDRESS-1:0] fill_address =
@@ -154,27 +173,56 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         first_y = first_y + (q[1] ? 1 << (levels - c_quad_level) >> 1 : 0);
       end
       outside_picture[q] = first_x >= {1'b0, width} | first_y >= {1'b0, height};
+      // Above the tile all is full but the way to it.
+      if (c_quad_level < TILE_LEVELS)
+        outside_picture[q] = q != {below_y[0], below_x[0]};
     end
-  wire last_of_row   = &(c_quad_x | ~({P{1'b1}} >> (P - c_quad_level)));
-  wire last_of_level = last_of_row & &(c_quad_y | ~({P{1'b1}} >> (P - c_quad_level)));
+  // The tile's first node on a level, or the one above it.
+  function [P-1:0] way(input [P-1:0] of_tile, input [L-1:0] level);
+    reg [P+TILE_LEVELS-1:0] shifted;
+    begin
+      shifted = of_tile << level;
+      way = shifted >> TILE_LEVELS;
+    end
+  endfunction
+  wire [P-1:0] first_x_of = SHARED ? way(tile_x, c_quad_level) : 0;
+  wire [P-1:0] below_x = SHARED ? way(tile_x, c_quad_level + 1'b1) : 0;
+  wire [P-1:0] below_y = SHARED ? way(tile_y, c_quad_level + 1'b1) : 0;
+  wire [L-1:0] in_tile = c_quad_level < TILE_LEVELS ? 0 : c_quad_level - TILE_LEVELS;
+  wire last_of_row   = &(c_quad_x | ~({P{1'b1}} >> (P - in_tile)));
+  wire last_of_level = last_of_row & &(c_quad_y | ~({P{1'b1}} >> (P - in_tile)));
 
-  wire        node_ready, node_fetch, attribute_ready, attribute_fetch;
+  wire        node_taken, node_ready, attribute_taken, attribute_ready, pixel_taken;
   wire [63:0] node_word, attribute_word;
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
-  wire [A-4:0] node_line, attribute_line;
-  reg         filling_attributes;
-  cache #(.SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk), .reset(reset), .request(state == NODE),
-    .address(r_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
-    .fill(fill & ~filling_attributes), .fill_word(fill_word));
-  cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk), .reset(reset),
-    .request(state == ATTRIBUTE), .address(r_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
-    .fetch(attribute_fetch), .fetch_line(attribute_line), .fill(fill & filling_attributes),
-    .fill_word(fill_word));
-  assign fetch = node_fetch | attribute_fetch;
-  assign fetch_attribute = attribute_fetch;
-  assign fetch_line = attribute_fetch ? attribute_line : node_line;
-  always @(posedge clk)
-    if (fetch) filling_attributes <= attribute_fetch;
+  assign node_request = state == NODE;
+  assign attribute_request = state == ATTRIBUTE;
+  assign wanted_node = r_node;
+  generate
+    if (SHARED) begin : shared
+      assign {node_taken, node_ready, node_word} = {shared_node_taken, shared_node_ready, shared_node_word};
+      assign {attribute_taken, attribute_ready} = {shared_attribute_taken, shared_attribute_ready};
+      assign {attribute_word, pixel_taken} = {shared_attribute_word, shared_pixel_taken};
+      assign {fetch, fetch_attribute, fetch_line} = 0;
+    end else begin : own
+      wire         node_fetch, attribute_fetch;
+      wire [A-4:0] node_line, attribute_line;
+      reg          filling_attributes;
+      cache #(.SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk), .reset(reset), .request(node_request),
+        .address(r_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
+        .fill(fill & ~filling_attributes), .fill_word(fill_word));
+      cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk), .reset(reset),
+        .request(attribute_request), .address(r_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
+        .fetch(attribute_fetch), .fetch_line(attribute_line), .fill(fill & filling_attributes),
+        .fill_word(fill_word));
+      assign {node_taken, attribute_taken, pixel_taken} = 3'b111;
+      assign fetch = node_fetch | attribute_fetch;
+      assign fetch_attribute = attribute_fetch;
+      assign fetch_line = attribute_fetch ? attribute_line : node_line;
+      always @(posedge clk)
+        if (fetch) filling_attributes <= attribute_fetch;
+    end
+  endgenerate
 
   frame_constants #(W) constants (.clk(clk), .write(constant_write), .address(constant_address),
     .data(constant_data), .root(root), .levels(levels), .depth(depth), .level_bound(level_bound),
@@ -269,9 +317,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         back_any = 1;
         back_level = l;
       end
-    chosen_from = state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
+    chosen_from = `SEARCHES & state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
     quadrant = only;
-    if (state == WALKED | state == BACK)
+    if (`SEARCHES & (state == WALKED | state == BACK))
       quadrant = chosen_from[0] ? 2'd0 : chosen_from[1] ? 2'd1 : chosen_from[2] ? 2'd2 : 2'd3;
   end
   wire [L-1:0] up = c_quad_level - back_level;
@@ -348,8 +396,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           state <= CLEAR;
         end
         CLEAR: begin
-          c_quad_x <= last_of_row ? {P{1'b0}} : c_quad_x + 1'b1;
-          if (last_of_row) c_quad_y <= last_of_level ? {P{1'b0}} : c_quad_y + 1'b1;
+          c_quad_x <= last_of_level ? below_x : last_of_row ? first_x_of : c_quad_x + 1'b1;
+          if (last_of_row) c_quad_y <= last_of_level ? below_y : c_quad_y + 1'b1;
           if (last_of_level) c_quad_level <= c_quad_level + 1'b1;
           if (last_of_level & c_quad_level == levels) state <= OBJECT;
         end
@@ -401,16 +449,16 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         OPEN:
           if (full) state <= next_record;
           else take_up;
-        NODE: state <= VERDICT;
+        NODE: if (node_taken) state <= VERDICT;
         VERDICT: if (r_solid | node_ready) begin
           if (~r_solid) {mask, first} <= node_word[39:0];
           r_solid <= solid;
           if (draws) begin_drawing;
-          else if (subdivide & look_hidden) look_for_sample;
+          else if (`SEARCHES & subdivide & look_hidden) look_for_sample;
           else state <= subdivide ? CENTRE : next_record;
         end
-        WALK: state <= WALKED;
-        WALKED:
+        WALK: if (`SEARCHES) state <= WALKED;
+        WALKED: if (`SEARCHES)
           if (c_quad_level == levels & |open)
             state <= found_sample;
           else if (c_quad_level != levels & |found) begin
@@ -427,7 +475,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             state <= WALK;
           end else
             state <= BACK;
-        BACK:
+        BACK: if (`SEARCHES)
           if (c_quad_level != back_level) begin
             c_x <= outer_x;
             c_y <= outer_y;
@@ -505,9 +553,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         DRAWN:
           if (full) draw_on;
           else state <= ATTRIBUTE;
-        ATTRIBUTE: state <= SHOW;
+        ATTRIBUTE: if (attribute_taken) state <= SHOW;
         SHOW: if (attribute_ready) state <= PIXEL;
-        PIXEL: begin
+        PIXEL: if (pixel_taken) begin
           marked <= 4'b1111;
           state <= MARK;
         end

@@ -6,3 +6,5 @@
 `define REST_BITS ($clog2(DEPTH + 1) + 1 + 9*W)
 // Registers of constants.
 `define CONSTANTS 128
+// A record may be no larger than a sample and lie across a bisector: whether it is hidden is searched.
+`define SEARCHES 1

@@ -43,12 +43,11 @@ image_step #(W) box (.x(c_x), .y(c_y), .w(c_w), .below(levels - c_quad_level), .
   .inner_y(inner_y), .near(box_near));
 
 // ---------------------------------------------------------------- the verdict
-verdict #(W) rule (.leaf(leaf), .quad_level(r_quad_level), .x(r_x), .y(r_y), .w(r_w), .w_min(r_w_min),
-  .levels(levels), .has_lod_depth(has_lod_depth), .near(near), .lod_depth(lod_depth), .solid(solid),
-  .look_hidden(look_hidden));
+verdict #(W) rule (.leaf(leaf), .w_min(r_w_min), .has_lod_depth(has_lod_depth), .lod_depth(lod_depth), .solid(solid));
 assign subdivide = ~solid;
 wire draws = solid;
-// A sample that is found: the record is not hidden.
+// There is no search for a hidden record.
+assign look_hidden = 1'b0;
 wire [5:0] found_sample = CENTRE;
 
 // ---------------------------------------------------------------- samples that are covered

@@ -6,3 +6,5 @@
 `define REST_BITS (5*W + MORE)
 // Registers of constants.
 `define CONSTANTS 164
+// No record that is subdivided is that small where the fit stops (docs/rtl.md, 4).
+`define SEARCHES 0

@@ -64,6 +64,11 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   end
 
   // ------------------------------------------------ events
+  `define WALK dut
+  `define TILE 0
+  function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);
+    place = ((1 << 2*level) - 1)/3 + (y << level) + x;
+  endfunction
   integer events, pixels, i, cycles, most, nothing;
   integer in_state [0:63];
   reg has_events;
@@ -71,15 +76,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     cycles <= cycles + 1;
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
-      if (dut.state == dut.POP) $fwrite(events, "0 %0d\n", dut.top);
-      if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h %h\n", dut.stacked,
-        {dut.c_solid, dut.c_inside, dut.c_screen, dut.c_level, dut.c_voxel_level, dut.c_quad_level, dut.c_node,
-         dut.c_quad_x, dut.c_quad_y, dut.c_min, dut.c_max, dut.c_x, dut.c_y, dut.c_w, dut.c_w_min}, dut.c_more);
-      if (dut.fill_read) $fwrite(events, "2 %0d\n", dut.fill_address);
-      if (dut.state == dut.MARK) $fwrite(events, "3 %0d %h\n", dut.fill_address, dut.marked);
-      if (dut.state == dut.NODE) $fwrite(events, "4 %0d\n", dut.r_node);
-      if (dut.state == dut.ATTRIBUTE) $fwrite(events, "5 %0d\n", dut.r_node);
-      if (pixel) $fwrite(events, "6 %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node);
+      `include "tb/events.vh"
     end
     if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
       pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);

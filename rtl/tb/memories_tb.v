@@ -12,15 +12,15 @@ module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEV
     $display("record stack: %0d", dut.stack.BITS*dut.stack.WORDS);
     $display("fill vectors: %0d", dut.fill_vectors.BITS*dut.fill_vectors.WORDS);
     $display("node cache: %0d",
-      dut.node_cache.WAYS*dut.node_cache.ways[0].of_words.BITS*dut.node_cache.ways[0].of_words.WORDS);
+      dut.own.node_cache.WAYS*dut.own.node_cache.ways[0].of_words.BITS*dut.own.node_cache.ways[0].of_words.WORDS);
     $display("node cache, tags: %0d",
-      dut.node_cache.WAYS*dut.node_cache.ways[0].of_tags.BITS*dut.node_cache.ways[0].of_tags.WORDS
-      + dut.node_cache.of_order.BITS*dut.node_cache.of_order.WORDS + $bits(dut.node_cache.valid));
-    $display("attribute cache: %0d", dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_words.BITS
-      *dut.attribute_cache.ways[0].of_words.WORDS);
+      dut.own.node_cache.WAYS*dut.own.node_cache.ways[0].of_tags.BITS*dut.own.node_cache.ways[0].of_tags.WORDS
+      + dut.own.node_cache.of_order.BITS*dut.own.node_cache.of_order.WORDS + $bits(dut.own.node_cache.valid));
+    $display("attribute cache: %0d", dut.own.attribute_cache.WAYS*dut.own.attribute_cache.ways[0].of_words.BITS
+      *dut.own.attribute_cache.ways[0].of_words.WORDS);
     $display("attribute cache, tags: %0d",
-      dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_tags.BITS*dut.attribute_cache.ways[0].of_tags.WORDS
-      + dut.attribute_cache.of_order.BITS*dut.attribute_cache.of_order.WORDS + $bits(dut.attribute_cache.valid));
+      dut.own.attribute_cache.WAYS*dut.own.attribute_cache.ways[0].of_tags.BITS*dut.own.attribute_cache.ways[0].of_tags.WORDS
+      + dut.own.attribute_cache.of_order.BITS*dut.own.attribute_cache.of_order.WORDS + $bits(dut.own.attribute_cache.valid));
     // The model has none: the depths of level of detail, a word a level.
     $display("levels of detail: %0d", dut.constants.lod.BITS*dut.constants.lod.WORDS);
   end

@@ -95,18 +95,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// # Errors
     /// When a word overflows under the trap policy.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
-        let tile_levels = self.tile_levels();
-        let side = 1u32 << tile_levels;
-        for tile in 0..side << tile_levels {
-            let tile = QuadNode {
-                level: tile_levels,
-                x: tile & (side - 1),
-                y: tile >> tile_levels,
-            };
-            if self.canvas.fill.peek(tile) == FULL {
-                // It lies beside the picture.
-                continue;
-            }
+        for tile in self.tiles() {
             let mut view = TileView::new(tile);
             view.swap(self);
             let is_done = self.draw_tile(tile, most_records)?;
@@ -116,6 +105,17 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             }
         }
         Ok(true)
+    }
+
+    /// The tiles of a picture of which nothing is drawn, row by row.
+    pub(super) fn tiles(&self) -> Vec<QuadNode> {
+        let level = self.tile_levels();
+        let side = 1u32 << level;
+        let tiles = (0..side).flat_map(|y| (0..side).map(move |x| QuadNode { level, x, y }));
+        // What is full lies beside the picture.
+        tiles
+            .filter(|&tile| self.canvas.fill.peek(tile) != FULL)
+            .collect()
     }
 
     /// Levels of the image quadtree above the tiles; a tile is at least a sample.

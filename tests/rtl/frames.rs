@@ -10,7 +10,7 @@ use super::tools::{is_there, rtl, run, text};
 
 pub(crate) const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
 /// In the middle of the sponge's hollow, looking at a corner of it.
-const INSIDE: [&str; 7] = [
+pub(crate) const INSIDE: [&str; 7] = [
     "gen:menger,depth=3",
     "--size",
     "64",
@@ -41,7 +41,7 @@ fn an_eye_inside_too() {
 }
 
 /// File, text, what somebody might have written.
-type Fault = (&'static str, &'static str, &'static str);
+pub(crate) type Fault = (&'static str, &'static str, &'static str);
 
 /// Faults in what connects the blocks.
 const FAULTS_A: [Fault; 9] = [
@@ -87,7 +87,7 @@ const FAULTS_B: [&[Fault]; 3] = [
 ];
 
 /// A small frame, in Icarus Verilog: as it is, and with each fault.
-fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault]) {
+pub(crate) fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault]) {
     if !is_there("iverilog") {
         return;
     }
@@ -110,10 +110,17 @@ fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault]) {
                 fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
             }
         }
-        let arguments = "-g2012 -I . -s frame_tb tb/frame_tb.v -o";
-        let mut arguments: Vec<&str> = arguments.split(' ').collect();
+        let top = machine.testbench();
+        let source = format!("tb/{top}.v");
+        let parameters = machine.parameters();
+        let parameters: Vec<String> = parameters
+            .iter()
+            .map(|(of, number)| format!("-P{top}.{of}={number}"))
+            .collect();
         let modules = text(modules);
+        let mut arguments = vec!["-g2012", "-I", ".", "-s", top, &source, "-o"];
         arguments.extend([text(&compiled), "-I", modules, "-y", modules]);
+        arguments.extend(parameters.iter().map(String::as_str));
         run(&rtl(), "iverilog", &arguments);
         let compared = expected.compare(&["vvp", "-n", text(&compiled), &most]);
         let is_right = compared
@@ -167,14 +174,19 @@ fn a_fault_of_stage_b_is_found() {
     }
 }
 
-/// Synthesis takes both machines: no latch, no loop, no signal with two drivers.
+/// Synthesis takes both machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
 #[ignore = "takes minutes"]
-fn yosys_takes_both_machines() {
+fn yosys_takes_the_machines() {
     if !is_there("yosys") {
         return;
     }
-    for machine in [&STAGE_A, &STAGE_B] {
+    let lanes = Machine::side_by_side(2, 1);
+    for (machine, top) in [
+        (&STAGE_A, "machine"),
+        (&STAGE_B, "machine"),
+        (&lanes, "lanes"),
+    ] {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();
         for folder in machine.folders {
@@ -188,9 +200,9 @@ fn yosys_takes_both_machines() {
             }
         }
         let files: Vec<String> = files.into_values().collect();
-        let (name, files) = (machine.name, files.join(" "));
+        let (name, files) = (machine.stage, files.join(" "));
         let script = format!(
-            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top machine; proc; check -assert; \
+            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top {top}; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
         run(&rtl(), "yosys", &["-q", "-p", &script]);
@@ -198,54 +210,55 @@ fn yosys_takes_both_machines() {
 }
 
 /// The bundled tree, a sponge, terrain, and an eye within them; sizes that fill the picture's quadtree and that do not.
+pub(crate) const SCENES: [&[&str]; 6] = [
+    &[TREE, "--size", "128"],
+    &[
+        TREE,
+        "--size",
+        "200x90",
+        "--azimuth",
+        "80",
+        "--elevation",
+        "-20",
+    ],
+    &["gen:menger,depth=4", "--size", "96", "--view", "iso"],
+    &[
+        "gen:terrain,depth=7",
+        "--size",
+        "128x64",
+        "--lod",
+        "0",
+        "--view",
+        "right",
+    ],
+    &[
+        "gen:terrain,depth=6",
+        "--size",
+        "64",
+        "--eye",
+        "20.2,30.7,25.1",
+        "--target",
+        "40,40,10",
+    ],
+    &[
+        "gen:menger,depth=3",
+        "--size",
+        "50x70",
+        "--lod",
+        "4",
+        "--zoom",
+        "6",
+    ],
+];
+
 #[test]
 #[ignore = "takes minutes"]
 fn many_scenes() {
     if !is_there("verilator") {
         return;
     }
-    let views: [&[&str]; 6] = [
-        &[TREE, "--size", "128"],
-        &[
-            TREE,
-            "--size",
-            "200x90",
-            "--azimuth",
-            "80",
-            "--elevation",
-            "-20",
-        ],
-        &["gen:menger,depth=4", "--size", "96", "--view", "iso"],
-        &[
-            "gen:terrain,depth=7",
-            "--size",
-            "128x64",
-            "--lod",
-            "0",
-            "--view",
-            "right",
-        ],
-        &[
-            "gen:terrain,depth=6",
-            "--size",
-            "64",
-            "--eye",
-            "20.2,30.7,25.1",
-            "--target",
-            "40,40,10",
-        ],
-        &[
-            "gen:menger,depth=3",
-            "--size",
-            "50x70",
-            "--lod",
-            "4",
-            "--zoom",
-            "6",
-        ],
-    ];
     for machine in [&STAGE_A, &STAGE_B] {
-        for view in views {
+        for view in SCENES {
             agree(machine, view);
         }
     }
@@ -318,10 +331,10 @@ fn linked_and_cyclic_graphs() {
 }
 
 /// A number below another, from the seed.
-type Dice<'d> = &'d mut dyn FnMut(u64) -> u64;
+pub(crate) type Dice<'d> = &'d mut dyn FnMut(u64) -> u64;
 
 /// Scattered voxels by seed, from all sides and from near by, at random sizes and levels of detail.
-fn any_view(next: Dice<'_>) -> Vec<String> {
+pub(crate) fn any_view(next: Dice<'_>) -> Vec<String> {
     let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
     let size = format!("{}x{}", 1 + next(60), 1 + next(60));
     let lod = ["0", "1", "3"][next(3) as usize];
@@ -331,7 +344,7 @@ fn any_view(next: Dice<'_>) -> Vec<String> {
 }
 
 /// From between them; every other eye has a voxel's corner for its place.
-fn view_from_within(next: Dice<'_>) -> Vec<String> {
+pub(crate) fn view_from_within(next: Dice<'_>) -> Vec<String> {
     let (depth, on_corner) = (2 + next(3), next(2) == 0);
     let scene = format!("gen:random,depth={depth},seed={}", next(1000));
     let size = format!("{}x{}", 1 + next(30), 1 + next(30));
@@ -351,8 +364,12 @@ fn words(line: &str) -> Vec<String> {
     line.split(' ').map(str::to_owned).collect()
 }
 
-/// Two hundred views by seed.
-fn random_views(machine: &Machine, make: &mut dyn FnMut(Dice<'_>) -> Vec<String>) {
+/// So many views by seed.
+pub(crate) fn random_views(
+    machine: &Machine,
+    number: u32,
+    make: &mut dyn FnMut(Dice<'_>) -> Vec<String>,
+) {
     if !is_there("verilator") {
         return;
     }
@@ -364,7 +381,7 @@ fn random_views(machine: &Machine, make: &mut dyn FnMut(Dice<'_>) -> Vec<String>
         (state >> 33) % most
     };
     let mut unlike = 0;
-    for at in 0..200 {
+    for at in 0..number {
         let view = make(&mut next);
         let view: Vec<&str> = view.iter().map(String::as_str).collect();
         let agreement = Expected::new(machine, &view)
@@ -377,25 +394,28 @@ fn random_views(machine: &Machine, make: &mut dyn FnMut(Dice<'_>) -> Vec<String>
         }
     }
     let name = machine.name;
-    eprintln!("{name}: 200 random views: all events and pictures equal; cycles unlike in {unlike}");
+    eprintln!(
+        "{name} {:?}: {number} random views: all events and pictures equal; cycles unlike in {unlike}",
+        machine.parameters()
+    );
     assert_eq!(unlike, 0);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_random_views() {
-    random_views(&STAGE_A, &mut any_view);
+    random_views(&STAGE_A, 200, &mut any_view);
 }
 
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_random_views_of_stage_b() {
-    random_views(&STAGE_B, &mut any_view);
+    random_views(&STAGE_B, 200, &mut any_view);
 }
 
 /// Where planes are degenerate, and cubes reach behind the eye.
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_wide_views_of_stage_b_from_between_the_voxels() {
-    random_views(&STAGE_B, &mut view_from_within);
+    random_views(&STAGE_B, 200, &mut view_from_within);
 }

@@ -10,38 +10,94 @@ use tempfile::TempDir;
 
 use super::tools::{rtl, run, shiftvox, text};
 
-/// A machine of `rtl/`: its folder and its hardware's file, the rules that it draws by, where its modules are.
+/// A machine of `rtl/`: its hardware's file, its stage's folder, the rules that it draws by, where its modules are.
 pub(crate) struct Machine {
     pub(crate) name: &'static str,
+    pub(crate) stage: &'static str,
     pub(crate) rules: &'static [&'static str],
     pub(crate) folders: &'static [&'static str],
+    /// Several side by side: how many, and the levels of the picture above their tiles.
+    lanes: Option<[u32; 2]>,
     /// Its simulator, made once.
     made: OnceLock<(TempDir, PathBuf)>,
 }
 
 pub(crate) static STAGE_A: Machine = Machine {
     name: "stage_a",
+    stage: "stage_a",
     rules: &["--paper"],
     folders: &["machine", "stage_a", "blocks"],
+    lanes: None,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_B: Machine = Machine {
     name: "stage_b",
+    stage: "stage_b",
     rules: &["--coverage", "exact", "--cage", "frame"],
     folders: &["machine", "stage_b", "blocks_exact", "blocks"],
+    lanes: None,
     made: OnceLock::new(),
 };
 
 impl Machine {
+    /// So many lanes of stage B, each of which draws tiles that lie so many levels below the picture.
+    pub(crate) const fn side_by_side(lanes: u32, tile_levels: u32) -> Self {
+        Self {
+            name: "stage_b_lanes",
+            lanes: Some([lanes, tile_levels]),
+            made: OnceLock::new(),
+            stage: "stage_b",
+            rules: &["--coverage", "exact", "--cage", "frame"],
+            folders: &["machine", "stage_b", "blocks_exact", "blocks"],
+        }
+    }
+
+    /// Its description for the cycle model.
+    pub(crate) fn hardware(&self) -> String {
+        let file = rtl().join(format!("{}.toml", self.name));
+        let mut text = fs::read_to_string(file).unwrap();
+        for (of, number) in self.parameters() {
+            let key = format!("\n{} = ", of.to_lowercase());
+            let (head, rest) = text.split_once(&key).unwrap();
+            let (_, tail) = rest.split_once(' ').unwrap();
+            text = format!("{head}{key}{number} {tail}");
+        }
+        text
+    }
+
+    /// The testbench that draws frames with it.
+    pub(crate) fn testbench(&self) -> &'static str {
+        match self.lanes {
+            Some(_) => "lanes_tb",
+            None => "frame_tb",
+        }
+    }
+
+    /// That one's parameters.
+    pub(crate) fn parameters(&self) -> Vec<(&'static str, u32)> {
+        let lanes = self.lanes.into_iter();
+        lanes
+            .flat_map(|[lanes, levels]| [("LANES", lanes), ("TILE_LEVELS", levels)])
+            .collect()
+    }
+
     /// The simulator of words of 32 bits, for pictures up to 256 x 256.
     pub(crate) fn simulator(&self) -> &str {
         let (_, path) = self.made.get_or_init(|| {
             let shelter = tempfile::tempdir().unwrap();
             let arguments = "--binary -O3 --x-assign fast --x-initial fast -CFLAGS -O1 -Wno-fatal -Wno-WIDTH \
-                             --top-module frame_tb tb/frame_tb.v -o frame -I. --Mdir";
+                             -o frame -I. --Mdir";
             let mut arguments: Vec<String> =
                 arguments.split_whitespace().map(str::to_owned).collect();
             arguments.push(text(shelter.path()).to_owned());
+            let top = self.testbench();
+            arguments.extend([
+                "--top-module".to_owned(),
+                top.to_owned(),
+                format!("tb/{top}.v"),
+            ]);
+            let parameters = self.parameters();
+            arguments.extend(parameters.iter().map(|(of, number)| format!("-G{of}={number}")));
             arguments.extend(self.folders.iter().map(|folder| format!("-I{folder}")));
             let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
             run(&rtl(), "verilator", &arguments);
@@ -85,18 +141,27 @@ fn expected_events(folder: &Path) -> Vec<Event> {
         .collect()
 }
 
-/// Events that the simulation wrote down. Of a record stage A has no planes, and B no box in screen space.
+/// Events that the simulation wrote down, those of a tile together, tile by tile. Of a record stage A has no planes, and
+/// B no box in screen space.
 fn simulated_events(folder: &Path, machine: &Machine) -> Vec<Event> {
     let text = fs::read_to_string(folder.join("events.txt")).unwrap();
-    text.lines()
-        .map(|line| {
-            let mut words = line.split(' ');
+    let split = |line| str::split_once(line, ' ').unwrap();
+    let mut lines: Vec<(u32, &str)> = text
+        .lines()
+        .map(split)
+        .map(|(tile, event)| (tile.parse().unwrap(), event))
+        .collect();
+    lines.sort_by_key(|&(tile, _)| tile);
+    lines
+        .into_iter()
+        .map(|(_, event)| {
+            let mut words = event.split(' ');
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
             let mut data = next().to_owned();
             if port == 1 {
                 let more = next();
-                let (no_box, no_planes) = match machine.name {
+                let (no_box, no_planes) = match machine.stage {
                     "stage_a" => (0, PLANES),
                     _ => (BOX, 0),
                 };
@@ -152,7 +217,8 @@ impl<'m> Expected<'m> {
     pub(crate) fn linked(machine: &'m Machine, view: &[&str], links: Option<&'m [u32]>) -> Self {
         let shelter = tempfile::tempdir().unwrap();
         let folder = shelter.path().join("frame");
-        let hardware = rtl().join(format!("{}.toml", machine.name));
+        let hardware = shelter.path().join("hardware.toml");
+        fs::write(&hardware, machine.hardware()).unwrap();
         let common = [view, machine.rules, &["--bits", "32"]].concat();
         let rows = [
             "--vectors",
@@ -267,7 +333,8 @@ pub(crate) fn agree_linked(machine: &Machine, view: &[&str], links: Option<&[u32
     let agreement = Expected::linked(machine, view, links)
         .compare(&[machine.simulator()])
         .unwrap_or_else(|error| panic!("{} {view:?}: {error}", machine.name));
-    eprintln!("{} {view:?}: {agreement:?}", machine.name);
+    let (name, parameters) = (machine.name, machine.parameters());
+    eprintln!("{name} {parameters:?} {view:?}: {agreement:?}");
     assert_eq!(
         agreement.cycles[0], agreement.cycles[1],
         "{} {view:?}",

@@ -12,6 +12,8 @@ mod area;
 mod blocks;
 mod energy;
 mod frames;
+mod hidden;
+mod lanes;
 mod machines;
 mod mutants;
 mod testbench;

@@ -258,6 +258,9 @@ pub struct Pixels {
     pub buffer: u32,
     /// Cycles from one pixel's leaving to the next one's.
     pub drain_interval: u32,
+    /// Whether pixels leave by a port of their own, and not by that to outer memory.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub own_port: bool,
 }
 
 /// Why a description is invalid.
@@ -344,6 +347,12 @@ impl Hardware {
         self.units.get(&class).copied()
     }
 
+    /// Whether lanes are given tiles, each of which they draw alone: rule 13 of [this module's parent](super).
+    #[must_use]
+    pub fn hands_out_tiles(&self) -> bool {
+        self.sequential && self.organisation.tile_levels > 0
+    }
+
     /// Contexts of all lanes.
     #[must_use]
     pub fn all_contexts(&self) -> u64 {
@@ -379,6 +388,10 @@ impl Hardware {
             return Err(out_of_range("sequential", true, range));
         }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
+        if self.sequential && self.contexts > 1 {
+            let range = "1 where lanes are sequential";
+            return Err(out_of_range("contexts", self.contexts, range));
+        }
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
             match (self.units.contains_key(&class), self.wires.contains(&class)) {

@@ -3,10 +3,17 @@
 //! Accesses are booked in the order in which their stages start; one is
 //! served after all that were booked before it at the same port.
 
+use std::collections::VecDeque;
+use std::ops::Range;
+
 use super::hardware::{Banks, Cache, Hardware, OuterMemory, Pixels};
 use super::report::{CacheReport, Cause};
 use crate::Memory;
 use crate::memory::PIXEL_BITS;
+
+/// Cycles for which an access takes the port of a sequential hardware's cache: it is looked up, and what is found is
+/// looked at.
+const LOOK_UP: u64 = 2;
 
 /// An access to a memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -169,6 +176,9 @@ pub(super) struct CacheState {
     slots: Vec<u64>,
     misses: u64,
     delayed: u64,
+    /// Of a sequential hardware: from when on the port is free, and when lines come in, which take it, in order.
+    free_at: u64,
+    coming_in: VecDeque<Range<u64>>,
 }
 
 impl CacheState {
@@ -189,12 +199,47 @@ impl CacheState {
             slots: vec![0; of.misses as usize],
             misses: 0,
             delayed: 0,
+            free_at: 0,
+            coming_in: VecDeque::new(),
         }
     }
 
     #[inline]
     fn access(&mut self, address: u64, at: u64, outer: &mut OuterPort) -> Served {
         let issued = self.port.book(at);
+        self.look_up(address, issued, outer)
+    }
+
+    /// The first cycle from `now` on in which a sequential hardware looks something up.
+    pub(super) fn free_from(&mut self, now: u64) -> u64 {
+        while self.coming_in.front().is_some_and(|line| line.end <= now) {
+            self.coming_in.pop_front();
+        }
+        let mut free = now.max(self.free_at);
+        for line in &self.coming_in {
+            if line.contains(&free) {
+                free = line.end;
+            }
+        }
+        free
+    }
+
+    /// An access that a sequential hardware issues in a cycle in which its port is free (rule 12).
+    pub(super) fn access_alone(&mut self, address: u64, at: u64, outer: &mut OuterPort) -> Served {
+        self.port.accesses += 1;
+        let misses = self.misses;
+        let served = self.look_up(address, at, outer);
+        self.free_at = served.issued + LOOK_UP;
+        if self.misses > misses {
+            let moving = outer.of.cycles(8 * u64::from(self.of.line_bytes));
+            self.coming_in.push_back(served.done - moving..served.done);
+        }
+        served
+    }
+
+    /// An access that is issued, unless it is a miss that waits.
+    #[inline]
+    fn look_up(&mut self, address: u64, issued: u64, outer: &mut OuterPort) -> Served {
         let hit = issued + u64::from(self.of.hit_latency);
         let byte = address.wrapping_mul(u64::from(self.of.entry_bytes));
         let number = self.line_bytes.quotient(byte);
@@ -260,7 +305,7 @@ impl CacheState {
 }
 
 /// Banks with ports for reads and writes.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct BanksState {
     banks: Divisor,
     latency: u32,
@@ -295,13 +340,13 @@ impl BanksState {
     }
 
     /// All reads and all writes.
-    pub(super) fn accesses(&self) -> (u64, u64) {
+    fn accesses(&self) -> (u64, u64) {
         let all = |ports: &[Port]| ports.iter().map(|port| port.accesses).sum();
         (all(&self.reads), all(&self.writes))
     }
 
     /// Least cycles for the busiest bank.
-    pub(super) fn bound(&self) -> u64 {
+    fn bound(&self) -> u64 {
         let ports = self.reads.iter().chain(&self.writes);
         ports.map(Port::bound).max().unwrap_or(0)
     }
@@ -334,7 +379,10 @@ impl PixelsState {
         let issued = ported.max(self.leaving[slot]);
         self.port.hold(issued);
         let drained = issued.max(self.last) + u64::from(self.of.drain_interval);
-        self.last = drained.max(outer.book_pixel(issued));
+        self.last = match self.of.own_port {
+            true => drained,
+            false => drained.max(outer.book_pixel(issued)),
+        };
         self.leaving[slot] = self.last;
         Served {
             issued,
@@ -362,25 +410,42 @@ pub(super) struct Memories {
     stack_latency: u64,
     pub(super) nodes: CacheState,
     pub(super) attributes: CacheState,
-    pub(super) fill: BanksState,
+    /// One for all lanes, or one a lane.
+    fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
     pub(super) outer: OuterPort,
 }
 
 impl Memories {
     pub(super) fn new(hardware: &Hardware) -> Self {
+        let fills = if hardware.hands_out_tiles() {
+            hardware.lanes
+        } else {
+            1
+        } as usize;
         Self {
             stacks: vec![Port::new(hardware.stack.ports); hardware.lanes as usize],
             stack_latency: u64::from(hardware.stack.latency),
             nodes: CacheState::new(hardware.node_cache),
             attributes: CacheState::new(hardware.attribute_cache),
-            fill: BanksState::new(hardware.fill_vectors),
+            fill: vec![BanksState::new(hardware.fill_vectors); fills],
             pixels: PixelsState::new(hardware.pixels),
             outer: OuterPort::new(hardware.outer_memory),
         }
     }
 
-    /// Serves an access from cycle `at` on; `lane`: whose stack.
+    /// All reads and all writes of fill vectors.
+    pub(super) fn fill_accesses(&self) -> (u64, u64) {
+        let all = self.fill.iter().map(BanksState::accesses);
+        all.fold((0, 0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
+    }
+
+    /// Least cycles for the busiest bank of fill vectors.
+    pub(super) fn fill_bound(&self) -> u64 {
+        self.fill.iter().map(BanksState::bound).max().unwrap_or(0)
+    }
+
+    /// Serves an access from cycle `at` on; `lane`: whose stack, and whose fill vectors where each has its own.
     #[inline]
     pub(super) fn serve(&mut self, access: Access, at: u64, lane: usize) -> Served {
         match access.memory {
@@ -395,7 +460,10 @@ impl Memories {
             }
             Memory::Node => self.nodes.access(access.address, at, &mut self.outer),
             Memory::Attribute => self.attributes.access(access.address, at, &mut self.outer),
-            Memory::FillVector => self.fill.access(access, at),
+            Memory::FillVector => {
+                let of = lane % self.fill.len();
+                self.fill[of].access(access, at)
+            }
             Memory::Pixel => self.pixels.write(at, &mut self.outer),
             // Beside the blending block, as wide as an accumulator, with a port
             // to read and one to write: an access a cycle each, never waited for.
@@ -441,7 +509,10 @@ impl Latencies {
                 .cycles(8 * u64::from(cache.line_bytes));
             worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
         }
-        let moving = hardware.outer_memory.cycles(u64::from(PIXEL_BITS));
+        let moving = match hardware.pixels.own_port {
+            true => 0,
+            false => hardware.outer_memory.cycles(u64::from(PIXEL_BITS)),
+        };
         worst[Memory::Pixel as usize] += u64::from(hardware.pixels.drain_interval) + moving;
         Self { alone, worst }
     }

@@ -77,6 +77,14 @@
 //!     one before is done; a read takes one more cycle, in which its result is looked at. These cycles issue operations; what
 //!     they leave of the visit's occupancy, and its latency, comes after the last access. A visit takes at least a
 //!     cycle, and its block is free when it ends. This is what a simple state machine does: `rtl/` is one.
+//!     A lane has one context. What several lanes ask for is served in the order in which they ask, each access in its
+//!     own cycle (not, as in rule 4, all of a visit when that begins); of one cycle, nodes before attributes, and the
+//!     lowest lane first. An access takes the port of its cache for two cycles: it is looked up, and what is found is
+//!     looked at, which a miss that waits for the port to outer memory makes longer. A line that comes in takes it, too,
+//!     for the cycles that it moves, the last before it is there.
+//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A lane without
+//!     records asks for a tile, from cycle 0 on; in each cycle the lane that asked first is given the next one, row by row,
+//!     and begins it in the cycle after. It draws it to its end: nothing is stolen, and fill vectors are a lane's own.
 //!
 //! # Work and span
 //!
@@ -108,6 +116,7 @@ mod observe;
 mod recording;
 mod report;
 mod scaling;
+mod sequential;
 mod simulate;
 mod tasks;
 mod totals;

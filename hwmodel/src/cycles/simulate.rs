@@ -6,6 +6,7 @@ use super::hardware::{Hardware, HardwareError, StackOverflow};
 use super::memories::Memories;
 use super::observe::{Observer, START, VisitSpan};
 use super::report::{Cause, CycleReport};
+use super::sequential::{Asked, Step};
 use super::tasks::Tasks;
 use super::totals::Totals;
 use super::turn::{Child, STAGES, TurnVisits, Workload};
@@ -51,19 +52,21 @@ struct StageBlock {
 }
 
 #[derive(Debug, Default)]
-struct Context {
-    lane: u32,
-    number: u32,
-    plan: TurnVisits,
-    children: Vec<Child>,
+pub(super) struct Context {
+    pub(super) lane: u32,
+    pub(super) number: u32,
+    pub(super) plan: TurnVisits,
+    pub(super) children: Vec<Child>,
     /// The visit that is next or under way.
-    visit: usize,
+    pub(super) visit: usize,
+    /// Of a sequential hardware: how far it is in that.
+    pub(super) step: Step,
     arrived: u64,
     granted: bool,
-    task: u32,
+    pub(super) task: u32,
     record: u64,
     /// Lane from whose stack the record comes, and further cycles of taking it.
-    from: u32,
+    pub(super) from: u32,
     steal: u64,
     spill: u64,
     /// Whether its record is in screen space.
@@ -73,13 +76,13 @@ struct Context {
 }
 
 #[derive(Debug, Default)]
-struct Lane {
+pub(super) struct Lane {
     /// Ready records, newest last.
-    ready: VecDeque<u32>,
+    pub(super) ready: VecDeque<u32>,
     /// Records on its stack, ready or not.
     stored: u64,
     /// Contexts without a record, a bit each.
-    idle: u64,
+    pub(super) idle: u64,
 }
 
 /// Runs a workload on a hardware.
@@ -97,21 +100,22 @@ pub fn simulate<W: Workload, O: Observer>(
     Ok(simulation.report(end))
 }
 
-struct Simulation<'a, W, O> {
+pub(super) struct Simulation<'a, W, O> {
     hardware: &'a Hardware,
-    workload: &'a mut W,
+    pub(super) workload: &'a mut W,
     observer: &'a mut O,
-    wheel: Wheel,
-    contexts: Vec<Context>,
-    lanes: Vec<Lane>,
+    pub(super) wheel: Wheel,
+    pub(super) contexts: Vec<Context>,
+    pub(super) lanes: Vec<Lane>,
     blocks: Vec<[StageBlock; STAGES]>,
-    memories: Memories,
-    tasks: Tasks,
-    totals: Totals,
+    pub(super) memories: Memories,
+    pub(super) tasks: Tasks,
+    pub(super) totals: Totals,
+    pub(super) asked: Asked,
     newly: Vec<u32>,
     ready: u64,
-    idle: u64,
-    live: u64,
+    pub(super) idle: u64,
+    pub(super) live: u64,
     accounted: u64,
 }
 
@@ -144,6 +148,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             memories: Memories::new(hardware),
             tasks: Tasks::new(hardware.independence),
             totals: Totals::new(),
+            asked: Asked::default(),
             newly: Vec::new(),
             ready: 0,
             live: 0,
@@ -156,10 +161,24 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
 
     /// Runs to the end; returns the last turn's last cycle.
     fn run(&mut self) -> Result<u64, SimulationError<W::Error>> {
-        self.start()?;
+        if self.hardware.hands_out_tiles() {
+            self.ask_for_tiles();
+        } else {
+            self.start()?;
+        }
         let mut now = 0;
-        while let Some((at, context)) = self.wheel.take() {
+        loop {
+            if self.must_serve(now) {
+                self.serve_asked(now);
+                continue;
+            }
+            let Some((at, context)) = self.wheel.take() else {
+                break;
+            };
             now = at;
+            if self.hardware.sequential && self.step_on(now, context)? {
+                continue;
+            }
             let at_end = {
                 let of = &self.contexts[context as usize];
                 of.visit == of.plan.visits.len()
@@ -183,9 +202,17 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[0];
         self.workload.start(&mut of.children)?;
         of.task = task;
-        of.record = START;
-        self.plan(0, 0);
+        self.begin_turn_of_start(0, 0);
         Ok(())
+    }
+
+    /// The turn of the workload's start, or of a tile's, which has been executed.
+    pub(super) fn begin_turn_of_start(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        of.record = START;
+        (of.steal, of.spill) = (0, 0);
+        of.in_screen_space = false;
+        self.plan(now, context);
     }
 
     /// A context's turn has been executed: its visits follow.
@@ -212,7 +239,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     /// Idle contexts up to `now`: call before their number or that of the
     /// waiting records changes.
     #[inline]
-    fn account(&mut self, now: u64) {
+    pub(super) fn account(&mut self, now: u64) {
         let idle = (now - self.accounted) * self.idle;
         self.accounted = now;
         if self.tasks.waiting > 0 {
@@ -262,31 +289,18 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     /// A visit begins: its operations are issued, its accesses booked.
     #[inline]
     fn begin(&mut self, now: u64, context: u32) {
+        if self.hardware.sequential {
+            return self.begin_steps(now, context);
+        }
         let of = &mut self.contexts[context as usize];
         let visit = &of.plan.visits[of.visit];
-        let report = &mut self.totals.stages[visit.stage as usize];
         let from = of.from as usize;
         let issued = now + visit.occupied;
         let mut frees = issued;
         let mut ends = issued + visit.latency;
         let mut cause = Cause::MemoryPort;
         let mut at = now;
-        if self.hardware.sequential {
-            // One after the other: an access, a cycle to look at what was read, the next access; at last
-            // the operations that those cycles left.
-            for &access in &of.plan.accesses[visit.accesses.clone()] {
-                let served = self.memories.serve(access, at, from);
-                at = served.done + u64::from(!access.write);
-                cause = served.cause;
-            }
-            ends = (at + visit.latency).max(now + 1);
-            frees = ends;
-        }
-        let overlapped = match self.hardware.sequential {
-            true => 0..0,
-            false => visit.accesses.clone(),
-        };
-        for &access in &of.plan.accesses[overlapped] {
+        for &access in &of.plan.accesses[visit.accesses.clone()] {
             let served = self.memories.serve(access, at, from);
             at = served.issued;
             frees = frees.max(at + 1);
@@ -296,8 +310,23 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             }
         }
         let stalled = ends - (now + visit.alone);
-        report.held += frees - issued;
-        report.stalls.add(Cause::BlockBusy, now - of.arrived);
+        self.end_visit(context, now, (frees, ends), (cause, stalled));
+    }
+
+    /// It is known when a visit that began in the cycle `begun` frees its block and ends, and how long it was stalled.
+    #[inline]
+    pub(super) fn end_visit(
+        &mut self,
+        context: u32,
+        begun: u64,
+        (frees, mut ends): (u64, u64),
+        (cause, stalled): (Cause, u64),
+    ) {
+        let of = &mut self.contexts[context as usize];
+        let visit = &of.plan.visits[of.visit];
+        let report = &mut self.totals.stages[visit.stage as usize];
+        report.held += frees - (begun + visit.occupied);
+        report.stalls.add(Cause::BlockBusy, begun - of.arrived);
         report.stalls.add(cause, stalled);
         if visit.stage == Stage::Pop {
             report.stalls.add(Cause::Steal, of.steal);
@@ -314,7 +343,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
                 context: of.number,
                 stage: visit.stage,
                 arrives: of.arrived,
-                begins: now,
+                begins: begun,
                 frees,
                 ends,
                 stall: (stalled > 0).then_some((cause, stalled)),
@@ -386,6 +415,9 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         }
         self.lanes[lane as usize].idle |= 1 << self.contexts[context as usize].number;
         self.idle += 1;
+        if self.hardware.hands_out_tiles() {
+            return self.go_on(now, context);
+        }
         if self.ready > 0 {
             self.give(now, context)?;
             self.wake(now)?;
@@ -414,7 +446,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
 
     /// Gives an idle context its next record: its own lane's newest, or the
     /// oldest of the next lane that has one. There must be one.
-    fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
+    pub(super) fn give(&mut self, now: u64, context: u32) -> Result<(), SimulationError<W::Error>> {
         let lanes = self.lanes.len();
         let lane = self.contexts[context as usize].lane as usize;
         let mut taken = self.lanes[lane].ready.pop_back();

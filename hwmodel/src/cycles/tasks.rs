@@ -77,7 +77,7 @@ impl Tasks {
         }
     }
 
-    /// The task of the workload's start.
+    /// The task of the workload's start, or of a tile's.
     pub(super) fn root(&mut self) -> u32 {
         self.insert(Task {
             parent: NO_TASK,
@@ -181,7 +181,7 @@ impl Tasks {
             } = self.tasks[task as usize];
             self.free.push(task);
             if parent == NO_TASK {
-                self.span = over;
+                self.span = self.span.max(over);
                 return;
             }
             let of = &mut self.tasks[parent as usize];

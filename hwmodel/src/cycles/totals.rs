@@ -74,7 +74,7 @@ impl Totals {
             ("node cache misses", memories.nodes.miss_bound()),
             ("attribute cache port", memories.attributes.port.bound()),
             ("attribute cache misses", memories.attributes.miss_bound()),
-            ("busiest fill-vector bank", memories.fill.bound()),
+            ("busiest fill-vector bank", memories.fill_bound()),
             ("pixel port", memories.pixels.port.bound()),
             ("pixel drain", memories.pixels.drain_bound()),
             (OUTER_PORT, memories.outer.busy),
@@ -82,7 +82,7 @@ impl Totals {
             bounds.push((name.to_owned(), bound));
         }
         let ratio = |a: u64, b: u64| if b == 0 { 0.0 } else { a as f64 / b as f64 };
-        let (fill_reads, fill_writes) = memories.fill.accesses();
+        let (fill_reads, fill_writes) = memories.fill_accesses();
         let pixels = memories.pixels.port.accesses;
         let mut report = CycleReport {
             version: REPORT_VERSION,

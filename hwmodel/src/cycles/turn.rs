@@ -32,6 +32,21 @@ pub trait Workload {
     /// As the workload has them.
     fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Self::Error>;
 
+    /// Tiles of the picture: on a hardware that [hands them out](Hardware::hands_out_tiles) they take the place of
+    /// [`Self::start`].
+    fn tiles(&self) -> u32 {
+        0
+    }
+
+    /// Begins a tile, one of those from 0 on, and makes its first records, at most eight. A turn of its own, as
+    /// [`Self::start`].
+    ///
+    /// # Errors
+    /// As the workload has them.
+    fn begin_tile(&mut self, _: u32, _: &mut Vec<Child>) -> Result<(), Self::Error> {
+        Ok(())
+    }
+
     /// The log that the turns write.
     fn log(&mut self) -> &mut TurnLog;
 }

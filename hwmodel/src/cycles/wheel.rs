@@ -63,6 +63,17 @@ impl Wheel {
         self.last[slot] = context;
     }
 
+    /// The cycle of the next event.
+    pub(super) fn next_at(&self) -> Option<u64> {
+        match self.next_slot() {
+            Some(slot) => {
+                let ahead = (slot + SLOTS - self.now as usize % SLOTS) % SLOTS;
+                Some(self.now + ahead as u64)
+            }
+            None => self.late.peek().map(|Reverse((at, ..))| *at),
+        }
+    }
+
     /// Takes the next event: its cycle and its context.
     #[inline]
     pub(super) fn take(&mut self) -> Option<(u64, u32)> {
@@ -147,6 +158,7 @@ mod tests {
         for _ in 0..20_000 {
             list.sort_unstable();
             let (at, _, context) = list.remove(0);
+            assert_eq!(wheel.next_at(), Some(at));
             assert_eq!(wheel.take(), Some((at, context)));
             random = random
                 .wrapping_mul(6364136223846793005)

@@ -35,6 +35,8 @@ pub struct Listed<'a> {
     log: TurnLog,
     /// Items in the order of their turns.
     pub turns: Vec<u32>,
+    /// The record that is each tile's start.
+    pub tiles: Vec<u32>,
 }
 
 impl<'a> Listed<'a> {
@@ -43,6 +45,7 @@ impl<'a> Listed<'a> {
             nodes,
             log: TurnLog::new(hardware),
             turns: Vec::new(),
+            tiles: Vec::new(),
         }
     }
 
@@ -76,6 +79,15 @@ impl Workload for Listed<'_> {
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Infallible> {
         self.does(0, children);
+        Ok(())
+    }
+
+    fn tiles(&self) -> u32 {
+        self.tiles.len() as u32
+    }
+
+    fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), Infallible> {
+        self.does(self.tiles[tile as usize], children);
         Ok(())
     }
 

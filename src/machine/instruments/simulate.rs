@@ -156,8 +156,14 @@ impl Machine {
             pushed: Vec::new(),
         };
         let canvas = (self.emptied(setup, frame), &mut *frame);
+        let state = State::<_, L, _>::new(options, graph, setup, canvas, log, watch);
+        let handed_out = match hardware.hands_out_tiles() {
+            true => state.tiles(),
+            false => Vec::new(),
+        };
         let mut steps = Steps {
-            state: State::<_, L, _>::new(options, graph, setup, canvas, log, watch),
+            state,
+            handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
             // The first sees what there is: nothing is above the whole picture.
@@ -241,6 +247,8 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     waiting: Vec<(Work<L>, usize)>,
     /// Numbers of work that are not in use.
     free: Vec<u32>,
+    /// Tiles that the hardware gives its lanes, in order.
+    handed_out: Vec<QuadNode>,
     /// What each tile sees of the fill vectors above it.
     tiles: Vec<TileView>,
     /// By tile, its walk.
@@ -384,6 +392,16 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
 
     fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
         self.begin_tiles(QuadNode::ROOT, children);
+        self.state.dp.probe_mut().ended(None, children);
+        self.trap()
+    }
+
+    fn tiles(&self) -> u32 {
+        self.handed_out.len() as u32
+    }
+
+    fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
+        self.begin_tiles(self.handed_out[tile as usize], children);
         self.state.dp.probe_mut().ended(None, children);
         self.trap()
     }

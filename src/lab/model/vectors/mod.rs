@@ -21,6 +21,7 @@ mod turns;
 use std::path::Path;
 
 use hwmodel::Overflow;
+use hwmodel::cycles::Organisation;
 
 pub use blocks::describe;
 pub use description::{Description, absence};
@@ -49,6 +50,8 @@ pub struct Request<'a> {
     pub records: u64,
     /// What a result that does not fit its word becomes.
     pub overflow: Overflow,
+    /// What the record loop keeps where.
+    pub organisation: Organisation,
     /// The folder; its parents are made.
     pub folder: &'a Path,
     /// Whether older vectors there are replaced.
@@ -101,6 +104,7 @@ pub fn write(
         let mut frame = Frame::new(setup.width, setup.height, false);
         let mut machine = Machine::new(MachineOptions {
             overflow: request.overflow,
+            organisation: request.organisation,
             ..MachineOptions::default()
         });
         let recorder = Recorder::new(folder, setup, request.records)?;

@@ -1,0 +1,217 @@
+//! Sequential hardware (rules 12 and 13): an access at a time, each in its own cycle, and tiles that are handed out.
+//!
+//! What several records ask for in the same cycle is served when everything else of that cycle has happened: whoever
+//! came first comes first; of one cycle, nodes before attributes, and the lowest lane first.
+
+use std::collections::VecDeque;
+
+use super::observe::Observer;
+use super::report::Cause;
+use super::simulate::{Simulation, SimulationError};
+use super::turn::Workload;
+use crate::Memory;
+
+/// Cycles from when a lane asks for a tile, if no other asks, until it begins it.
+const HAND_OUT: u64 = 1;
+
+/// What is asked for, in the order in which it is served within a cycle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Of {
+    Node,
+    Attribute,
+    Other,
+    Tile,
+}
+
+/// What is asked for in the cycle at hand, and who waits.
+#[derive(Debug, Default)]
+pub(super) struct Asked {
+    now: Vec<(Of, u32)>,
+    /// Contexts that wait for the node cache and the attribute cache; the first has its event set.
+    waiting: [VecDeque<u32>; 2],
+    /// The next tile, and the first cycle in which one is handed out.
+    tile: u32,
+    tile_from: u64,
+}
+
+/// How far a context is in its visit.
+#[derive(Debug, Default)]
+pub(super) struct Step {
+    /// The tile that it begins.
+    tile: Option<u32>,
+    /// Whether its visit is under way; the next of the turn's accesses.
+    is_begun: bool,
+    access: usize,
+    begun: u64,
+    /// Whether its next access was asked for: it waits, or is served in its event's cycle.
+    has_asked: bool,
+    cause: Option<Cause>,
+}
+
+impl<W: Workload, O: Observer> Simulation<'_, W, O> {
+    /// All lanes ask for tiles.
+    pub(super) fn ask_for_tiles(&mut self) {
+        let contexts = 0..self.contexts.len() as u32;
+        self.asked.now.extend(contexts.map(|of| (Of::Tile, of)));
+    }
+
+    /// Whether something was asked for that is served before the next event.
+    pub(super) fn must_serve(&self, now: u64) -> bool {
+        !self.asked.now.is_empty() && self.wheel.next_at().is_none_or(|next| next > now)
+    }
+
+    /// Serves what was asked for in the cycle `now`.
+    pub(super) fn serve_asked(&mut self, now: u64) {
+        let mut asked = std::mem::take(&mut self.asked.now);
+        asked.sort_unstable();
+        for (of, context) in asked.drain(..) {
+            match of {
+                Of::Tile => self.hand_out(now, context),
+                Of::Node => self.serve_cached(now, context, Memory::Node),
+                Of::Attribute => self.serve_cached(now, context, Memory::Attribute),
+                Of::Other => {
+                    let of = &self.contexts[context as usize];
+                    let access = of.plan.accesses[of.step.access];
+                    let served = self.memories.serve(access, now, of.from as usize);
+                    self.is_served(context, served.done, served.cause);
+                }
+            }
+        }
+        self.asked.now = asked;
+    }
+
+    /// A lane without records is given the next tile, one a cycle.
+    fn hand_out(&mut self, now: u64, context: u32) {
+        if self.asked.tile == self.workload.tiles() {
+            return;
+        }
+        let at = now.max(self.asked.tile_from);
+        self.contexts[context as usize].step.tile = Some(self.asked.tile);
+        self.asked.tile += 1;
+        self.asked.tile_from = at + 1;
+        self.totals.serial += HAND_OUT;
+        self.wheel.set(at + HAND_OUT, context);
+    }
+
+    /// An access to a cache, if it is the one that is next there, and the cache is free.
+    fn serve_cached(&mut self, now: u64, context: u32, memory: Memory) {
+        let (cache, line) = match memory {
+            Memory::Node => (&mut self.memories.nodes, 0),
+            _ => (&mut self.memories.attributes, 1),
+        };
+        let waiting = &mut self.asked.waiting[line];
+        let of = &mut self.contexts[context as usize];
+        if !std::mem::replace(&mut of.step.has_asked, true) {
+            waiting.push_back(context);
+            if waiting.len() > 1 {
+                return;
+            }
+        }
+        let free = cache.free_from(now);
+        if free > now {
+            self.wheel.set(free, context);
+            return;
+        }
+        waiting.pop_front();
+        let access = of.plan.accesses[of.step.access];
+        let served = cache.access_alone(access.address, now, &mut self.memories.outer);
+        if let Some(&next) = waiting.front() {
+            let free = cache.free_from(now + 1);
+            self.wheel.set(free, next);
+        }
+        self.is_served(context, served.done, served.cause);
+    }
+
+    /// An access is done in the cycle `done`; what was read is looked at in that cycle.
+    fn is_served(&mut self, context: u32, done: u64, cause: Cause) {
+        let of = &mut self.contexts[context as usize];
+        let access = of.plan.accesses[of.step.access];
+        of.step.access += 1;
+        of.step.has_asked = false;
+        of.step.cause = Some(cause);
+        self.wheel.set(done + u64::from(!access.write), context);
+    }
+
+    /// A context's event, unless it comes to a block or is at the end of its turn.
+    pub(super) fn step_on(
+        &mut self,
+        now: u64,
+        context: u32,
+    ) -> Result<bool, SimulationError<W::Error>> {
+        if let Some(tile) = self.contexts[context as usize].step.tile.take() {
+            self.begin_tile(now, context, tile)?;
+            return Ok(true);
+        }
+        let is_begun = self.contexts[context as usize].step.is_begun;
+        if is_begun {
+            self.next_access(now, context);
+        }
+        Ok(is_begun)
+    }
+
+    fn begin_tile(
+        &mut self,
+        now: u64,
+        context: u32,
+        tile: u32,
+    ) -> Result<(), SimulationError<W::Error>> {
+        self.account(now);
+        let task = self.tasks.root();
+        self.live += 1;
+        self.totals.stack.most_live = self.totals.stack.most_live.max(self.live);
+        let of = &mut self.contexts[context as usize];
+        self.lanes[of.lane as usize].idle &= !(1 << of.number);
+        self.idle -= 1;
+        of.task = task;
+        of.from = of.lane;
+        of.children.clear();
+        self.workload.begin_tile(tile, &mut of.children)?;
+        self.begin_turn_of_start(now, context);
+        Ok(())
+    }
+
+    /// A visit begins: its accesses are asked for, one after the other.
+    pub(super) fn begin_steps(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        of.step.is_begun = true;
+        of.step.begun = now;
+        of.step.access = of.plan.visits[of.visit].accesses.start;
+        of.step.cause = None;
+        self.next_access(now, context);
+    }
+
+    fn next_access(&mut self, now: u64, context: u32) {
+        let of = &mut self.contexts[context as usize];
+        let visit = &of.plan.visits[of.visit];
+        if of.step.access < visit.accesses.end {
+            let what = match of.plan.accesses[of.step.access].memory {
+                Memory::Node => Of::Node,
+                Memory::Attribute => Of::Attribute,
+                _ => Of::Other,
+            };
+            self.asked.now.push((what, context));
+            return;
+        }
+        of.step.is_begun = false;
+        let begun = of.step.begun;
+        // At last the operations that the cycles of looking left.
+        let ends = (now + visit.latency).max(begun + 1);
+        let cause = of.step.cause.unwrap_or(Cause::MemoryPort);
+        let stalled = ends - (begun + visit.alone);
+        self.end_visit(context, begun, (ends, ends), (cause, stalled));
+    }
+
+    /// A lane that hands nothing on: its own next record, or else another tile.
+    pub(super) fn go_on(
+        &mut self,
+        now: u64,
+        context: u32,
+    ) -> Result<(), SimulationError<W::Error>> {
+        let lane = self.contexts[context as usize].lane as usize;
+        if self.lanes[lane].ready.is_empty() {
+            self.asked.now.push((Of::Tile, context));
+            return Ok(());
+        }
+        self.give(now, context)
+    }
+}

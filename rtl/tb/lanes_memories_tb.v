@@ -1,0 +1,29 @@
+// Prints the bits of the memories of several lanes, as memories_tb.v those of one machine.
+module lanes_memories_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = 30,
+                           DEPTH = LEVEL_BOUND, NODE_WIDTH = 32);
+  reg clk, reset, constant_write, start, fetch_ready, fill, pixel_ready;
+  reg [7:0] constant_address;
+  reg [31:0] constant_data;
+  reg [63:0] fill_word;
+  lanes #(.LANES(LANES), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND),
+          .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+    .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
+    .constant_data(constant_data), .start(start), .fetch_ready(fetch_ready), .fill(fill), .fill_word(fill_word),
+    .pixel_ready(pixel_ready));
+  initial begin
+    $display("record stack: %0d", LANES*dut.lane[0].walk.stack.BITS*dut.lane[0].walk.stack.WORDS);
+    $display("fill vectors: %0d", LANES*dut.lane[0].walk.fill_vectors.BITS*dut.lane[0].walk.fill_vectors.WORDS);
+    $display("node cache: %0d",
+      dut.node_cache.WAYS*dut.node_cache.ways[0].of_words.BITS*dut.node_cache.ways[0].of_words.WORDS);
+    $display("node cache, tags: %0d",
+      dut.node_cache.WAYS*dut.node_cache.ways[0].of_tags.BITS*dut.node_cache.ways[0].of_tags.WORDS
+      + dut.node_cache.of_order.BITS*dut.node_cache.of_order.WORDS + $bits(dut.node_cache.valid));
+    $display("attribute cache: %0d", dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_words.BITS
+      *dut.attribute_cache.ways[0].of_words.WORDS);
+    $display("attribute cache, tags: %0d",
+      dut.attribute_cache.WAYS*dut.attribute_cache.ways[0].of_tags.BITS*dut.attribute_cache.ways[0].of_tags.WORDS
+      + dut.attribute_cache.of_order.BITS*dut.attribute_cache.of_order.WORDS + $bits(dut.attribute_cache.valid));
+    // The model has none: the depths of level of detail, a word a level, in each lane.
+    $display("levels of detail: %0d", LANES*dut.lane[0].walk.constants.lod.BITS*dut.lane[0].walk.constants.lod.WORDS);
+  end
+endmodule

@@ -1,0 +1,119 @@
+`include "widths.vh"
+`include "stage.vh"
+// Draws a frame with several lanes, as frame_tb.v does with one machine; the memory takes another request while it
+// answers, a line every eight cycles. Events have the number of their tile before them.
+module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
+                  DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS);   // as `lanes` has them
+  localparam W = `WORD_BITS;
+  // Cycles from the request of a line to its first word, and of a line.
+  localparam LATENCY = 52, LINE = 8;
+  // Nodes that there is room for, records on a stack, lines on their way.
+  localparam NODES = 1 << 20, STACK_LOG2 = 8, MOST = 16;
+  reg clk = 0, reset = 1, start = 0, constant_write = 0;
+  always #1 clk = ~clk;
+  reg [7:0] constant_address = 0;
+  reg [W-1:0] constant_data = 0;
+  wire busy, done, failed, fetch, fetch_attribute, pixel;
+  wire [`NODE_BITS-4:0] fetch_line;
+  reg fill = 0;
+  reg [63:0] fill_word = 0;
+  wire [`PLACE_BITS-1:0] pixel_x, pixel_y;
+  wire [`NODE_BITS-1:0] pixel_node;
+  wire [3*W-1:0] pixel_voxel;
+  wire [`LEVEL_BITS-1:0] pixel_level;
+  wire [63:0] pixel_attribute;
+  integer taken_for;
+  wire fetch_ready = taken_for == 0;
+  lanes #(.LANES(LANES), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
+          .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+    .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
+    .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
+    .fetch_ready(fetch_ready), .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill),
+    .fill_word(fill_word), .pixel(pixel), .pixel_ready(1'b1), .pixel_x(pixel_x), .pixel_y(pixel_y),
+    .pixel_node(pixel_node), .pixel_voxel(pixel_voxel), .pixel_level(pixel_level),
+    .pixel_attribute(pixel_attribute));
+
+  // ------------------------------------------------ memory: nodes; attributes are the node's number
+  reg [63:0] nodes [0:NODES-1];
+  reg [W-1:0] constants [0:`CONSTANTS-1];
+  integer now, asked, answered, beat, due [0:MOST-1];
+  reg of_attribute [0:MOST-1];
+  reg [`NODE_BITS-1:0] at [0:MOST-1];
+  wire [`NODE_BITS-1:0] word = at[answered % MOST] + beat;
+  initial {now, asked, answered, beat, taken_for} = 0;
+  always @(posedge clk) if (~reset) begin
+    now <= now + 1;
+    taken_for <= fetch & fetch_ready ? LINE - 1 : taken_for == 0 ? 0 : taken_for - 1;
+    if (fetch & fetch_ready) begin
+      of_attribute[asked % MOST] <= fetch_attribute;
+      at[asked % MOST] <= {fetch_line, 3'd0};
+      due[asked % MOST] <= now + LATENCY;
+      asked <= asked + 1;
+    end
+    fill <= 0;
+    if (answered != asked && due[answered % MOST] <= now + 1) begin
+      fill <= 1;
+      fill_word <= of_attribute[answered % MOST] ? word : word < NODES ? nodes[word] : 0;
+      beat <= beat == LINE - 1 ? 0 : beat + 1;
+      if (beat == LINE - 1) answered <= answered + 1;
+    end
+  end
+
+  // ------------------------------------------------ events
+  integer events, pixels, i, cycles, most, nothing;
+  reg has_events;
+  function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);
+    place = ((1 << 2*level) - 1)/3 + (y << level) + x;
+  endfunction
+  `define WALK dut.lane[lane].walk
+  `define TILE (`WALK.tile_y << TILE_LEVELS | `WALK.tile_x)
+  genvar lane;
+  generate
+    for (lane = 0; lane < LANES; lane = lane + 1) begin : watched
+      always @(posedge clk) if (`WALK.busy & has_events) begin
+        `include "tb/events.vh"
+      end
+    end
+  endgenerate
+  always @(posedge clk) if (busy) begin
+    cycles <= cycles + 1;
+    if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
+      pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
+    if (pixel && pixel_attribute != pixel_node) begin
+      $display("the attributes of node %0d came with a pixel of node %0d", pixel_attribute, pixel_node);
+      $finish;
+    end
+  end
+
+  initial begin
+    $readmemh("frame.constants.hex", constants);
+    $readmemh("frame.nodes.hex", nodes);
+    pixels = $fopen("pixels.txt");
+    has_events = $test$plusargs("events");
+    events = 0;
+    if (has_events) events = $fopen("events.txt");
+    if ($test$plusargs("wave")) begin
+      $dumpfile("frame.vcd");
+      $dumpvars(2, dut);
+    end
+    most = 100_000_000;
+    nothing = $value$plusargs("most=%d", most);
+    cycles = 0;
+    repeat (2) @(posedge clk);
+    #1 reset = 0;
+    for (i = 0; i < `CONSTANTS; i = i + 1) begin
+      constant_write = 1;
+      constant_address = i;
+      constant_data = constants[i];
+      @(posedge clk) #1;
+    end
+    constant_write = 0;
+    start = 1;
+    @(posedge clk) #1;
+    start = 0;
+    while (!done && cycles < most) @(posedge clk) #1;
+    if (done && !failed) $display("%0d cycles", cycles);
+    else $display("failed: %s", done ? "the stack is full" : "no end");
+    $finish;
+  end
+endmodule
