@@ -68,7 +68,8 @@ pub struct CameraArgs {
     /// Vertical field of view in degrees [default: 40]
     #[arg(long, value_name = "DEG")]
     pub fov: Option<f64>,
-    /// Named view, fitted to the object [default: iso]
+    /// Named view, fitted to the object [default: iso; terrain, sponge and bundled tree have views of
+    /// their own in model and bench]
     #[arg(long, value_enum)]
     pub view: Option<ViewName>,
     /// Degrees around the up axis: 0 from the front, 90 from the right [default: the view's]
