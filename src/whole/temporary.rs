@@ -15,6 +15,8 @@ const PREFIX: &str = ".shiftvox-";
 const SUFFIX: &str = ".tmp";
 /// Most bytes of a file's name that its temporary name repeats; names have at most 255.
 const MOST_NAME: usize = 100;
+/// How often it is tried to remove what is unfinished.
+const MOST_TRIES: u32 = 100;
 
 /// What this process is writing.
 pub(super) struct InProgress {
@@ -39,8 +41,14 @@ pub(super) fn in_progress() -> MutexGuard<'static, InProgress> {
 pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
     let mut list = in_progress();
     for path in list.unfinished.drain(..) {
-        // It is gone already, or another user's: nothing can be done about it.
-        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+        // Other threads may still put files into a folder; a file may be another user's, about which nothing can be
+        // done.
+        for _ in 0..MOST_TRIES {
+            let removed = fs::remove_file(&path).or_else(|_| fs::remove_dir_all(&path));
+            if removed.is_ok() || fs::symlink_metadata(&path).is_err() {
+                break;
+            }
+        }
     }
     end()
 }
@@ -50,11 +58,13 @@ pub fn remove_unfinished<R>(end: impl FnOnce() -> R) -> R {
 pub struct TemporaryGuard(PathBuf);
 
 impl TemporaryGuard {
-    /// Lists one that was just made.
-    #[must_use]
-    pub fn new(path: &Path) -> Self {
-        in_progress().unfinished.push(path.to_owned());
-        Self(path.to_owned())
+    /// Makes a file or a folder and lists it, so that no signal finds it made and not listed.
+    fn around<T: AsRef<Path>>(make: impl FnOnce() -> io::Result<T>) -> io::Result<(T, Self)> {
+        let mut list = in_progress();
+        let made = make()?;
+        let path = made.as_ref().to_owned();
+        list.unfinished.push(path.clone());
+        Ok((made, Self(path)))
     }
 }
 
@@ -82,8 +92,8 @@ pub fn temporary_folder(parent: &Path) -> Result<(TempDir, FolderLock), WholeErr
     let mut builder = Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
     loop {
-        let folder = builder.tempdir_in(parent).map_err(|e| failed(parent, e))?;
-        let guard = TemporaryGuard::new(folder.path());
+        let made = TemporaryGuard::around(|| builder.tempdir_in(parent));
+        let (folder, guard) = made.map_err(|e| failed(parent, e))?;
         let open = File::open(folder.path()).ok();
         let is_locked = open.as_ref().is_some_and(|open| open.lock().is_ok());
         if !is_locked || folder.path().exists() {
@@ -121,8 +131,7 @@ pub(super) fn temporary(folder: &Path, path: &Path) -> io::Result<(NamedTempFile
         builder.permissions(fs::Permissions::from_mode(0o666));
     }
     loop {
-        let file = builder.tempfile_in(folder)?;
-        let guard = TemporaryGuard::new(file.path());
+        let (file, guard) = TemporaryGuard::around(|| builder.tempfile_in(folder))?;
         // Where the system has no locks, no process removes it either.
         let is_locked = file.as_file().lock().is_ok();
         if !is_locked || file.path().exists() {
