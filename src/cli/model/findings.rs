@@ -97,7 +97,8 @@ pub(super) fn find(
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
-    vectors::write(args, name, graph, &setup, overflow, console)?;
+    let organisation = hardware.organisation;
+    vectors::write(args, name, graph, &setup, overflow, organisation, console)?;
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
     )?;

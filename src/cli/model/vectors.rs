@@ -1,6 +1,7 @@
 //! `--vectors`: test vectors for who builds the hardware.
 
 use hwmodel::Overflow;
+use hwmodel::cycles::Organisation;
 
 use super::args::ModelArgs;
 use crate::cli::console::Console;
@@ -36,6 +37,7 @@ pub(super) fn write(
     graph: &Graph,
     setup: &FrameSetup,
     overflow: Overflow,
+    organisation: Organisation,
     console: &Console,
 ) -> Result<(), CliError> {
     let Some(folder) = &args.files.vectors else {
@@ -45,6 +47,7 @@ pub(super) fn write(
         scene,
         records: args.files.vector_records,
         overflow,
+        organisation,
         folder,
         overwrite: args.export.force,
     };

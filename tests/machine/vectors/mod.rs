@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use hwmodel::Overflow;
+use hwmodel::cycles::Organisation;
 use serde_json::Value;
 use shiftvox::graph::{Graph, GraphView, Opacity};
 use shiftvox::lab::model::vectors::{self, Recorded, Request};
@@ -184,6 +185,7 @@ fn written(
         scene: "a test",
         records,
         overflow: Overflow::Trap,
+        organisation: Organisation::default(),
         folder: &folder,
         overwrite: false,
     };
