@@ -1,6 +1,7 @@
 // Stage A: the machine of the image-order paper (`--paper`: corners, coverage any, infinite tolerance). What it has
 // in machine.v: the change to screen space, boxes there, samples drawn where a box or a centre is.
-//
+`include "children.vh"
+
 // Of a record: whether it is in screen space, and its box there, x low, x high, y low, y high.
 wire             r_screen = r_more[4*W], c_screen = c_more[4*W];
 wire [4*W-1:0]   r_spans = r_more[4*W-1:0], c_spans = c_more[4*W-1:0];

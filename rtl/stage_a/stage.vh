@@ -4,5 +4,7 @@
 `define MORE_BITS (1 + 4*W)
 // Of an entry of the stack the level of the voxel, the pose, and what only one pose has.
 `define REST_BITS ($clog2(DEPTH + 1) + 1 + 9*W)
+// Log2 of the stack's entries.
+`define STACK_LOG2 8
 // Registers of constants.
 `define CONSTANTS 128

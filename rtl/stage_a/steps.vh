@@ -1,4 +1,5 @@
 // Stage A's states.
+`include "children_steps.vh"
 CHANGE: state <= changes ? DIVIDE : r_solid ? VERDICT : NODE;
 DIVIDE: if (divided) state <= MOVE;
 MOVE: begin

@@ -4,5 +4,7 @@
 `define MORE_BITS (12*V)
 // Of an entry of the stack the depths, the least of them, and the planes.
 `define REST_BITS (5*W + MORE)
+// Log2 of the stack's entries.
+`define STACK_LOG2 8
 // Registers of constants.
 `define CONSTANTS 164

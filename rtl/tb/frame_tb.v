@@ -11,7 +11,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   // Cycles from the request of a line to its first word.
   localparam LATENCY = 50;
   // Nodes that there is room for, records on the stack.
-  localparam NODES = 1 << 20, STACK_LOG2 = 8;
+  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [7:0] constant_address = 0;
@@ -67,18 +67,16 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   integer events, pixels, i, cycles, most, nothing;
   integer in_state [0:63];
   reg has_events;
+  function [7:0] nearest_lowest(input [7:0] left);
+    nearest_lowest = {left[0], left[1], left[2], left[3], left[4], left[5], left[6], left[7]};
+  endfunction
   always @(posedge clk) if (busy) begin
     cycles <= cycles + 1;
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
-      if (dut.state == dut.POP) $fwrite(events, "0 %0d\n", dut.top);
-      if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h %h\n", dut.stacked,
-        {dut.c_solid, dut.c_inside, dut.c_screen, dut.c_level, dut.c_voxel_level, dut.c_quad_level, dut.c_node,
-         dut.c_quad_x, dut.c_quad_y, dut.c_min, dut.c_max, dut.c_x, dut.c_y, dut.c_w, dut.c_w_min}, dut.c_more);
+      `include "events.vh"
       if (dut.fill_read) $fwrite(events, "2 %0d\n", dut.fill_address);
       if (dut.state == dut.MARK) $fwrite(events, "3 %0d %h\n", dut.fill_address, dut.marked);
-      if (dut.state == dut.NODE) $fwrite(events, "4 %0d\n", dut.r_node);
-      if (dut.state == dut.ATTRIBUTE) $fwrite(events, "5 %0d\n", dut.r_node);
       if (pixel) $fwrite(events, "6 %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node);
     end
     if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,

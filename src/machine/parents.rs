@@ -109,8 +109,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// When a word overflows under the trap policy.
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         let tile_levels = self.tile_levels();
-        for number in 0..1u32 << (tile_levels << 1) {
-            let tile = tile_of(tile_levels, number);
+        let side = 1u32 << tile_levels;
+        for tile in 0..side << tile_levels {
+            let tile = QuadNode {
+                level: tile_levels,
+                x: tile & (side - 1),
+                y: tile >> tile_levels,
+            };
             if self.canvas.fill.peek(tile) == FULL {
                 // It lies beside the picture.
                 continue;
@@ -325,13 +330,6 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
             seeds,
         }
     }
-}
-
-/// A tile by its number: quadrant by quadrant, so that neighbours come one after the other.
-fn tile_of(level: u32, number: u32) -> QuadNode {
-    (0..level).rev().fold(QuadNode::ROOT, |node, below| {
-        node.quadrant((number >> (below << 1)) as u8 & 3)
-    })
 }
 
 /// A tile's own view of the fill vectors above it: all but the way to the tile is full.

@@ -39,8 +39,9 @@ fn parameters(model: &Value, top: &str) -> Vec<String> {
 /// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
 fn compiled(machine: &Machine, top: &str, parameters: &[String], into: &str) {
     let source = format!("tb/{top}.v");
-    let mut arguments = vec!["-g2012", "-I", ".", "-I", machine.name];
-    arguments.extend(machine.folders.iter().flat_map(|folder| ["-y", folder]));
+    let mut arguments = vec!["-g2012", "-I", "."];
+    let folders = machine.folders.iter();
+    arguments.extend(folders.flat_map(|folder| ["-I", folder, "-y", folder]));
     arguments.extend(["-s", top, &source, "-o", into]);
     arguments.extend(parameters.iter().map(String::as_str));
     run(&rtl(), "iverilog", &arguments);

@@ -5,7 +5,7 @@ use std::fs;
 
 use shiftvox::graph::{LinkedGraph, vxg};
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, agree, agree_linked};
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, agree, agree_linked};
 use super::tools::{is_there, rtl, run, text};
 
 pub(crate) const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
@@ -25,7 +25,11 @@ fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
     if !is_there("verilator") {
         return;
     }
-    for (machine, events) in [(&STAGE_A, 1_000_000), (&STAGE_B, 250_000)] {
+    for (machine, events) in [
+        (&STAGE_A, 1_000_000),
+        (&STAGE_B, 250_000),
+        (&STAGE_C, 100_000),
+    ] {
         let agreement = agree(machine, &[TREE, "--size", "64"]);
         assert!(agreement.events > events && agreement.samples > 1000);
     }
@@ -38,6 +42,7 @@ fn an_eye_inside_too() {
     }
     agree(&STAGE_A, &INSIDE);
     agree(&STAGE_B, &INSIDE);
+    agree(&STAGE_C, &INSIDE);
 }
 
 /// File, text, what somebody might have written.
@@ -48,9 +53,9 @@ const FAULTS_A: [Fault; 9] = [
     ("machine", "r_node : first + count", "r_node : first"),
     ("machine", "marked <= after", "marked <= vector"),
     (
-        "machine",
-        "for (r = 7; r >= 0; r = r - 1)",
-        "for (r = 0; r < 8; r = r + 1)",
+        "children",
+        "for (place = 7; place >= 0; place = place - 1)",
+        "for (place = 0; place < 8; place = place + 1)",
     ),
     ("cache", "valid[{set, way}] <= 1", "valid[{set, way}] <= 0"),
     ("memory", "<= data_in", "<= ~data_in"),
@@ -68,10 +73,14 @@ const FAULTS_B: [&[Fault]; 3] = [
         ("verdict", "leaf | has_lod_depth & deep", "leaf"),
     ],
     &[
-        ("parts", "depth - r_level - 1'b1", "depth - r_level"),
-        ("parts", "whole & next_in >= whole_level", "whole"),
-        ("parts", ".positive(positive)", ".positive(1'b0)"),
-        ("steps", "divided - 1'b1 == back_level", "1'b1"),
+        (
+            "silhouettes",
+            "depth - r_level - 1'b1",
+            "depth - r_level",
+        ),
+        ("silhouettes", "whole & next_in >= whole_level", "whole"),
+        ("silhouettes", ".positive(positive)", ".positive(1'b0)"),
+        ("silhouette_steps", "divided - 1'b1 == back_level", "1'b1"),
         ("silhouette", "known ? of_divided : inner", "inner"),
         ("silhouette", "sides <= sides_above", "sides <= sides"),
         (
@@ -81,8 +90,37 @@ const FAULTS_B: [&[Fault]; 3] = [
         ),
     ],
     &[
-        ("parts", ".before_eye(r_w_min > 0)", ".before_eye(1'b1)"),
+        (
+            "silhouettes",
+            ".before_eye(t_w_min > 0)",
+            ".before_eye(1'b1)",
+        ),
         ("plane_side", "none ? 2'd3", "none ? 2'd0"),
+    ],
+];
+
+/// And of stage C: scattered voxels, and level of detail.
+const FAULTS_C: [&[Fault]; 2] = [
+    &[
+        ("parts", "asked_x = r_quad_x >> above", "asked_x = r_quad_x"),
+        ("parts", "state == ORDER ? order_now : order", "order"),
+        ("parts", "leaves[octant]", "mask[octant]"),
+        ("parts", "first <= p_first", "first <= first"),
+        ("parts", "r_inside <= p_inside", "r_inside <= 1"),
+        ("parts", "one << octant_bit << 1", "one << octant_bit"),
+        ("steps", "if (left != 0) state", "if (left_there != 0) state"),
+        ("steps", "r_w <= parent_w", "r_w <= r_w"),
+        ("plane_whole", "doubled >>> 1", "doubled >> 1"),
+        ("parent_planes", "y_k (.plane(edge_y)", "y_k (.plane(edge_x)"),
+        ("parent_cage", "child[k*W +: W] << 1", "child[k*W +: W]"),
+        ("grown_cage", "edge_k >>> 1", "edge_k >> 1"),
+        ("silhouette_steps", "if (~looks) begin", "begin"),
+        ("silhouette_steps", "sample & ~looks", "sample"),
+    ],
+    &[
+        ("steps", "draws <= deep", "draws <= 0"),
+        ("parts", "state == OBJECT | state == CHILD", "state == CHILD"),
+        ("silhouette_steps", "looks & coverage == 2", "looks"),
     ],
 ];
 
@@ -98,18 +136,20 @@ fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault]) {
     let compiled = modules.join("frame.vvp");
     let nothing = ("", "", "");
     for &(file, right, fault) in [nothing].iter().chain(faults) {
-        // Of modules in several folders the first counts.
+        // Of files in several folders the first counts.
+        let mut found = 1;
         for folder in machine.folders.iter().rev() {
             for path in fs::read_dir(rtl().join(folder)).unwrap() {
                 let path = path.unwrap().path();
                 let mut source = fs::read_to_string(&path).unwrap();
                 if path.file_stem().unwrap() == file {
-                    assert_eq!(source.matches(right).count(), 1, "{file}: {right}");
+                    found = source.matches(right).count();
                     source = source.replace(right, fault);
                 }
                 fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
             }
         }
+        assert_eq!(found, 1, "{file}: {right}");
         let arguments = "-g2012 -I . -s frame_tb tb/frame_tb.v -o";
         let mut arguments: Vec<&str> = arguments.split(' ').collect();
         let modules = text(modules);
@@ -167,14 +207,43 @@ fn a_fault_of_stage_b_is_found() {
     }
 }
 
-/// Synthesis takes both machines: no latch, no loop, no signal with two drivers.
+#[test]
+fn a_fault_of_stage_c_is_found() {
+    let views: [&[&str]; 2] = [
+        &[
+            "gen:random,depth=3,seed=1",
+            "--size",
+            "9x7",
+            "--fov",
+            "70",
+            "--eye",
+            "9,2.3,5.1",
+            "--target",
+            "2.4,3.1,1.3",
+        ],
+        &[
+            "gen:menger,depth=3",
+            "--size",
+            "5x4",
+            "--lod",
+            "0.5",
+            "--view",
+            "front",
+        ],
+    ];
+    for (view, faults) in views.into_iter().zip(FAULTS_C) {
+        faults_are_found(&STAGE_C, view, faults);
+    }
+}
+
+/// Synthesis takes all machines: no latch, no loop, no signal with two drivers.
 #[test]
 #[ignore = "takes minutes"]
-fn yosys_takes_both_machines() {
+fn yosys_takes_the_machines() {
     if !is_there("yosys") {
         return;
     }
-    for machine in [&STAGE_A, &STAGE_B] {
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();
         for folder in machine.folders {
@@ -188,9 +257,9 @@ fn yosys_takes_both_machines() {
             }
         }
         let files: Vec<String> = files.into_values().collect();
-        let (name, files) = (machine.name, files.join(" "));
+        let (files, folders) = (files.join(" "), machine.folders.join(" -I"));
         let script = format!(
-            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top machine; proc; check -assert; \
+            "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top machine; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
         run(&rtl(), "yosys", &["-q", "-p", &script]);
@@ -244,7 +313,7 @@ fn many_scenes() {
             "6",
         ],
     ];
-    for machine in [&STAGE_A, &STAGE_B] {
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         for view in views {
             agree(machine, view);
         }
@@ -308,7 +377,7 @@ fn linked_and_cyclic_graphs() {
             &["--size", "33", "--view", "right", "--zoom", "5"],
         ] {
             let view = [&[text(&file)], view].concat();
-            for machine in [&STAGE_A, &STAGE_B] {
+            for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
                 eprint!("{name}: ");
                 let agreement = agree_linked(machine, &view, Some(&graph.links));
                 assert!(agreement.samples > 0, "{name}");
@@ -393,9 +462,21 @@ fn two_hundred_random_views_of_stage_b() {
     random_views(&STAGE_B, &mut any_view);
 }
 
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_random_views_of_stage_c() {
+    random_views(&STAGE_C, &mut any_view);
+}
+
 /// Where planes are degenerate, and cubes reach behind the eye.
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_wide_views_of_stage_b_from_between_the_voxels() {
     random_views(&STAGE_B, &mut view_from_within);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_wide_views_of_stage_c_from_between_the_voxels() {
+    random_views(&STAGE_C, &mut view_from_within);
 }

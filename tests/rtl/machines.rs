@@ -32,7 +32,19 @@ pub(crate) static STAGE_B: Machine = Machine {
     made: OnceLock::new(),
 };
 
+pub(crate) static STAGE_C: Machine = Machine {
+    name: "stage_c",
+    rules: &["--coverage", "exact", "--cage", "frame"],
+    folders: &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"],
+    made: OnceLock::new(),
+};
+
 impl Machine {
+    /// Whether records lie on its stack, and not what leads to their parents.
+    fn stacks_records(&self) -> bool {
+        self.name != "stage_c"
+    }
+
     /// The simulator of words of 32 bits, for pictures up to 256 x 256.
     pub(crate) fn simulator(&self) -> &str {
         let (_, path) = self.made.get_or_init(|| {
@@ -59,8 +71,12 @@ type Event = (u8, u64, String);
 const BOX: usize = 4 * 8;
 const PLANES: usize = 12 * 16;
 
+/// Ports whose data is a record: pushed, or made.
+const PUSH: u8 = 1;
+const MADE: u8 = 7;
+
 /// Events of a frame from its vectors.
-fn expected_events(folder: &Path) -> Vec<Event> {
+fn expected_events(folder: &Path, machine: &Machine) -> Vec<Event> {
     let rows = |name: &str| {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         let rows = text.lines().filter(|line| !line.starts_with("//"));
@@ -74,10 +90,10 @@ fn expected_events(folder: &Path) -> Vec<Event> {
             let row = u128::from_str_radix(row, 16).unwrap();
             let (port, address) = ((row >> 72) as u8, (row >> 40) as u64 & 0xffff_ffff);
             let data = row as u64 & 0xff_ffff_ffff;
-            let data = match port {
-                1 => records[data as usize].trim_start_matches('0').to_owned(),
-                3 => format!("{data:x}"),
-                6 => data.to_string(),
+            let data = match (port, machine.stacks_records()) {
+                (PUSH, true) | (MADE, _) => records[data as usize].trim_start_matches('0').to_owned(),
+                (0 | PUSH, false) | (3, _) => format!("{data:x}"),
+                (6, _) => data.to_string(),
                 _ => String::new(),
             };
             (port, address, data)
@@ -94,7 +110,10 @@ fn simulated_events(folder: &Path, machine: &Machine) -> Vec<Event> {
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
             let mut data = next().to_owned();
-            if port == 1 {
+            if matches!((port, machine.stacks_records()), (0 | PUSH, false)) {
+                data = format!("{:x}", u64::from_str_radix(&data, 16).unwrap());
+            }
+            if matches!((port, machine.stacks_records()), (PUSH, true) | (MADE, _)) {
                 let more = next();
                 let (no_box, no_planes) = match machine.name {
                     "stage_a" => (0, PLANES),
@@ -178,7 +197,7 @@ impl<'m> Expected<'m> {
         Self {
             machine,
             links,
-            events: expected_events(&folder),
+            events: expected_events(&folder, machine),
             nodes: numbers(&shelter.path().join("picture.node.npy")),
             voxels: numbers(&shelter.path().join("picture.voxel.npy")),
             cycles: model["simulated"]["cycles"]["cycles"]

@@ -373,11 +373,6 @@ impl Hardware {
             let range = "false where leaf_masks is";
             return Err(out_of_range("organisation.bricks", bricks, range));
         }
-        if self.sequential && self.organisation.stack != StackHolds::Children {
-            // A recording of turns, which other stacks allow, does not keep the order of steps.
-            let range = "false, except where the stack holds children";
-            return Err(out_of_range("sequential", true, range));
-        }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;
         for class in OpClass::ALL {
