@@ -114,7 +114,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     start = 1;
     @(posedge clk) #1;
     start = 0;
-    while (!done && cycles < most) @(posedge clk) #1;
+    while (busy && cycles < most) @(posedge clk) #1;
     if ($test$plusargs("states"))
       for (i = 0; i < 64; i = i + 1)
         if (in_state[i] != 0) $display("state %0d: %0d", i, in_state[i]);

@@ -16,3 +16,4 @@ mod machines;
 mod mutants;
 mod testbench;
 mod tools;
+mod turned;
