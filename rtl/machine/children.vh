@@ -90,6 +90,17 @@ task look_for_sample;
   end
 endtask
 
+// ---------------------------------------------------------------- fill vectors: all in one memory
+assign vector = vector_there, known = 1'b0, elsewhere = 1'b0, last_level = levels, marked_all = &marked;
+wire of_drawn = draw_read;
+
+task mark_sample;
+  begin
+    marked <= 4'b1111;
+    state <= MARK;
+  end
+endtask
+
 // A child that can be seen.
 task accept;
   state <= PUSH;

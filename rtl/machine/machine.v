@@ -100,22 +100,28 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
 
   // Fill vectors, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
   localparam FILL_ADDRESS = 2*PICTURE_LEVELS + 1;
-  localparam FILL_WORDS = ((1 << (2*PICTURE_LEVELS + 2)) - 1) / 3;
+  // Without the levels that a stage has in another memory.
+  localparam FILL_WORDS = ((1 << (2*(PICTURE_LEVELS - `JOINED_LEVELS) + 2)) - 1) / 3;
   function [FILL_ADDRESS-1:0] fill_place(input [L-1:0] level, input [P-1:0] x, input [P-1:0] y);
     fill_place = ({(PICTURE_LEVELS + 1){2'b01}} & ~({FILL_ADDRESS{1'b1}} << 2*level)) + (y << level) + x;
   endfunction
-  wire [3:0] vector;
+  wire [3:0] vector, vector_there;              // of the node asked for; what this memory has of it
+  wire       known;                             // without a read
+  wire       elsewhere;                         // in the stage's memory
+  wire [L-1:0] last_level;                      // that has vectors, or words of the stage
   reg  [3:0] marked;                            // what is written next
+  wire       marked_all;
   reg  [3:0] outside_picture;
   wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == WALK | state == ABOVE | draw_read;
   wire fill_write = state == CLEAR | state == MARK;
-  wire of_record  = state == FILLED;
-  wire [FILL_ADDRESS-1:0] fill_address =
-    of_record ? fill_place(asked_level, asked_x, asked_y) :
-    draw_read ? fill_place(draw_level, draw_x, draw_y) : fill_place(c_quad_level, c_quad_x, c_quad_y);
+  wire of_record  = state == FILLED | state == OPEN;
+  wire [L-1:0] fill_level = of_record ? asked_level : of_drawn ? draw_level : c_quad_level;
+  wire [P-1:0] fill_x = of_record ? asked_x : of_drawn ? draw_x : c_quad_x;
+  wire [P-1:0] fill_y = of_record ? asked_y : of_drawn ? draw_y : c_quad_y;
+  wire [FILL_ADDRESS-1:0] fill_address = fill_place(fill_level, fill_x, fill_y);
   memory #(.BITS(4), .WORDS(FILL_WORDS), .ADDRESS(FILL_ADDRESS)) fill_vectors (.clk(clk),
-    .read(fill_read), .write(fill_write), .address(fill_address),
-    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector));
+    .read(fill_read & ~elsewhere), .write(fill_write & ~elsewhere), .address(fill_address),
+    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
 
   // A new frame's vectors: a quadrant is full from the start if its first sample is beside the picture.
   integer q;
@@ -216,7 +222,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire box_outside = fresh & ~c_inside & box_outside_now;
   node_choice choice (.overlapped(overlapped), .vector(vector), .rejected(rejected), .single(single),
     .quadrant(only));
-  wire goes_down = single & c_quad_level < levels & (c_inside | c_screen | box_near);
+  wire inside_now = c_inside | fresh & box_enclosed;
+  wire goes_down = single & c_quad_level < levels & (inside_now | c_screen | box_near);
 
   // A search down the quadtree: by level the quadrants that are left.
   reg  [4*(PICTURE_LEVELS + 1)-1:0] waiting;
@@ -271,6 +278,19 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     end
   endtask
 
+  // A node whose vector is there: the box goes on in a quadrant, or belongs here.
+  task choose;
+    if (rejected) begin
+      left <= left_after;
+      state <= next_child;
+    end else if (goes_down) begin
+      go_to_quadrant(quadrant);
+      c_more <= inner_more;
+      state <= FIT;
+    end else
+      accept;
+  endtask
+
   // ---------------------------------------------------------------- the stage's own
   `include "parts.vh"
 
@@ -292,7 +312,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           c_quad_x <= last_of_row ? {P{1'b0}} : c_quad_x + 1'b1;
           if (last_of_row) c_quad_y <= last_of_level ? {P{1'b0}} : c_quad_y + 1'b1;
           if (last_of_level) c_quad_level <= c_quad_level + 1'b1;
-          if (last_of_level & c_quad_level == levels) state <= OBJECT;
+          if (last_of_level & c_quad_level == last_level) state <= OBJECT;
         end
         OBJECT: begin
           {c_solid, c_inside} <= 2'b0;
@@ -356,31 +376,20 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             left <= left_after;
             state <= next_child;
           end else begin
-            c_inside <= c_inside | fresh & box_enclosed;
+            c_inside <= inside_now;
             fresh <= 0;
-            state <= CHOOSE;
+            if (known) choose;
+            else state <= CHOOSE;
           end
-        CHOOSE:
-          if (rejected) begin
-            left <= left_after;
-            state <= next_child;
-          end else if (goes_down) begin
-            go_to_quadrant(quadrant);
-            c_more <= inner_more;
-            state <= FIT;
-          end else
-            accept;
+        CHOOSE: choose;
         DRAWN:
           if (full) draw_on;
           else state <= ATTRIBUTE;
         ATTRIBUTE: state <= SHOW;
         SHOW: if (attribute_ready) state <= PIXEL;
-        PIXEL: begin
-          marked <= 4'b1111;
-          state <= MARK;
-        end
+        PIXEL: mark_sample;
         MARK:
-          if (&marked & c_quad_level != 0) begin
+          if (marked_all & c_quad_level != 0) begin
             quadrant_bit <= 4'b0001 << {c_quad_y[0], c_quad_x[0]};
             c_quad_level <= c_quad_level - 1'b1;
             c_quad_x <= c_quad_x >> 1;

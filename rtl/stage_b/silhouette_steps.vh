@@ -15,18 +15,13 @@ COVER: begin
     c_quad_y <= s_y;
   end
   if (coverage == 0) draw_on;
-  else state <= sample & ~looks ? DRAWN : COVERED;
+  else if (looked) divide_node;
+  else if (~sample | looks) state <= COVERED;
+  else if (~known) state <= DRAWN;
+  else if (full) draw_on;
+  else state <= ATTRIBUTE;
 end
-// A node of which samples are covered has quadrants that are not full: it is itself in one that is not.
-COVERED: if (looks & coverage == 2) state <= NODE;
-else begin
-  next_quadrant;
-  if (~divides & ~whole) begin
-    whole <= 1;
-    whole_level <= s_level;
-  end
-  state <= divides ? QUADRANT : COVER;
-end
+COVERED: divide_node;
 CLIMB:
   if (divided - 1'b1 == back_level) begin
     next_quadrant;

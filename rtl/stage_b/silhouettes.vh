@@ -44,7 +44,9 @@ reg [L-1:0] whole_level;                        // of this level
 wire [1:0]  side_coverage;
 wire [1:0]  coverage = whole ? 2'd2 : side_coverage;
 wire        sample = s_level == levels;
-wire        divides = state == COVERED & coverage == 1;
+// A node whose vector is there, which is to be divided; not a sample that is drawn.
+wire        looked = state == COVERED | state == COVER & known & coverage != 0 & ~(sample & ~looks);
+wire        divides = looked & coverage == 1;
 wire [L-1:0] divided;
 wire [L-1:0] below_divided = s_level - divided;
 wire [1:0]  s_quadrant = state == CLIMB ? {s_y[below_divided], s_x[below_divided]} : {s_y[0], s_x[0]};
@@ -58,9 +60,9 @@ wire [L-1:0] draw_level = s_level;
 wire [P-1:0] draw_x = s_x, draw_y = s_y;
 
 // Where to go on: in a quadrant of the node just read, or of the deepest that has some left.
-wire [3:0]  rest = state == COVERED ? open : waiting[4*back_level +: 4];
+wire [3:0]  rest = looked ? open : waiting[4*back_level +: 4];
 wire [1:0]  next = rest[0] ? 2'd0 : rest[1] ? 2'd1 : rest[2] ? 2'd2 : 2'd3;
-wire [L-1:0] next_in = state == COVERED ? s_level : back_level;
+wire [L-1:0] next_in = looked ? s_level : back_level;
 wire [L-1:0] s_up = s_level - next_in;
 wire        still_whole = whole & next_in >= whole_level;
 task next_quadrant;
@@ -82,5 +84,19 @@ task draw_on;
     next_quadrant;
     whole <= still_whole;
     state <= still_whole ? COVER : QUADRANT;
+  end
+endtask
+
+// A node of which samples are covered has quadrants that are not full: it is itself in one that is not.
+task divide_node;
+  if (looks & coverage == 2)
+    state <= NODE;
+  else begin
+    next_quadrant;
+    if (~divides & ~whole) begin
+      whole <= 1;
+      whole_level <= s_level;
+    end
+    state <= divides ? QUADRANT : COVER;
   end
 endtask

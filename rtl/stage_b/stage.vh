@@ -4,6 +4,10 @@
 `define MORE_BITS (12*V)
 // Of an entry of the stack the depths, the least of them, and the planes.
 `define REST_BITS (5*W + MORE)
+// Lowest levels of fill vectors that are not in the memory of vectors.
+`define JOINED_LEVELS 0
+// All fill vectors, in bits, of a machine `dut`.
+`define FILL_BITS (dut.fill_vectors.BITS*dut.fill_vectors.WORDS)
 // Log2 of the stack's entries.
 `define STACK_LOG2 8
 // Registers of constants.

@@ -3,6 +3,7 @@
 // its node is read, and it takes its parent's place; if children of that are left, the way to it goes to the stack:
 // where it is worked back from is the record that was in registers last.
 `include "silhouettes.vh"
+`include "joined_fill.vh"
 
 // ---------------------------------------------------------------- the record that has its turn: a child that was made
 assign t_level = c_level, t_voxel_level = c_level, t_quad_level = c_quad_level, t_node = c_node;
@@ -98,7 +99,7 @@ generate
 endgenerate
 
 // ---------------------------------------------------------------- for testbenches: what was just made
-wire accepted = state == CHOOSE & ~rejected & ~goes_down;
+wire accepted = (state == CHOOSE | state == FIT & known & ~box_outside) & ~rejected & ~goes_down;
 reg  worked_back;
 always @(posedge clk) worked_back <= state == UP & r_level - 1'b1 == p_level;
 

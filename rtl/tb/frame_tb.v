@@ -75,8 +75,6 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
       `include "events.vh"
-      if (dut.fill_read) $fwrite(events, "2 %0d\n", dut.fill_address);
-      if (dut.state == dut.MARK) $fwrite(events, "3 %0d %h\n", dut.fill_address, dut.marked);
       if (pixel) $fwrite(events, "6 %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node);
     end
     if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,

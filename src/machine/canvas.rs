@@ -61,6 +61,7 @@ impl<'f> Canvas<'f> {
             }
         } else {
             let node = u64::from(paint.node);
+            dp.next_step(0);
             dp.read(Memory::Attribute, node);
             Port::AttributeRead.tap(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
             self.put(dp, at, paint);
@@ -139,6 +140,7 @@ impl<'f> Canvas<'f> {
             return;
         }
         for quadrant in self.open_quadrants(dp, quad) {
+            dp.next_step(0);
             self.draw_all(dp, quad.quadrant(quadrant), paint);
         }
     }

@@ -100,7 +100,7 @@ const FAULTS_B: [&[Fault]; 3] = [
 ];
 
 /// And of stage C: scattered voxels, and level of detail.
-const FAULTS_C: [&[Fault]; 2] = [
+const FAULTS_C: [&[Fault]; 3] = [
     &[
         ("parts", "asked_x = r_quad_x >> above", "asked_x = r_quad_x"),
         ("parts", "state == ORDER ? order_now : order", "order"),
@@ -115,12 +115,26 @@ const FAULTS_C: [&[Fault]; 2] = [
         ("parent_cage", "child[k*W +: W] << 1", "child[k*W +: W]"),
         ("grown_cage", "edge_k >>> 1", "edge_k >> 1"),
         ("silhouette_steps", "if (~looks) begin", "begin"),
-        ("silhouette_steps", "sample & ~looks", "sample"),
+        ("silhouettes", "known & coverage != 0", "known"),
     ],
     &[
         ("steps", "draws <= deep", "draws <= 0"),
         ("parts", "state == OBJECT | state == CHILD", "state == CHILD"),
-        ("silhouette_steps", "looks & coverage == 2", "looks"),
+        ("silhouettes", "looks & coverage == 2", "looks"),
+    ],
+    &[
+        ("joined_fill", "| state == CHILD & judged", ""),
+        ("joined_fill", "is_written <= joined", "is_written <= 0"),
+        ("joined_fill", "== 1 ? quarter", "== 1 ? around"),
+        (
+            "joined_fill",
+            "of_word[3], of_word[1]",
+            "of_word[1], of_word[3]",
+        ),
+        ("joined_fill", "? &written", "? written[0]"),
+        ("joined_fill", "c_quad_x <= c_quad_x >> 2", "c_quad_x <= 0"),
+        ("silhouette_steps", "else if (full) draw_on;", ""),
+        ("machine", "if (known) choose;\n            else", ""),
     ],
 ];
 
@@ -209,7 +223,7 @@ fn a_fault_of_stage_b_is_found() {
 
 #[test]
 fn a_fault_of_stage_c_is_found() {
-    let views: [&[&str]; 2] = [
+    let views: [&[&str]; 3] = [
         &[
             "gen:random,depth=3,seed=1",
             "--size",
@@ -230,6 +244,7 @@ fn a_fault_of_stage_c_is_found() {
             "--view",
             "front",
         ],
+        &["gen:menger,depth=2", "--size", "11x14", "--view", "iso"],
     ];
     for (view, faults) in views.into_iter().zip(FAULTS_C) {
         faults_are_found(&STAGE_C, view, faults);

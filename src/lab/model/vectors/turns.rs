@@ -52,8 +52,11 @@ fn describe(port: Port) -> (&'static str, &'static str) {
              children left << 13 | octree level << 7 | quadtree level << 1 | inside",
         ),
         Port::Push => ("push", "as pop"),
-        Port::FillRead => ("fill_read", "address: quadtree node; data: its vector"),
-        Port::FillWrite => ("fill_write", "address: quadtree node; data: its vector"),
+        Port::FillRead => (
+            "fill_read",
+            "address: quadtree node; data: its vector, or its word of 16 samples",
+        ),
+        Port::FillWrite => ("fill_write", "as fill_read"),
         Port::NodeRead => (
             "node_read",
             "address: octree node; data: mask of its children << 32 | where they begin",
