@@ -17,9 +17,7 @@ COVER: begin
   if (coverage == 0) draw_on;
   else if (looked) divide_node;
   else if (~sample | looks) state <= COVERED;
-  else if (~known) state <= DRAWN;
-  else if (full) draw_on;
-  else state <= ATTRIBUTE;
+  else state <= known ? ATTRIBUTE : DRAWN;
 end
 COVERED: divide_node;
 CLIMB:

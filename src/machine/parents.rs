@@ -315,15 +315,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Makes what the children of a record are made from.
     fn expand(&mut self, record: &Record<L>) -> Expanded<L> {
         let (centre, order) = self.centre_and_order(&record.cube);
-        let seeds = self
-            .dp
-            .beside(Stage::VertexPool, |dp| match &record.pose {
-                Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
-                Pose::Screen(screen) => {
-                    let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
-                    [x, y, y]
-                }
-            });
+        let seeds = self.dp.beside(Stage::VertexPool, |dp| match &record.pose {
+            Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
+            Pose::Screen(screen) => {
+                let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
+                [x, y, y]
+            }
+        });
         Expanded {
             centre,
             order,

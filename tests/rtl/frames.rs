@@ -73,11 +73,7 @@ const FAULTS_B: [&[Fault]; 3] = [
         ("verdict", "leaf | has_lod_depth & deep", "leaf"),
     ],
     &[
-        (
-            "silhouettes",
-            "depth - r_level - 1'b1",
-            "depth - r_level",
-        ),
+        ("silhouettes", "depth - r_level - 1'b1", "depth - r_level"),
         ("silhouettes", "whole & next_in >= whole_level", "whole"),
         ("silhouettes", ".positive(positive)", ".positive(1'b0)"),
         ("silhouette_steps", "divided - 1'b1 == back_level", "1'b1"),
@@ -108,10 +104,18 @@ const FAULTS_C: [&[Fault]; 3] = [
         ("parts", "first <= p_first", "first <= first"),
         ("parts", "r_inside <= p_inside", "r_inside <= 1"),
         ("parts", "one << octant_bit << 1", "one << octant_bit"),
-        ("steps", "if (left != 0) state", "if (left_there != 0) state"),
+        (
+            "steps",
+            "if (left != 0) state",
+            "if (left_there != 0) state",
+        ),
         ("steps", "r_w <= parent_w", "r_w <= r_w"),
         ("plane_whole", "doubled >>> 1", "doubled >> 1"),
-        ("parent_planes", "y_k (.plane(edge_y)", "y_k (.plane(edge_x)"),
+        (
+            "parent_planes",
+            "y_k (.plane(edge_y)",
+            "y_k (.plane(edge_x)",
+        ),
         ("parent_cage", "child[k*W +: W] << 1", "child[k*W +: W]"),
         ("grown_cage", "edge_k >>> 1", "edge_k >> 1"),
         ("silhouette_steps", "if (~looks) begin", "begin"),
@@ -119,7 +123,11 @@ const FAULTS_C: [&[Fault]; 3] = [
     ],
     &[
         ("steps", "draws <= deep", "draws <= 0"),
-        ("parts", "state == OBJECT | state == CHILD", "state == CHILD"),
+        (
+            "parts",
+            "state == OBJECT | state == CHILD",
+            "state == CHILD",
+        ),
         ("silhouettes", "looks & coverage == 2", "looks"),
     ],
     &[
@@ -133,7 +141,7 @@ const FAULTS_C: [&[Fault]; 3] = [
         ),
         ("joined_fill", "? &written", "? written[0]"),
         ("joined_fill", "c_quad_x <= c_quad_x >> 2", "c_quad_x <= 0"),
-        ("silhouette_steps", "else if (full) draw_on;", ""),
+        ("silhouette_steps", "known ? ATTRIBUTE : DRAWN", "DRAWN"),
         ("machine", "if (known) choose;\n            else", ""),
     ],
 ];
@@ -221,34 +229,41 @@ fn a_fault_of_stage_b_is_found() {
     }
 }
 
+/// Views that find the faults of stage C.
+const VIEWS_C: [&[&str]; 3] = [
+    &[
+        "gen:random,depth=3,seed=1",
+        "--size",
+        "9x7",
+        "--fov",
+        "70",
+        "--eye",
+        "9,2.3,5.1",
+        "--target",
+        "2.4,3.1,1.3",
+    ],
+    &[
+        "gen:menger,depth=3",
+        "--size",
+        "5x4",
+        "--lod",
+        "0.5",
+        "--view",
+        "front",
+    ],
+    &["gen:menger,depth=2", "--size", "11x14", "--view", "iso"],
+];
+
 #[test]
 fn a_fault_of_stage_c_is_found() {
-    let views: [&[&str]; 3] = [
-        &[
-            "gen:random,depth=3,seed=1",
-            "--size",
-            "9x7",
-            "--fov",
-            "70",
-            "--eye",
-            "9,2.3,5.1",
-            "--target",
-            "2.4,3.1,1.3",
-        ],
-        &[
-            "gen:menger,depth=3",
-            "--size",
-            "5x4",
-            "--lod",
-            "0.5",
-            "--view",
-            "front",
-        ],
-        &["gen:menger,depth=2", "--size", "11x14", "--view", "iso"],
-    ];
-    for (view, faults) in views.into_iter().zip(FAULTS_C) {
-        faults_are_found(&STAGE_C, view, faults);
-    }
+    faults_are_found(&STAGE_C, VIEWS_C[1], FAULTS_C[1]);
+    faults_are_found(&STAGE_C, VIEWS_C[2], FAULTS_C[2]);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn a_fault_on_the_way_back_is_found() {
+    faults_are_found(&STAGE_C, VIEWS_C[0], FAULTS_C[0]);
 }
 
 /// Synthesis takes all machines: no latch, no loop, no signal with two drivers.

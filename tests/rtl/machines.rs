@@ -91,7 +91,9 @@ fn expected_events(folder: &Path, machine: &Machine) -> Vec<Event> {
             let (port, address) = ((row >> 72) as u8, (row >> 40) as u64 & 0xffff_ffff);
             let data = row as u64 & 0xff_ffff_ffff;
             let data = match (port, machine.stacks_records()) {
-                (PUSH, true) | (MADE, _) => records[data as usize].trim_start_matches('0').to_owned(),
+                (PUSH, true) | (MADE, _) => {
+                    records[data as usize].trim_start_matches('0').to_owned()
+                }
                 (0 | PUSH, false) | (3, _) => format!("{data:x}"),
                 (6, _) => data.to_string(),
                 _ => String::new(),

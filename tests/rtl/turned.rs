@@ -180,7 +180,9 @@ pub(crate) fn turned(mut rows: Rows) -> Rows {
         let all = rows.manifest["blocks"].as_array().unwrap();
         let block = all.iter().find(|block| block["name"] == of).unwrap();
         let [stimulus, expected] = [&block["stimulus"], &block["expected"]];
-        let pairs = lines(&rows, stimulus).into_iter().zip(lines(&rows, expected));
+        let pairs = lines(&rows, stimulus)
+            .into_iter()
+            .zip(lines(&rows, expected));
         let made: Vec<Row> = pairs
             .flat_map(|(into, out)| {
                 turn(

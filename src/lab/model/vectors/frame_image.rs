@@ -38,8 +38,9 @@ pub(super) fn nodes(graph: &GraphView<'_>) -> Option<String> {
     if !graph.links.is_empty() {
         return None;
     }
-    let mut text =
-        String::from("// Nodes from number 0 on: leaves << 40 | mask of children << 32 | where they begin.\n");
+    let mut text = String::from(
+        "// Nodes from number 0 on: leaves << 40 | mask of children << 32 | where they begin.\n",
+    );
     for (&mask, &first) in graph.mask.iter().zip(graph.first) {
         let mut child = first as usize;
         let mut leaves = 0u64;
