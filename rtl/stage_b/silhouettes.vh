@@ -1,4 +1,5 @@
-// The silhouette of the record that has its turn, down the image quadtree, and what records have for it: stages B and C.
+// The silhouette of the record that has its turn, down the image quadtree, and what records have for it: stages B and
+// C.
 //
 // Of a record: the planes of its edges along x, y, z, and c of the planes across the axes.
 wire             r_screen = 1'b0, c_screen = 1'b0;

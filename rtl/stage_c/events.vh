@@ -1,5 +1,6 @@
-// Events of a stack with the way to parents, as frame_tb.v writes them down: of a parent the children that are left, the
-// nearest lowest, its levels, and whether its box lies inside; then records in registers, new ones and those worked back.
+// Events of a stack with the way to parents, as frame_tb.v writes them down: of a parent the children that are left,
+// the nearest lowest, its levels, and whether its box lies inside; then records in registers, new ones and those
+// worked back.
 if (dut.state == dut.POPPED) $fwrite(events, "0 %0d %h\n", dut.stacked,
   {nearest_lowest(dut.p_left), 6'd0 | dut.p_level, 6'd0 | dut.p_quad_level, dut.p_inside});
 if (dut.state == dut.PUSH) $fwrite(events, "1 %0d %h\n", dut.stacked,

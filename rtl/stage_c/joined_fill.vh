@@ -1,5 +1,5 @@
-// Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, one a sample. The word read
-// last stays in a register as long as a record has its turn.
+// Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, one a sample. The word
+// read last stays in a register as long as a record has its turn.
 wire         joined = levels >= 2;              // the picture has as many levels
 wire [L-1:0] word_level = levels - 2'd2;
 assign last_level = joined ? word_level : levels;

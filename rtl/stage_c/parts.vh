@@ -1,7 +1,7 @@
-// Stage C: exact coverage with frame cages as stage B, and the organisation of the best exact hardware. A record that is
-// subdivided stays in registers; a child is made when its turn comes, the nearest first. If samples of it can be seen,
-// its node is read, and it takes its parent's place; if children of that are left, the way to it goes to the stack:
-// where it is worked back from is the record that was in registers last.
+// Stage C: exact coverage with frame cages as stage B, and the organisation of the best exact hardware. A record that
+// is subdivided stays in registers; a child is made when its turn comes, the nearest first. If samples of it can be
+// seen, its node is read, and it takes its parent's place; if children of that are left, the way to it goes to the
+// stack: where it is worked back from is the record that was in registers last.
 `include "silhouettes.vh"
 `include "joined_fill.vh"
 
@@ -127,7 +127,10 @@ task become_parent;
   begin
     {leaves, mask, first} <= node_word[47:0];
     left <= 8'hff;
+    // No solid is subdivided, so what the machine has for parts of one is not used.
     r_solid <= 0;
+    r_node <= c_node;
+    r_voxel_level <= c_level;
     r_inside <= c_inside;
     r_level <= c_level;
     r_quad_level <= c_quad_level;

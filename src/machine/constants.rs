@@ -3,7 +3,6 @@
 //! The only module within the machine that multiplies: on the host, once a
 //! frame. Every load checks that the constant fits its word.
 
-use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
 use crate::graph::GraphView;
@@ -207,14 +206,10 @@ impl Constants {
 }
 
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on, of a graph drawn by a machine of that organisation; all ones but the sign where a level has no depth. Under the rules that draw
+/// on, of a graph; all ones but the sign where a level has no depth. Under the rules that draw
 /// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
 #[must_use]
-pub fn frame_registers(
-    setup: &FrameSetup,
-    graph: &GraphView<'_>,
-    organisation: Organisation,
-) -> Vec<i64> {
+pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);
     let limits = [&setup.lod_limit, &Some(setup.size_limit.clone())];
@@ -255,7 +250,6 @@ pub fn frame_registers(
             .map(|edge| edge.to_host())
             .collect::<Vec<_>>(),
     );
-    put(31, &[i64::from(organisation.tile_levels.min(c.levels))]);
     put(13, &c.eye_ceil.map(Word::to_host));
     put(28, &c.eye_floor.map(Word::to_host));
     let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);

@@ -71,8 +71,11 @@ type Event = (u8, u64, String);
 const BOX: usize = 4 * 8;
 const PLANES: usize = 12 * 16;
 
-/// Ports whose data is a record: pushed, or made.
+/// Ports, by their numbers in the vectors.
+const POP: u8 = 0;
 const PUSH: u8 = 1;
+const FILL_WRITE: u8 = 3;
+const PIXEL: u8 = 6;
 const MADE: u8 = 7;
 
 /// Events of a frame from its vectors.
@@ -94,8 +97,8 @@ fn expected_events(folder: &Path, machine: &Machine) -> Vec<Event> {
                 (PUSH, true) | (MADE, _) => {
                     records[data as usize].trim_start_matches('0').to_owned()
                 }
-                (0 | PUSH, false) | (3, _) => format!("{data:x}"),
-                (6, _) => data.to_string(),
+                (POP | PUSH, false) | (FILL_WRITE, _) => format!("{data:x}"),
+                (PIXEL, _) => data.to_string(),
                 _ => String::new(),
             };
             (port, address, data)
@@ -112,7 +115,7 @@ fn simulated_events(folder: &Path, machine: &Machine) -> Vec<Event> {
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
             let mut data = next().to_owned();
-            if matches!((port, machine.stacks_records()), (0 | PUSH, false)) {
+            if matches!((port, machine.stacks_records()), (POP | PUSH, false)) {
                 data = format!("{:x}", u64::from_str_radix(&data, 16).unwrap());
             }
             if matches!((port, machine.stacks_records()), (PUSH, true) | (MADE, _)) {

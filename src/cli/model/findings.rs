@@ -97,8 +97,7 @@ pub(super) fn find(
     progress.begin("counting", 0);
     let counted = frame::count(graph, &setup, &hardware, overflow)?;
     progress.end();
-    let organisation = hardware.organisation;
-    vectors::write(args, name, graph, &setup, overflow, organisation, console)?;
+    vectors::write(args, name, graph, &setup, overflow, &hardware, console)?;
     let (hardware_frame, simulated) = simulate(
         args, &subject, &setup, &hardware, overflow, &counted, console,
     )?;

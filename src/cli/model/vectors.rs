@@ -1,7 +1,7 @@
 //! `--vectors`: test vectors for who builds the hardware.
 
 use hwmodel::Overflow;
-use hwmodel::cycles::Organisation;
+use hwmodel::cycles::{Hardware, Organisation};
 
 use super::args::ModelArgs;
 use crate::cli::console::Console;
@@ -37,7 +37,7 @@ pub(super) fn write(
     graph: &Graph,
     setup: &FrameSetup,
     overflow: Overflow,
-    organisation: Organisation,
+    hardware: &Hardware,
     console: &Console,
 ) -> Result<(), CliError> {
     let Some(folder) = &args.files.vectors else {
@@ -47,7 +47,11 @@ pub(super) fn write(
         scene,
         records: args.files.vector_records,
         overflow,
-        organisation,
+        // Turns are those of hardware that makes them one step after the other; of any other, the paper's.
+        organisation: match hardware.sequential {
+            true => hardware.organisation,
+            false => Organisation::default(),
+        },
         folder,
         overwrite: args.export.force,
     };

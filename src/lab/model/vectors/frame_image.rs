@@ -3,8 +3,6 @@
 
 use std::fmt::Write;
 
-use hwmodel::cycles::Organisation;
-
 use crate::graph::GraphView;
 use crate::machine::frame_registers;
 use crate::project::FrameSetup;
@@ -15,17 +13,13 @@ pub(super) const CONSTANTS: &str = "frame.constants.hex";
 pub(super) const NODES: &str = "frame.nodes.hex";
 
 /// The constants, each as wide as a word.
-pub(super) fn constants(
-    setup: &FrameSetup,
-    graph: &GraphView<'_>,
-    organisation: Organisation,
-) -> String {
+pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>) -> String {
     let format = setup.format;
     let mask = u64::MAX >> (64 - format.bits());
     let digits = format.bits().div_ceil(4) as usize;
     let mut text =
         String::from("// Registers of the frame's constants, from number 0 on: docs/rtl.md.\n");
-    for value in frame_registers(setup, graph, organisation) {
+    for value in frame_registers(setup, graph) {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{:0digits$x}", value as u64 & mask);
     }
@@ -42,12 +36,13 @@ pub(super) fn nodes(graph: &GraphView<'_>) -> Option<String> {
         "// Nodes from number 0 on: leaves << 40 | mask of children << 32 | where they begin.\n",
     );
     for (&mask, &first) in graph.mask.iter().zip(graph.first) {
-        let mut child = first as usize;
-        let mut leaves = 0u64;
-        for octant in (0..8).filter(|octant| mask >> octant & 1 != 0) {
-            leaves |= u64::from(graph.mask.get(child) == Some(&0)) << octant;
-            child += 1;
-        }
+        // Children lie side by side, in octant order.
+        let octants = (0..8).filter(|octant| mask >> octant & 1 != 0);
+        let leaves = octants
+            .zip(first as usize..)
+            .fold(0, |bits, (octant, child)| {
+                bits | u64::from(graph.mask.get(child) == Some(&0)) << octant
+            });
         let word = leaves << 40 | u64::from(mask) << 32 | u64::from(first);
         let _ = writeln!(text, "{word:016x}");
     }

@@ -126,7 +126,7 @@ pub fn write(
         write(folder::PARAMETERS, &readme::parameters(setup))?;
         write(
             frame_image::CONSTANTS,
-            &frame_image::constants(setup, graph, organisation),
+            &frame_image::constants(setup, graph),
         )?;
         if let Some(nodes) = frame_image::nodes(graph) {
             write(frame_image::NODES, &nodes)?;
