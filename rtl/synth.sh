@@ -7,7 +7,7 @@
 #                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stage B:
 #                        parts_exact.txt) and of what connects them, their sum, and the same in one piece; minutes
 #
-# Modules are stage A's; STAGE=stage_b: those of exact coverage in the place of those of the same name.
+# Modules are stage A's; STAGE=stage_b or stage_c: those of exact coverage in the place of those of the same name.
 set -e
 cd "$(dirname "$0")"
 lib=${LIBERTY:-/usr/share/qflow/tech/osu018/osu018_stdcells.lib}
@@ -16,7 +16,11 @@ log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 stage=${STAGE:-stage_a}
 folders="machine $stage blocks"
-[ "$stage" = stage_a ] || folders="machine $stage blocks_exact blocks"
+case $stage in
+  stage_b) folders="machine stage_b blocks_exact blocks" ;;
+  stage_c) folders="machine stage_c stage_b blocks_exact blocks" ;;
+esac
+include="-I.$(printf ' -I%s' $folders)"
 files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++')
 files=$(echo $files)
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
@@ -30,13 +34,14 @@ synthesize() {
 whole_machine() {
   case $stage in
     stage_a) parts=parts.txt bound=13 ;;
-    *) parts=parts_exact.txt bound=8 ;;
+    stage_b) parts=parts_exact.txt bound=8 ;;
+    *) echo "the parts of $stage are not named" >&2; exit 1 ;;
   esac
   widths="-chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND $bound -chparam DEPTH 8 -chparam NODE_WIDTH 21"
   parameters=${PARAMETERS:-$widths}
   # Memories are black boxes. Constants are passed on before the parts are cut out, and nothing else is.
   without_memory=$(echo "$files" | tr ' ' '\n' | grep -v memory.v | tr '\n' ' ')
-  read="read_verilog -sv -I. -I$stage ${DEFINES:-} $without_memory; read_verilog -lib machine/memory.v
+  read="read_verilog -sv $include ${DEFINES:-} $without_memory; read_verilog -lib machine/memory.v
     hierarchy -top machine $parameters; proc; flatten; opt_expr; opt_clean; memory; opt_clean; rename -top machine"
   cut=$(awk '!/^#/ { list = ""
       for (i = 3; i <= NF; i++) list = list " machine/c:*" $i ".*"
@@ -66,7 +71,7 @@ whole_machine() {
 
 for top in "$@"; do
   if [ "$top" = machine ]; then whole_machine; continue; fi
-  synthesize "read_verilog -sv -I. -I$stage ${DEFINES:-} $files; hierarchy -top $top; ${BOX:-}
+  synthesize "read_verilog -sv $include ${DEFINES:-} $files; hierarchy -top $top; ${BOX:-}
     synth -flatten -top $top; $cells${NETLIST:+; write_verilog -noattr $NETLIST}"
   awk -v top="$top" '
     /Delay *=/ { for (i = 1; i <= NF; i++) if ($i == "Delay") { v = $(i + 2); if (v > delay) delay = v } }

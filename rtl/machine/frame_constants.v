@@ -18,6 +18,7 @@ module frame_constants #(parameter W = `WORD_BITS) (
   output [3*W-1:0]              eye_floor,     // the eye in object space, rounded down
   output [3*W-1:0]              eye_ceil,      // and up
   output reg                    positive,      // the edges' clip vectors have a positive determinant
+  output reg                    root_leaf,     // the object's node has no children
   output reg signed [W-1:0]     near, near_crossing,
   output reg signed [W-1:0]     size_limit, lod_limit, least_size, // screen-space sizes
   // By octree level: the least depth of a node that level of detail takes for a solid, if there is one;
@@ -56,7 +57,7 @@ module frame_constants #(parameter W = `WORD_BITS) (
           6'd4: sub_levels <= data[`LEVEL_BITS-1:0];
           6'd5: width <= data[`PLACE_BITS-1:0];
           6'd6: height <= data[`PLACE_BITS-1:0];
-          6'd7: {positive, has_lod, coarse} <= data[2:0];
+          6'd7: {root_leaf, positive, has_lod, coarse} <= data[3:0];
           6'd8: near <= data;
           6'd9: near_crossing <= data;
           6'd10: size_limit <= data;

@@ -1,4 +1,5 @@
 `include "widths.vh"
+`include "stage.vh"
 // Machines side by side, the lanes: each draws a tile of the picture at a time, with a stack and fill vectors of its
 // own. They share two caches, the port to the memory outside, and that of pixels. docs/rtl.md has their cycles.
 //
@@ -7,7 +8,7 @@
 // Only for rules under which the picture does not depend on the order of records: stage B. The picture has at least
 // 2^TILE_LEVELS samples a side, rounded up to a power of two. Whoever waits longest is served first; of those that
 // came in one cycle, the lowest lane, and nodes before attributes.
-module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = 8,
+module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
   input                        clk, reset,

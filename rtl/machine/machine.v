@@ -9,7 +9,8 @@
 //
 // What a stage has of its own stands in its folder: `stage.vh` the widths of its records, `parts.vh` the
 // registers and blocks that this file does not have, `steps.vh` their states. Stage A changes records to screen
-// space and draws samples; stage B draws the silhouettes of solids.
+// space and draws samples; stages B and C draw the silhouettes of solids. Stages A and B have children on their
+// stack (`children.vh`), stage C the way to a parent.
 //
 // Outside are the memory of nodes and attributes, behind one port that moves a line of eight words, and
 // the memory of pixels. The host writes the frame's constants, then sets `start` for a cycle.
@@ -20,7 +21,7 @@
 //
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
-module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = 8,
+module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                  NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0) (
   input                        clk, reset,
@@ -52,14 +53,14 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   input                        shared_pixel_taken,
   input [63:0]                 shared_node_word, shared_attribute_word);
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, V = `WIDE_BITS;
-  // One coordinate of a record's vertices, of all that its children have, and what else it has in the picture.
-  localparam CAGE = `CAGE_WORDS*W, POOL_BITS = `POOL_WORDS*W, MORE = `MORE_BITS;
+  // One coordinate of a record's vertices, and what else it has in the picture.
+  localparam CAGE = `CAGE_WORDS*W, MORE = `MORE_BITS;
 
   // ---------------------------------------------------------------- constants of the frame
   wire [N-1:0] root;
   wire [L-1:0] levels, depth, level_bound, sub_levels;
   wire [P-1:0] width, height;
-  wire         coarse, has_lod_depth, positive;
+  wire         coarse, has_lod_depth, positive, root_leaf;
   wire [3*W-1:0] origin, eye_floor, eye_ceil;
   wire [9*W-1:0] edges;
   wire signed [W-1:0] near, near_crossing, size_limit, lod_limit, least_size, lod_depth;
@@ -94,49 +95,23 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   reg signed [W-1:0] c_w_min;
   reg [MORE-1:0]   c_more;
 
-  // As it lies on the stack: numbers as wide as the machine's greatest ones. The stage packs the rest.
-  localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1), QUAD_PLACE = PICTURE_LEVELS;
-  localparam CORNER = LEVEL_BOUND + 1;          // a coordinate, from 0 to 2^LEVEL_BOUND
-  localparam REST = `REST_BITS;
-  localparam ENTRY = 2 + LEVEL + QUAD_LEVEL + NODE_WIDTH + 2*QUAD_PLACE + 6*CORNER + 2*CAGE + REST;
-  function [3*CORNER-1:0] corner_bits(input [3*W-1:0] v);
-    corner_bits = {v[2*W +: CORNER], v[W +: CORNER], v[0 +: CORNER]};
-  endfunction
-  wire [REST-1:0]  pushed_rest, popped_rest;
-  wire [ENTRY-1:0] pushed = {c_solid, c_inside, c_level[LEVEL-1:0], c_quad_level[QUAD_LEVEL-1:0],
-    c_node[NODE_WIDTH-1:0], c_quad_x[QUAD_PLACE-1:0], c_quad_y[QUAD_PLACE-1:0], corner_bits(c_min),
-    corner_bits(c_max), c_x, c_y, pushed_rest};
-  wire [ENTRY-1:0] popped;
-  wire             p_solid, p_inside;
-  wire [LEVEL-1:0] p_level;
-  wire [QUAD_LEVEL-1:0]  p_quad_level;
-  wire [NODE_WIDTH-1:0]  p_node;
-  wire [QUAD_PLACE-1:0]  p_quad_x, p_quad_y;
-  wire [CORNER-1:0]      p_min_x, p_min_y, p_min_z, p_max_x, p_max_y, p_max_z;
-  wire [CAGE-1:0]        p_x, p_y;
-  assign {p_solid, p_inside, p_level, p_quad_level, p_node, p_quad_x, p_quad_y, p_min_x, p_min_y, p_min_z,
-    p_max_x, p_max_y, p_max_z, p_x, p_y, popped_rest} = popped;
-  function [W-1:0] corner_word(input [CORNER-1:0] v);
-    corner_word = v;
-  endfunction
-  // Of the rest.
-  wire [L-1:0]     p_voxel_level;
-  wire [CAGE-1:0]  p_w;
-  wire [W-1:0]     p_w_min;
-  wire [MORE-1:0]  p_more;
+  // The one of the two that is drawn or subdivided, as the stage has it; and a node of the picture that may be full.
+  wire [L-1:0]     t_level, t_voxel_level, t_quad_level, asked_level;
+  wire [N-1:0]     t_node;
+  wire [P-1:0]     t_quad_x, t_quad_y, asked_x, asked_y;
+  wire [3*W-1:0]   t_min, t_max;
+  wire signed [W-1:0] t_w_min;
+  wire [MORE-1:0]  t_more;
 
   // ---------------------------------------------------------------- memories on the chip
-  reg [STACK_LOG2:0] stacked;                   // records on the stack
+  reg [STACK_LOG2:0] stacked;                   // entries of the stack, which the stage has
   wire stack_full = stacked[STACK_LOG2];
   wire [STACK_LOG2-1:0] top = stacked[STACK_LOG2-1:0] - 1'b1;
-  memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
-    .read(state == POP), .write(state == PUSH & ~stack_full),
-    .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
-  // Fill vectors of the tile, level by level, row by row. The first of a level is 0101..01, as many ones as levels.
-  // Behind them those of the nodes above the tile.
-  localparam TILE_WORDS = ((1 << (2*(PICTURE_LEVELS - TILE_LEVELS) + 2)) - 1) / 3;
-  localparam FILL_WORDS = TILE_WORDS + TILE_LEVELS, FILL_ADDRESS = $clog2(FILL_WORDS + 1);
+  // Fill vectors of the tile, level by level, row by row, without the levels that a stage has in another memory. The
+  // first of a level is 0101..01, as many ones as levels. Behind them those of the nodes above the tile.
+  localparam TILE_WORDS = ((1 << (2*(PICTURE_LEVELS - TILE_LEVELS - `JOINED_LEVELS) + 2)) - 1) / 3;
+  localparam FILL_WORDS = TILE_WORDS + TILE_LEVELS, FILL_ADDRESS = $clog2(FILL_WORDS + 2);
   function [FILL_ADDRESS-1:0] fill_place(input [L-1:0] level, input [P-1:0] x, input [P-1:0] y);
     if (TILE_LEVELS == 0)
       fill_place = ({(PICTURE_LEVELS + 1){2'b01}} & ~({FILL_ADDRESS{1'b1}} << 2*level)) + (y << level) + x;
@@ -147,19 +122,23 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         + ((y & ~({P{1'b1}} << (level - TILE_LEVELS))) << (level - TILE_LEVELS))
         + (x & ~({P{1'b1}} << (level - TILE_LEVELS)));
   endfunction
-  wire [3:0] vector;
+  wire [3:0] vector, vector_there;              // of the node asked for; what this memory has of it
+  wire       known;                             // without a read
+  wire       elsewhere;                         // in the stage's memory
+  wire [L-1:0] last_level;                      // that has vectors, or words of the stage
   reg  [3:0] marked;                            // what is written next
+  wire       marked_all;
   reg  [3:0] outside_picture;
-  wire fill_read  = state == FIT & ~box_outside | state == FILLED | `SEARCHES & state == WALK | state == ABOVE
-    | draw_read;
+  wire fill_read  = state == FIT & ~box_outside | state == FILLED | state == ABOVE | draw_read;
   wire fill_write = state == CLEAR | state == MARK;
-  wire of_record  = state == FILLED;
-  wire [FILL_ADDRESS-1:0] fill_address =
-    of_record ? fill_place(r_quad_level, r_quad_x, r_quad_y) :
-    draw_read ? fill_place(draw_level, draw_x, draw_y) : fill_place(c_quad_level, c_quad_x, c_quad_y);
+  wire of_record  = state == FILLED | state == OPEN;
+  wire [L-1:0] fill_level = of_record ? asked_level : of_drawn ? draw_level : c_quad_level;
+  wire [P-1:0] fill_x = of_record ? asked_x : of_drawn ? draw_x : c_quad_x;
+  wire [P-1:0] fill_y = of_record ? asked_y : of_drawn ? draw_y : c_quad_y;
+  wire [FILL_ADDRESS-1:0] fill_address = fill_place(fill_level, fill_x, fill_y);
   memory #(.BITS(4), .WORDS(FILL_WORDS), .ADDRESS(FILL_ADDRESS)) fill_vectors (.clk(clk),
-    .read(fill_read), .write(fill_write), .address(fill_address),
-    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector));
+    .read(fill_read & ~elsewhere), .write(fill_write & ~elsewhere), .address(fill_address),
+    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
 
   // A new frame's vectors: a quadrant is full from the start if its first sample is beside the picture.
   integer q;
@@ -197,7 +176,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
   assign node_request = state == NODE;
   assign attribute_request = state == ATTRIBUTE;
-  assign wanted_node = r_node;
+  assign wanted_node = t_node;
   generate
     if (SHARED) begin : shared
       assign {node_taken, node_ready, node_word} = {shared_node_taken, shared_node_ready, shared_node_word};
@@ -209,10 +188,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       wire [A-4:0] node_line, attribute_line;
       reg          filling_attributes;
       cache #(.SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk), .reset(reset), .request(node_request),
-        .address(r_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
+        .address(wanted_node[A-1:0]), .ready(node_ready), .word(node_word), .fetch(node_fetch), .fetch_line(node_line),
         .fill(fill & ~filling_attributes), .fill_word(fill_word));
       cache #(.SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk), .reset(reset),
-        .request(attribute_request), .address(r_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
+        .request(attribute_request), .address(wanted_node[A-1:0]), .ready(attribute_ready), .word(attribute_word),
         .fetch(attribute_fetch), .fetch_line(attribute_line), .fill(fill & filling_attributes),
         .fill_word(fill_word));
       assign {node_taken, attribute_taken, pixel_taken} = 3'b111;
@@ -227,8 +206,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   frame_constants #(W) constants (.clk(clk), .write(constant_write), .address(constant_address),
     .data(constant_data), .root(root), .levels(levels), .depth(depth), .level_bound(level_bound),
     .sub_levels(sub_levels), .width(width), .height(height), .coarse(coarse), .origin(origin), .edges(edges),
-    .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive), .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
-    .lod_limit(lod_limit), .least_size(least_size), .look_up(state == FILLED), .of_level(r_level),
+    .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive), .root_leaf(root_leaf),
+    .near(near), .near_crossing(near_crossing), .size_limit(size_limit),
+    .lod_limit(lod_limit), .least_size(least_size), .look_up(lod_look_up), .of_level(lod_level),
     .has_lod_depth(has_lod_depth), .lod_depth(lod_depth));
 
   // ---------------------------------------------------------------- the object
@@ -241,14 +221,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire full;
   filled is_filled (.vector(vector), .full(full));
 
-  // ---------------------------------------------------------------- the verdict, by a module of the stage
-  wire solid, subdivide, look_hidden;
-  wire [7:0]   mask_read = node_word[39:32];
-  wire leaf = ~r_solid & (r_level >= depth | mask_read == 0);
+  // ---------------------------------------------------------------- children
+  // Of the record that is subdivided: which children it has, and where they begin.
   reg [7:0]   mask;
   reg [N-1:0] first;
-
-  // ---------------------------------------------------------------- children
   wire [3*W-1:0] centre_now;
   reg  [3*W-1:0] middle;
   centre #(W) centre_of (.min(r_min), .max(r_max), .centre(centre_now));
@@ -256,32 +232,22 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [23:0] order_now;
   octant_order #(W) order_of (.centre(middle), .eye_floor(eye_floor), .octant(octant_now), .child(order_now));
   reg  [23:0] order;                            // the nearest highest
-  wire [POOL_BITS-1:0] pool_x_now, pool_y_now, pool_w_now;
-  reg  [POOL_BITS-1:0] pool_x, pool_y, pool_w;
-  midpoints #(W) midpoints_x (.parent(r_x), .pool(pool_x_now));
-  midpoints #(W) midpoints_y (.parent(r_y), .pool(pool_y_now));
-  midpoints #(W) midpoints_w (.parent(r_w), .pool(pool_w_now));
-  // Children by their place in the order, the farthest (place 7) lowest: which there are, which are left.
+  // Children by their place in the order, the farthest (place 7) lowest: which there are, which are left,
+  // and are after the next one had its turn. The stage says which that is.
   reg  [7:0] left;
   reg  [7:0] there;
   reg  [2:0] octant;
   reg  [7:0] left_after;
+  wire       any_left;
+  wire [23:0] order_used;                       // `order`, or what is about to be
   integer r;
-  always @* begin
+  always @*
     for (r = 0; r < 8; r = r + 1)
-      there[r] = r_solid | mask[order[3*r +: 3]];
-    octant = 0;
-    for (r = 7; r >= 0; r = r - 1)
-      if (left[r]) octant = order[3*r +: 3];
-    left_after = left & (left - 8'd1);
-  end
+      there[r] = r_solid | mask[order_used[3*r +: 3]];
   // Children before this one in the node's list.
   wire [7:0] earlier = mask & ~(8'hff << octant);
   wire [3:0] count = earlier[0] + earlier[1] + earlier[2] + earlier[3] + earlier[4] + earlier[5] + earlier[6];
   wire [CAGE-1:0] child_x, child_y, child_w;
-  child_vertices #(W) vertices_x (.pool(pool_x), .octant(octant), .child(child_x));
-  child_vertices #(W) vertices_y (.pool(pool_y), .octant(octant), .child(child_y));
-  child_vertices #(W) vertices_w (.pool(pool_w), .octant(octant), .child(child_w));
   wire [3*W-1:0] child_min, child_max;
   child_corners #(W) corners (.min(r_min), .max(r_max), .centre(middle), .octant(octant),
     .child_min(child_min), .child_max(child_max));
@@ -289,23 +255,25 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire signed [W-1:0] w_low, w_high;
   child_span #(W) span_w (.child(state == OBJECT_BOX ? c_w : child_w), .low(w_low), .high(w_high));
 
+  wire lod_look_up;                             // of the depth of a level
+  wire [L-1:0] lod_level;
+
   // ---------------------------------------------------------------- a box down the picture's quadtree
   reg  fresh;                                   // the node's edges are not tested yet
   wire box_outside_now, box_enclosed, box_near, rejected, single;
   wire [3:0] overlapped;
   wire [1:0] only;
   wire [CAGE-1:0] inner_x, inner_y;
-  reg  [1:0] quadrant;                          // to go on in
+  wire [1:0] quadrant;                          // to go on in
   wire box_outside = fresh & ~c_inside & box_outside_now;
   node_choice choice (.overlapped(overlapped), .vector(vector), .rejected(rejected), .single(single),
     .quadrant(only));
-  wire goes_down = single & c_quad_level < levels & (c_inside | c_screen | box_near);
+  wire inside_now = c_inside | fresh & box_enclosed;
+  wire goes_down = single & c_quad_level < levels & (inside_now | c_screen | box_near);
 
-  // The search for an undrawn sample: by level the quadrants that are left.
+  // A search down the quadtree: by level the quadrants that are left.
   reg  [4*(PICTURE_LEVELS + 1)-1:0] waiting;
   wire [3:0] open = ~vector;
-  wire [3:0] found = overlapped & open;
-  reg  [3:0] chosen_from;
   reg  [L-1:0] back_level;                      // the deepest level that has some left
   reg  back_any;
   integer l;
@@ -317,53 +285,31 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         back_any = 1;
         back_level = l;
       end
-    chosen_from = `SEARCHES & state == WALKED & c_quad_level != levels & |found ? found : waiting[4*back_level +: 4];
-    quadrant = only;
-    if (`SEARCHES & (state == WALKED | state == BACK))
-      quadrant = chosen_from[0] ? 2'd0 : chosen_from[1] ? 2'd1 : chosen_from[2] ? 2'd2 : 2'd3;
   end
-  wire [L-1:0] up = c_quad_level - back_level;
-  wire [CAGE-1:0] outer_x, outer_y;             // relative to the node above
-  whole_clip #(W) outer_of_x (.x(c_x), .w(c_w), .right(c_quad_x[0]), .outer(outer_x));
-  whole_clip #(W) outer_of_y (.x(c_y), .w(c_w), .right(c_quad_y[0]), .outer(outer_y));
 
   // ---------------------------------------------------------------- pixels and fill vectors
   wire [3:0] after;
   wire       now_full;
   reg  [3:0] quadrant_bit;
   fill_update update (.vector(vector), .bits(quadrant_bit), .after(after), .full(now_full));
-  wire [L-1:0] side = depth - r_voxel_level;    // of the voxel, log2
+  wire [L-1:0] side = depth - t_voxel_level;    // of the voxel, log2
   genvar k;
   generate
     for (k = 0; k < 3; k = k + 1) begin : voxel
-      wire [W-1:0] finest = r_min[k*W +: W] >> sub_levels;
+      wire [W-1:0] finest = t_min[k*W +: W] >> sub_levels;
       assign pixel_voxel[k*W +: W] = finest >> side << side;
     end
   endgenerate
   assign pixel = state == PIXEL;
   assign pixel_x = c_quad_x;
   assign pixel_y = c_quad_y;
-  assign pixel_node = r_node;
-  assign pixel_level = r_voxel_level;
+  assign pixel_node = t_node;
+  assign pixel_level = t_voxel_level;
   assign pixel_attribute = attribute_word;
 
   // ---------------------------------------------------------------- what comes next
   wire [5:0] next_record = stacked == 0 ? DONE : POP;
-  wire [5:0] next_child = left_after != 0 ? CHILD : next_record;    // after this one had its turn
-
-  task look_for_sample;
-    begin
-      waiting <= 0;
-      c_quad_level <= r_quad_level;
-      c_quad_x <= r_quad_x;
-      c_quad_y <= r_quad_y;
-      c_x <= r_x;
-      c_y <= r_y;
-      c_w <= r_w;
-      c_more <= r_more;
-      state <= WALK;
-    end
-  endtask
+  wire [5:0] next_child = any_left ? CHILD : next_record;    // after this one had its turn
 
   task go_to_quadrant(input [1:0] to);
     begin
@@ -376,6 +322,19 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
         c_y <= inner_y;
       end
     end
+  endtask
+
+  // A node whose vector is there: the box goes on in a quadrant, or belongs here.
+  task choose;
+    if (rejected) begin
+      left <= left_after;
+      state <= next_child;
+    end else if (goes_down) begin
+      go_to_quadrant(quadrant);
+      c_more <= inner_more;
+      state <= FIT;
+    end else
+      accept;
   endtask
 
   // ---------------------------------------------------------------- the stage's own
@@ -399,7 +358,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           c_quad_x <= last_of_level ? below_x : last_of_row ? first_x_of : c_quad_x + 1'b1;
           if (last_of_row) c_quad_y <= last_of_level ? below_y : c_quad_y + 1'b1;
           if (last_of_level) c_quad_level <= c_quad_level + 1'b1;
-          if (last_of_level & c_quad_level == levels) state <= OBJECT;
+          if (last_of_level & c_quad_level == last_level) state <= OBJECT;
         end
         OBJECT: begin
           {c_solid, c_inside} <= 2'b0;
@@ -427,80 +386,13 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
           stacked <= stacked - 1'b1;
           state <= POPPED;
         end
-        POPPED: begin
-          r_solid <= p_solid;
-          r_inside <= p_inside;
-          r_level <= p_level;
-          r_voxel_level <= p_voxel_level;
-          r_quad_level <= p_quad_level;
-          r_node <= p_node;
-          r_quad_x <= p_quad_x;
-          r_quad_y <= p_quad_y;
-          r_min <= {corner_word(p_min_x), corner_word(p_min_y), corner_word(p_min_z)};
-          r_max <= {corner_word(p_max_x), corner_word(p_max_y), corner_word(p_max_z)};
-          r_x <= p_x;
-          r_y <= p_y;
-          r_w <= p_w;
-          r_w_min <= p_w_min;
-          r_more <= p_more;
-          state <= FILLED;
-        end
         FILLED: state <= OPEN;
         OPEN:
           if (full) state <= next_record;
           else take_up;
-        NODE: if (node_taken) state <= VERDICT;
-        VERDICT: if (r_solid | node_ready) begin
-          if (~r_solid) {mask, first} <= node_word[39:0];
-          r_solid <= solid;
-          if (draws) begin_drawing;
-          else if (`SEARCHES & subdivide & look_hidden) look_for_sample;
-          else state <= subdivide ? CENTRE : next_record;
-        end
-        WALK: if (`SEARCHES) state <= WALKED;
-        WALKED: if (`SEARCHES)
-          if (c_quad_level == levels & |open)
-            state <= found_sample;
-          else if (c_quad_level != levels & |found) begin
-            waiting[4*c_quad_level +: 4] <= found & (found - 4'd1);
-            go_to_quadrant(quadrant);
-            state <= WALK;
-          end else if (~back_any)
-            state <= next_record;
-          else if (c_screen) begin
-            waiting[4*back_level +: 4] <= chosen_from & (chosen_from - 4'd1);
-            c_quad_level <= back_level + 1'b1;
-            c_quad_x <= {c_quad_x >> up, quadrant[0]};
-            c_quad_y <= {c_quad_y >> up, quadrant[1]};
-            state <= WALK;
-          end else
-            state <= BACK;
-        BACK: if (`SEARCHES)
-          if (c_quad_level != back_level) begin
-            c_x <= outer_x;
-            c_y <= outer_y;
-            c_quad_x <= c_quad_x >> 1;
-            c_quad_y <= c_quad_y >> 1;
-            c_quad_level <= c_quad_level - 1'b1;
-          end else begin
-            waiting[4*back_level +: 4] <= chosen_from & (chosen_from - 4'd1);
-            go_to_quadrant(quadrant);
-            state <= WALK;
-          end
         CENTRE: begin
           middle <= centre_now;
           state <= ORDER;
-        end
-        ORDER: begin
-          order <= order_now;
-          state <= POOL;
-        end
-        POOL: begin
-          pool_x <= pool_x_now;
-          pool_y <= pool_y_now;
-          pool_w <= pool_w_now;
-          left <= there;
-          state <= CHILD;
         end
         CHILD: begin
           c_solid <= r_solid;
@@ -530,37 +422,20 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             left <= left_after;
             state <= next_child;
           end else begin
-            c_inside <= c_inside | fresh & box_enclosed;
+            c_inside <= inside_now;
             fresh <= 0;
-            state <= CHOOSE;
+            if (known) choose;
+            else state <= CHOOSE;
           end
-        CHOOSE:
-          if (rejected) begin
-            left <= left_after;
-            state <= next_child;
-          end else if (goes_down) begin
-            go_to_quadrant(quadrant);
-            c_more <= inner_more;
-            state <= FIT;
-          end else
-            state <= PUSH;
-        PUSH: begin
-          stacked <= stacked + 1'b1;
-          failed <= failed | stack_full;
-          left <= left_after;
-          state <= stack_full ? DONE : left_after != 0 ? CHILD : POP;
-        end
+        CHOOSE: choose;
         DRAWN:
           if (full) draw_on;
           else state <= ATTRIBUTE;
         ATTRIBUTE: if (attribute_taken) state <= SHOW;
         SHOW: if (attribute_ready) state <= PIXEL;
-        PIXEL: if (pixel_taken) begin
-          marked <= 4'b1111;
-          state <= MARK;
-        end
+        PIXEL: if (pixel_taken) mark_sample;
         MARK:
-          if (&marked & c_quad_level != 0) begin
+          if (marked_all & c_quad_level != 0) begin
             quadrant_bit <= 4'b0001 << {c_quad_y[0], c_quad_x[0]};
             c_quad_level <= c_quad_level - 1'b1;
             c_quad_x <= c_quad_x >> 1;

@@ -1,6 +1,8 @@
 // Stage A: the machine of the image-order paper (`--paper`: corners, coverage any, infinite tolerance). What it has
 // in machine.v: the change to screen space, boxes there, samples drawn where a box or a centre is.
-//
+`include "children.vh"
+`include "search.vh"
+
 // Of a record: whether it is in screen space, and its box there, x low, x high, y low, y high.
 wire             r_screen = r_more[4*W], c_screen = c_more[4*W];
 wire [4*W-1:0]   r_spans = r_more[4*W-1:0], c_spans = c_more[4*W-1:0];
@@ -50,8 +52,7 @@ image_step #(W, F) box (.screen(c_screen), .x(c_x), .y(c_y), .w(c_w), .spans(c_s
 // ---------------------------------------------------------------- the verdict
 // A solid in screen space at the bound is drawn untested.
 wire untested = r_level >= level_bound;
-wire draw_box, draw_centre;
-wire draws = draw_box | draw_centre;
+wire draw_box, draw_centre, subdivide, look_hidden;
 verdict #(W) rule (.screen(r_screen), .solid_before(r_solid), .leaf(leaf), .in_node(r_inside), .level(r_level),
   .quad_level(r_quad_level), .x(r_x), .y(r_y), .w(r_w), .w_min(r_w_min), .spans(r_spans), .levels(levels),
   .level_bound(level_bound), .coarse(coarse), .has_lod_depth(has_lod_depth), .near(near),
@@ -76,7 +77,7 @@ centre_half #(W) half_of_y (.value(m_y), .w(m_w), .right(lower), .inner(half_y))
 // ---------------------------------------------------------------- samples that are drawn
 reg to_draw;                                    // a sample that is found is drawn; else the record is not hidden
 wire [5:0] found_sample = to_draw ? DRAW : CENTRE;
-wire draw_read = state == DRAW;
+wire draw_read = state == DRAW | state == WALK;
 wire [L-1:0] draw_level = c_quad_level;
 wire [P-1:0] draw_x = c_quad_x, draw_y = c_quad_y;
 
@@ -91,12 +92,17 @@ task take_up;
   end
 endtask
 
-task begin_drawing;
+// After its verdict.
+task judge;
   if (draw_box) begin
     to_draw <= 1;
     look_for_sample;
-  end else
+  end else if (draw_centre)
     state <= MIDDLE;
+  else if (subdivide & look_hidden)
+    look_for_sample;
+  else
+    state <= subdivide ? CENTRE : next_record;
 endtask
 
 // After a sample.

@@ -4,7 +4,11 @@
 `define MORE_BITS (1 + 4*W)
 // Of an entry of the stack the level of the voxel, the pose, and what only one pose has.
 `define REST_BITS ($clog2(DEPTH + 1) + 1 + 9*W)
+// Lowest levels of fill vectors that are not in the memory of vectors.
+`define JOINED_LEVELS 0
+// All fill vectors, in bits, of a machine `dut`.
+`define FILL_BITS (dut.fill_vectors.BITS*dut.fill_vectors.WORDS)
+// Log2 of the stack's entries.
+`define STACK_LOG2 8
 // Registers of constants.
 `define CONSTANTS 128
-// A record may be no larger than a sample and lie across a bisector: whether it is hidden is searched.
-`define SEARCHES 1

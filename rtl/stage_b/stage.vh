@@ -4,7 +4,11 @@
 `define MORE_BITS (12*V)
 // Of an entry of the stack the depths, the least of them, and the planes.
 `define REST_BITS (5*W + MORE)
+// Lowest levels of fill vectors that are not in the memory of vectors.
+`define JOINED_LEVELS 0
+// All fill vectors, in bits, of a machine `dut`.
+`define FILL_BITS (dut.fill_vectors.BITS*dut.fill_vectors.WORDS)
+// Log2 of the stack's entries.
+`define STACK_LOG2 8
 // Registers of constants.
 `define CONSTANTS 164
-// No record that is subdivided is that small where the fit stops (docs/rtl.md, 4).
-`define SEARCHES 0

@@ -1,32 +1,3 @@
-// Stage B's states: the silhouette of a solid down the image quadtree.
-SOLID: begin
-  waiting <= 0;
-  whole <= 0;
-  s_level <= r_quad_level;
-  s_x <= r_quad_x;
-  s_y <= r_quad_y;
-  state <= COVER;
-end
-QUADRANT: state <= COVER;
-COVER: begin
-  c_quad_level <= s_level;
-  c_quad_x <= s_x;
-  c_quad_y <= s_y;
-  if (coverage == 0) draw_on;
-  else state <= sample ? DRAWN : COVERED;
-end
-// A node of which samples are covered has quadrants that are not full: it is itself in one that is not.
-COVERED: begin
-  next_quadrant;
-  if (~divides & ~whole) begin
-    whole <= 1;
-    whole_level <= s_level;
-  end
-  state <= divides ? QUADRANT : COVER;
-end
-CLIMB:
-  if (divided - 1'b1 == back_level) begin
-    next_quadrant;
-    whole <= 0;
-    state <= QUADRANT;
-  end
+// Stage B's states.
+`include "children_steps.vh"
+`include "silhouette_steps.vh"

@@ -11,7 +11,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   // Cycles from the request of a line to its first word.
   localparam LATENCY = 50;
   // Nodes that there is room for, records on the stack.
-  localparam NODES = 1 << 20, STACK_LOG2 = 8;
+  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [7:0] constant_address = 0;
@@ -72,11 +72,14 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   integer events, pixels, i, cycles, most, nothing;
   integer in_state [0:63];
   reg has_events;
+  function [7:0] nearest_lowest(input [7:0] left);
+    nearest_lowest = {left[0], left[1], left[2], left[3], left[4], left[5], left[6], left[7]};
+  endfunction
   always @(posedge clk) if (busy) begin
     cycles <= cycles + 1;
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
-      `include "tb/events.vh"
+      `include "tb/ports.vh"
     end
     if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
       pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
@@ -113,7 +116,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
     start = 1;
     @(posedge clk) #1;
     start = 0;
-    while (!done && cycles < most) @(posedge clk) #1;
+    while (busy && cycles < most) @(posedge clk) #1;
     if ($test$plusargs("states"))
       for (i = 0; i < 64; i = i + 1)
         if (in_state[i] != 0) $display("state %0d: %0d", i, in_state[i]);

@@ -8,7 +8,7 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
   // Cycles from the request of a line to its first word, and of a line.
   localparam LATENCY = 52, LINE = 8;
   // Nodes that there is room for, records on a stack, lines on their way.
-  localparam NODES = 1 << 20, STACK_LOG2 = 8, MOST = 16;
+  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2, MOST = 16;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [7:0] constant_address = 0;
@@ -71,7 +71,7 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
   generate
     for (lane = 0; lane < LANES; lane = lane + 1) begin : watched
       always @(posedge clk) if (`WALK.busy & has_events) begin
-        `include "tb/events.vh"
+        `include "tb/ports.vh"
       end
     end
   endgenerate

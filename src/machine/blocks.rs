@@ -125,11 +125,13 @@ pub enum Port {
     AttributeRead,
     /// A pixel is written: the node that it shows.
     PixelWrite,
+    /// Where parents lie on the stack: a record is in registers, new (0) or worked back (1).
+    Made,
 }
 
 impl Port {
     /// All ports, in the order of their numbers.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Pop,
         Self::Push,
         Self::FillRead,
@@ -137,6 +139,7 @@ impl Port {
         Self::NodeRead,
         Self::AttributeRead,
         Self::PixelWrite,
+        Self::Made,
     ];
 
     /// Shows what crosses the port.

@@ -61,6 +61,7 @@ impl<'f> Canvas<'f> {
             }
         } else {
             let node = u64::from(paint.node);
+            dp.next_step(0);
             dp.read(Memory::Attribute, node);
             Port::AttributeRead.tap(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
             self.put(dp, at, paint);
@@ -139,26 +140,42 @@ impl<'f> Canvas<'f> {
             return;
         }
         for quadrant in self.open_quadrants(dp, quad) {
+            dp.next_step(0);
             self.draw_all(dp, quad.quadrant(quadrant), paint);
         }
     }
 
-    /// Whether a sample of `quad` inside a silhouette is not full yet.
+    /// Whether a sample of `quad` inside a silhouette is not full yet. `Err`: none is, and this is the level of the last
+    /// node that was divided, as of [`Self::draw_silhouette`].
     pub(super) fn sees<P: Probe>(
         &self,
         dp: &mut Datapath<P>,
         quad: QuadNode,
         mut silhouette: Silhouette,
-    ) -> bool {
+    ) -> Result<(), u32> {
         let below = self.fill.levels() - quad.level;
+        let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {
-            Cover::None => false,
-            Cover::All => self.open_quadrants(dp, quad).next().is_some(),
-            Cover::Some => self.open_quadrants(dp, quad).any(|quadrant| {
-                let inner = silhouette.in_quadrant(dp, quadrant);
-                self.sees(dp, quad.quadrant(quadrant), inner)
-            }),
+            Cover::None => {}
+            Cover::All => {
+                if self.open_quadrants(dp, quad).next().is_some() {
+                    return Ok(());
+                }
+            }
+            Cover::Some => {
+                divided = quad.level;
+                for quadrant in self.open_quadrants(dp, quad) {
+                    dp.next_step(divided - quad.level);
+                    let inner = silhouette.in_quadrant(dp, quadrant);
+                    dp.next_step(0);
+                    match self.sees(dp, quad.quadrant(quadrant), inner) {
+                        Ok(()) => return Ok(()),
+                        Err(deepest) => divided = deepest,
+                    }
+                }
+            }
         }
+        Err(divided)
     }
 
     /// The quadrants of a node that are not full.

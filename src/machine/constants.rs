@@ -5,6 +5,7 @@
 
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
+use crate::graph::GraphView;
 use crate::project::options::ShiftSum;
 use crate::project::vector::cross;
 use crate::project::{Coverage, FrameSetup};
@@ -205,10 +206,10 @@ impl Constants {
 }
 
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on, of an object whose node is `root`; all ones but the sign where a level has no depth. Under the rules that draw
+/// on, of a graph; all ones but the sign where a level has no depth. Under the rules that draw
 /// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
 #[must_use]
-pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
+pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);
     let limits = [&setup.lod_limit, &Some(setup.size_limit.clone())];
@@ -218,7 +219,7 @@ pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
     let mut registers = vec![0; REGISTERS];
     let mut put =
         |at: usize, values: &[i64]| registers[at..at + values.len()].copy_from_slice(values);
-    put(0, &[i64::from(root)]);
+    put(0, &[i64::from(graph.root)]);
     let numbers = [
         c.levels,
         c.depth,
@@ -228,7 +229,8 @@ pub fn frame_registers(setup: &FrameSetup, root: u32) -> Vec<i64> {
         setup.height,
     ];
     put(1, &numbers.map(i64::from));
-    let flags = [coarse, has_lod, c.positive];
+    let is_leaf = graph.mask(graph.root) == 0;
+    let flags = [coarse, has_lod, c.positive, is_leaf];
     put(
         7,
         &[(0..)

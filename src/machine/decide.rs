@@ -50,17 +50,11 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         // A record whose parent says what is a leaf reads its node only if it is subdivided.
         let is_read_late = self.layout.leaf_masks;
         if !cube.solid {
+            let (node, level) = (cube.node, cube.level);
+            cube.solid = level >= self.constants.depth || self.graph.mask(node) == 0;
             if !is_read_late {
-                for word in self.layout.words(cube.node, cube.level) {
-                    self.dp.read(Memory::Node, word);
-                    let data = (
-                        Short::unsigned(self.graph.mask(cube.node), 8),
-                        Short::unsigned(self.graph.first(cube.node), ADDRESS_BITS),
-                    );
-                    Port::NodeRead.tap(&mut self.dp, word, &data);
-                }
+                self.read_node(node, level);
             }
-            cube.solid = cube.level >= self.constants.depth || self.graph.mask(cube.node) == 0;
         }
         match self.verdict(record) {
             Verdict::DrawCentre => self.draw_centre(record),
@@ -72,14 +66,25 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 // Parts of a solid have no node of their own.
                 if is_read_late && !record.cube.solid {
                     self.dp.stage(Stage::OnePixel);
-                    for word in self.layout.words(record.cube.node, record.cube.level) {
-                        self.dp.read(Memory::Node, word);
-                    }
+                    self.read_node(record.cube.node, record.cube.level);
                 }
                 return RemainingWork::Children;
             }
         }
         RemainingWork::Nothing
+    }
+
+    /// Reads an octree node, or what its brick has of it.
+    #[inline(always)]
+    fn read_node(&mut self, node: u32, level: u32) {
+        for word in self.layout.words(node, level) {
+            self.dp.read(Memory::Node, word);
+            let data = (
+                Short::unsigned(self.graph.mask(node), 8),
+                Short::unsigned(self.graph.first(node), ADDRESS_BITS),
+            );
+            Port::NodeRead.tap(&mut self.dp, word, &data);
+        }
     }
 
     /// Changes a record from clip space to screen space, if it may.

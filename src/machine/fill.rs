@@ -15,6 +15,8 @@ use crate::frame::{FillVectors, QuadNode};
 
 /// Levels of fill vectors that a word takes the place of, below its own.
 const LEVELS_BELOW: u32 = 2;
+/// Samples of a word.
+const WORD_BITS: u32 = 16;
 /// A word whose samples are all drawn.
 const ALL_DRAWN: u16 = u16::MAX;
 /// No word is in the register.
@@ -163,12 +165,16 @@ impl<'f> FillStore<'f> {
         self.read_word(dp, sample);
         let word = &mut self.words[at];
         let quadrant = parent_of(sample).in_parent();
-        // Four gates a quadrant, of which one changes.
+        // Four gates a quadrant, of which one changes, beside what led here: the word is in its register.
         let before = (*word >> (quadrant << 2)) as u8 & FULL;
-        dp.or_bits(4, before, 1 << sample.in_parent());
+        dp.beside(Stage::FillUpdate, |dp| {
+            dp.or_bits(4, before, 1 << sample.in_parent());
+            dp.and_bits(4, before, FULL);
+        });
         *word |= 1 << ((quadrant << 2) + sample.in_parent());
         dp.write(Memory::FillVector, node.address() as u64);
-        dp.and_bits(4, before, FULL);
+        let written = Short::unsigned(*word, WORD_BITS);
+        Port::FillWrite.tap(dp, node.address() as u64, &written);
         let is_full = *word == ALL_DRAWN && node.level > 0;
         is_full.then(|| (parent_of(node), 1 << node.in_parent()))
     }
@@ -199,9 +205,12 @@ impl<'f> FillStore<'f> {
     }
 
     fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
-        let address = self.word_at(node).0.address() as u64;
+        let (of, at) = self.word_at(node);
+        let address = of.address() as u64;
         if self.latched.replace(address) != address {
             dp.read(Memory::FillVector, address);
+            let word = Short::unsigned(self.words[at], WORD_BITS);
+            Port::FillRead.tap(dp, address, &word);
         }
     }
 

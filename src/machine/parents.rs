@@ -25,6 +25,7 @@
 use hwmodel::cycles::StackHolds;
 use hwmodel::{Memory, Probe, Stage, Word};
 
+use super::blocks::Port;
 use super::cage::CageCoordinate;
 use super::decide::RemainingWork;
 use super::path::{self, PathEntry};
@@ -80,6 +81,18 @@ impl<L: CageCoordinate> Parent<L> {
     /// Whether all its children had their turn.
     pub(super) fn is_done(&self) -> bool {
         self.left == 0
+    }
+
+    /// What lies on the stack of the way to it.
+    fn entry(&self) -> PathEntry {
+        let Record { cube, place, .. } = &self.record;
+        PathEntry {
+            node: cube.node,
+            level: cube.level,
+            quad_level: place.quad.level,
+            inside: place.inside,
+            left: self.left,
+        }
     }
 
     /// Whether it is new, and so was never on the stack.
@@ -178,17 +191,12 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.counts.deepest_stack = self.counts.deepest_stack.max(address + 1);
         parent.expanded = None;
         parent.is_stored = true;
-        if self.options.organisation.stack != StackHolds::Path {
-            return Stored::Whole(parent);
+        let entry = parent.entry();
+        Port::Push.tap(&mut self.dp, address, &entry);
+        match self.options.organisation.stack {
+            StackHolds::Path => Stored::Way(entry),
+            _ => Stored::Whole(parent),
         }
-        let Record { cube, place, .. } = &parent.record;
-        Stored::Way(PathEntry {
-            node: cube.node,
-            level: cube.level,
-            quad_level: place.quad.level,
-            inside: place.inside,
-            left: parent.left,
-        })
     }
 
     /// Takes a parent back of which the way is on the stack, at `address`, to go on with its children; `None`: its
@@ -206,16 +214,30 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.dp.resume(entry.level);
         self.dp.stage(Stage::Pop);
         self.dp.read(Memory::Stack, address);
+        Port::Pop.tap(&mut self.dp, address, entry);
         if self.is_full(path::quad_above(from.place.quad, entry.quad_level)) {
             self.counts.already_full += 1;
             return None;
         }
         self.dp.stage(Stage::Pop);
         let record = path::back(&mut self.dp, &self.constants, entry, from);
+        if P::TAPS {
+            self.show_worked_back(record);
+        }
         Some(Parent {
             left: entry.left,
             ..Parent::new(record)
         })
+    }
+
+    /// Shows a parent that was worked back. What its turn does not need is not shown: its number, of which the stack has
+    /// what is read there, and its least depth.
+    fn show_worked_back(&mut self, mut record: Record<L>) {
+        record.cube.node = 0;
+        if let Pose::Clip(clip, _) = &mut record.pose {
+            clip.w_min = Word::ZERO;
+        }
+        Port::Made.tap(&mut self.dp, u64::from(true), &record);
     }
 
     /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if
@@ -233,6 +255,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 if std::mem::take(&mut parent.is_stored) {
                     self.dp.stage(Stage::Pop);
                     self.dp.read(Memory::Stack, address);
+                    Port::Pop.tap(&mut self.dp, address, &parent.entry());
                     if self.is_full(parent.record.place.quad) {
                         self.counts.already_full += 1;
                         parent.left = 0;
@@ -252,22 +275,20 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
                 continue;
             };
             let from = parent.record.place;
-            self.dp.stage(Stage::VertexPool);
+            // A child is made in one step, its vertices beside its box.
+            let mut grow = |seed| {
+                let octant = octant as usize;
+                self.dp
+                    .beside(Stage::VertexPool, |dp| L::grow(dp, seed, octant))
+            };
             let is_seen = match &parent.record.pose {
                 Pose::Clip(_, planes) => {
-                    let dp = &mut self.dp;
-                    let cage = expanded
-                        .seeds
-                        .each_ref()
-                        .map(|seed| L::grow(dp, seed, octant as usize));
-                    self.dp.stage(Stage::ChildBox);
+                    let cage = expanded.seeds.each_ref().map(grow);
                     self.push_clip_child(octant, cage, planes, child, from)
                 }
                 Pose::Screen(_) => {
-                    let dp = &mut self.dp;
                     let [x, y, _] = &expanded.seeds;
-                    let cage = [x, y].map(|seed| L::grow(dp, seed, octant as usize));
-                    self.dp.stage(Stage::ChildBox);
+                    let cage = [x, y].map(&mut grow);
                     self.push_screen_child(|| cage, child, from)
                 }
             };
@@ -283,6 +304,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let mut record = self.stack.pop()?;
         self.dp.begin_record(self.counts.records, record.cube.level);
         self.counts.records += 1;
+        Port::Made.tap(&mut self.dp, u64::from(false), &record);
         self.watch.turn(record.place.quad);
         match self.decide(&mut record) {
             RemainingWork::Nothing => None,
@@ -293,15 +315,13 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     /// Makes what the children of a record are made from.
     fn expand(&mut self, record: &Record<L>) -> Expanded<L> {
         let (centre, order) = self.centre_and_order(&record.cube);
-        self.dp.stage(Stage::VertexPool);
-        let dp = &mut self.dp;
-        let seeds = match &record.pose {
+        let seeds = self.dp.beside(Stage::VertexPool, |dp| match &record.pose {
             Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
             Pose::Screen(screen) => {
                 let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
                 [x, y, y]
             }
-        };
+        });
         Expanded {
             centre,
             order,

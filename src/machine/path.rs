@@ -5,8 +5,9 @@
 //! edges; and what a quadrant did to coordinates (`2x` or `2x - w`) is undone by an add and a shift by one place. So a
 //! parent need not be stored with its vertices: its node and the children that are left are enough.
 
-use hwmodel::{Datapath, Probe};
+use hwmodel::{Datapath, Probe, Short, Signal, Wires};
 
+use super::blocks::LEVEL_BITS;
 use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::planes;
@@ -26,6 +27,17 @@ pub(super) struct PathEntry {
     pub(super) inside: bool,
     /// Children that are left, a bit for each place in the order.
     pub(super) left: u8,
+}
+
+/// What tells one entry from another; of the node only its number is known here.
+impl Wires for PathEntry {
+    fn show(&self, to: &mut Vec<Signal>) {
+        Short::unsigned(self.left, 8).show(to);
+        [self.level, self.quad_level]
+            .map(|level| Short::unsigned(level, LEVEL_BITS))
+            .show(to);
+        self.inside.show(to);
+    }
 }
 
 /// The quadtree node of `level` that holds `quad`.
@@ -51,6 +63,8 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
     let mut quad = from.place.quad;
     while quad.level > entry.quad_level {
         out_of_quadrant(dp, constants, &mut clip, &mut planes, quad.in_parent());
+        // Hardware undoes a level at a time, of the picture or of the octree.
+        dp.next_step(0);
         quad = quad_above(quad, quad.level - 1);
     }
     let mut min = from.cube.min;
@@ -63,6 +77,9 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         }
         planes::to_parent(dp, constants, &mut planes, level, octant);
         min = min.map(|corner| dp.without_bit(corner, place));
+        if level > entry.level {
+            dp.next_step(0);
+        }
     }
     let side = dp.load(1i64 << (constants.depth + constants.sub_levels - entry.level));
     (clip.w_min, _) = clip.w.span(dp);

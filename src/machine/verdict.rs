@@ -80,7 +80,8 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         self.dp.stage(Stage::Draw);
         let (dp, cube) = (&mut self.dp, &record.cube);
         let silhouette = Silhouette::new(dp, &self.constants, cube, planes, clip.w_min);
-        self.canvas.sees(dp, record.place.quad, silhouette)
+        dp.next_step(0);
+        self.canvas.sees(dp, record.place.quad, silhouette).is_ok()
     }
 
     /// Whether a record lies across the near plane and spans so little depth

@@ -13,6 +13,11 @@
 //! the nodes' reads of C, D and E. What is hidden is not read: one more look at the fill vectors before a node is. Joined
 //! fill vectors are one word for two levels: every pair of reads or writes is one, and clearing is one word. By tiles A
 //! is walked four times, and B is in one of them.
+//!
+//! *Sequential* hardware does one step after the other: a read takes a cycle more, in which it is looked at. A silhouette
+//! takes one for its planes, and one for each quadrant that they are moved to. Here every node's word is that of the root,
+//! which is read once a turn, for the fit; the sample's attributes are a step after it was found open. The way back from B
+//! to A is out of a quadrant and up a level.
 
 use hwmodel::cycles::{Hardware, Organisation, Recorder, START, StackHolds, TraceLimit};
 use shiftvox::frame::Frame;
@@ -115,12 +120,17 @@ const TILES: &str = "
     OnePixel ChildBox QuadtreeFit Push Draw:2 FillUpdate:6
     Centre Order VertexPool ChildBox QuadtreeFit";
 
+/// The path on the stack, leaf masks, nothing hidden read, joined fill vectors: stage C of `rtl/`.
+const SEQUENTIAL: &str = "
+    FillUpdate Push ChildBox QuadtreeFit:2 OnePixel Draw Draw Draw Draw OnePixel:12
+    Centre Order ChildBox QuadtreeFit:2 OnePixel Draw Draw OnePixel:2 Push
+    Centre Order ChildBox QuadtreeFit:2 Draw Draw Draw:13 FillUpdate
+    ChildBox QuadtreeFit:2 Draw Draw Draw:3 FillUpdate
+    ChildBox QuadtreeFit:2
+    Pop:2 Filled:2 Pop Pop Centre Order";
+
 #[test]
 fn a_tiny_scene_in_each_organisation() {
-    let graph = octree(2, &|at| [[0, 0, 0], [0, 0, 1], [0, 1, 0]].contains(&at));
-    let mut camera = camera([2.0, -8.0, 2.0], [2.0, 0.0, 2.0], 4);
-    camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
-    let setup = setup(&graph, &camera, &SetupOptions::default());
     let paper = Organisation::default();
     let parents = Organisation {
         stack: StackHolds::Parents,
@@ -161,40 +171,63 @@ fn a_tiny_scene_in_each_organisation() {
         (joined_fill, JOINED_FILL, 53),
         (tiles, TILES, 115),
     ] {
-        let mut hardware = Hardware::from_toml(HARDWARE).unwrap();
-        hardware.organisation = organisation;
-        let mut frame = Frame::new(4, 4, false);
-        let mut recorder = Recorder::new(TraceLimit::default());
-        let simulated = Machine::new(MachineOptions::default())
-            .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
-            .unwrap();
-        let drawn = [frame.voxel[8], frame.voxel[12]];
-        assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
-        assert_eq!(simulated.cycles.cycles, cycles, "{organisation:?}");
-        // What the visits should be, from the lists.
-        let starts = organisation.tile_levels == 0;
-        let lines = turns.lines().skip(1).enumerate();
-        let listed = lines.flat_map(|(number, line)| {
-            let record = match starts {
-                true => (number as u64).checked_sub(1).unwrap_or(START),
-                false => number as u64,
-            };
-            line.split_whitespace().map(move |visit| (record, visit))
-        });
-        let mut now = 0;
-        let mut visits = recorder.visits().iter();
-        for (record, visit) in listed {
-            let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
-            let found = visits.next().unwrap();
-            assert_eq!(
-                (found.record, format!("{:?}", found.stage)),
-                (record, stage.to_owned())
-            );
-            assert_eq!(found.begins, now, "{stage} of {record}, {organisation:?}");
-            now += takes.parse::<u64>().unwrap();
-            assert_eq!(found.ends, now, "{stage} of {record}, {organisation:?}");
-        }
-        assert!(visits.next().is_none());
-        assert_eq!(now, cycles);
+        let hardware = Hardware::from_toml(HARDWARE).unwrap();
+        follow(hardware, organisation, turns, cycles);
     }
+}
+
+#[test]
+fn a_tiny_scene_step_by_step() {
+    let mut hardware = Hardware::from_toml(HARDWARE).unwrap();
+    hardware.sequential = true;
+    let organisation = Organisation {
+        stack: StackHolds::Path,
+        leaf_masks: true,
+        hidden_unread: true,
+        joined_fill: true,
+        ..Organisation::default()
+    };
+    follow(hardware, organisation, SEQUENTIAL, 74);
+}
+
+/// Draws the scene, whose visits must be those listed.
+fn follow(mut hardware: Hardware, organisation: Organisation, turns: &str, cycles: u64) {
+    let graph = octree(2, &|at| [[0, 0, 0], [0, 0, 1], [0, 1, 0]].contains(&at));
+    let mut camera = camera([2.0, -8.0, 2.0], [2.0, 0.0, 2.0], 4);
+    camera.fov_degrees = 2.0 * libm::atan(2.0 / 8.0).to_degrees();
+    let setup = setup(&graph, &camera, &SetupOptions::default());
+    hardware.organisation = organisation;
+    let mut frame = Frame::new(4, 4, false);
+    let mut recorder = Recorder::new(TraceLimit::default());
+    let simulated = Machine::new(MachineOptions::default())
+        .simulate(&graph.view(), &setup, &mut frame, &hardware, &mut recorder)
+        .unwrap();
+    let drawn = [frame.voxel[8], frame.voxel[12]];
+    assert_eq!(drawn, [[0, 0, 1, 2], [0, 0, 0, 2]]);
+    // What the visits should be, from the lists.
+    let starts = organisation.tile_levels == 0;
+    let lines = turns.lines().skip(1).enumerate();
+    let listed = lines.flat_map(|(number, line)| {
+        let record = match starts {
+            true => (number as u64).checked_sub(1).unwrap_or(START),
+            false => number as u64,
+        };
+        line.split_whitespace().map(move |visit| (record, visit))
+    });
+    let mut now = 0;
+    let mut visits = recorder.visits().iter();
+    for (record, visit) in listed {
+        let (stage, takes) = visit.split_once(':').unwrap_or((visit, "1"));
+        let found = visits.next().unwrap();
+        assert_eq!(
+            (found.record, format!("{:?}", found.stage)),
+            (record, stage.to_owned())
+        );
+        assert_eq!(found.begins, now, "{stage} of {record}, {organisation:?}");
+        now += takes.parse::<u64>().unwrap();
+        assert_eq!(found.ends, now, "{stage} of {record}, {organisation:?}");
+    }
+    assert!(visits.next().is_none());
+    assert_eq!(now, cycles);
+    assert_eq!(simulated.cycles.cycles, cycles, "{organisation:?}");
 }

@@ -9,6 +9,7 @@ use tempfile::TempDir;
 
 use super::testbench::testbench;
 use super::tools::{is_there, rtl, run, shiftvox, text};
+use super::turned::turned;
 
 /// Views: from outside, where records change to screen space; and with the eye within, where they stay.
 pub(crate) const VIEWS: [&[&str]; 2] = [
@@ -27,8 +28,8 @@ pub(crate) const VIEWS: [&[&str]; 2] = [
 /// A folder of vectors of a view, its manifest, and definitions of its widths.
 pub(crate) struct Rows {
     _shelter: TempDir,
-    folder: PathBuf,
-    manifest: Value,
+    pub(crate) folder: PathBuf,
+    pub(crate) manifest: Value,
     defines: [String; 3],
     is_widened: bool,
 }
@@ -144,7 +145,8 @@ pub(crate) fn wrong_rows_of(
     fs::write(&source, benches).unwrap();
     let rtl = rtl();
     let mut arguments = vec!["-g2012", "-I", text(&rtl), "-o", text(&compiled)];
-    arguments.extend(folders.iter().flat_map(|folder| ["-y", text(folder)]));
+    let folders = folders.iter().map(|folder| text(folder));
+    arguments.extend(folders.flat_map(|folder| ["-y", folder, "-I", folder]));
     arguments.extend(rows.defines.iter().map(String::as_str));
     let tops: Vec<String> = run_blocks
         .iter()
@@ -188,6 +190,21 @@ fn every_row_of_every_block_in_two_formats() {
                 );
             }
         }
+    }
+}
+
+/// Those of stage C that undo what others did, by rows of these.
+#[test]
+fn every_row_turned_around() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let folders = ["stage_c", "machine", "blocks_exact", "blocks"].map(|folder| rtl().join(folder));
+    let folders = folders.each_ref().map(|folder| folder.as_path());
+    for (bits, view) in [("24", VIEWS[0]), ("32", VIEWS[1])] {
+        let wrong = wrong_rows(&turned(rows(EXACT, view, bits)), &folders);
+        assert_eq!(wrong.len(), 5);
+        assert!(wrong.values().all(|&wrong| wrong == 0), "{bits}: {wrong:?}");
     }
 }
 

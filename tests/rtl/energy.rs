@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 use hwmodel::cost::CostTable;
 use serde_json::Value;
 
-use super::frames::TREE;
 use super::testbench::testbench;
 use super::tools::{is_there, rtl, run, shiftvox, text};
+use super::views::TREE;
 
 const CELLS: &str = "/usr/share/qflow/tech/osu018";
 /// Supply voltage.

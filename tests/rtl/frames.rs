@@ -5,27 +5,20 @@ use std::fs;
 
 use shiftvox::graph::{LinkedGraph, vxg};
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, agree, agree_linked};
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, agree, agree_linked};
 use super::tools::{is_there, rtl, run, text};
-
-pub(crate) const TREE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/tree.vox");
-/// In the middle of the sponge's hollow, looking at a corner of it.
-pub(crate) const INSIDE: [&str; 7] = [
-    "gen:menger,depth=3",
-    "--size",
-    "64",
-    "--eye",
-    "13.4,12.7,13.5",
-    "--target",
-    "20,16,11",
-];
+use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
 #[test]
 fn the_bundled_tree_has_the_machines_events_picture_and_cycles() {
     if !is_there("verilator") {
         return;
     }
-    for (machine, events) in [(&STAGE_A, 1_000_000), (&STAGE_B, 250_000)] {
+    for (machine, events) in [
+        (&STAGE_A, 1_000_000),
+        (&STAGE_B, 250_000),
+        (&STAGE_C, 100_000),
+    ] {
         let agreement = agree(machine, &[TREE, "--size", "64"]);
         assert!(agreement.events > events && agreement.samples > 1000);
     }
@@ -38,143 +31,10 @@ fn an_eye_inside_too() {
     }
     agree(&STAGE_A, &INSIDE);
     agree(&STAGE_B, &INSIDE);
+    agree(&STAGE_C, &INSIDE);
 }
 
-/// File, text, what somebody might have written.
-pub(crate) type Fault = (&'static str, &'static str, &'static str);
-
-/// Faults in what connects the blocks.
-const FAULTS_A: [Fault; 9] = [
-    ("machine", "r_node : first + count", "r_node : first"),
-    ("machine", "marked <= after", "marked <= vector"),
-    (
-        "machine",
-        "for (r = 7; r >= 0; r = r - 1)",
-        "for (r = 0; r < 8; r = r + 1)",
-    ),
-    ("cache", "valid[{set, way}] <= 1", "valid[{set, way}] <= 0"),
-    ("memory", "<= data_in", "<= ~data_in"),
-    ("verdict", "one & ~before_near", "~before_near"),
-    ("image_step", ".low_half_x(half[0])", ".low_half_x(half[2])"),
-    ("to_screen", "(column - 4)", "(column - 3)"),
-    ("frame_constants", "vector[3 + i]", "vector[4 + i]"),
-];
-/// And in what stage B has of its own: small voxels, cubes about the eye, an eye on a corner of some.
-const FAULTS_B: [&[Fault]; 3] = [
-    &[
-        ("machine", "c_more <= inner_more", "c_more <= c_more"),
-        ("plane_constants", "low[3*i + 2]}", "low[3*i + 1]}"),
-        ("image_step", "sample ? no_margin : gap", "gap"),
-        ("verdict", "leaf | has_lod_depth & deep", "leaf"),
-    ],
-    &[
-        ("parts", "depth - r_level - 1'b1", "depth - r_level"),
-        ("parts", "whole & next_in >= whole_level", "whole"),
-        ("parts", ".positive(positive)", ".positive(1'b0)"),
-        ("steps", "divided - 1'b1 == back_level", "1'b1"),
-        ("silhouette", "known ? of_divided : inner", "inner"),
-        ("silhouette", "sides <= sides_above", "sides <= sides"),
-        (
-            "silhouette",
-            "wanted <= front_side",
-            "wanted <= ~front_side",
-        ),
-    ],
-    &[
-        ("parts", ".before_eye(r_w_min > 0)", ".before_eye(1'b1)"),
-        ("plane_side", "none ? 2'd3", "none ? 2'd0"),
-    ],
-];
-
-/// A small frame, in Icarus Verilog: as it is, and with each fault.
-pub(crate) fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault]) {
-    if !is_there("iverilog") {
-        return;
-    }
-    let expected = Expected::new(machine, view);
-    let most = format!("+most={}", 2 * expected.cycles);
-    let shelter = tempfile::tempdir().unwrap();
-    let modules = shelter.path();
-    let compiled = modules.join("frame.vvp");
-    let nothing = ("", "", "");
-    for &(file, right, fault) in [nothing].iter().chain(faults) {
-        // Of modules in several folders the first counts.
-        for folder in machine.folders.iter().rev() {
-            for path in fs::read_dir(rtl().join(folder)).unwrap() {
-                let path = path.unwrap().path();
-                let mut source = fs::read_to_string(&path).unwrap();
-                if path.file_stem().unwrap() == file {
-                    assert_eq!(source.matches(right).count(), 1, "{file}: {right}");
-                    source = source.replace(right, fault);
-                }
-                fs::write(modules.join(path.file_name().unwrap()), source).unwrap();
-            }
-        }
-        let top = machine.testbench();
-        let source = format!("tb/{top}.v");
-        let parameters = machine.parameters();
-        let parameters: Vec<String> = parameters
-            .iter()
-            .map(|(of, number)| format!("-P{top}.{of}={number}"))
-            .collect();
-        let modules = text(modules);
-        let mut arguments = vec!["-g2012", "-I", ".", "-s", top, &source, "-o"];
-        arguments.extend([text(&compiled), "-I", modules, "-y", modules]);
-        arguments.extend(parameters.iter().map(String::as_str));
-        run(&rtl(), "iverilog", &arguments);
-        let compared = expected.compare(&["vvp", "-n", text(&compiled), &most]);
-        let is_right = compared
-            .as_ref()
-            .is_ok_and(|agreement| agreement.cycles[0] == agreement.cycles[1]);
-        assert_eq!(is_right, file.is_empty(), "{file}: {fault}: {compared:?}");
-    }
-}
-
-#[test]
-fn a_fault_between_the_blocks_is_found() {
-    let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
-    faults_are_found(&STAGE_A, &view, &FAULTS_A);
-}
-
-#[test]
-fn a_fault_of_stage_b_is_found() {
-    let views: [&[&str]; 3] = [
-        &[
-            "gen:menger,depth=3",
-            "--size",
-            "5x4",
-            "--lod",
-            "0.5",
-            "--view",
-            "front",
-        ],
-        &[
-            "gen:menger,depth=1",
-            "--size",
-            "13x11",
-            "--eye",
-            "1.5,1.4,1.2",
-            "--target",
-            "2.9,1.9,1.8",
-        ],
-        &[
-            "gen:random,depth=2,seed=1",
-            "--size",
-            "12x9",
-            "--fov",
-            "100",
-            "--eye",
-            "2,1,2",
-            "--target",
-            "2.4,3.1,1.3",
-        ],
-    ];
-    for (view, faults) in views.into_iter().zip(FAULTS_B) {
-        faults_are_found(&STAGE_B, view, faults);
-    }
-}
-
-/// Synthesis takes both machines, and lanes: no latch, no loop, no signal with two drivers.
+/// Synthesis takes all machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
 #[ignore = "takes minutes"]
 fn yosys_takes_the_machines() {
@@ -185,6 +45,7 @@ fn yosys_takes_the_machines() {
     for (machine, top) in [
         (&STAGE_A, "machine"),
         (&STAGE_B, "machine"),
+        (&STAGE_C, "machine"),
         (&lanes, "lanes"),
     ] {
         // Of modules in several folders the first counts.
@@ -200,56 +61,14 @@ fn yosys_takes_the_machines() {
             }
         }
         let files: Vec<String> = files.into_values().collect();
-        let (name, files) = (machine.stage, files.join(" "));
+        let (files, folders) = (files.join(" "), machine.folders.join(" -I"));
         let script = format!(
-            "read_verilog -sv -I. -I{name} {files}; hierarchy -check -top {top}; proc; check -assert; \
+            "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top {top}; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
         run(&rtl(), "yosys", &["-q", "-p", &script]);
     }
 }
-
-/// The bundled tree, a sponge, terrain, and an eye within them; sizes that fill the picture's quadtree and that do not.
-pub(crate) const SCENES: [&[&str]; 6] = [
-    &[TREE, "--size", "128"],
-    &[
-        TREE,
-        "--size",
-        "200x90",
-        "--azimuth",
-        "80",
-        "--elevation",
-        "-20",
-    ],
-    &["gen:menger,depth=4", "--size", "96", "--view", "iso"],
-    &[
-        "gen:terrain,depth=7",
-        "--size",
-        "128x64",
-        "--lod",
-        "0",
-        "--view",
-        "right",
-    ],
-    &[
-        "gen:terrain,depth=6",
-        "--size",
-        "64",
-        "--eye",
-        "20.2,30.7,25.1",
-        "--target",
-        "40,40,10",
-    ],
-    &[
-        "gen:menger,depth=3",
-        "--size",
-        "50x70",
-        "--lod",
-        "4",
-        "--zoom",
-        "6",
-    ],
-];
 
 #[test]
 #[ignore = "takes minutes"]
@@ -257,7 +76,7 @@ fn many_scenes() {
     if !is_there("verilator") {
         return;
     }
-    for machine in [&STAGE_A, &STAGE_B] {
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         for view in SCENES {
             agree(machine, view);
         }
@@ -321,47 +140,13 @@ fn linked_and_cyclic_graphs() {
             &["--size", "33", "--view", "right", "--zoom", "5"],
         ] {
             let view = [&[text(&file)], view].concat();
-            for machine in [&STAGE_A, &STAGE_B] {
+            for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
                 eprint!("{name}: ");
                 let agreement = agree_linked(machine, &view, Some(&graph.links));
                 assert!(agreement.samples > 0, "{name}");
             }
         }
     }
-}
-
-/// A number below another, from the seed.
-pub(crate) type Dice<'d> = &'d mut dyn FnMut(u64) -> u64;
-
-/// Scattered voxels by seed, from all sides and from near by, at random sizes and levels of detail.
-pub(crate) fn any_view(next: Dice<'_>) -> Vec<String> {
-    let scene = format!("gen:random,depth={},seed={}", 2 + next(4), next(1000));
-    let size = format!("{}x{}", 1 + next(60), 1 + next(60));
-    let lod = ["0", "1", "3"][next(3) as usize];
-    let (azimuth, elevation, zoom) = (next(360), next(180) as i64 - 90, 1 + next(8));
-    let camera = format!("--azimuth={azimuth} --elevation={elevation} --zoom={zoom}");
-    words(&format!("{scene} --size {size} --lod {lod} {camera}"))
-}
-
-/// From between them; every other eye has a voxel's corner for its place.
-pub(crate) fn view_from_within(next: Dice<'_>) -> Vec<String> {
-    let (depth, on_corner) = (2 + next(3), next(2) == 0);
-    let scene = format!("gen:random,depth={depth},seed={}", next(1000));
-    let size = format!("{}x{}", 1 + next(30), 1 + next(30));
-    let mut place = |tenths: u64| {
-        let mut coordinate = || next(10 << depth) / tenths * tenths;
-        let [x, y, z] = [(); 3].map(|()| coordinate() as f64 / 10.0);
-        format!("{x:.1},{y:.1},{z:.1}")
-    };
-    let (eye, target) = (place(if on_corner { 10 } else { 1 }), place(1));
-    let fov = 40 + next(100);
-    words(&format!(
-        "{scene} --size {size} --fov {fov} --eye {eye} --target {target}5"
-    ))
-}
-
-fn words(line: &str) -> Vec<String> {
-    line.split(' ').map(str::to_owned).collect()
 }
 
 /// So many views by seed.
@@ -413,9 +198,21 @@ fn two_hundred_random_views_of_stage_b() {
     random_views(&STAGE_B, 200, &mut any_view);
 }
 
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_random_views_of_stage_c() {
+    random_views(&STAGE_C, 200, &mut any_view);
+}
+
 /// Where planes are degenerate, and cubes reach behind the eye.
 #[test]
 #[ignore = "takes minutes"]
 fn two_hundred_wide_views_of_stage_b_from_between_the_voxels() {
     random_views(&STAGE_B, 200, &mut view_from_within);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn two_hundred_wide_views_of_stage_c_from_between_the_voxels() {
+    random_views(&STAGE_C, 200, &mut view_from_within);
 }

@@ -3,11 +3,11 @@
 
 use std::fs;
 
-use super::frames::{
-    Dice, Fault, INSIDE, SCENES, TREE, any_view, faults_are_found, random_views, view_from_within,
-};
+use super::faults::{Fault, faults_are_found};
+use super::frames::random_views;
 use super::machines::{Machine, agree};
 use super::tools::{is_there, rtl, run, text};
+use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
 static LANES: [Machine; 4] = [
     Machine::side_by_side(1, 2),
@@ -29,7 +29,11 @@ const FAULTS: [Fault; 8] = [
         "fill_place = TILE_WORDS + level",
         "fill_place = TILE_WORDS",
     ),
-    ("machine", "PIXEL: if (pixel_taken) begin", "PIXEL: begin"),
+    (
+        "machine",
+        "PIXEL: if (pixel_taken) mark_sample",
+        "PIXEL: mark_sample",
+    ),
 ];
 
 /// A small frame of four lanes in Icarus Verilog, as it is and with each fault.

@@ -38,17 +38,25 @@ pub(crate) static STAGE_B: Machine = Machine {
     lanes: None,
     made: OnceLock::new(),
 };
+pub(crate) static STAGE_C: Machine = Machine {
+    name: "stage_c",
+    stage: "stage_c",
+    rules: &["--coverage", "exact", "--cage", "frame"],
+    folders: &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"],
+    lanes: None,
+    made: OnceLock::new(),
+};
 
 impl Machine {
     /// So many lanes of stage B, each of which draws tiles that lie so many levels below the picture.
     pub(crate) const fn side_by_side(lanes: u32, tile_levels: u32) -> Self {
         Self {
             name: "stage_b_lanes",
+            stage: STAGE_B.stage,
+            rules: STAGE_B.rules,
+            folders: STAGE_B.folders,
             lanes: Some([lanes, tile_levels]),
             made: OnceLock::new(),
-            stage: "stage_b",
-            rules: &["--coverage", "exact", "--cage", "frame"],
-            folders: &["machine", "stage_b", "blocks_exact", "blocks"],
         }
     }
 
@@ -79,6 +87,11 @@ impl Machine {
         lanes
             .flat_map(|[lanes, levels]| [("LANES", lanes), ("TILE_LEVELS", levels)])
             .collect()
+    }
+
+    /// Whether records lie on its stack, and not what leads to their parents.
+    fn stacks_records(&self) -> bool {
+        self.stage != "stage_c"
     }
 
     /// The simulator of words of 32 bits, for pictures up to 256 x 256.
@@ -115,8 +128,15 @@ type Event = (u8, u64, String);
 const BOX: usize = 4 * 8;
 const PLANES: usize = 12 * 16;
 
+/// Ports, by their numbers in the vectors.
+const POP: u8 = 0;
+const PUSH: u8 = 1;
+const FILL_WRITE: u8 = 3;
+const PIXEL: u8 = 6;
+const MADE: u8 = 7;
+
 /// Events of a frame from its vectors.
-fn expected_events(folder: &Path) -> Vec<Event> {
+fn expected_events(folder: &Path, machine: &Machine) -> Vec<Event> {
     let rows = |name: &str| {
         let text = fs::read_to_string(folder.join(name)).unwrap();
         let rows = text.lines().filter(|line| !line.starts_with("//"));
@@ -130,10 +150,12 @@ fn expected_events(folder: &Path) -> Vec<Event> {
             let row = u128::from_str_radix(row, 16).unwrap();
             let (port, address) = ((row >> 72) as u8, (row >> 40) as u64 & 0xffff_ffff);
             let data = row as u64 & 0xff_ffff_ffff;
-            let data = match port {
-                1 => records[data as usize].trim_start_matches('0').to_owned(),
-                3 => format!("{data:x}"),
-                6 => data.to_string(),
+            let data = match (port, machine.stacks_records()) {
+                (PUSH, true) | (MADE, _) => {
+                    records[data as usize].trim_start_matches('0').to_owned()
+                }
+                (POP | PUSH, false) | (FILL_WRITE, _) => format!("{data:x}"),
+                (PIXEL, _) => data.to_string(),
                 _ => String::new(),
             };
             (port, address, data)
@@ -159,7 +181,10 @@ fn simulated_events(folder: &Path, machine: &Machine) -> Vec<Event> {
             let mut next = || words.next().unwrap_or_default();
             let (port, address) = (next().parse().unwrap(), next().parse().unwrap());
             let mut data = next().to_owned();
-            if port == 1 {
+            if matches!((port, machine.stacks_records()), (POP | PUSH, false)) {
+                data = format!("{:x}", u64::from_str_radix(&data, 16).unwrap());
+            }
+            if matches!((port, machine.stacks_records()), (PUSH, true) | (MADE, _)) {
                 let more = next();
                 let (no_box, no_planes) = match machine.stage {
                     "stage_a" => (0, PLANES),
@@ -244,7 +269,7 @@ impl<'m> Expected<'m> {
         Self {
             machine,
             links,
-            events: expected_events(&folder),
+            events: expected_events(&folder, machine),
             nodes: numbers(&shelter.path().join("picture.node.npy")),
             voxels: numbers(&shelter.path().join("picture.voxel.npy")),
             cycles: model["simulated"]["cycles"]["cycles"]

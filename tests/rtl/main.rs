@@ -11,6 +11,7 @@
 mod area;
 mod blocks;
 mod energy;
+mod faults;
 mod frames;
 mod hidden;
 mod lanes;
@@ -18,3 +19,5 @@ mod machines;
 mod mutants;
 mod testbench;
 mod tools;
+mod turned;
+mod views;

@@ -10,6 +10,7 @@ use super::blocks::{
     CENTRES, CORNERS, EXACT, NEAR, PAPER, SHORT, VIEWS, WIDE, WIDENED, rows, wrong_rows_of,
 };
 use super::tools::{is_there, rtl, text};
+use super::turned::turned;
 
 /// What a text of a block may become by a slip.
 const SLIPS: [(&str, &str); 16] = [
@@ -80,12 +81,14 @@ fn mutants(source: &str) -> Vec<String> {
     mutants
 }
 
-/// Whether a block's text is Verilog: a slip may be none.
-fn compiles(folder: &str, name: &str, text_of_block: &str) -> bool {
+/// Whether a block's text is Verilog: a slip may be none. Other blocks are in these folders.
+fn compiles(folders: &[&str], name: &str, text_of_block: &str) -> bool {
     let shelter = tempfile::tempdir().unwrap();
     let file = shelter.path().join(format!("{name}.v"));
     fs::write(&file, text_of_block).unwrap();
-    let (rtl, blocks) = (rtl(), rtl().join(folder));
+    let rtl = rtl();
+    let folders = folders.iter().map(|folder| rtl.join(folder));
+    let folders: Vec<_> = folders.collect();
     Command::new("iverilog")
         .args([
             "-g2012",
@@ -94,7 +97,9 @@ fn compiles(folder: &str, name: &str, text_of_block: &str) -> bool {
             "-DWORD_BITS=32",
             "-DFRACTION_BITS=16",
         ])
-        .args(["-DWIDE_BITS=64", "-I", text(&rtl), "-y", text(&blocks)])
+        .args(["-DWIDE_BITS=64", "-I", text(&rtl)])
+        .args(folders.iter().flat_map(|folder| ["-y", text(folder)]))
+        .args(folders.iter().flat_map(|folder| ["-I", text(folder)]))
         .arg(&file)
         .output()
         .unwrap()
@@ -135,7 +140,7 @@ fn mutation_score() {
         if !bench.is_empty() {
             let mutants = mutants(&source)
                 .into_iter()
-                .filter(|text| compiles("blocks", &name, text))
+                .filter(|text| compiles(&["blocks"], &name, text))
                 .map(|text| (name.clone(), text));
             slips
                 .entry(bench.to_owned().leak())
@@ -260,7 +265,7 @@ fn mutation_score_of_exact_coverage() {
         let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
         let right = fs::read_to_string(&path).unwrap();
         for text in mutants(&right) {
-            if compiles("blocks_exact", &name, &text) {
+            if compiles(&["blocks_exact"], &name, &text) {
                 slips.push((name.clone(), text, right.clone()));
             }
         }
@@ -278,6 +283,54 @@ fn mutation_score_of_exact_coverage() {
             let folders = [shelter.path(), &exact, &others];
             let is_found = all.iter().any(|rows| {
                 let wrong = wrong_rows_of(rows, &folders, |block| benches.contains(&block), 3000);
+                wrong.values().any(|&wrong| wrong > 0)
+            });
+            (slip_in(name, text, right), is_found)
+        })
+        .collect();
+    assert_score(&results);
+}
+
+/// The same of the blocks of stage C that undo what others did.
+#[test]
+#[ignore = "takes minutes"]
+fn mutation_score_of_the_way_back() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let all = [
+        turned(rows(EXACT, VIEWS[0], "32")),
+        turned(rows(EXACT, VIEWS[1], "32")),
+        turned(rows(EXACT, NEAR, "24")),
+    ];
+    const FOLDERS: [&str; 4] = ["stage_c", "machine", "blocks_exact", "blocks"];
+    let folders = FOLDERS.map(|folder| rtl().join(folder));
+    let mut slips = Vec::new();
+    for name in [
+        "grown_cage",
+        "parent_cage",
+        "plane_whole",
+        "parent_planes",
+        "whole_clip",
+    ] {
+        let file = format!("{name}.v");
+        let at = folders.iter().find(|folder| folder.join(&file).exists());
+        let right = fs::read_to_string(at.unwrap().join(&file)).unwrap();
+        for text in mutants(&right) {
+            if compiles(&FOLDERS, name, &text) {
+                slips.push((name, text, right.clone()));
+            }
+        }
+    }
+    let results: Vec<(String, bool)> = slips
+        .par_iter()
+        .map(|(name, text, right)| {
+            let shelter = tempfile::tempdir().unwrap();
+            fs::write(shelter.path().join(format!("{name}.v")), text).unwrap();
+            let rest = folders.iter().map(|folder| folder.as_path());
+            let folders: Vec<_> = [shelter.path()].into_iter().chain(rest).collect();
+            let is_found = all.iter().any(|rows| {
+                let wrong = wrong_rows_of(rows, &folders, |block| block == *name, 3000);
                 wrong.values().any(|&wrong| wrong > 0)
             });
             (slip_in(name, text, right), is_found)

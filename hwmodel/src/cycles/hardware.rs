@@ -382,11 +382,6 @@ impl Hardware {
             let range = "false where leaf_masks is";
             return Err(out_of_range("organisation.bricks", bricks, range));
         }
-        if self.sequential && self.organisation.stack != StackHolds::Children {
-            // A recording of turns, which other stacks allow, does not keep the order of steps.
-            let range = "false, except where the stack holds children";
-            return Err(out_of_range("sequential", true, range));
-        }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
         if self.sequential && self.contexts > 1 {
             let range = "1 where lanes are sequential";

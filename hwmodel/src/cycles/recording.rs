@@ -96,7 +96,8 @@ impl Recording {
             + size_of::<Child>() * self.children.len()
     }
 
-    /// The recorded turns as a workload, for a hardware that [`Hardware::check`] finds sound.
+    /// The recorded turns as a workload, for a hardware that [`Hardware::check`] finds sound and that is not
+    /// [sequential](Hardware::sequential): the order of a turn's steps is not kept.
     #[must_use]
     pub fn replay(&self, hardware: &Hardware) -> Replay<'_> {
         Replay {

@@ -213,7 +213,7 @@ pub fn record_turns(
     Ok(turns.map(|turns| (frame, turns)))
 }
 
-/// What [`simulate`] says of the cycles of a frame whose turns are recorded.
+/// What [`simulate`] says of the cycles of a frame whose turns are recorded, on hardware that is not sequential.
 ///
 /// # Errors
 /// When a stack is full that does not spill.

@@ -241,7 +241,7 @@ impl<'a> Shared<'a> {
         let machines: Vec<_> = machines.into_iter().collect();
         let is_recorded = |point: &&Point| {
             let organisation = point.hardware.organisation;
-            organisation.stack != StackHolds::Children
+            organisation.stack != StackHolds::Children && !point.hardware.sequential
         };
         let recorded = machines.iter().map(|(_, point)| *point);
         let most_bytes = MOST_RECORDED / recorded.filter(is_recorded).count().max(1);
@@ -317,7 +317,9 @@ impl<'a> Shared<'a> {
         };
         let (hardware, overflow) = (&point.hardware, self.of.overflow);
         let view = self.of.graph.view();
-        let report = match self.turns.get(&machine_key(point)) {
+        // Recorded turns do not keep the order of their steps.
+        let turns = self.turns.get(&machine_key(point));
+        let report = match turns.filter(|_| !hardware.sequential) {
             Some((turns, differing)) => {
                 frame::replay(turns, &view, setup, hardware).map(|cycles| (cycles, *differing))
             }

@@ -13,29 +13,38 @@ pub(super) const CONSTANTS: &str = "frame.constants.hex";
 pub(super) const NODES: &str = "frame.nodes.hex";
 
 /// The constants, each as wide as a word.
-pub(super) fn constants(setup: &FrameSetup, root: u32) -> String {
+pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>) -> String {
     let format = setup.format;
     let mask = u64::MAX >> (64 - format.bits());
     let digits = format.bits().div_ceil(4) as usize;
     let mut text =
         String::from("// Registers of the frame's constants, from number 0 on: docs/rtl.md.\n");
-    for value in frame_registers(setup, root) {
+    for value in frame_registers(setup, graph) {
         // Writing to a string does not fail.
         let _ = writeln!(text, "{:0digits$x}", value as u64 & mask);
     }
     text
 }
 
-/// The nodes: which children each has, and where they begin. `None`: children are not side by side, which
+/// The nodes: which children each has, which of them have none, and where they begin. `None`: children are not side by side, which
 /// a word cannot say.
 pub(super) fn nodes(graph: &GraphView<'_>) -> Option<String> {
     if !graph.links.is_empty() {
         return None;
     }
-    let mut text =
-        String::from("// Nodes from number 0 on: mask of children << 32 | where they begin.\n");
+    let mut text = String::from(
+        "// Nodes from number 0 on: leaves << 40 | mask of children << 32 | where they begin.\n",
+    );
     for (&mask, &first) in graph.mask.iter().zip(graph.first) {
-        let _ = writeln!(text, "{:016x}", u64::from(mask) << 32 | u64::from(first));
+        // Children lie side by side, in octant order.
+        let octants = (0..8).filter(|octant| mask >> octant & 1 != 0);
+        let leaves = octants
+            .zip(first as usize..)
+            .fold(0, |bits, (octant, child)| {
+                bits | u64::from(graph.mask.get(child) == Some(&0)) << octant
+            });
+        let word = leaves << 40 | u64::from(mask) << 32 | u64::from(first);
+        let _ = writeln!(text, "{word:016x}");
     }
     Some(text)
 }

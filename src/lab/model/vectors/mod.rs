@@ -50,7 +50,7 @@ pub struct Request<'a> {
     pub records: u64,
     /// What a result that does not fit its word becomes.
     pub overflow: Overflow,
-    /// What the record loop keeps where.
+    /// What the record loop keeps where: turns are those of a machine organised like this.
     pub organisation: Organisation,
     /// The folder; its parents are made.
     pub folder: &'a Path,
@@ -102,12 +102,17 @@ pub fn write(
 ) -> Result<Recorded, VectorsError> {
     folder::write(request.folder, request.overwrite, |folder| {
         let mut frame = Frame::new(setup.width, setup.height, false);
+        // What is left of it under the frame's rules, as the machine has it.
+        let organisation = match setup.options.coverage.draws_outlines() {
+            true => request.organisation,
+            false => request.organisation.without_outlines(),
+        };
         let mut machine = Machine::new(MachineOptions {
             overflow: request.overflow,
-            organisation: request.organisation,
+            organisation,
             ..MachineOptions::default()
         });
-        let recorder = Recorder::new(folder, setup, request.records)?;
+        let recorder = Recorder::new(folder, setup, request.records, organisation.stack)?;
         let (stats, mut recorder) = machine.render_probed(graph, setup, &mut frame, recorder)?;
         recorder.begin_directed();
         let recorder = machine.show_directed(graph, setup, recorder, DIRECTED_ROUNDS);
@@ -121,7 +126,7 @@ pub fn write(
         write(folder::PARAMETERS, &readme::parameters(setup))?;
         write(
             frame_image::CONSTANTS,
-            &frame_image::constants(setup, graph.root),
+            &frame_image::constants(setup, graph),
         )?;
         if let Some(nodes) = frame_image::nodes(graph) {
             write(frame_image::NODES, &nodes)?;

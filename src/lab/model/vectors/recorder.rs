@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use hwmodel::cycles::StackHolds;
 use hwmodel::{Format, Probe, Signal};
 
 use super::VectorsError;
@@ -46,6 +47,7 @@ impl Recorder {
         folder: &Path,
         setup: &FrameSetup,
         records: u64,
+        stack: StackHolds,
     ) -> Result<Self, VectorsError> {
         let recording = |&block: &Block| Recording {
             description: describe(block, setup),
@@ -56,7 +58,7 @@ impl Recorder {
             files: None,
         };
         Ok(Self {
-            turns: Turns::create(folder, setup)?,
+            turns: Turns::create(folder, setup, stack)?,
             folder: folder.to_owned(),
             format: setup.format,
             blocks: Block::ALL.iter().map(recording).collect(),

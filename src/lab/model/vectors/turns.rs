@@ -2,9 +2,11 @@
 //!
 //! A turn begins with the record that is popped; what stands before the first pop is the start, which
 //! pushes the whole object. Records stand in a file of their own, once each, in the order in which they were pushed.
+//! Where parents lie on the stack, a turn begins with the record that is made or worked back, and those stand there.
 
 use std::path::Path;
 
+use hwmodel::cycles::StackHolds;
 use hwmodel::{Format, Signal, SignalKind};
 use serde_json::{Value, json};
 
@@ -37,18 +39,24 @@ pub(super) struct Turns {
     turns: u64,
     event_rows: u64,
     record_rows: u64,
+    /// Whether records lie on the stack, and not parents.
+    stacks_records: bool,
 }
 
 /// A port's name, and what its address and data are.
 fn describe(port: Port) -> (&'static str, &'static str) {
     match port {
-        Port::Pop => ("pop", "address: place on the stack; data: the record's row"),
-        Port::Push => (
-            "push",
-            "address: place on the stack; data: the record's row",
+        Port::Pop => (
+            "pop",
+            "address: place on the stack; data: the record's row, or of a parent \
+             children left << 13 | octree level << 7 | quadtree level << 1 | inside",
         ),
-        Port::FillRead => ("fill_read", "address: quadtree node; data: its vector"),
-        Port::FillWrite => ("fill_write", "address: quadtree node; data: its vector"),
+        Port::Push => ("push", "as pop"),
+        Port::FillRead => (
+            "fill_read",
+            "address: quadtree node; data: its vector, or its word of 16 samples",
+        ),
+        Port::FillWrite => ("fill_write", "as fill_read"),
         Port::NodeRead => (
             "node_read",
             "address: octree node; data: mask of its children << 32 | where they begin",
@@ -57,6 +65,11 @@ fn describe(port: Port) -> (&'static str, &'static str) {
         Port::PixelWrite => (
             "pixel_write",
             "address: row * width + column; data: the octree node that it shows",
+        ),
+        Port::Made => (
+            "made",
+            "where parents lie on the stack; address: 1 if worked back from another, without node and w_min; \
+             data: the record's row",
         ),
     }
 }
@@ -106,7 +119,11 @@ fn record_ports(setup: &FrameSetup) -> Ports {
 
 impl Turns {
     /// Of a frame; `None` where voxels are blended.
-    pub(super) fn create(folder: &Path, setup: &FrameSetup) -> Result<Option<Self>, VectorsError> {
+    pub(super) fn create(
+        folder: &Path,
+        setup: &FrameSetup,
+        stack: StackHolds,
+    ) -> Result<Option<Self>, VectorsError> {
         if setup.options.coverage == Coverage::Alpha {
             return Ok(None);
         }
@@ -122,6 +139,7 @@ impl Turns {
             turns: 0,
             event_rows: 0,
             record_rows: 0,
+            stacks_records: stack == StackHolds::Children,
         }))
     }
 
@@ -136,7 +154,7 @@ impl Turns {
         let of_record = || packed(data, &self.records.1, self.format).ok_or_else(misfit);
         let place = usize::try_from(address.value).map_err(|_| misfit())?;
         let data = match port {
-            Port::Push => {
+            Port::Push if self.stacks_records => {
                 let row = of_record()?;
                 self.records.0.write(&row)?;
                 self.stack.truncate(place);
@@ -144,7 +162,13 @@ impl Turns {
                 self.record_rows += 1;
                 self.record_rows - 1
             }
-            Port::Pop => {
+            Port::Made => {
+                self.turns += 1;
+                self.records.0.write(&of_record()?)?;
+                self.record_rows += 1;
+                self.record_rows - 1
+            }
+            Port::Pop if self.stacks_records => {
                 self.turns += 1;
                 let row = of_record()?;
                 let top = self.stack.get(place).filter(|(_, pushed)| *pushed == row);

@@ -1,0 +1,1 @@
+`include "children_events.vh"

@@ -1,0 +1,23 @@
+`include "widths.vh"
+// A parent's silhouette planes, from those of its child in an octant: undoes what child_planes did. SPEC.md, 8.
+module parent_planes #(parameter V = `WIDE_BITS) (
+  input  [3*V-1:0]         edge_x, edge_y, edge_z,
+  input  [2*V-1:0]         axis_x, axis_y, axis_z,
+  input  [V-1:0]           axis_x_c, axis_y_c, axis_z_c,
+  input  [`LEVEL_BITS-1:0] half,
+  input  [2:0]             octant,
+  output [3*V-1:0]         parent_edge_x, parent_edge_y, parent_edge_z);
+  wire [3*V-1:0] gain_x, gain_y, gain_z;
+  moved_planes #(V) of_x (.axis_ab(axis_x), .axis_c(axis_x_c), .places(half), .gain(gain_x));
+  moved_planes #(V) of_y (.axis_ab(axis_y), .axis_c(axis_y_c), .places(half), .gain(gain_y));
+  moved_planes #(V) of_z (.axis_ab(axis_z), .axis_c(axis_z_c), .places(half), .gain(gain_z));
+  wire [3*V-1:0] none = {(3*V){1'b0}};
+  wire [3*V-1:0] first_x, first_y, first_z;
+  // Octant bits: x 2, y 1, z 0.
+  plane_sum #(V) x_k (.plane(edge_x), .gain(octant[1] ? gain_z : none), .less(1'b0), .sum(first_x));
+  plane_sum #(V) x_l (.plane(first_x), .gain(octant[0] ? gain_y : none), .less(1'b1), .sum(parent_edge_x));
+  plane_sum #(V) y_k (.plane(edge_y), .gain(octant[0] ? gain_x : none), .less(1'b0), .sum(first_y));
+  plane_sum #(V) y_l (.plane(first_y), .gain(octant[2] ? gain_z : none), .less(1'b1), .sum(parent_edge_y));
+  plane_sum #(V) z_k (.plane(edge_z), .gain(octant[2] ? gain_y : none), .less(1'b0), .sum(first_z));
+  plane_sum #(V) z_l (.plane(first_z), .gain(octant[1] ? gain_x : none), .less(1'b1), .sum(parent_edge_z));
+endmodule

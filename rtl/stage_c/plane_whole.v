@@ -1,0 +1,11 @@
+`include "widths.vh"
+// The constant of a plane a x + b y + c in the coordinates of the node above: undoes what plane_quadrant did. Planes: a
+// highest.
+module plane_whole #(parameter V = `WIDE_BITS) (
+  input  [3*V-1:0] plane,
+  input  [1:0]     quadrant,
+  output [V-1:0]   outer_c);
+  wire [V-1:0] a = plane[2*V +: V], b = plane[V +: V], c = plane[0 +: V];
+  wire signed [V-1:0] doubled = c - (a & {V{quadrant[0]}}) - (b & {V{quadrant[1]}});
+  assign outer_c = doubled >>> 1;
+endmodule
