@@ -6,7 +6,7 @@ use std::fs;
 use serde_json::Value;
 
 use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C};
-use super::tools::{is_there, rtl, run, shiftvox, text};
+use super::tools::{icarus, is_there, parameter, rtl, run, shiftvox, text};
 use super::views::TREE;
 
 /// What the model says of the machine for a view, words of 32 bits.
@@ -38,24 +38,11 @@ fn parameters(machine: &Machine, view: &[&str], top: &str) -> Vec<String> {
         ("DEPTH", (1 << bits("level of the voxel")) - 1),
         ("NODE_WIDTH", bits("octree node")),
     ];
-    let of_machine = machine.parameters();
-    let of_machine = of_machine.iter().map(|&(name, value)| (name, value.into()));
     of_frame
         .into_iter()
-        .chain(of_machine)
-        .map(|(name, value): (_, u64)| format!("-P{top}.{name}={value}"))
+        .chain(machine.parameters())
+        .map(|(name, value)| parameter(top, name, value))
         .collect()
-}
-
-/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with those parameters.
-fn compiled(machine: &Machine, top: &str, parameters: &[String], into: &str) {
-    let source = format!("tb/{top}.v");
-    let mut arguments = vec!["-g2012", "-I", "."];
-    let folders = machine.folders.iter();
-    arguments.extend(folders.flat_map(|folder| ["-I", folder, "-y", folder]));
-    arguments.extend(["-s", top, &source, "-o", into]);
-    arguments.extend(parameters.iter().map(String::as_str));
-    run(&rtl(), "iverilog", &arguments);
 }
 
 #[test]
@@ -82,7 +69,12 @@ fn memories_have_the_bits_that_the_model_says() {
             "frame_tb" => "memories_tb",
             _ => "lanes_memories_tb",
         };
-        compiled(machine, top, &parameters(machine, view, top), text(&into));
+        icarus(
+            machine.folders,
+            top,
+            &parameters(machine, view, top),
+            text(&into),
+        );
         let printed = run(shelter.path(), "vvp", &["-n", text(&into)]);
         let of_verilog: Vec<(&str, u64)> = printed
             .lines()
@@ -115,7 +107,7 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
     for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
         let parameters = parameters(machine, &view, "frame_tb");
-        compiled(machine, "frame_tb", &parameters, text(&into));
+        icarus(machine.folders, "frame_tb", &parameters, text(&into));
         let simulator = ["vvp", "-n", text(&into), "+most=200000"];
         let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
         assert_eq!(agreement.cycles[0], agreement.cycles[1]);

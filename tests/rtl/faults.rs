@@ -3,7 +3,7 @@
 use std::fs;
 
 use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C};
-use super::tools::{is_there, rtl, run, text};
+use super::tools::{icarus, is_there, parameter, rtl, text};
 
 /// File, text, what somebody might have written.
 pub(crate) type Fault = (&'static str, &'static str, &'static str);
@@ -133,17 +133,11 @@ pub(crate) fn faults_are_found(machine: &Machine, view: &[&str], faults: &[Fault
         }
         assert_eq!(found, 1, "{file}: {right}");
         let top = machine.testbench();
-        let source = format!("tb/{top}.v");
-        let parameters = machine.parameters();
+        let parameters = machine.parameters().into_iter();
         let parameters: Vec<String> = parameters
-            .iter()
-            .map(|(of, number)| format!("-P{top}.{of}={number}"))
+            .map(|(name, value)| parameter(top, name, value))
             .collect();
-        let modules = text(modules);
-        let mut arguments = vec!["-g2012", "-I", ".", "-s", top, &source, "-o"];
-        arguments.extend([text(&compiled), "-I", modules, "-y", modules]);
-        arguments.extend(parameters.iter().map(String::as_str));
-        run(&rtl(), "iverilog", &arguments);
+        icarus(&[text(modules)], top, &parameters, text(&compiled));
         let compared = expected.compare(&["vvp", "-n", text(&compiled), &most]);
         let is_right = compared
             .as_ref()

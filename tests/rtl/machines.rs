@@ -82,11 +82,10 @@ impl Machine {
     }
 
     /// That one's parameters.
-    pub(crate) fn parameters(&self) -> Vec<(&'static str, u32)> {
-        let lanes = self.lanes.into_iter();
-        lanes
-            .flat_map(|[lanes, levels]| [("LANES", lanes), ("TILE_LEVELS", levels)])
-            .collect()
+    pub(crate) fn parameters(&self) -> Vec<(&'static str, u64)> {
+        let of_lanes =
+            |[lanes, levels]: [u32; 2]| [("LANES", lanes.into()), ("TILE_LEVELS", levels.into())];
+        self.lanes.into_iter().flat_map(of_lanes).collect()
     }
 
     /// Whether records lie on its stack, and not what leads to their parents.

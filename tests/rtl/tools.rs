@@ -37,6 +37,25 @@ pub(crate) fn run(folder: &Path, program: impl AsRef<Path>, arguments: &[&str]) 
     out
 }
 
+/// Compiles a testbench of `rtl/tb` in Icarus Verilog, with modules from those folders.
+pub(crate) fn icarus(folders: &[&str], top: &str, parameters: &[String], into: &str) {
+    let source = format!("tb/{top}.v");
+    let mut arguments = vec!["-g2012", "-I", "."];
+    arguments.extend(
+        folders
+            .iter()
+            .flat_map(|folder| ["-I", folder, "-y", folder]),
+    );
+    arguments.extend(["-s", top, &source, "-o", into]);
+    arguments.extend(parameters.iter().map(String::as_str));
+    run(&rtl(), "iverilog", &arguments);
+}
+
+/// A parameter of a testbench, as [`icarus`] has it.
+pub(crate) fn parameter(top: &str, name: &str, value: u64) -> String {
+    format!("-P{top}.{name}={value}")
+}
+
 /// Runs `shiftvox`.
 pub(crate) fn shiftvox(folder: &Path, arguments: &[&str]) -> String {
     run(folder, env!("CARGO_BIN_EXE_shiftvox"), arguments)
