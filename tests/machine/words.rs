@@ -91,7 +91,7 @@ const TO_HOST: [Allowed; 14] = [
 ];
 
 /// Lines that show words to a probe, or could take numbers from what is shown.
-const SHOWN: [Allowed; 19] = [
+const SHOWN: [Allowed; 24] = [
     allowed(
         "cage.rs",
         "use hwmodel::{Datapath, Probe, Signal, Wires, Word};",
@@ -120,6 +120,19 @@ const SHOWN: [Allowed; 19] = [
         "self.0.show(to);",
         "those of the cage",
     ),
+    allowed(
+        "path.rs",
+        "use hwmodel::{Datapath, Probe, Short, Signal, Wires};",
+        "for the lines below",
+    ),
+    allowed("path.rs", SHOW, "an entry of the stack is its fields"),
+    allowed(
+        "path.rs",
+        "Short::unsigned(self.left, 8).show(to);",
+        "the children that are left",
+    ),
+    allowed("path.rs", ".show(to);", "its levels"),
+    allowed("path.rs", "self.inside.show(to);", "whether it is inside"),
     allowed(
         "record.rs",
         "use hwmodel::{Short, Signal, WideWord, Wires, Word};",

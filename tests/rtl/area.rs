@@ -98,6 +98,7 @@ fn memories_have_the_bits_that_the_model_says() {
 }
 
 #[test]
+#[ignore = "takes a quarter of a minute"]
 fn a_machine_of_just_a_frames_widths_draws_it() {
     if !is_there("iverilog") {
         return;

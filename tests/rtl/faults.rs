@@ -218,11 +218,11 @@ const VIEWS_C: [&[&str]; 3] = [
 #[test]
 fn a_fault_of_stage_c_is_found() {
     faults_are_found(&STAGE_C, VIEWS_C[1], FAULTS_C[1]);
-    faults_are_found(&STAGE_C, VIEWS_C[2], FAULTS_C[2]);
 }
 
 #[test]
-#[ignore = "takes half a minute"]
-fn a_fault_on_the_way_back_is_found() {
+#[ignore = "takes a minute"]
+fn more_faults_of_stage_c_are_found() {
+    faults_are_found(&STAGE_C, VIEWS_C[2], FAULTS_C[2]);
     faults_are_found(&STAGE_C, VIEWS_C[0], FAULTS_C[0]);
 }
