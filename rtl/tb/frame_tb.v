@@ -66,56 +66,19 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   // ------------------------------------------------ events
   `define WALK dut
   `define TILE 0
-  function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);
-    place = ((1 << 2*level) - 1)/3 + (y << level) + x;
-  endfunction
-  integer events, pixels, i, cycles, most, nothing;
+  `define WATCHED 1
+  `include "tb/frame.vh"
   integer in_state [0:63];
-  reg has_events;
-  function [7:0] nearest_lowest(input [7:0] left);
-    nearest_lowest = {left[0], left[1], left[2], left[3], left[4], left[5], left[6], left[7]};
-  endfunction
   always @(posedge clk) if (busy) begin
-    cycles <= cycles + 1;
     in_state[dut.state] <= in_state[dut.state] + 1;
     if (has_events) begin
       `include "tb/ports.vh"
     end
-    if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
-      pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
-    if (pixel && pixel_attribute != pixel_node) begin
-      $display("the attributes of node %0d came with a pixel of node %0d", pixel_attribute, pixel_node);
-      $finish;
-    end
   end
 
   initial begin
-    $readmemh("frame.constants.hex", constants);
-    $readmemh("frame.nodes.hex", nodes);
-    pixels = $fopen("pixels.txt");
-    has_events = $test$plusargs("events");
-    events = 0;
-    if (has_events) events = $fopen("events.txt");
-    if ($test$plusargs("wave")) begin
-      $dumpfile("frame.vcd");
-      $dumpvars(1, dut);
-    end
-    most = 100_000_000;
-    nothing = $value$plusargs("most=%d", most);
-    cycles = 0;
     for (i = 0; i < 64; i = i + 1) in_state[i] = 0;
-    repeat (2) @(posedge clk);
-    #1 reset = 0;
-    for (i = 0; i < `CONSTANTS; i = i + 1) begin
-      constant_write = 1;
-      constant_address = i;
-      constant_data = constants[i];
-      @(posedge clk) #1;
-    end
-    constant_write = 0;
-    start = 1;
-    @(posedge clk) #1;
-    start = 0;
+    `include "tb/draw.vh"
     while (busy && cycles < most) @(posedge clk) #1;
     if ($test$plusargs("states"))
       for (i = 0; i < 64; i = i + 1)

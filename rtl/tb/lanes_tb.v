@@ -60,13 +60,10 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
   end
 
   // ------------------------------------------------ events
-  integer events, pixels, i, cycles, most, nothing;
-  reg has_events;
-  function [31:0] place(input [31:0] level, input [31:0] x, input [31:0] y);
-    place = ((1 << 2*level) - 1)/3 + (y << level) + x;
-  endfunction
   `define WALK dut.lane[lane].walk
   `define TILE (`WALK.tile_y << TILE_LEVELS | `WALK.tile_x)
+  `define WATCHED 2
+  `include "tb/frame.vh"
   genvar lane;
   generate
     for (lane = 0; lane < LANES; lane = lane + 1) begin : watched
@@ -75,42 +72,9 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
       end
     end
   endgenerate
-  always @(posedge clk) if (busy) begin
-    cycles <= cycles + 1;
-    if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
-      pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);
-    if (pixel && pixel_attribute != pixel_node) begin
-      $display("the attributes of node %0d came with a pixel of node %0d", pixel_attribute, pixel_node);
-      $finish;
-    end
-  end
 
   initial begin
-    $readmemh("frame.constants.hex", constants);
-    $readmemh("frame.nodes.hex", nodes);
-    pixels = $fopen("pixels.txt");
-    has_events = $test$plusargs("events");
-    events = 0;
-    if (has_events) events = $fopen("events.txt");
-    if ($test$plusargs("wave")) begin
-      $dumpfile("frame.vcd");
-      $dumpvars(2, dut);
-    end
-    most = 100_000_000;
-    nothing = $value$plusargs("most=%d", most);
-    cycles = 0;
-    repeat (2) @(posedge clk);
-    #1 reset = 0;
-    for (i = 0; i < `CONSTANTS; i = i + 1) begin
-      constant_write = 1;
-      constant_address = i;
-      constant_data = constants[i];
-      @(posedge clk) #1;
-    end
-    constant_write = 0;
-    start = 1;
-    @(posedge clk) #1;
-    start = 0;
+    `include "tb/draw.vh"
     while (!done && cycles < most) @(posedge clk) #1;
     if (done && !failed) $display("%0d cycles", cycles);
     else $display("failed: %s", done ? "the stack is full" : "no end");

@@ -6,7 +6,7 @@ use std::fs;
 use super::faults::{Fault, faults_are_found};
 use super::frames::random_views;
 use super::machines::{Machine, agree};
-use super::tools::{is_there, rtl, run, text};
+use super::tools::{icarus, is_there, rtl, run, text};
 use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
 static LANES: [Machine; 4] = [
@@ -79,16 +79,7 @@ fn an_arbiter_serves_who_came_first() {
         )
         .unwrap();
         let into = text(&compiled);
-        let arguments = [
-            "-g2012",
-            "-s",
-            "arbiter_tb",
-            "tb/arbiter_tb.v",
-            text(&module),
-            "-o",
-            into,
-        ];
-        run(&rtl(), "iverilog", &arguments);
+        icarus(&[text(shelter.path())], "arbiter_tb", &[], into);
         let printed = run(shelter.path(), "vvp", &["-n", into]);
         assert_eq!(
             printed.trim() == "0 wrong",

@@ -44,6 +44,19 @@ pub(super) fn with_voxels(branches: &[Branch], coarser: usize) -> Vec<bool> {
     has_voxels
 }
 
+/// Leaves out nodes below the root of which triangles touch too many voxels; of those that were counted.
+pub(super) fn leave_out_dense(
+    has_voxels: &mut [bool],
+    branches: &[Branch],
+    touched: &[Option<u32>],
+    coarser: usize,
+) {
+    let counted = branches.iter().zip(touched).zip(has_voxels);
+    for ((branch, touched), has_voxels) in counted.skip(coarser + 1) {
+        *has_voxels &= touched.is_none_or(|n| !is_dense(n as usize, branch.count));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use glam::DVec3;

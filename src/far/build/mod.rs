@@ -344,10 +344,7 @@ fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
         })
         .collect();
     if !options.hybrid {
-        for (number, branch) in branches.iter().enumerate().skip(coarser + 1) {
-            has_voxels[number] &=
-                touched[number].is_none_or(|n| !levels::is_dense(n as usize, branch.count));
-        }
+        levels::leave_out_dense(&mut has_voxels, &branches, &touched, coarser);
     }
     progress.end();
     let rays = match options.rays {

@@ -83,8 +83,13 @@ impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
         voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
     ) -> Result<(Node, Vec<u8>), BuildError> {
         let candidates = self.candidates(node, &own, voxels)?;
-        let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
-        let chosen = Comparison::of(node, &all, self.options)?.best(candidates)?;
+        let chosen = match <[Candidate; 1]>::try_from(candidates) {
+            Ok([only]) => only,
+            Err(candidates) => {
+                let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
+                Comparison::of(node, &all, self.options)?.best(candidates)?
+            }
+        };
         let mut node = chosen.node;
         let is_shared = |p| self.parts.shared(&own, p).is_some();
         let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);

@@ -26,8 +26,8 @@ pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>) -> String {
     text
 }
 
-/// The nodes: which children each has, which of them have none, and where they begin. `None`: children are not side by side, which
-/// a word cannot say.
+/// The nodes: which children each has, which of them have none, and where they begin. `None`: children are not side by
+/// side, which a word cannot say.
 pub(super) fn nodes(graph: &GraphView<'_>) -> Option<String> {
     if !graph.links.is_empty() {
         return None;

@@ -3,7 +3,9 @@
 //! For the first records of a frame, all that went into and came out of each
 //! block, as `$readmemh` files: one row a line, a file of inputs and one of
 //! outputs a block, and a manifest that names every bit. The rows are what
-//! the machine itself computed while it drew, and then for inputs that no frame brings: ends of ranges, ties, random numbers. `docs/vectors.md` describes their use.
+//! the machine itself computed while it drew, and then for inputs that no
+//! frame brings: ends of ranges, ties, random numbers. `docs/vectors.md`
+//! describes their use.
 
 mod blending;
 mod blocks;
