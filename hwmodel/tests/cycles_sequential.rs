@@ -1,4 +1,4 @@
-//! Records and tiles on sequential hardware (rules 12 and 13 of `hwmodel::cycles`), their cycles worked out by hand.
+//! Records, tiles and contexts on sequential hardware (rules 12 to 14 of `hwmodel::cycles`), their cycles worked out by hand.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod cycles_common;
@@ -154,10 +154,15 @@ fn what_is_done_beside_takes_no_step_of_its_own() {
     assert_eq!(stages, [Stage::Centre, Stage::Order]);
 }
 
-/// Tiles that do what is listed, and the last one's record, on lanes that are given them: lane, stage, first cycle, end.
-fn tiles(lanes: u32, does: Vec<Vec<Does>>) -> (Vec<(u32, Stage, u64, u64)>, u64) {
+/// Tiles that do what is listed, and the last one's record, on lanes that are given them: context (counted on from
+/// lane to lane), stage, first cycle, end.
+fn tiles(
+    (lanes, contexts): (u32, u32),
+    does: Vec<Vec<Does>>,
+) -> (Vec<(u32, Stage, u64, u64)>, u64) {
     let toml = HARDWARE
         .replace("lanes = 1", &format!("lanes = {lanes}"))
+        .replace("contexts = 1", &format!("contexts = {contexts}"))
         .replace("misses = 1", "misses = 3")
         .replace("drain_interval = 4", "drain_interval = 4\nown_port = true")
         + "[organisation]\ntile_levels = 1\n[outer_memory]\nbytes_per_cycle = 8\n";
@@ -180,7 +185,10 @@ fn tiles(lanes: u32, does: Vec<Vec<Does>>) -> (Vec<(u32, Stage, u64, u64)>, u64)
     let mut recorder = Recorder::new(TraceLimit::default());
     let report = simulate(&hardware, &mut workload, &mut recorder).unwrap();
     assert!(report.cycles <= report.serial);
-    let row = |visit: &VisitSpan| (visit.lane, visit.stage, visit.begins, visit.ends);
+    let row = |visit: &VisitSpan| {
+        let context = visit.lane * contexts + visit.context;
+        (context, visit.stage, visit.begins, visit.ends)
+    };
     let mut rows: Vec<_> = recorder.visits().iter().map(row).collect();
     rows.sort_by_key(|&(lane, _, begins, _)| (begins, lane));
     (rows, report.cycles)
@@ -194,7 +202,7 @@ fn node(address: u64) -> Does {
 fn tiles_are_handed_out_and_a_cache_serves_who_came_first() {
     let pixel = Does::Write(Stage::Draw, Memory::Pixel, 0);
     let (found, cycles) = tiles(
-        3,
+        (3, 1),
         vec![vec![node(0)], vec![node(0)], vec![node(1)], vec![pixel]],
     );
     let by_hand = [
@@ -224,7 +232,7 @@ fn a_line_that_comes_in_takes_the_cache() {
         (9, 11, 12 + 2),
         (10, 12, 12 + 2),
     ] {
-        let (found, _) = tiles(2, vec![vec![node(0)], later(waits, 1)]);
+        let (found, _) = tiles((2, 1), vec![vec![node(0)], later(waits, 1)]);
         // What is looked up before finds the line on its way, and waits for it.
         assert_eq!(found[0], (0, Stage::OnePixel, 1, 13));
         assert!(
@@ -241,14 +249,52 @@ fn of_two_misses_in_a_cycle_nodes_come_first_and_the_other_waits_for_the_port() 
         Does::Read(Stage::Draw, Memory::Attribute, 0),
         Does::Read(Stage::Draw, Memory::Attribute, 0),
     ];
-    let (found, _) = tiles(2, vec![attribute, vec![node(0)]]);
+    let (found, _) = tiles((2, 1), vec![attribute, vec![node(0)]]);
     assert!(found.contains(&(1, Stage::OnePixel, 2, 14)), "{found:?}");
     // Its line sets out two cycles later, in 4, and is looked at in 15; then a hit.
     assert!(found.contains(&(0, Stage::Draw, 2, 18)), "{found:?}");
 }
 
+/// So many cycles of work, then a node.
+fn works_and_reads(cycles: u32) -> Vec<Does> {
+    vec![Does::Step(Stage::Centre, cycles), node(0)]
+}
+
 #[test]
-fn a_sequential_lane_has_one_context() {
+fn a_context_that_waits_lets_another_have_the_lane() {
+    let (found, cycles) = tiles((1, 2), vec![vec![node(0)], works_and_reads(3)]);
+    let by_hand = [
+        // Asks in cycle 1; what it reads is there in 12, but the lane is not free until 15: looked at in 16.
+        (0, Stage::OnePixel, 1, 17),
+        // Given its tile in cycle 1, in which the other asks; begins it in 2.
+        (1, Stage::Centre, 2, 5),
+        // The line is on its way, and nobody else wants the lane: looked at in 12.
+        (1, Stage::OnePixel, 5, 13),
+        (1, Stage::Pop, 13, 15),
+    ];
+    assert_eq!(found, by_hand);
+    assert_eq!(cycles, 17);
+}
+
+#[test]
+fn who_wanted_a_lane_first_is_given_it_and_the_lowest_of_one_cycle() {
+    let works = vec![Does::Step(Stage::Centre, 9)];
+    let (found, cycles) = tiles((1, 3), vec![vec![node(0)], works_and_reads(2), works]);
+    let by_hand = [
+        // Both have what they asked for in cycle 12, and the third has the lane.
+        (0, Stage::OnePixel, 1, 18),
+        (1, Stage::Centre, 2, 4),
+        (1, Stage::OnePixel, 4, 20),
+        // Wanted the lane from cycle 2 on, and is given it in 4.
+        (2, Stage::Centre, 5, 14),
+        (2, Stage::Pop, 14, 16),
+    ];
+    assert_eq!(found, by_hand);
+    assert_eq!(cycles, 20);
+}
+
+#[test]
+fn contexts_of_a_sequential_lane_need_tiles() {
     let toml = HARDWARE.replace("contexts = 1", "contexts = 2");
     let error = Hardware::from_toml(&toml).unwrap_err().to_string();
     assert!(error.contains("contexts"), "{error}");

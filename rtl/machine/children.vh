@@ -42,6 +42,7 @@ memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.cl
   .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top), .data_in(pushed), .data_out(popped));
 
 // ---------------------------------------------------------------- the verdict, by a module of the stage
+localparam LOOK = VERDICT;                      // looks at the node that was read
 wire solid;
 wire [7:0]   mask_read = node_word[39:32];
 wire leaf = ~r_solid & (r_level >= depth | mask_read == 0);

@@ -1,14 +1,15 @@
 `include "widths.vh"
 `include "stage.vh"
-// Machines side by side, the lanes: each draws a tile of the picture at a time, with a stack and fill vectors of its
-// own. They share two caches, the port to the memory outside, and that of pixels. docs/rtl.md has their cycles.
+// Machines side by side, the lanes, each with several contexts, which draw a tile of the picture at a time, with a
+// stack and fill vectors of their own. They share two caches, the port to the memory outside, and that of pixels.
+// docs/rtl.md has their cycles.
 //
-//     every cycle: the lane that has waited longest for a tile begins the next one, row by row
+//     every cycle: the context that has waited longest for a tile begins the next one, row by row
 //
-// Only for rules under which the picture does not depend on the order of records: stage B. The picture has at least
+// Only for rules under which the picture does not depend on the order of records: stages B and C; contexts: stage C. The picture has at least
 // 2^TILE_LEVELS samples a side, rounded up to a power of two. Whoever waits longest is served first; of those that
 // came in one cycle, the lowest lane, and nodes before attributes.
-module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
+module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
   input                        clk, reset,
@@ -19,7 +20,7 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
   input                        start,
   output                       busy,
   output reg                   done,
-  output                       failed,
+  output reg                   failed,
   // Memory: `fetch` stays until it is taken, in a cycle with `fetch_ready`. Lines come in that order, each as eight
   // words with `fill`, which cannot be refused.
   output                       fetch,
@@ -39,6 +40,8 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, A = OUTER_ADDRESS - 3;
   // Of a pixel.
   localparam SHOWN = 2*P + N + 3*W + L + 64;
+  // Contexts of all lanes, a lane's together.
+  localparam ALL = LANES*CONTEXTS;
 
   // ---------------------------------------------------------------- tiles, row by row
   reg [L-1:0] levels;
@@ -55,12 +58,11 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
   wire [P-1:0] last_row = (height - 1'b1) >> (levels - TILE_LEVELS);
   reg                   some_left, running;
   reg [TILE_LEVELS-1:0] column, row;        // of the next tile
-  wire [LANES-1:0]      lane_busy, lane_failed, begins;
-  wire [LANES-1:0]      unused_tile;
-  arbiter #(LANES) tiles (.clk(clk), .reset(reset), .enable(1'b1), .request(~lane_busy & {LANES{some_left}}),
+  wire [LANES-1:0]      lane_failed;
+  wire [ALL-1:0]        draws, begins, unused_tile;
+  arbiter #(ALL) tiles (.clk(clk), .reset(reset), .enable(1'b1), .request(~draws & {ALL{some_left}}),
     .first(unused_tile), .grant(begins));
-  assign busy = some_left | |lane_busy;
-  assign failed = |lane_failed;
+  assign busy = some_left | |draws;
   always @(posedge clk)
     if (reset)
       {some_left, running, done} <= 3'b000;
@@ -75,21 +77,29 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
       end
       if (running & ~busy) {running, done} <= 2'b01;
     end
+  always @(posedge clk) failed <= ~(reset | start) & (failed | |lane_failed);
 
   // ---------------------------------------------------------------- lanes
-  wire [LANES-1:0]       node_request, node_taken, node_ready, attribute_request, attribute_taken, attribute_ready;
+  wire [ALL-1:0]         node_request, node_taken, node_ready, attribute_request, attribute_taken, attribute_ready;
   wire [LANES-1:0]       pixel_request, pixel_taken;
-  wire [LANES*A-1:0]     wanted;
-  wire [LANES*40-1:0]    node_word;         // mask of children and where they begin
-  wire [LANES*64-1:0]    attribute_word;
+  wire [ALL*A-1:0]       wanted;
+  wire [ALL*64-1:0]      node_word, attribute_word;
   wire [LANES*SHOWN-1:0] shows;
-  genvar i;
+  genvar i, j;
   generate
     for (i = 0; i < LANES; i = i + 1) begin : lane
-      reg [TILE_LEVELS-1:0] tile_x, tile_y;
-      always @(posedge clk)
-        if (begins[i]) {tile_x, tile_y} <= {column, row};
-      wire [N-1:0]   node, shown_node;
+      localparam FIRST = i*CONTEXTS;          // of its contexts
+      wire [CONTEXTS*P-1:0] tile_x, tile_y;
+      wire [CONTEXTS*N-1:0] node;
+      for (j = 0; j < CONTEXTS; j = j + 1) begin : walks
+        reg [TILE_LEVELS-1:0] x, y;
+        always @(posedge clk)
+          if (begins[FIRST + j]) {x, y} <= {column, row};
+        assign tile_x[j*P +: P] = x;
+        assign tile_y[j*P +: P] = y;
+        assign wanted[(FIRST + j)*A +: A] = node[j*N +: A];
+      end
+      wire [N-1:0]   shown_node;
       wire [P-1:0]   x, y;
       wire [3*W-1:0] voxel;
       wire [L-1:0]   level;
@@ -98,19 +108,19 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
       wire [N-4:0]   unused_line;
       machine #(.W(W), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2), .LEVEL_BOUND(LEVEL_BOUND),
                 .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH), .OUTER_ADDRESS(OUTER_ADDRESS), .SHARED(1),
-                .TILE_LEVELS(TILE_LEVELS)) walk (
+                .TILE_LEVELS(TILE_LEVELS), .CONTEXTS(CONTEXTS)) walk (
         .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
-        .constant_data(constant_data), .start(begins[i]), .busy(lane_busy[i]), .done(unused_done),
-        .failed(lane_failed[i]), .fetch(unused_fetch), .fetch_attribute(unused_kind), .fetch_line(unused_line),
-        .fill(1'b0), .fill_word(64'b0), .pixel(pixel_request[i]), .pixel_x(x), .pixel_y(y), .pixel_node(shown_node),
-        .pixel_voxel(voxel), .pixel_level(level), .pixel_attribute(attribute),
-        .tile_x({{(P-TILE_LEVELS){1'b0}}, tile_x}), .tile_y({{(P-TILE_LEVELS){1'b0}}, tile_y}),
-        .node_request(node_request[i]), .attribute_request(attribute_request[i]), .wanted_node(node),
-        .shared_node_taken(node_taken[i]), .shared_node_ready(node_ready[i]),
-        .shared_attribute_taken(attribute_taken[i]), .shared_attribute_ready(attribute_ready[i]),
-        .shared_pixel_taken(pixel_taken[i]), .shared_node_word({24'b0, node_word[i*40 +: 40]}),
-        .shared_attribute_word(attribute_word[i*64 +: 64]));
-      assign wanted[i*A +: A] = node[A-1:0];
+        .constant_data(constant_data), .start(begins[FIRST +: CONTEXTS]), .busy(draws[FIRST +: CONTEXTS]),
+        .done(unused_done), .failed(lane_failed[i]), .fetch(unused_fetch), .fetch_attribute(unused_kind),
+        .fetch_line(unused_line), .fill(1'b0), .fill_word(64'b0), .pixel(pixel_request[i]), .pixel_x(x), .pixel_y(y),
+        .pixel_node(shown_node), .pixel_voxel(voxel), .pixel_level(level), .pixel_attribute(attribute),
+        .tile_x(tile_x), .tile_y(tile_y), .node_request(node_request[FIRST +: CONTEXTS]),
+        .attribute_request(attribute_request[FIRST +: CONTEXTS]), .wanted_node(node),
+        .shared_node_taken(node_taken[FIRST +: CONTEXTS]), .shared_node_ready(node_ready[FIRST +: CONTEXTS]),
+        .shared_attribute_taken(attribute_taken[FIRST +: CONTEXTS]),
+        .shared_attribute_ready(attribute_ready[FIRST +: CONTEXTS]), .shared_pixel_taken(pixel_taken[i]),
+        .shared_node_word(node_word[FIRST*64 +: CONTEXTS*64]),
+        .shared_attribute_word(attribute_word[FIRST*64 +: CONTEXTS*64]));
       assign shows[i*SHOWN +: SHOWN] = {x, y, shown_node, voxel, level, attribute};
     end
   endgenerate
@@ -124,11 +134,11 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
   assign fetch = |next;
   assign fetch_attribute = next[1];
   assign fetch_line = next[1] ? attribute_line : node_line;
-  // Of the lines on their way, the oldest lowest: whether they are of attributes. One a lane and cache at most.
-  reg [2*LANES:0]       kinds;              // a one above the youngest
+  // Of the lines on their way, the oldest lowest: whether they are of attributes. One a context and cache at most.
+  reg [2*ALL:0]       kinds;              // a one above the youngest
   reg [2:0]             filled;
   wire                  last_fill = fill & &filled;
-  wire [2*LANES:0]      left = last_fill ? kinds >> 1 : kinds;
+  wire [2*ALL:0]      left = last_fill ? kinds >> 1 : kinds;
   always @(posedge clk)
     if (reset) begin
       kinds <= 1;
@@ -137,19 +147,19 @@ module lanes #(parameter LANES = 4, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEV
       if (fill) filled <= filled + 1'b1;
       kinds <= |fetched ? add_kind(left, fetched[1]) : left;
     end
-  function [2*LANES:0] add_kind(input [2*LANES:0] to, input kind);
+  function [2*ALL:0] add_kind(input [2*ALL:0] to, input kind);
     integer k;
     begin
       add_kind = to;
-      for (k = 0; k < 2*LANES; k = k + 1)
+      for (k = 0; k < 2*ALL; k = k + 1)
         if (to >> k == 1) add_kind[k +: 2] = {1'b1, kind};
     end
   endfunction
-  shared_cache #(.LANES(LANES), .SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A), .WORD(40)) node_cache (.clk(clk),
+  shared_cache #(.USERS(ALL), .SETS_LOG2(NODE_SETS_LOG2), .ADDRESS(A)) node_cache (.clk(clk),
     .reset(reset), .request(node_request), .address(wanted), .taken(node_taken), .ready(node_ready), .word(node_word),
     .fetch(node_fetch), .fetch_taken(fetched[0]), .fetch_line(node_line), .fill(fill & ~kinds[0]),
     .fill_word(fill_word));
-  shared_cache #(.LANES(LANES), .SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk),
+  shared_cache #(.USERS(ALL), .SETS_LOG2(ATTRIBUTE_SETS_LOG2), .ADDRESS(A)) attribute_cache (.clk(clk),
     .reset(reset), .request(attribute_request), .address(wanted), .taken(attribute_taken), .ready(attribute_ready),
     .word(attribute_word), .fetch(attribute_fetch), .fetch_taken(fetched[1]), .fetch_line(attribute_line),
     .fill(fill & kinds[0]), .fill_word(fill_word));

@@ -21,16 +21,19 @@
 //
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
+// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns.
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
-                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0) (
+                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0,
+                 CONTEXTS = 1) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
   input [7:0]                  constant_address,
   input [W-1:0]                constant_data,
-  input                        start,
-  output                       busy, done,
+  input [CONTEXTS-1:0]         start,
+  output [CONTEXTS-1:0]        busy,
+  output                       done,
   output reg                   failed,          // the stack had no room: the picture is of no use
   // Memory: a line of eight words of 64 bits, of nodes or of attributes.
   output                       fetch,
@@ -45,13 +48,13 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   output [3*W-1:0]             pixel_voxel,
   output [`LEVEL_BITS-1:0]     pixel_level,
   output [63:0]                pixel_attribute,
-  // Where it is SHARED: the tile, from `start` on; requests, which stay until they are taken; and answers.
-  input [`PLACE_BITS-1:0]      tile_x, tile_y,
-  output                       node_request, attribute_request,
-  output [`NODE_BITS-1:0]      wanted_node,
-  input                        shared_node_taken, shared_node_ready, shared_attribute_taken, shared_attribute_ready,
+  // Where it is SHARED, of each context: the tile, from `start` on; requests, which stay until they are taken; answers.
+  input [CONTEXTS*`PLACE_BITS-1:0] tile_x, tile_y,
+  output [CONTEXTS-1:0]        node_request, attribute_request,
+  output [CONTEXTS*`NODE_BITS-1:0] wanted_node,
+  input [CONTEXTS-1:0]         shared_node_taken, shared_node_ready, shared_attribute_taken, shared_attribute_ready,
   input                        shared_pixel_taken,
-  input [63:0]                 shared_node_word, shared_attribute_word);
+  input [CONTEXTS*64-1:0]      shared_node_word, shared_attribute_word);
   localparam L = `LEVEL_BITS, P = `PLACE_BITS, N = `NODE_BITS, V = `WIDE_BITS;
   // One coordinate of a record's vertices, and what else it has in the picture.
   localparam CAGE = `CAGE_WORDS*W, MORE = `MORE_BITS;
@@ -72,8 +75,13 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     SET = 26, DONE = 27;
   // Those of the stage are numbers from 32 on.
   reg [5:0] state;
-  assign busy = state != IDLE & state != DONE;
   assign done = state == DONE;
+
+  // ---------------------------------------------------------------- whose turn it is
+  localparam CONTEXT_LOG2 = $clog2(CONTEXTS), BITS_OF_CONTEXT = CONTEXT_LOG2 == 0 ? 1 : CONTEXT_LOG2;
+  reg [BITS_OF_CONTEXT-1:0] running;
+  reg [P-1:0]  tile_x_now, tile_y_now;
+  reg [63:0]   node_word_now, attribute_word_now;
 
   // ---------------------------------------------------------------- the record that has its turn
   reg              r_solid, r_inside;
@@ -136,9 +144,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [P-1:0] fill_x = of_record ? asked_x : of_drawn ? draw_x : c_quad_x;
   wire [P-1:0] fill_y = of_record ? asked_y : of_drawn ? draw_y : c_quad_y;
   wire [FILL_ADDRESS-1:0] fill_address = fill_place(fill_level, fill_x, fill_y);
-  memory #(.BITS(4), .WORDS(FILL_WORDS), .ADDRESS(FILL_ADDRESS)) fill_vectors (.clk(clk),
-    .read(fill_read & ~elsewhere), .write(fill_write & ~elsewhere), .address(fill_address),
-    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
+  memory #(.BITS(4), .WORDS(FILL_WORDS << CONTEXT_LOG2), .ADDRESS(FILL_ADDRESS + CONTEXT_LOG2)) fill_vectors (
+    .clk(clk), .read(fill_read & ~elsewhere), .write(fill_write & ~elsewhere),
+    .address({{CONTEXT_LOG2{1'b0}}, fill_address} << CONTEXT_LOG2 | running), .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
 
   // A new frame's vectors: a quadrant is full from the start if its first sample is beside the picture.
   integer q;
@@ -164,9 +172,9 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       way = shifted >> TILE_LEVELS;
     end
   endfunction
-  wire [P-1:0] first_x_of = SHARED ? way(tile_x, c_quad_level) : 0;
-  wire [P-1:0] below_x = SHARED ? way(tile_x, c_quad_level + 1'b1) : 0;
-  wire [P-1:0] below_y = SHARED ? way(tile_y, c_quad_level + 1'b1) : 0;
+  wire [P-1:0] first_x_of = SHARED ? way(tile_x_now, c_quad_level) : 0;
+  wire [P-1:0] below_x = SHARED ? way(tile_x_now, c_quad_level + 1'b1) : 0;
+  wire [P-1:0] below_y = SHARED ? way(tile_y_now, c_quad_level + 1'b1) : 0;
   wire [L-1:0] in_tile = c_quad_level < TILE_LEVELS ? 0 : c_quad_level - TILE_LEVELS;
   wire last_of_row   = &(c_quad_x | ~({P{1'b1}} >> (P - in_tile)));
   wire last_of_level = last_of_row & &(c_quad_y | ~({P{1'b1}} >> (P - in_tile)));
@@ -174,14 +182,12 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire        node_taken, node_ready, attribute_taken, attribute_ready, pixel_taken;
   wire [63:0] node_word, attribute_word;
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
-  assign node_request = state == NODE;
-  assign attribute_request = state == ATTRIBUTE;
-  assign wanted_node = t_node;
   generate
     if (SHARED) begin : shared
-      assign {node_taken, node_ready, node_word} = {shared_node_taken, shared_node_ready, shared_node_word};
-      assign {attribute_taken, attribute_ready} = {shared_attribute_taken, shared_attribute_ready};
-      assign {attribute_word, pixel_taken} = {shared_attribute_word, shared_pixel_taken};
+      assign node_taken = |(shared_node_taken & runs), attribute_taken = |(shared_attribute_taken & runs);
+      assign node_ready = |((shared_node_ready | answered) & runs);
+      assign attribute_ready = |((shared_attribute_ready | answered) & runs);
+      assign {node_word, attribute_word, pixel_taken} = {node_word_now, attribute_word_now, shared_pixel_taken};
       assign {fetch, fetch_attribute, fetch_line} = 0;
     end else begin : own
       wire         node_fetch, attribute_fetch;
@@ -324,6 +330,17 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
     end
   endtask
 
+  task begin_tile;
+    begin
+      failed <= 0;
+      stacked <= 0;
+      c_quad_level <= 0;
+      c_quad_x <= 0;
+      c_quad_y <= 0;
+      state <= CLEAR;
+    end
+  endtask
+
   // A node whose vector is there: the box goes on in a quadrant, or belongs here.
   task choose;
     if (rejected) begin
@@ -337,23 +354,23 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
       accept;
   endtask
 
-  // ---------------------------------------------------------------- the stage's own
+  // ---------------------------------------------------------------- the stage's own; other contexts
   `include "parts.vh"
+  `include "contexts.vh"
+  reg [5 + `KEPT_BITS:0] kept [0:CONTEXTS-1];
+  always @(posedge clk)
+    if (switches) kept[running] <= {state_then, `KEPT};
 
   always @(posedge clk)
     if (reset) begin
       state <= IDLE;
       failed <= 0;
+    end else if (switches) begin
+      {state, `KEPT} <= kept[next_running];
+      if (next_begins) begin_tile;
     end else
       case (state)
-        IDLE, DONE: if (start) begin
-          failed <= 0;
-          stacked <= 0;
-          c_quad_level <= 0;
-          c_quad_x <= 0;
-          c_quad_y <= 0;
-          state <= CLEAR;
-        end
+        IDLE, DONE: if (starts) begin_tile;
         CLEAR: begin
           c_quad_x <= last_of_level ? below_x : last_of_row ? first_x_of : c_quad_x + 1'b1;
           if (last_of_row) c_quad_y <= last_of_level ? below_y : c_quad_y + 1'b1;

@@ -1,19 +1,20 @@
 `include "widths.vh"
-// A cache for several lanes: words of 64 bits in lines of eight, set-associative, least recently used goes first.
+// A cache for several users, which are contexts of lanes: words of 64 bits in lines of eight, set-associative, least
+// recently used goes first.
 //
-// A lane's request is `taken` when it is the lane's turn, and looked up. On a hit the lane is `ready` in the next
+// A user's request is `taken` when it is that one's turn, and looked up. On a hit the user is `ready` in the next
 // cycle, with its word, which stays until its next request. Else it is `ready` when its line is there; until then
 // others are served, and who wants a word of a line that is on its way waits for it, too. An access takes
 // two cycles, so that memories of one port are enough: one reads, the other writes the order of use, or takes a
 // miss to the outside, for as long as that is not `fetch_taken`. No access begins while a line comes in.
 //
 // Lines come in the order in which they were fetched: eight words in order (`fill`) each.
-module shared_cache #(parameter LANES = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29, WORD = 64) (
+module shared_cache #(parameter USERS = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS = 29) (
   input                     clk, reset,
-  input  [LANES-1:0]        request,
-  input  [LANES*ADDRESS-1:0] address,      // of a word
-  output [LANES-1:0]        taken, ready,
-  output [LANES*WORD-1:0]   word,
+  input  [USERS-1:0]        request,
+  input  [USERS*ADDRESS-1:0] address,      // of a word
+  output [USERS-1:0]        taken, ready,
+  output [USERS*64-1:0]     word,
   output                    fetch,
   input                     fetch_taken,
   output [ADDRESS-4:0]      fetch_line,
@@ -22,24 +23,24 @@ module shared_cache #(parameter LANES = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   localparam WAYS = 1 << WAYS_LOG2, SETS = 1 << SETS_LOG2;
   localparam TAG = ADDRESS - 3 - SETS_LOG2;
   localparam ORDER = WAYS*WAYS_LOG2;
-  // Lines on their way: one a lane at most.
-  localparam E = LANES > 1 ? $clog2(LANES) : 1, ENTRIES = 1 << E;
+  // Lines on their way: one a user at most.
+  localparam E = USERS > 1 ? $clog2(USERS) : 1, ENTRIES = 1 << E;
 
   // ---------------------------------------------------------------- whose turn it is
   reg                 looking;              // an access is in its second cycle, or later
   wire                look = |taken;
-  wire [LANES-1:0]    unused_first;
-  arbiter #(LANES) turns (.clk(clk), .reset(reset), .enable(~looking & ~fill & filled == 0), .request(request),
+  wire [USERS-1:0]    unused_first;
+  arbiter #(USERS) turns (.clk(clk), .reset(reset), .enable(~looking & ~fill & filled == 0), .request(request),
     .first(unused_first), .grant(taken));
   reg [ADDRESS-1:0]   address_now;
   integer n;
   always @* begin
     address_now = 0;
-    for (n = 0; n < LANES; n = n + 1)
+    for (n = 0; n < USERS; n = n + 1)
       address_now = address_now | address[n*ADDRESS +: ADDRESS] & {ADDRESS{taken[n]}};
   end
   reg [ADDRESS-1:0]   at;
-  reg [LANES-1:0]     of;                   // the lane
+  reg [USERS-1:0]     of;                   // the user
   wire [SETS_LOG2-1:0] set = at[3 +: SETS_LOG2];
   wire [TAG-1:0]      tag = at[ADDRESS-1 -: TAG];
 
@@ -93,7 +94,7 @@ module shared_cache #(parameter LANES = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   always @* begin
     on_its_way = 0;
     entry = next_entry;
-    for (k = 0; k < LANES; k = k + 1)
+    for (k = 0; k < USERS; k = k + 1)
       if (hit & k < entries & entry_line[(oldest + k) % ENTRIES] == at[ADDRESS-1:3]
           & entry_way[(oldest + k) % ENTRIES] == way) begin
         on_its_way = 1;
@@ -102,22 +103,22 @@ module shared_cache #(parameter LANES = 4, SETS_LOG2 = 6, WAYS_LOG2 = 2, ADDRESS
   end
   wire begins_to_wait = looking & (hit ? on_its_way : fetch_taken);
   wire found = looking & hit & ~on_its_way;
-  wire [WORD-1:0] found_word = words[way*64 +: WORD];
+  wire [63:0] found_word = words[way*64 +: 64];
   assign fetch_line = at[ADDRESS-1:3];
   generate
-    for (i = 0; i < LANES; i = i + 1) begin : lane
+    for (i = 0; i < USERS; i = i + 1) begin : user
       reg            waits, arrived;
       reg [E-1:0]    waits_for;
       reg [2:0]      wanted;
-      reg [WORD-1:0] kept;
+      reg [63:0] kept;
       wire begins = begins_to_wait & of[i];
       wire [E-1:0] line = waits ? waits_for : entry;
       wire [2:0] place = waits ? wanted : at[2:0];
       assign ready[i] = found & of[i] | arrived;
-      assign word[i*WORD +: WORD] = found & of[i] ? found_word : kept;
+      assign word[i*64 +: 64] = found & of[i] ? found_word : kept;
       always @(posedge clk) begin
         if (found & of[i]) kept <= found_word;
-        else if (fill & (waits | begins) & line == oldest & place == filled) kept <= fill_word[WORD-1:0];
+        else if (fill & (waits | begins) & line == oldest & place == filled) kept <= fill_word;
         if (begins) {waits_for, wanted} <= {entry, at[2:0]};
         arrived <= ~reset & last_fill & waits & waits_for == oldest;
         if (reset | last_fill & waits & waits_for == oldest) waits <= 0;

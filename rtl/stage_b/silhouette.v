@@ -5,8 +5,12 @@
 // Two sets of constants: those of the node that was divided last, from which those of a quadrant are made, and
 // of the node that is looked at. `a` and `b` are the same in all nodes. A plane whose side is known in the divided node
 // stays as it was there, so that its number does not outgrow the word; so the sides are kept by level.
-module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10) (
+//
+// CONTEXTS have all of that in turns: on `switch` it goes on with what is kept of the `next` one.
+module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 10, CONTEXTS = 1, CONTEXT = 1) (
   input                        clk,
+  input                        switch,
+  input [CONTEXT-1:0]          running, next,
   // Of a record's cube; the node looked at is the record's.
   input                        load,
   input [9*V-1:0]              edge_abc,    // along x, y, z
@@ -57,8 +61,12 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
       wire known = |sides[2*i +: 2];
       assign sides_here[2*i +: 2] = known ? sides[2*i +: 2] : found;
       wire signed [V-1:0] doubled = of_divided - (quadrant[0] ? a : {V{1'b0}}) - (quadrant[1] ? b : {V{1'b0}});
+      reg [4*V-1:0] kept [0:CONTEXTS-1];
       always @(posedge clk)
-        if (load) {a, b, here} <= loaded[3*V*i +: 3*V];
+        if (switch) begin
+          kept[running] <= {a, b, of_divided, here};
+          {a, b, of_divided, here} <= kept[next];
+        end else if (load) {a, b, here} <= loaded[3*V*i +: 3*V];
         else if (divide) of_divided <= here;
         else if (move) here <= known ? of_divided : inner;
         else if (climb & ~|sides_above[2*i +: 2]) of_divided <= doubled >>> 1;
@@ -67,8 +75,13 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
   plane_cover of_sides (.side_x(sides_here[0 +: 8]), .side_y(sides_here[8 +: 8]), .side_z(sides_here[16 +: 8]),
     .front(has_front), .front_side(sides_here[24 +: 2]), .wanted(wanted), .cover_code(coverage));
 
+  localparam KEPT = 3 + 2*PLANES*(PICTURE_LEVELS + 2) + `LEVEL_BITS;
+  reg [KEPT-1:0] kept [0:CONTEXTS-1];
   always @(posedge clk)
-    if (load) begin
+    if (switch) begin
+      kept[running] <= {has_front, wanted, sides, sides_of_level, divided};
+      {has_front, wanted, sides, sides_of_level, divided} <= kept[next];
+    end else if (load) begin
       has_front <= ~before_eye & front_found;
       wanted <= front_side;
       sides <= 0;

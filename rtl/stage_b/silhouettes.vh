@@ -51,7 +51,8 @@ wire        divides = looked & coverage == 1;
 wire [L-1:0] divided;
 wire [L-1:0] below_divided = s_level - divided;
 wire [1:0]  s_quadrant = state == CLIMB ? {s_y[below_divided], s_x[below_divided]} : {s_y[0], s_x[0]};
-silhouette #(W, V, PICTURE_LEVELS) outline (.clk(clk), .load(state == SOLID), .edge_abc(t_more[3*V +: 9*V]),
+silhouette #(W, V, PICTURE_LEVELS, CONTEXTS, BITS_OF_CONTEXT) outline (.clk(clk), .switch(switches),
+  .running(running), .next(next_running), .load(state == SOLID), .edge_abc(t_more[3*V +: 9*V]),
   .axis_ab(axis_ab), .axis_c(t_more[0 +: 3*V]), .side(depth - t_level), .min(t_min), .max(t_max),
   .eye_floor(eye_floor), .eye_ceil(eye_ceil), .positive(positive), .before_eye(t_w_min > 0), .divide(divides),
   .move(state == QUADRANT), .climb(state == CLIMB), .level(s_level), .quadrant(s_quadrant), .divided(divided),

@@ -6,9 +6,12 @@
 `define REST_BITS (5*W + MORE)
 // Lowest levels of fill vectors that are not in the memory of vectors.
 `define JOINED_LEVELS 0
-// All fill vectors, in bits, of a machine `dut`.
-`define FILL_BITS (dut.fill_vectors.BITS*dut.fill_vectors.WORDS)
+// All fill vectors, in bits, of a machine.
+`define FILL_BITS(of) (of.fill_vectors.BITS*of.fill_vectors.WORDS)
 // Log2 of the stack's entries.
 `define STACK_LOG2 8
+// What a context has in registers, and its bits: there is one only.
+`define KEPT stacked
+`define KEPT_BITS (STACK_LOG2 + 1)
 // Registers of constants.
 `define CONSTANTS 164

@@ -1,6 +1,6 @@
 // Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, one a sample. The word
 // read last stays in a register as long as a record has its turn.
-wire         joined = levels >= 2;              // the picture has as many levels
+wire         joined = levels >= TILE_LEVELS + 2;  // the tile has as many levels
 wire [L-1:0] word_level = levels - 2'd2;
 assign last_level = joined ? word_level : levels;
 wire of_drawn = state == COVER | state == COVERED;
@@ -8,8 +8,11 @@ wire of_drawn = state == COVER | state == COVERED;
 assign elsewhere = joined & fill_level >= word_level;
 wire [L-1:0] below_word = fill_level - word_level;
 wire [P-1:0] word_x = fill_x >> below_word, word_y = fill_y >> below_word;
-localparam WORD_ADDRESS = 2*(PICTURE_LEVELS - 2), WORDS = 32'd1 << WORD_ADDRESS;
-wire [WORD_ADDRESS-1:0] word_address = (word_y << word_level) + word_x;
+// In the tile, row by row, as many columns as it has.
+localparam WORD_ADDRESS = 2*(PICTURE_LEVELS - TILE_LEVELS - 2) + CONTEXT_LOG2, WORDS = 32'd1 << WORD_ADDRESS;
+wire [L-1:0] columns_log2 = word_level - TILE_LEVELS;
+wire [P-1:0] row_in_tile = word_y & ~({P{1'b1}} << columns_log2), column_in_tile = word_x & ~({P{1'b1}} << columns_log2);
+wire [WORD_ADDRESS-1:0] word_address = ((row_in_tile << columns_log2) + column_in_tile) << CONTEXT_LOG2 | running;
 wire [15:0] word_there;
 reg  [15:0] outside_word;
 memory #(.BITS(16), .WORDS(WORDS), .ADDRESS(WORD_ADDRESS)) fill_words (.clk(clk),
@@ -23,23 +26,29 @@ reg  [15:0]  written;
 wire [15:0]  word = is_written ? written : word_there;
 assign known = has_word & elsewhere & has_x == word_x & has_y == word_y;
 assign marked_all = marks_word ? &written : &marked;
-always @(posedge clk) begin
-  if (fill_read & elsewhere & ~known) begin
-    {has_x, has_y} <= {word_x, word_y};
-    has_word <= 1;
-    is_written <= 0;
+reg [17 + 2*P:0] word_kept [0:CONTEXTS-1];
+always @(posedge clk)
+  if (switches) begin
+    word_kept[running] <= {has_word, judged, has_x, has_y, word};
+    {has_word, judged, has_x, has_y, written} <= word_kept[next_running];
+    is_written <= 1;
+  end else begin
+    if (fill_read & elsewhere & ~known) begin
+      {has_x, has_y} <= {word_x, word_y};
+      has_word <= 1;
+      is_written <= 0;
+    end
+    // A turn begins, also with the child after one that was drawn or hidden.
+    if (state == OBJECT | state == POP | state == OPEN | state == CENTRE | state == CHILD & judged) has_word <= 0;
+    if (state == SOLID) judged <= 1;
+    if (state == CHILD | state == CENTRE) judged <= 0;
+    if (pixel & pixel_taken) begin
+      written <= word | 16'd1 << {c_quad_y[1], c_quad_x[1], c_quad_y[0], c_quad_x[0]};
+      is_written <= joined;
+      marks_word <= joined;
+    end
+    if (state == MARK) marks_word <= 0;
   end
-  // A turn begins, also with the child after one that was drawn or hidden.
-  if (state == OBJECT | state == POP | state == OPEN | state == CENTRE | state == CHILD & judged) has_word <= 0;
-  if (state == SOLID) judged <= 1;
-  if (state == CHILD | state == CENTRE) judged <= 0;
-  if (pixel & pixel_taken) begin
-    written <= word | 16'd1 << {c_quad_y[1], c_quad_x[1], c_quad_y[0], c_quad_x[0]};
-    is_written <= joined;
-    marks_word <= joined;
-  end
-  if (state == MARK) marks_word <= 0;
-end
 
 // The vector of a node in the word: of its quadrants' samples; of its samples; of itself.
 wire [3:0] quarter = word[4*{fill_y[0], fill_x[0]} +: 4];

@@ -22,7 +22,7 @@ reg  draws;
 wire looks = ~draws;
 wire [5:0] turn_over = |(left & there) ? CHILD : next_record;
 
-localparam READ = 37, OUT = 38, UP = 39;
+localparam READ = 37, OUT = 38, UP = 39, LOOK = READ;
 
 // ---------------------------------------------------------------- the stack
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1);
@@ -32,9 +32,9 @@ wire [LEVEL-1:0]      p_level;
 wire [7:0]            p_mask, p_leaves, p_left;
 wire                  p_inside;
 wire [QUAD_LEVEL-1:0] p_quad_level;
-memory #(.BITS(ENTRY), .WORDS(1 << STACK_LOG2), .ADDRESS(STACK_LOG2)) stack (.clk(clk),
-  .read(state == POP), .write(state == PUSH & ~stack_full),
-  .address(state == PUSH ? stacked[STACK_LOG2-1:0] : top),
+wire [STACK_LOG2+CONTEXT_LOG2-1:0] entry = state == PUSH ? stacked[STACK_LOG2-1:0] : top;
+memory #(.BITS(ENTRY), .WORDS(CONTEXTS << STACK_LOG2), .ADDRESS(STACK_LOG2 + CONTEXT_LOG2)) stack (.clk(clk),
+  .read(state == POP), .write(state == PUSH & ~stack_full), .address(entry << CONTEXT_LOG2 | running),
   .data_in({first[NODE_WIDTH-1:0], r_level[LEVEL-1:0], mask, leaves, left, r_inside, r_quad_level[QUAD_LEVEL-1:0]}),
   .data_out({p_first, p_level, p_mask, p_leaves, p_left, p_inside, p_quad_level}));
 wire [L-1:0] above = r_quad_level - p_quad_level;

@@ -7,7 +7,7 @@ endfunction
 function [7:0] nearest_lowest(input [7:0] left);
   nearest_lowest = {left[0], left[1], left[2], left[3], left[4], left[5], left[6], left[7]};
 endfunction
-always @(posedge clk) if (busy) begin
+always @(posedge clk) if (busy & ~reset) begin
   cycles <= cycles + 1;
   if (pixel) $fwrite(pixels, "%0d %0d %0d %0d %0d %0d\n", pixel_y * constants[5] + pixel_x, pixel_node,
     pixel_voxel[2*W +: W], pixel_voxel[W +: W], pixel_voxel[0 +: W], pixel_level);

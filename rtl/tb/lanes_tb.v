@@ -2,13 +2,13 @@
 `include "stage.vh"
 // Draws a frame with several lanes, as frame_tb.v does with one machine; the memory takes another request while it
 // answers, a line every eight cycles. Events have the number of their tile before them.
-module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
+module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
                   DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS);   // as `lanes` has them
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word, and of a line.
   localparam LATENCY = 52, LINE = 8;
   // Nodes that there is room for, records on a stack, lines on their way.
-  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2, MOST = 16;
+  localparam NODES = 1 << 20, STACK_LOG2 = `STACK_LOG2, MOST = 64;
   reg clk = 0, reset = 1, start = 0, constant_write = 0;
   always #1 clk = ~clk;
   reg [7:0] constant_address = 0;
@@ -24,7 +24,7 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
   wire [63:0] pixel_attribute;
   integer taken_for;
   wire fetch_ready = taken_for == 0;
-  lanes #(.LANES(LANES), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
+  lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
           .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
@@ -61,13 +61,13 @@ module lanes_tb #(parameter LANES = 4, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVE
 
   // ------------------------------------------------ events
   `define WALK dut.lane[lane].walk
-  `define TILE (`WALK.tile_y << TILE_LEVELS | `WALK.tile_x)
+  `define TILE (`WALK.tile_y_now << TILE_LEVELS | `WALK.tile_x_now)
   `define WATCHED 2
   `include "tb/frame.vh"
   genvar lane;
   generate
     for (lane = 0; lane < LANES; lane = lane + 1) begin : watched
-      always @(posedge clk) if (`WALK.busy & has_events) begin
+      always @(posedge clk) if (has_events) begin
         `include "tb/ports.vh"
       end
     end

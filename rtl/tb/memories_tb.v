@@ -11,7 +11,7 @@ module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEV
     .constant_data(constant_data), .start(start), .fill(fill), .fill_word(fill_word));
   initial begin
     $display("record stack: %0d", dut.stack.BITS*dut.stack.WORDS);
-    $display("fill vectors: %0d", `FILL_BITS);
+    $display("fill vectors: %0d", `FILL_BITS(dut));
     $display("node cache: %0d",
       dut.own.node_cache.WAYS*dut.own.node_cache.ways[0].of_words.BITS*dut.own.node_cache.ways[0].of_words.WORDS);
     $display("node cache, tags: %0d",

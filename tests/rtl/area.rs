@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C};
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, lanes};
 use super::tools::{icarus, is_there, parameter, rtl, run, shiftvox, text};
 use super::views::TREE;
 
@@ -57,9 +57,13 @@ fn memories_have_the_bits_that_the_model_says() {
         &["gen:menger,depth=4", "--size", "96x20"],
         &["gen:terrain,depth=6", "--size", "300", "--lod", "0"],
     ];
-    let lanes = Machine::side_by_side(3, 2);
-    for (machine, view) in [&STAGE_A, &STAGE_B, &STAGE_C, &lanes]
+    let side_by_side = [
+        Machine::lanes_of_stage_b(lanes(3, 1, 2)),
+        Machine::lanes_of_stage_c(lanes(2, 2, 2)),
+    ];
+    for (machine, view) in [&STAGE_A, &STAGE_B, &STAGE_C]
         .into_iter()
+        .chain(&side_by_side)
         .flat_map(|machine| views.map(|view| (machine, view)))
         // Lanes have the memories of a machine, but for the fill vectors: one view is enough.
         .filter(|(machine, view)| machine.testbench() == "frame_tb" || *view == views[1])

@@ -5,7 +5,7 @@ use std::fs;
 
 use shiftvox::graph::{LinkedGraph, vxg};
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, agree, agree_linked};
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, agree, agree_linked, lanes};
 use super::tools::{is_there, rtl, run, text};
 use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
@@ -41,12 +41,14 @@ fn yosys_takes_the_machines() {
     if !is_there("yosys") {
         return;
     }
-    let lanes = Machine::side_by_side(2, 1);
+    let lanes_b = Machine::lanes_of_stage_b(lanes(2, 1, 1));
+    let lanes_c = Machine::lanes_of_stage_c(lanes(2, 2, 1));
     for (machine, top) in [
         (&STAGE_A, "machine"),
         (&STAGE_B, "machine"),
         (&STAGE_C, "machine"),
-        (&lanes, "lanes"),
+        (&lanes_b, "lanes"),
+        (&lanes_c, "lanes"),
     ] {
         // Of modules in several folders the first counts.
         let mut files = BTreeMap::new();

@@ -1,20 +1,30 @@
-//! Several machines of stage B side by side, each of which draws tiles of the picture: the events of each tile in order,
-//! the picture, the cycles, whatever the number of lanes.
+//! Machines of stages B and C side by side, which draw tiles of the picture: the events of each tile in order, the
+//! picture, the cycles, whatever the number of lanes and of their contexts.
 
 use std::fs;
 
 use super::faults::{Fault, faults_are_found};
 use super::frames::random_views;
-use super::machines::{Machine, agree};
+use super::machines::{Machine, agree, lanes};
 use super::tools::{icarus, is_there, rtl, run, text};
 use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
-static LANES: [Machine; 4] = [
-    Machine::side_by_side(1, 2),
-    Machine::side_by_side(2, 2),
-    Machine::side_by_side(3, 3),
-    Machine::side_by_side(4, 2),
+static LANES_B: [Machine; 4] = [
+    Machine::lanes_of_stage_b(lanes(1, 1, 2)),
+    Machine::lanes_of_stage_b(lanes(2, 1, 2)),
+    Machine::lanes_of_stage_b(lanes(3, 1, 3)),
+    Machine::lanes_of_stage_b(lanes(4, 1, 2)),
 ];
+static LANES_C: [Machine; 6] = [
+    Machine::lanes_of_stage_c(lanes(1, 1, 2)),
+    Machine::lanes_of_stage_c(lanes(1, 2, 2)),
+    Machine::lanes_of_stage_c(lanes(1, 4, 2)),
+    Machine::lanes_of_stage_c(lanes(1, 8, 3)),
+    Machine::lanes_of_stage_c(lanes(4, 1, 2)),
+    Machine::lanes_of_stage_c(lanes(2, 4, 2)),
+];
+
+static SMALL: Machine = Machine::lanes_of_stage_c(lanes(2, 2, 2));
 
 /// Faults in what the lanes share, and in what a lane has of a tile.
 const FAULTS: [Fault; 8] = [
@@ -36,19 +46,62 @@ const FAULTS: [Fault; 8] = [
     ),
 ];
 
-/// A small frame of four lanes in Icarus Verilog, as it is and with each fault.
+/// And in what contexts of a lane add: their turns, and what each has meanwhile.
+const FAULTS_OF_CONTEXTS: [Fault; 10] = [
+    ("contexts", "state == NODE ? LOOK : state", "state"),
+    (
+        "contexts",
+        "asks_node | runs : asks_node",
+        "asks_node : asks_node",
+    ),
+    (
+        "contexts",
+        "wanted_by[running] <= t_node",
+        "wanted_by[running] <= 0",
+    ),
+    (
+        "contexts",
+        "& ~(looks_at_answer ? runs : {CONTEXTS{1'b0}})",
+        "",
+    ),
+    ("contexts", "(begun | start) & ~runs", "begun | start"),
+    ("contexts", "state == ATTRIBUTE\n", "1'b0\n"),
+    (
+        "machine",
+        "fill_address} << CONTEXT_LOG2 | running",
+        "fill_address} << CONTEXT_LOG2",
+    ),
+    ("stage", "left, waiting, ", "left, "),
+    ("joined_fill", "is_written <= 1;", ""),
+    ("silhouette", "{a, b, of_divided, here} <= kept[next];", ""),
+];
+
+/// From within a sponge, where tiles have about the same to do.
+const WITHIN: [&str; 7] = [
+    "gen:menger,depth=1",
+    "--size",
+    "13x11",
+    "--eye",
+    "1.5,1.4,1.2",
+    "--target",
+    "2.9,1.9,1.8",
+];
+
+/// Small frames in Icarus Verilog, as they are and with each fault.
 #[test]
 fn a_fault_in_what_lanes_share_is_found() {
-    let view = [
-        "gen:menger,depth=1",
-        "--size",
-        "13x11",
-        "--eye",
-        "1.5,1.4,1.2",
-        "--target",
-        "2.9,1.9,1.8",
-    ];
-    faults_are_found(&LANES[3], &view, &FAULTS);
+    faults_are_found(&LANES_B[3], &WITHIN, &FAULTS);
+}
+
+#[test]
+fn contexts_take_turns() {
+    faults_are_found(&SMALL, &WITHIN, &[]);
+}
+
+#[test]
+#[ignore = "takes half a minute"]
+fn a_fault_in_the_turns_of_contexts_is_found() {
+    faults_are_found(&SMALL, &WITHIN, &FAULTS_OF_CONTEXTS);
 }
 
 #[test]
@@ -95,7 +148,7 @@ fn lanes_draw_many_scenes() {
     if !is_there("verilator") {
         return;
     }
-    for machine in &LANES {
+    for machine in LANES_B.iter().chain(&LANES_C) {
         for view in SCENES {
             agree(machine, view);
         }
@@ -119,7 +172,7 @@ fn with_tiles(make: fn(Dice<'_>) -> Vec<String>, next: Dice<'_>) -> Vec<String> 
 #[test]
 #[ignore = "takes minutes"]
 fn lanes_draw_two_hundred_random_views() {
-    for machine in &LANES {
+    for machine in LANES_B.iter().chain(&LANES_C) {
         random_views(machine, 25, &mut |next| with_tiles(any_view, next));
         random_views(machine, 25, &mut |next| with_tiles(view_from_within, next));
     }

@@ -16,10 +16,30 @@ pub(crate) struct Machine {
     pub(crate) stage: &'static str,
     pub(crate) rules: &'static [&'static str],
     pub(crate) folders: &'static [&'static str],
-    /// Several side by side: how many, and the levels of the picture above their tiles.
-    lanes: Option<[u32; 2]>,
+    /// Several side by side.
+    lanes: Option<Lanes>,
     /// Its simulator, made once.
     made: OnceLock<(TempDir, PathBuf)>,
+}
+
+const EXACT: &[&str] = &["--coverage", "exact", "--cage", "frame"];
+const FOLDERS_B: &[&str] = &["machine", "stage_b", "blocks_exact", "blocks"];
+const FOLDERS_C: &[&str] = &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"];
+
+/// How many lanes, contexts of each, and levels of the picture above the tiles that they draw.
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes {
+    lanes: u32,
+    contexts: u32,
+    tile_levels: u32,
+}
+
+pub(crate) const fn lanes(lanes: u32, contexts: u32, tile_levels: u32) -> Lanes {
+    Lanes {
+        lanes,
+        contexts,
+        tile_levels,
+    }
 }
 
 pub(crate) static STAGE_A: Machine = Machine {
@@ -33,29 +53,43 @@ pub(crate) static STAGE_A: Machine = Machine {
 pub(crate) static STAGE_B: Machine = Machine {
     name: "stage_b",
     stage: "stage_b",
-    rules: &["--coverage", "exact", "--cage", "frame"],
-    folders: &["machine", "stage_b", "blocks_exact", "blocks"],
+    rules: EXACT,
+    folders: FOLDERS_B,
     lanes: None,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_C: Machine = Machine {
     name: "stage_c",
     stage: "stage_c",
-    rules: &["--coverage", "exact", "--cage", "frame"],
-    folders: &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"],
+    rules: EXACT,
+    folders: FOLDERS_C,
     lanes: None,
     made: OnceLock::new(),
 };
 
 impl Machine {
-    /// So many lanes of stage B, each of which draws tiles that lie so many levels below the picture.
-    pub(crate) const fn side_by_side(lanes: u32, tile_levels: u32) -> Self {
+    /// Lanes of stage B.
+    pub(crate) const fn lanes_of_stage_b(lanes: Lanes) -> Self {
+        Self::side_by_side("stage_b_lanes", "stage_b", FOLDERS_B, lanes)
+    }
+
+    /// Lanes of stage C.
+    pub(crate) const fn lanes_of_stage_c(lanes: Lanes) -> Self {
+        Self::side_by_side("stage_c_lanes", "stage_c", FOLDERS_C, lanes)
+    }
+
+    const fn side_by_side(
+        name: &'static str,
+        stage: &'static str,
+        folders: &'static [&'static str],
+        lanes: Lanes,
+    ) -> Self {
         Self {
-            name: "stage_b_lanes",
-            stage: STAGE_B.stage,
-            rules: STAGE_B.rules,
-            folders: STAGE_B.folders,
-            lanes: Some([lanes, tile_levels]),
+            name,
+            stage,
+            rules: EXACT,
+            folders,
+            lanes: Some(lanes),
             made: OnceLock::new(),
         }
     }
@@ -83,8 +117,13 @@ impl Machine {
 
     /// That one's parameters.
     pub(crate) fn parameters(&self) -> Vec<(&'static str, u64)> {
-        let of_lanes =
-            |[lanes, levels]: [u32; 2]| [("LANES", lanes.into()), ("TILE_LEVELS", levels.into())];
+        let of_lanes = |of: Lanes| {
+            [
+                ("LANES", of.lanes.into()),
+                ("CONTEXTS", of.contexts.into()),
+                ("TILE_LEVELS", of.tile_levels.into()),
+            ]
+        };
         self.lanes.into_iter().flat_map(of_lanes).collect()
     }
 

@@ -353,6 +353,15 @@ impl Hardware {
         self.sequential && self.organisation.tile_levels > 0
     }
 
+    /// Walks with a stack of their own: lanes or, where tiles are [handed out](Self::hands_out_tiles), contexts.
+    #[must_use]
+    pub fn stacks(&self) -> u32 {
+        match self.hands_out_tiles() {
+            true => self.lanes * self.contexts,
+            false => self.lanes,
+        }
+    }
+
     /// Contexts of all lanes.
     #[must_use]
     pub fn all_contexts(&self) -> u64 {
@@ -383,8 +392,8 @@ impl Hardware {
             return Err(out_of_range("organisation.bricks", bricks, range));
         }
         within("contexts", self.contexts, 1, MAX_CONTEXTS)?;
-        if self.sequential && self.contexts > 1 {
-            let range = "1 where lanes are sequential";
+        if self.sequential && self.contexts > 1 && tile_levels == 0 {
+            let range = "1 where lanes are sequential and draw no tiles";
             return Err(out_of_range("contexts", self.contexts, range));
         }
         within("steal_cycles", self.steal_cycles, 0, MAX_NUMBER)?;

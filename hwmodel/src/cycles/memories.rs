@@ -405,12 +405,12 @@ impl PixelsState {
 /// All memories of a hardware.
 #[derive(Debug)]
 pub(super) struct Memories {
-    /// By lane.
+    /// By lane, or by context.
     pub(super) stacks: Vec<Port>,
     stack_latency: u64,
     pub(super) nodes: CacheState,
     pub(super) attributes: CacheState,
-    /// One for all lanes, or one a lane.
+    /// One for all, or one for each stack.
     fill: Vec<BanksState>,
     pub(super) pixels: PixelsState,
     pub(super) outer: OuterPort,
@@ -418,13 +418,14 @@ pub(super) struct Memories {
 
 impl Memories {
     pub(super) fn new(hardware: &Hardware) -> Self {
+        let stacks = hardware.stacks() as usize;
         let fills = if hardware.hands_out_tiles() {
-            hardware.lanes
+            stacks
         } else {
             1
-        } as usize;
+        };
         Self {
-            stacks: vec![Port::new(hardware.stack.ports); hardware.lanes as usize],
+            stacks: vec![Port::new(hardware.stack.ports); stacks],
             stack_latency: u64::from(hardware.stack.latency),
             nodes: CacheState::new(hardware.node_cache),
             attributes: CacheState::new(hardware.attribute_cache),
@@ -508,6 +509,8 @@ impl Latencies {
                 .outer_memory
                 .cycles(8 * u64::from(cache.line_bytes));
             worst[memory as usize] += u64::from(cache.miss_latency).max(moving) + moving;
+            // It has to have the lane again.
+            worst[memory as usize] += u64::from(hardware.hands_out_tiles());
         }
         let moving = match hardware.pixels.own_port {
             true => 0,

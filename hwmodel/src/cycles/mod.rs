@@ -77,14 +77,21 @@
 //!     one before is done; a read takes one more cycle, in which its result is looked at. These cycles issue operations; what
 //!     they leave of the visit's occupancy, and its latency, comes after the last access. A visit takes at least a
 //!     cycle, and its block is free when it ends. This is what a simple state machine does: `rtl/` is one.
-//!     A lane has one context. What several lanes ask for is served in the order in which they ask, each access in its
+//!     What several lanes ask for is served in the order in which they ask, each access in its
 //!     own cycle (not, as in rule 4, all of a visit when that begins); of one cycle, nodes before attributes, and the
 //!     lowest lane first. An access takes the port of its cache for two cycles: it is looked up, and what is found is
 //!     looked at, which a miss that waits for the port to outer memory makes longer. A line that comes in takes it, too,
 //!     for the cycles that it moves, the last before it is there.
-//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A lane without
-//!     records asks for a tile, from cycle 0 on; in each cycle the lane that asked first is given the next one, row by row,
-//!     and begins it in the cycle after. It draws it to its end: nothing is stolen, and fill vectors are a lane's own.
+//! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A context without
+//!     records asks for a tile, from cycle 0 on; in each cycle the one that asked first is given the next tile, row by row,
+//!     and begins it in the cycle after. It draws it to its end: nothing is stolen, and stack and fill vectors are a
+//!     context's own.
+//! 14. **Contexts of a sequential lane**, which need tiles, work in turns: one has the lane. From the cycle in which that
+//!     one asks a cache, or for a tile, until the one before what it asked for is there, another may have the lane. In
+//!     each such cycle the one that wanted it first is given it, of one cycle the lowest number, and goes on in the
+//!     cycle after: it looks at what it read, or begins its tile. A context wants the lane from the cycle on in
+//!     which what it asked for is there; if it has the lane still, it looks at it in that cycle. What it waits for the lane is
+//!     *block busy*.
 //!
 //! # Work and span
 //!
@@ -110,6 +117,7 @@
 //!   taken for a pipeline. For few contexts this is optimistic; raise latencies.
 //! - A turn's effects are seen by others from its first cycle on (rule 2): up to one turn's length too early.
 //! - Passing results from stage to stage takes no time; neither does finding ready records.
+mod contexts;
 mod hardware;
 mod memories;
 mod observe;

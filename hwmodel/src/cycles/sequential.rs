@@ -1,10 +1,13 @@
 //! Sequential hardware (rules 12 and 13): an access at a time, each in its own cycle, and tiles that are handed out.
+//! `contexts.rs` has who works on a lane.
 //!
 //! What several records ask for in the same cycle is served when everything else of that cycle has happened: whoever
 //! came first comes first; of one cycle, nodes before attributes, and the lowest lane first.
 
 use std::collections::VecDeque;
 
+use super::contexts::Sharing;
+use super::hardware::Hardware;
 use super::observe::Observer;
 use super::report::Cause;
 use super::simulate::{Simulation, SimulationError};
@@ -32,13 +35,31 @@ pub(super) struct Asked {
     /// The next tile, and the first cycle in which one is handed out.
     tile: u32,
     tile_from: u64,
+    /// Of each lane; and contexts of those where that may change at the end of the cycle at hand.
+    pub(super) sharing: Vec<Sharing>,
+    pub(super) lanes: Vec<u32>,
+}
+
+impl Asked {
+    pub(super) fn new(hardware: &Hardware) -> Self {
+        let firsts = (0..hardware.lanes).map(|lane| lane * hardware.contexts);
+        Self {
+            sharing: firsts.map(Sharing::new).collect(),
+            ..Self::default()
+        }
+    }
 }
 
 /// How far a context is in its visit.
 #[derive(Debug, Default)]
 pub(super) struct Step {
     /// The tile that it begins.
-    tile: Option<u32>,
+    pub(super) tile: Option<u32>,
+    /// Whether its event is the cycle in which what it waits for is there.
+    waits: bool,
+    /// From when on another has the lane; and for how many cycles of its visit others had it.
+    pub(super) away_from: u64,
+    pub(super) away: u64,
     /// Whether its visit is under way; the next of the turn's accesses.
     is_begun: bool,
     access: usize,
@@ -57,7 +78,8 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
 
     /// Whether something was asked for that is served before the next event.
     pub(super) fn must_serve(&self, now: u64) -> bool {
-        !self.asked.now.is_empty() && self.wheel.next_at().is_none_or(|next| next > now)
+        let is_asked = !self.asked.now.is_empty() || !self.asked.lanes.is_empty();
+        is_asked && self.wheel.next_at().is_none_or(|next| next > now)
     }
 
     /// Serves what was asked for in the cycle `now`.
@@ -73,14 +95,17 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
                     let of = &self.contexts[context as usize];
                     let access = of.plan.accesses[of.step.access];
                     let served = self.memories.serve(access, now, of.from as usize);
-                    self.is_served(context, served.done, served.cause);
+                    self.is_served(context, served.cause);
+                    self.wheel
+                        .set(served.done + u64::from(!access.write), context);
                 }
             }
         }
         self.asked.now = asked;
+        self.give_lanes(now);
     }
 
-    /// A lane without records is given the next tile, one a cycle.
+    /// A context without records is given the next tile, one a cycle.
     fn hand_out(&mut self, now: u64, context: u32) {
         if self.asked.tile == self.workload.tiles() {
             return;
@@ -90,7 +115,17 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         self.asked.tile += 1;
         self.asked.tile_from = at + 1;
         self.totals.serial += HAND_OUT;
-        self.wheel.set(at + HAND_OUT, context);
+        self.waits_until(now, at, context);
+    }
+
+    /// In the cycle `at` what a context waits for is there.
+    fn waits_until(&mut self, now: u64, at: u64, context: u32) {
+        if at == now {
+            self.waits_no_more(now, context);
+        } else {
+            self.contexts[context as usize].step.waits = true;
+            self.wheel.set(at, context);
+        }
     }
 
     /// An access to a cache, if it is the one that is next there, and the cache is free.
@@ -119,17 +154,16 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
             let free = cache.free_from(now + 1);
             self.wheel.set(free, next);
         }
-        self.is_served(context, served.done, served.cause);
+        self.is_served(context, served.cause);
+        // What is there is looked at in that cycle.
+        self.waits_until(now, served.done, context);
     }
 
-    /// An access is done in the cycle `done`; what was read is looked at in that cycle.
-    fn is_served(&mut self, context: u32, done: u64, cause: Cause) {
-        let of = &mut self.contexts[context as usize];
-        let access = of.plan.accesses[of.step.access];
-        of.step.access += 1;
-        of.step.has_asked = false;
-        of.step.cause = Some(cause);
-        self.wheel.set(done + u64::from(!access.write), context);
+    fn is_served(&mut self, context: u32, cause: Cause) {
+        let step = &mut self.contexts[context as usize].step;
+        step.access += 1;
+        step.has_asked = false;
+        step.cause = Some(cause);
     }
 
     /// A context's event, unless it comes to a block or is at the end of its turn.
@@ -138,7 +172,12 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         now: u64,
         context: u32,
     ) -> Result<bool, SimulationError<W::Error>> {
-        if let Some(tile) = self.contexts[context as usize].step.tile.take() {
+        let step = &mut self.contexts[context as usize].step;
+        if std::mem::take(&mut step.waits) {
+            self.waits_no_more(now, context);
+            return Ok(true);
+        }
+        if let Some(tile) = step.tile.take() {
             self.begin_tile(now, context, tile)?;
             return Ok(true);
         }
@@ -177,6 +216,7 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         of.step.begun = now;
         of.step.access = of.plan.visits[of.visit].accesses.start;
         of.step.cause = None;
+        of.step.away = 0;
         self.next_access(now, context);
     }
 
@@ -190,6 +230,9 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
                 _ => Of::Other,
             };
             self.asked.now.push((what, context));
+            if what != Of::Other {
+                self.begins_to_wait(context);
+            }
             return;
         }
         of.step.is_begun = false;
@@ -201,7 +244,7 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         self.end_visit(context, begun, (ends, ends), (cause, stalled));
     }
 
-    /// A lane that hands nothing on: its own next record, or else another tile.
+    /// A context that hands nothing on: its own next record, or else another tile.
     pub(super) fn go_on(
         &mut self,
         now: u64,
@@ -210,6 +253,7 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         let lane = self.contexts[context as usize].lane as usize;
         if self.lanes[lane].ready.is_empty() {
             self.asked.now.push((Of::Tile, context));
+            self.begins_to_wait(context);
             return Ok(());
         }
         self.give(now, context)

@@ -101,7 +101,7 @@ pub fn simulate<W: Workload, O: Observer>(
 }
 
 pub(super) struct Simulation<'a, W, O> {
-    hardware: &'a Hardware,
+    pub(super) hardware: &'a Hardware,
     pub(super) workload: &'a mut W,
     observer: &'a mut O,
     pub(super) wheel: Wheel,
@@ -121,8 +121,14 @@ pub(super) struct Simulation<'a, W, O> {
 
 impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
     fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut O) -> Self {
-        let contexts: Vec<_> = (0..hardware.lanes)
-            .flat_map(|lane| (0..hardware.contexts).map(move |number| (lane, number)))
+        // Contexts that draw tiles of their own have a stack each: a lane for each as far as records go.
+        let (lanes, contexts) = match hardware.hands_out_tiles() {
+            true => (hardware.stacks(), 1),
+            false => (hardware.lanes, hardware.contexts),
+        };
+        let contexts_of = |lane| (0..contexts).map(move |number| (lane, number));
+        let all: Vec<_> = (0..lanes)
+            .flat_map(contexts_of)
             .map(|(lane, number)| Context {
                 lane,
                 number,
@@ -131,7 +137,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             })
             .collect();
         let lane = || Lane {
-            idle: u64::MAX >> (64 - hardware.contexts),
+            idle: u64::MAX >> (64 - contexts),
             ..Lane::default()
         };
         let block = StageBlock {
@@ -140,15 +146,15 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             last: NONE,
         };
         Self {
-            wheel: Wheel::new(contexts.len()),
-            idle: contexts.len() as u64,
-            contexts,
-            lanes: (0..hardware.lanes).map(|_| lane()).collect(),
-            blocks: vec![[block; STAGES]; hardware.lanes as usize],
+            wheel: Wheel::new(all.len()),
+            idle: all.len() as u64,
+            contexts: all,
+            lanes: (0..lanes).map(|_| lane()).collect(),
+            blocks: vec![[block; STAGES]; lanes as usize],
             memories: Memories::new(hardware),
             tasks: Tasks::new(hardware.independence),
             totals: Totals::new(),
-            asked: Asked::default(),
+            asked: Asked::new(hardware),
             newly: Vec::new(),
             ready: 0,
             live: 0,
@@ -325,9 +331,12 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[context as usize];
         let visit = &of.plan.visits[of.visit];
         let report = &mut self.totals.stages[visit.stage as usize];
-        report.held += frees - (begun + visit.occupied);
-        report.stalls.add(Cause::BlockBusy, begun - of.arrived);
-        report.stalls.add(cause, stalled);
+        let away = of.step.away;
+        report.held += frees - (begun + visit.occupied) - away;
+        report
+            .stalls
+            .add(Cause::BlockBusy, begun - of.arrived + away);
+        report.stalls.add(cause, stalled - away);
         if visit.stage == Stage::Pop {
             report.stalls.add(Cause::Steal, of.steal);
             report.stalls.add(Cause::StackSpill, of.spill);
@@ -339,8 +348,8 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         if O::ENABLED {
             self.observer.visit(&VisitSpan {
                 record: of.record,
-                lane: of.lane,
-                context: of.number,
+                lane: context / self.hardware.contexts,
+                context: context % self.hardware.contexts,
                 stage: visit.stage,
                 arrives: of.arrived,
                 begins: begun,
@@ -376,7 +385,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             if self.hardware.stack.overflow == StackOverflow::Error {
                 return Err(SimulationError::StackOverflow {
                     record: of.record,
-                    lane,
+                    lane: context / self.hardware.contexts,
                     entries: self.hardware.stack.entries,
                 });
             }
@@ -389,13 +398,13 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
                 self.totals.serial += moving;
             }
         }
-        let newly = &mut self.newly;
+        let mut newly = std::mem::take(&mut self.newly);
         self.tasks.end(
             of.task,
             of.plan.alone,
             (lane, spills as usize, kind),
             &of.children,
-            newly,
+            &mut newly,
         );
         self.ready += newly.len() as u64;
         for task in newly.drain(..) {
@@ -408,11 +417,10 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             }
             ready.insert(place, task);
             if O::ENABLED {
-                let of = &self.lanes[at];
-                self.observer
-                    .queue(now, at as u32, of.stored as u32, of.ready.len() as u32);
+                self.tell_queue(now, at);
             }
         }
+        self.newly = newly;
         self.lanes[lane as usize].idle |= 1 << self.contexts[context as usize].number;
         self.idle += 1;
         if self.hardware.hands_out_tiles() {
@@ -423,6 +431,18 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             self.wake(now)?;
         }
         Ok(())
+    }
+
+    /// Tells the observer how many records a lane has, of whose stacks one is `at`.
+    fn tell_queue(&mut self, now: u64, at: usize) {
+        let stacks = self.lanes.len() / self.hardware.lanes as usize;
+        let lane = at / stacks;
+        let (stored, ready) = self.lanes[lane * stacks..][..stacks]
+            .iter()
+            .fold((0, 0), |(stored, ready), of| {
+                (stored + of.stored as u32, ready + of.ready.len() as u32)
+            });
+        self.observer.queue(now, lane as u32, stored, ready);
     }
 
     /// Gives ready records to idle contexts: each lane's own first.
@@ -465,9 +485,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.lanes[from].stored -= 1;
         self.totals.stack.stolen += u64::from(stolen);
         if O::ENABLED {
-            let of = &self.lanes[from];
-            self.observer
-                .queue(now, record.lane, of.stored as u32, of.ready.len() as u32);
+            self.tell_queue(now, from);
         }
         let of = &mut self.contexts[context as usize];
         self.lanes[lane].idle &= !(1 << of.number);

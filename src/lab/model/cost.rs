@@ -62,7 +62,7 @@ pub fn fill_vector_bits(setup: &FrameSetup) -> u64 {
 /// Bits of a hardware's stacks.
 #[must_use]
 pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
-    u64::from(hardware.lanes) * u64::from(hardware.stack.entries) * u64::from(record_bits)
+    u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
 }
 
 /// Bits of the accumulators of a frame: none where no voxel is blended.

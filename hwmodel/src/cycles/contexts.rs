@@ -1,0 +1,74 @@
+//! Contexts of a sequential lane (rule 14): one of them has the lane at a time.
+
+use super::observe::Observer;
+use super::simulate::Simulation;
+use super::turn::Workload;
+
+/// Who has a lane, and who wants it.
+#[derive(Debug)]
+pub(super) struct Sharing {
+    /// The context that has it.
+    holder: u32,
+    /// Whether that one waits for a cache or a tile, so that another may have the lane.
+    waits: bool,
+    /// Who wants it, since when: in the order of cycles, then of numbers.
+    wanted_by: Vec<(u64, u32)>,
+}
+
+impl Sharing {
+    /// Of a lane whose first context is `first`: it has the lane, and waits for a tile.
+    pub(super) fn new(first: u32) -> Self {
+        Self {
+            holder: first,
+            waits: true,
+            wanted_by: Vec::new(),
+        }
+    }
+}
+
+impl<W: Workload, O: Observer> Simulation<'_, W, O> {
+    fn sharing(&mut self, context: u32) -> &mut Sharing {
+        &mut self.asked.sharing[(context / self.hardware.contexts) as usize]
+    }
+
+    /// In this cycle a context begins to wait, unless it does already.
+    pub(super) fn begins_to_wait(&mut self, context: u32) {
+        let sharing = self.sharing(context);
+        if sharing.holder == context {
+            sharing.waits = true;
+            self.asked.lanes.push(context);
+        }
+    }
+
+    /// What a context waits for is there in the cycle `now`: it goes on in the next one, if it has the lane.
+    pub(super) fn waits_no_more(&mut self, now: u64, context: u32) {
+        let sharing = self.sharing(context);
+        if sharing.holder == context {
+            sharing.waits = false;
+            self.wheel.set(now + 1, context);
+            return;
+        }
+        let place = sharing.wanted_by.partition_point(|&of| of < (now, context));
+        sharing.wanted_by.insert(place, (now, context));
+        self.asked.lanes.push(context);
+    }
+
+    /// Lanes whose holder waits while another wants them, at the end of the cycle `now`.
+    pub(super) fn give_lanes(&mut self, now: u64) {
+        while let Some(context) = self.asked.lanes.pop() {
+            let sharing = self.sharing(context);
+            if !sharing.waits || sharing.wanted_by.is_empty() {
+                continue;
+            }
+            let (_, next) = sharing.wanted_by.remove(0);
+            let before = std::mem::replace(&mut sharing.holder, next);
+            sharing.waits = false;
+            self.contexts[before as usize].step.away_from = now + 1;
+            let step = &mut self.contexts[next as usize].step;
+            step.away += now + 1 - step.away_from;
+            // It looks at what it read, or begins its tile.
+            let looks = u64::from(step.tile.is_none());
+            self.wheel.set(now + 1 + looks, next);
+        }
+    }
+}
