@@ -21,9 +21,11 @@
 //
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
+// BRICKS: of stage C; it can have frames whose nodes are laid out with bricks (bricks.vh).
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
-                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0) (
+                 NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0,
+                 BRICKS = 0) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
@@ -176,7 +178,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
   assign node_request = state == NODE;
   assign attribute_request = state == ATTRIBUTE;
-  assign wanted_node = t_node;
+  wire [N-1:0] node_place;                      // of the word that is read of it, as the stage has them
+  assign wanted_node = node_request ? node_place : t_node;
   generate
     if (SHARED) begin : shared
       assign {node_taken, node_ready, node_word} = {shared_node_taken, shared_node_ready, shared_node_word};

@@ -18,6 +18,8 @@ pub(crate) struct Machine {
     pub(crate) folders: &'static [&'static str],
     /// Several side by side: how many, and the levels of the picture above their tiles.
     lanes: Option<[u32; 2]>,
+    /// Whether it can have bricks.
+    bricks: bool,
     /// Its simulator, made once.
     made: OnceLock<(TempDir, PathBuf)>,
 }
@@ -28,6 +30,7 @@ pub(crate) static STAGE_A: Machine = Machine {
     rules: &["--paper"],
     folders: &["machine", "stage_a", "blocks"],
     lanes: None,
+    bricks: false,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_B: Machine = Machine {
@@ -36,6 +39,7 @@ pub(crate) static STAGE_B: Machine = Machine {
     rules: &["--coverage", "exact", "--cage", "frame"],
     folders: &["machine", "stage_b", "blocks_exact", "blocks"],
     lanes: None,
+    bricks: false,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_C: Machine = Machine {
@@ -44,6 +48,17 @@ pub(crate) static STAGE_C: Machine = Machine {
     rules: &["--coverage", "exact", "--cage", "frame"],
     folders: &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"],
     lanes: None,
+    bricks: false,
+    made: OnceLock::new(),
+};
+/// The same with bricks.
+pub(crate) static STAGE_C_BRICKS: Machine = Machine {
+    name: "stage_c",
+    stage: "stage_c",
+    rules: &["--coverage", "exact", "--cage", "frame"],
+    folders: &["machine", "stage_c", "stage_b", "blocks_exact", "blocks"],
+    lanes: None,
+    bricks: true,
     made: OnceLock::new(),
 };
 
@@ -56,6 +71,7 @@ impl Machine {
             rules: STAGE_B.rules,
             folders: STAGE_B.folders,
             lanes: Some([lanes, tile_levels]),
+            bricks: false,
             made: OnceLock::new(),
         }
     }
@@ -68,7 +84,11 @@ impl Machine {
             let key = format!("\n{} = ", of.to_lowercase());
             let (head, rest) = text.split_once(&key).unwrap();
             let (_, tail) = rest.split_once(' ').unwrap();
-            text = format!("{head}{key}{number} {tail}");
+            let value = match of {
+                "BRICKS" => "true".to_owned(),
+                _ => number.to_string(),
+            };
+            text = format!("{head}{key}{value} {tail}");
         }
         text
     }
@@ -85,7 +105,9 @@ impl Machine {
     pub(crate) fn parameters(&self) -> Vec<(&'static str, u64)> {
         let of_lanes =
             |[lanes, levels]: [u32; 2]| [("LANES", lanes.into()), ("TILE_LEVELS", levels.into())];
-        self.lanes.into_iter().flat_map(of_lanes).collect()
+        let bricks = self.bricks.then_some(("BRICKS", 1));
+        let lanes = self.lanes.into_iter().flat_map(of_lanes);
+        lanes.chain(bricks).collect()
     }
 
     /// Whether records lie on its stack, and not what leads to their parents.
