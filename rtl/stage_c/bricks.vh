@@ -1,7 +1,7 @@
-// Bricks, if it is built with them (BRICKS): a node two levels above the finest voxels is two words, of the voxels below
-// it, a byte for each child, and then of where children and voxels begin. Its children are not read: their masks are
-// its bytes, and their children begin where so many voxels lie before them. The frame says whether its nodes are laid out
-// so, and which is the first brick; numbers of nodes are those of a memory without bricks.
+// Bricks, if it is built with them (BRICKS): a node two levels above the finest voxels is two words, of the voxels
+// below it, a byte for each child, and then of where children and voxels begin. Its children are not read: their masks
+// are its bytes, and their children begin where so many voxels lie before them. The frame says whether its nodes are
+// laid out so, and which is the first brick; numbers of nodes are those of a memory without bricks.
 reg         laid_out;
 reg [N-1:0] first_brick;
 always @(posedge clk)

@@ -7,8 +7,8 @@ use super::GraphView;
 /// How nodes lie in a hardware's memory. A node is a word: which children it has, which of them are leaves, and
 /// where they begin. A *brick* is a node two levels above the finest voxels, in two words: 64 bits, one for
 /// each of its voxels, which of its children are leaves, and where children and voxels begin. Its children are
-/// not read at all: which voxels a child has and where they begin follows from the bits, since the voxels of a brick lie
-/// side by side. [`Self::brick_words`] has the words.
+/// not read at all: which voxels a child has and where they begin follows from the bits, since the voxels of a
+/// brick lie side by side. [`Self::brick_words`] has the words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
     /// Whether a node says which of its children are leaves, so that a leaf need not be read.
@@ -158,8 +158,8 @@ mod tests {
             ..graph
         };
         assert!(NodeLayout::new(&linked, true, true).bricks.is_none());
-        // Lists that are shared, side by side: each level begins behind the one above, but voxels do not follow on those
-        // before.
+        // Lists that are shared, side by side: each level begins behind the one above, but voxels do not follow on
+        // those before.
         let shared = GraphView {
             mask: &[0b11, 0b11, 0b11, 0, 0b11, 0, 0b11],
             first: &[1, 3, 5, 0, 7, 0, 7],

@@ -12,8 +12,8 @@ use super::machines::{STAGE_C, STAGE_C_BRICKS, agree, agree_linked};
 use super::tools::{is_there, text};
 use super::views::{INSIDE, SCENES, TREE, any_view, view_from_within};
 
-/// A tree with solids on each level, which trees of voxels do not have, so also next to voxels in a brick. Its nodes are
-/// numbered as they lie side by side.
+/// A tree with solids on each level, which trees of voxels do not have, so also next to voxels in a brick. Its nodes
+/// are numbered as they lie side by side.
 fn tree_with_larger_solids(depth: u32) -> Graph {
     let mut state = 5u64;
     let mut dice = |most: u64| {
@@ -58,8 +58,8 @@ fn bricks_of(graph: &Graph) -> std::ops::Range<u32> {
     NodeLayout::new(&graph.view(), true, true).bricks()
 }
 
-/// Faults in what bricks add; the first few in the short set. That voxels are not taken back from the stack at all would not
-/// be found: while a brick lies there no other is read, so the registers still have them.
+/// Faults in what bricks add; the first few in the short set. That voxels are not taken back from the stack at all
+/// would not be found: while a brick lies there no other is read, so the registers still have them.
 const FAULTS: [Fault; 14] = [
     ("brick_child", "~leaves & ", ""),
     (
