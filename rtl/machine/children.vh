@@ -5,6 +5,7 @@ assign t_level = r_level, t_voxel_level = r_voxel_level, t_quad_level = r_quad_l
 assign t_quad_x = r_quad_x, t_quad_y = r_quad_y, t_min = r_min, t_max = r_max, t_w_min = r_w_min, t_more = r_more;
 assign asked_level = r_quad_level, asked_x = r_quad_x, asked_y = r_quad_y;
 assign lod_look_up = state == FILLED, lod_level = r_level;
+assign node_place = r_node;
 
 // ---------------------------------------------------------------- the stack
 // Numbers as wide as the machine's greatest ones. The stage packs the rest.

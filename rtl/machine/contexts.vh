@@ -29,6 +29,7 @@ generate
   end
 endgenerate
 
+wire [N-1:0] wanted = state == NODE ? node_place : t_node;
 reg [N-1:0] wanted_by [0:CONTEXTS-1];
 integer of_context;
 always @* begin
@@ -49,7 +50,7 @@ generate
   for (number = 0; number < CONTEXTS; number = number + 1) begin : of_each
     assign node_request[number] = runs[number] ? state == NODE : asks_node[number];
     assign attribute_request[number] = runs[number] ? state == ATTRIBUTE : asks_attribute[number];
-    assign wanted_node[number*N +: N] = runs[number] ? t_node : wanted_by[number];
+    assign wanted_node[number*N +: N] = runs[number] ? wanted : wanted_by[number];
     assign busy[number] = runs[number] ? ~has_no_tile : ~idle[number];
   end
 endgenerate
@@ -67,7 +68,7 @@ always @(posedge clk)
     answered <= (answered | shared_node_ready | shared_attribute_ready) & ~(looks_at_answer ? runs : {CONTEXTS{1'b0}});
     if (switches) begin
       running <= next_running;
-      wanted_by[running] <= t_node;
+      wanted_by[running] <= wanted;
     end
   end
 

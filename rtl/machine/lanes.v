@@ -11,7 +11,7 @@
 // came in one cycle, the lowest lane, and nodes before attributes.
 module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
-               NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32) (
+               NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
   input                        clk, reset,
   // The host, as of one machine: all lanes have the same constants.
   input                        constant_write,
@@ -108,7 +108,7 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
       wire [N-4:0]   unused_line;
       machine #(.W(W), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2), .LEVEL_BOUND(LEVEL_BOUND),
                 .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH), .OUTER_ADDRESS(OUTER_ADDRESS), .SHARED(1),
-                .TILE_LEVELS(TILE_LEVELS), .CONTEXTS(CONTEXTS)) walk (
+                .TILE_LEVELS(TILE_LEVELS), .CONTEXTS(CONTEXTS), .BRICKS(BRICKS)) walk (
         .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
         .constant_data(constant_data), .start(begins[FIRST +: CONTEXTS]), .busy(draws[FIRST +: CONTEXTS]),
         .done(unused_done), .failed(lane_failed[i]), .fetch(unused_fetch), .fetch_attribute(unused_kind),

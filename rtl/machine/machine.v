@@ -22,10 +22,11 @@
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
 // CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns.
+// BRICKS: of stage C; it can have frames whose nodes are laid out with bricks (bricks.vh).
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
                  NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, SHARED = 0, TILE_LEVELS = 0,
-                 CONTEXTS = 1) (
+                 CONTEXTS = 1, BRICKS = 0) (
   input                        clk, reset,
   // The host.
   input                        constant_write,
@@ -182,6 +183,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire        node_taken, node_ready, attribute_taken, attribute_ready, pixel_taken;
   wire [63:0] node_word, attribute_word;
   localparam A = OUTER_ADDRESS - 3;             // of a word of eight bytes
+  wire [N-1:0] node_place;                      // of the word that is read of it, as the stage has them
   generate
     if (SHARED) begin : shared
       assign node_taken = |(shared_node_taken & runs), attribute_taken = |(shared_attribute_taken & runs);
@@ -357,16 +359,19 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   // ---------------------------------------------------------------- the stage's own; other contexts
   `include "parts.vh"
   `include "contexts.vh"
-  reg [5 + `KEPT_BITS:0] kept [0:CONTEXTS-1];
+  localparam KEPT = 6 + `KEPT_BITS, WAITING = 4*(PICTURE_LEVELS + 1);
+  reg  [WAITING+KEPT-1:0] kept [0:CONTEXTS-1];
+  wire [WAITING+KEPT-1:0] kept_of_next = kept[next_running];
   always @(posedge clk)
-    if (switches) kept[running] <= {state_then, `KEPT};
+    if (switches) kept[running] <= {waiting, state_then, `KEPT};
 
   always @(posedge clk)
     if (reset) begin
       state <= IDLE;
       failed <= 0;
     end else if (switches) begin
-      {state, `KEPT} <= kept[next_running];
+      {state, `KEPT} <= kept_of_next[KEPT-1:0];
+      waiting <= kept_of_next[KEPT +: WAITING];
       if (next_begins) begin_tile;
     end else
       case (state)

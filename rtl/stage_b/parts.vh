@@ -16,6 +16,9 @@ assign quadrant = only;
 // Outlines are for drawing alone.
 wire looks = 1'b0;
 wire [5:0] turn_over = next_record;
+task seen;
+  state <= NODE;
+endtask
 
 // A record that is not full.
 task take_up;

@@ -75,12 +75,14 @@ module silhouette #(parameter W = `WORD_BITS, V = `WIDE_BITS, PICTURE_LEVELS = 1
   plane_cover of_sides (.side_x(sides_here[0 +: 8]), .side_y(sides_here[8 +: 8]), .side_z(sides_here[16 +: 8]),
     .front(has_front), .front_side(sides_here[24 +: 2]), .wanted(wanted), .cover_code(coverage));
 
-  localparam KEPT = 3 + 2*PLANES*(PICTURE_LEVELS + 2) + `LEVEL_BITS;
-  reg [KEPT-1:0] kept [0:CONTEXTS-1];
+  localparam KEPT = 3 + 2*PLANES + `LEVEL_BITS, SIDES = 2*PLANES*(PICTURE_LEVELS + 1);
+  reg  [SIDES+KEPT-1:0] kept [0:CONTEXTS-1];
+  wire [SIDES+KEPT-1:0] kept_of_next = kept[next];
   always @(posedge clk)
     if (switch) begin
-      kept[running] <= {has_front, wanted, sides, sides_of_level, divided};
-      {has_front, wanted, sides, sides_of_level, divided} <= kept[next];
+      kept[running] <= {sides_of_level, has_front, wanted, sides, divided};
+      {has_front, wanted, sides, divided} <= kept_of_next[KEPT-1:0];
+      sides_of_level <= kept_of_next[KEPT +: SIDES];
     end else if (load) begin
       has_front <= ~before_eye & front_found;
       wanted <= front_side;

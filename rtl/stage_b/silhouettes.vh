@@ -92,7 +92,7 @@ endtask
 // A node of which samples are covered has quadrants that are not full: it is itself in one that is not.
 task divide_node;
   if (looks & coverage == 2)
-    state <= NODE;
+    seen;
   else begin
     next_quadrant;
     if (~divides & ~whole) begin

@@ -26,17 +26,18 @@ localparam READ = 37, OUT = 38, UP = 39, LOOK = READ;
 
 // ---------------------------------------------------------------- the stack
 localparam LEVEL = $clog2(LEVEL_BOUND + 1), QUAD_LEVEL = $clog2(PICTURE_LEVELS + 1);
-localparam ENTRY = NODE_WIDTH + LEVEL + 16 + 8 + 1 + QUAD_LEVEL;
 wire [NODE_WIDTH-1:0] p_first;
 wire [LEVEL-1:0]      p_level;
-wire [7:0]            p_mask, p_leaves, p_left;
+wire [7:0]            p_left;
 wire                  p_inside;
 wire [QUAD_LEVEL-1:0] p_quad_level;
+`include "bricks.vh"
+localparam ENTRY = NODE_WIDTH + LEVEL + OF_NODE + 8 + 1 + QUAD_LEVEL;
 wire [STACK_LOG2+CONTEXT_LOG2-1:0] entry = state == PUSH ? stacked[STACK_LOG2-1:0] : top;
 memory #(.BITS(ENTRY), .WORDS(CONTEXTS << STACK_LOG2), .ADDRESS(STACK_LOG2 + CONTEXT_LOG2)) stack (.clk(clk),
   .read(state == POP), .write(state == PUSH & ~stack_full), .address(entry << CONTEXT_LOG2 | running),
-  .data_in({first[NODE_WIDTH-1:0], r_level[LEVEL-1:0], mask, leaves, left, r_inside, r_quad_level[QUAD_LEVEL-1:0]}),
-  .data_out({p_first, p_level, p_mask, p_leaves, p_left, p_inside, p_quad_level}));
+  .data_in({first[NODE_WIDTH-1:0], r_level[LEVEL-1:0], r_of_node, left, r_inside, r_quad_level[QUAD_LEVEL-1:0]}),
+  .data_out({p_first, p_level, p_of_node, p_left, p_inside, p_quad_level}));
 wire [L-1:0] above = r_quad_level - p_quad_level;
 assign asked_level = p_quad_level, asked_x = r_quad_x >> above, asked_y = r_quad_y >> above;
 
@@ -122,10 +123,20 @@ task take_up;
   end
 endtask
 
+// An undrawn sample of the child was found; then its node is known.
+task seen;
+  if (in_brick) go_down;
+  else state <= NODE;
+endtask
+task go_down;
+  if (left != 0) state <= PUSH;
+  else become_parent;
+endtask
+
 // The child takes its parent's place.
 task become_parent;
   begin
-    {leaves, mask, first} <= node_word[47:0];
+    {leaves, mask, first} <= c_of_node;
     left <= 8'hff;
     // No solid is subdivided, so what the machine has for parts of one is not used.
     r_solid <= 0;

@@ -10,7 +10,7 @@
 // What a context that waits has in registers, and its bits: a parent, the child in the making, how far they are.
 `define KEPT stacked, r_inside, r_level, r_quad_level, r_quad_x, r_quad_y, r_min, r_max, r_x, r_y, r_w, r_more, \
   c_inside, c_level, c_quad_level, c_node, c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_more, \
-  middle, leaves, mask, first, order, left, waiting, s_level, s_x, s_y, whole, whole_level, draws
-`define KEPT_BITS (STACK_LOG2 + 6*L + 6*P + 2*N + 16*W + 6*CAGE + 2*MORE + 4*PICTURE_LEVELS + 57)
+  middle, leaves, mask, first, order, left, s_level, s_x, s_y, whole, whole_level, draws
+`define KEPT_BITS (STACK_LOG2 + 6*L + 6*P + 2*N + 16*W + 6*CAGE + 2*MORE + 53)
 // Registers of constants.
 `define CONSTANTS 164

@@ -6,8 +6,8 @@ VERDICT: begin
 end
 NODE: if (node_taken) state <= READ;
 READ: if (node_ready)
-  if (left != 0) state <= PUSH;
-  else become_parent;
+  if (reads_voxels) state <= NODE;
+  else go_down;
 PUSH: begin
   stacked <= stacked + 1'b1;
   failed <= failed | stack_full;

@@ -6,7 +6,7 @@
 // the cycles. +most=N ends a frame that takes more; +states prints how many of each state; +wave (in
 // Icarus Verilog) makes frame.vcd.
 module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DEPTH = LEVEL_BOUND,
-                  NODE_WIDTH = `NODE_BITS);   // as `machine` has them
+                  NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `machine` has them
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word.
   localparam LATENCY = 50;
@@ -26,7 +26,7 @@ module frame_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2, DE
   wire [`LEVEL_BITS-1:0] pixel_level;
   wire [63:0] pixel_attribute;
   machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH),
-            .NODE_WIDTH(NODE_WIDTH)) dut (
+            .NODE_WIDTH(NODE_WIDTH), .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
     .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill), .fill_word(fill_word),

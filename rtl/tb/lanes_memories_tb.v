@@ -1,13 +1,13 @@
 `include "stage.vh"
 // Prints the bits of the memories of several lanes, as memories_tb.v those of one machine.
 module lanes_memories_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = 30,
-                           DEPTH = LEVEL_BOUND, NODE_WIDTH = 32);
+                           DEPTH = LEVEL_BOUND, NODE_WIDTH = 32, BRICKS = 0);
   reg clk, reset, constant_write, start, fetch_ready, fill, pixel_ready;
   reg [7:0] constant_address;
   reg [31:0] constant_data;
   reg [63:0] fill_word;
   lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND),
-          .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+          .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH), .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .fetch_ready(fetch_ready), .fill(fill), .fill_word(fill_word),
     .pixel_ready(pixel_ready));

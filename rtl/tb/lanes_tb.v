@@ -3,7 +3,7 @@
 // Draws a frame with several lanes, as frame_tb.v does with one machine; the memory takes another request while it
 // answers, a line every eight cycles. Events have the number of their tile before them.
 module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LEVELS = 8, LEVEL_BOUND = `WORD_BITS - 2,
-                  DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS);   // as `lanes` has them
+                  DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, BRICKS = 0);   // as `lanes` has them
   localparam W = `WORD_BITS;
   // Cycles from the request of a line to its first word, and of a line.
   localparam LATENCY = 52, LINE = 8;
@@ -25,7 +25,8 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
   integer taken_for;
   wire fetch_ready = taken_for == 0;
   lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
-          .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+          .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH),
+          .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .busy(busy), .done(done), .failed(failed), .fetch(fetch),
     .fetch_ready(fetch_ready), .fetch_attribute(fetch_attribute), .fetch_line(fetch_line), .fill(fill),

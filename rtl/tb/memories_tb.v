@@ -1,12 +1,14 @@
 `include "stage.vh"
 // Prints the bits of the machine's memories, under the names that the model has for them. The bits by which
 // a cache knows that a line is there are registers; they count with the tags, as the model counts them.
-module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEVEL_BOUND, NODE_WIDTH = 32);
+module memories_tb #(parameter PICTURE_LEVELS = 8, LEVEL_BOUND = 30, DEPTH = LEVEL_BOUND, NODE_WIDTH = 32,
+                     BRICKS = 0);
   reg clk, reset, constant_write, start, fill;
   reg [7:0] constant_address;
   reg [31:0] constant_data;
   reg [63:0] fill_word;
-  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH)) dut (
+  machine #(.PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH),
+            .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .fill(fill), .fill_word(fill_word));
   initial begin

@@ -7,7 +7,8 @@ use super::GraphView;
 /// How nodes lie in a hardware's memory. A node is a word: which children it has, which of them are leaves, and
 /// where they begin. A *brick* is a node two levels above the finest voxels, in two words: 64 bits, one for
 /// each of its voxels, which of its children are leaves, and where children and voxels begin. Its children are
-/// not read at all.
+/// not read at all: which voxels a child has and where they begin follows from the bits, since the voxels of a
+/// brick lie side by side. [`Self::brick_words`] has the words.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct NodeLayout {
     /// Whether a node says which of its children are leaves, so that a leaf need not be read.
@@ -15,12 +16,16 @@ pub struct NodeLayout {
     bricks: Option<Bricks>,
 }
 
-/// The level of bricks, and the first node there.
+/// The level of bricks, the first node there, and the one after the last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Bricks {
     level: u32,
     first: u32,
+    end: u32,
 }
+
+/// Bits of a number in a brick's second word.
+const PLACE_BITS: u32 = 28;
 
 impl NodeLayout {
     /// Of a graph's nodes. Only trees that are stored level by level have bricks: there a
@@ -28,14 +33,49 @@ impl NodeLayout {
     #[must_use]
     pub fn new(graph: &GraphView<'_>, leaf_masks: bool, bricks: bool) -> Self {
         let level = graph.depth.checked_sub(2).filter(|_| bricks);
-        let found = level.and_then(|level| {
+        let found = level.filter(|_| is_by_level(graph)).and_then(|level| {
             let first = first_of_level(graph, level)?;
-            Some(Bricks { level, first })
+            let end = first_of_level(graph, level + 1);
+            let end = end.unwrap_or(graph.mask.len() as u32).max(first);
+            Some(Bricks { level, first, end })
         });
         Self {
             leaf_masks,
             bricks: found,
         }
+    }
+
+    /// The nodes that are bricks; none: an empty range.
+    #[must_use]
+    pub fn bricks(&self) -> Range<u32> {
+        self.bricks.map_or(0..0, |bricks| bricks.first..bricks.end)
+    }
+
+    /// The words of a brick: its voxels, a byte for each child, of a leaf all ones; then
+    /// `leaves << 56 | where children begin << 28 | where voxels begin`. `None`: a number does not fit.
+    #[must_use]
+    pub fn brick_words(graph: &GraphView<'_>, brick: u32) -> Option<[u64; 2]> {
+        let (mut voxels, mut leaves, mut first_voxel) = (0, 0, None);
+        for octant in 0..8 {
+            let Some(child) = graph.child(brick, octant) else {
+                continue;
+            };
+            let mask = match graph.mask(child) {
+                0 => {
+                    leaves |= 1u64 << octant;
+                    u8::MAX
+                }
+                mask => {
+                    first_voxel.get_or_insert_with(|| graph.first(child));
+                    mask
+                }
+            };
+            voxels |= u64::from(mask) << (8 * octant);
+        }
+        let places = [graph.first(brick), first_voxel.unwrap_or(0)].map(u64::from);
+        let fit = places.iter().all(|place| place >> PLACE_BITS == 0);
+        let second = leaves << (2 * PLACE_BITS) | places[0] << PLACE_BITS | places[1];
+        fit.then_some([voxels, second])
     }
 
     /// The words to read for a node at a level.
@@ -54,11 +94,20 @@ impl NodeLayout {
     }
 }
 
+/// Whether it is a tree that is stored level by level: the children of each node follow on those of the node before.
+fn is_by_level(graph: &GraphView<'_>) -> bool {
+    let mut next = u64::from(graph.root) + 1;
+    let nodes = graph.mask.iter().zip(graph.first);
+    graph.links.is_empty()
+        && nodes.skip(graph.root as usize).all(|(&mask, &first)| {
+            let follows = mask == 0 || u64::from(first) == next;
+            next += u64::from(mask.count_ones());
+            follows
+        })
+}
+
 /// The first node of a level, in a tree that is stored level by level.
 fn first_of_level(graph: &GraphView<'_>, level: u32) -> Option<u32> {
-    if !graph.links.is_empty() {
-        return None;
-    }
     let mut first = graph.root;
     for _ in 0..level {
         let inner = (first as usize..graph.mask.len()).find(|&node| graph.mask[node] != 0)?;
@@ -94,10 +143,28 @@ mod tests {
         assert_eq!(bricks.words(1, 1), 1..3);
         assert_eq!(bricks.words(2, 1), 3..5);
         assert!(bricks.words(4, 2).is_empty());
+        assert_eq!((plain.bricks(), bricks.bricks()), (0..0, 1..3));
+        // A leaf, the node with two voxels, a leaf.
+        let second = 0b101 << 56 | 3 << 28 | 6;
+        let words = NodeLayout::brick_words(&graph, 2);
+        assert_eq!(words, Some([0xff_03_ff, second]));
+        let many = GraphView {
+            first: &[1, 0, 3, 0, 1 << 28, 0],
+            ..graph
+        };
+        assert_eq!(NodeLayout::brick_words(&many, 2), None);
         let linked = GraphView {
             links: &[1, 2],
             ..graph
         };
         assert!(NodeLayout::new(&linked, true, true).bricks.is_none());
+        // Lists that are shared, side by side: each level begins behind the one above, but voxels do not follow on
+        // those before.
+        let shared = GraphView {
+            mask: &[0b11, 0b11, 0b11, 0, 0b11, 0, 0b11],
+            first: &[1, 3, 5, 0, 7, 0, 7],
+            ..graph
+        };
+        assert!(NodeLayout::new(&shared, true, true).bricks.is_none());
     }
 }

@@ -5,7 +5,7 @@
 
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 use crate::project::options::ShiftSum;
 use crate::project::vector::cross;
 use crate::project::{Coverage, FrameSetup};
@@ -206,10 +206,10 @@ impl Constants {
 }
 
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on, of a graph; all ones but the sign where a level has no depth. Under the rules that draw
+/// on, of a graph that lies in memory so; all ones but the sign where a level has no depth. Under the rules that draw
 /// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
 #[must_use]
-pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>) -> Vec<i64> {
+pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
     let c = Constants::load(&mut dp, setup);
     let limits = [&setup.lod_limit, &Some(setup.size_limit.clone())];
@@ -230,7 +230,8 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>) -> Vec<i64> {
     ];
     put(1, &numbers.map(i64::from));
     let is_leaf = graph.mask(graph.root) == 0;
-    let flags = [coarse, has_lod, c.positive, is_leaf];
+    let bricks = layout.bricks();
+    let flags = [coarse, has_lod, c.positive, is_leaf, !bricks.is_empty()];
     put(
         7,
         &[(0..)
@@ -252,6 +253,7 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>) -> Vec<i64> {
     );
     put(13, &c.eye_ceil.map(Word::to_host));
     put(28, &c.eye_floor.map(Word::to_host));
+    put(31, &[i64::from(bricks.start)]);
     let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);
     let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));
     put(LEVEL_REGISTERS, &depths.collect::<Vec<_>>());

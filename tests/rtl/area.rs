@@ -5,7 +5,7 @@ use std::fs;
 
 use serde_json::Value;
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, lanes};
+use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, lanes};
 use super::tools::{icarus, is_there, parameter, rtl, run, shiftvox, text};
 use super::views::TREE;
 
@@ -59,14 +59,14 @@ fn memories_have_the_bits_that_the_model_says() {
     ];
     let side_by_side = [
         Machine::lanes_of_stage_b(lanes(3, 1, 2)),
-        Machine::lanes_of_stage_c(lanes(2, 2, 2)),
+        Machine::lanes_of_stage_c(lanes(2, 2, 2), true),
     ];
-    for (machine, view) in [&STAGE_A, &STAGE_B, &STAGE_C]
+    for (machine, view) in [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS]
         .into_iter()
         .chain(&side_by_side)
         .flat_map(|machine| views.map(|view| (machine, view)))
-        // Lanes have the memories of a machine, but for the fill vectors: one view is enough.
-        .filter(|(machine, view)| machine.testbench() == "frame_tb" || *view == views[1])
+        // Lanes have the memories of a machine, but for the fill vectors, bricks but for the stack: one view is enough.
+        .filter(|(machine, view)| machine.parameters().is_empty() || *view == views[1])
     {
         let model = modelled(machine, view);
         let top = match machine.testbench() {
@@ -110,7 +110,7 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     let shelter = tempfile::tempdir().unwrap();
     let into = shelter.path().join("frame.vvp");
     let view = ["gen:menger,depth=2", "--size", "7x8", "--view", "iso"];
-    for machine in [&STAGE_A, &STAGE_B, &STAGE_C] {
+    for machine in [&STAGE_A, &STAGE_B, &STAGE_C, &STAGE_C_BRICKS] {
         let parameters = parameters(machine, &view, "frame_tb");
         icarus(machine.folders, "frame_tb", &parameters, text(&into));
         let simulator = ["vvp", "-n", text(&into), "+most=200000"];

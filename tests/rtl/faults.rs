@@ -65,7 +65,7 @@ const FAULTS_C: [&[Fault]; 3] = [
         ("parts", "r_inside <= p_inside", "r_inside <= 1"),
         ("parts", "one << octant_bit << 1", "one << octant_bit"),
         (
-            "steps",
+            "parts",
             "if (left != 0) state",
             "if (left_there != 0) state",
         ),

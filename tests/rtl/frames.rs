@@ -5,7 +5,9 @@ use std::fs;
 
 use shiftvox::graph::{LinkedGraph, vxg};
 
-use super::machines::{Expected, Machine, STAGE_A, STAGE_B, STAGE_C, agree, agree_linked, lanes};
+use super::machines::{
+    Expected, Machine, STAGE_A, STAGE_B, STAGE_C, STAGE_C_BRICKS, agree, agree_linked, lanes,
+};
 use super::tools::{is_there, rtl, run, text};
 use super::views::{Dice, INSIDE, SCENES, TREE, any_view, view_from_within};
 
@@ -42,11 +44,12 @@ fn yosys_takes_the_machines() {
         return;
     }
     let lanes_b = Machine::lanes_of_stage_b(lanes(2, 1, 1));
-    let lanes_c = Machine::lanes_of_stage_c(lanes(2, 2, 1));
+    let lanes_c = Machine::lanes_of_stage_c(lanes(2, 2, 1), true);
     for (machine, top) in [
         (&STAGE_A, "machine"),
         (&STAGE_B, "machine"),
         (&STAGE_C, "machine"),
+        (&STAGE_C_BRICKS, "machine"),
         (&lanes_b, "lanes"),
         (&lanes_c, "lanes"),
     ] {
@@ -64,8 +67,13 @@ fn yosys_takes_the_machines() {
         }
         let files: Vec<String> = files.into_values().collect();
         let (files, folders) = (files.join(" "), machine.folders.join(" -I"));
+        let parameters: String = machine
+            .parameters()
+            .iter()
+            .map(|(name, value)| format!(" -chparam {name} {value}"))
+            .collect();
         let script = format!(
-            "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top {top}; proc; check -assert; \
+            "read_verilog -sv -I. -I{folders} {files}; hierarchy -check -top {top}{parameters}; proc; check -assert; \
              select -assert-none t:$dlatch"
         );
         run(&rtl(), "yosys", &["-q", "-p", &script]);
@@ -86,10 +94,10 @@ fn many_scenes() {
 }
 
 /// A graph as this file writes it: its name, its depth, and each node's children by octant.
-type Drawn = (&'static str, u32, Vec<[Option<u32>; 8]>);
+pub(crate) type Drawn = (&'static str, u32, Vec<[Option<u32>; 8]>);
 
 /// Graphs with shared nodes and with cycles.
-fn linked_graphs() -> Vec<Drawn> {
+pub(crate) fn linked_graphs() -> Vec<Drawn> {
     let no = None;
     let [a, b, c, d] = [Some(0), Some(1), Some(2), Some(3)];
     vec![

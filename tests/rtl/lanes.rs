@@ -15,16 +15,17 @@ static LANES_B: [Machine; 4] = [
     Machine::lanes_of_stage_b(lanes(3, 1, 3)),
     Machine::lanes_of_stage_b(lanes(4, 1, 2)),
 ];
-static LANES_C: [Machine; 6] = [
-    Machine::lanes_of_stage_c(lanes(1, 1, 2)),
-    Machine::lanes_of_stage_c(lanes(1, 2, 2)),
-    Machine::lanes_of_stage_c(lanes(1, 4, 2)),
-    Machine::lanes_of_stage_c(lanes(1, 8, 3)),
-    Machine::lanes_of_stage_c(lanes(4, 1, 2)),
-    Machine::lanes_of_stage_c(lanes(2, 4, 2)),
+static LANES_C: [Machine; 7] = [
+    Machine::lanes_of_stage_c(lanes(1, 1, 2), false),
+    Machine::lanes_of_stage_c(lanes(1, 2, 2), false),
+    Machine::lanes_of_stage_c(lanes(1, 4, 2), false),
+    Machine::lanes_of_stage_c(lanes(1, 8, 3), false),
+    Machine::lanes_of_stage_c(lanes(4, 1, 2), false),
+    Machine::lanes_of_stage_c(lanes(2, 4, 2), false),
+    Machine::lanes_of_stage_c(lanes(2, 4, 2), true),
 ];
 
-static SMALL: Machine = Machine::lanes_of_stage_c(lanes(2, 2, 2));
+static SMALL: Machine = Machine::lanes_of_stage_c(lanes(2, 2, 2), true);
 
 /// Faults in what the lanes share, and in what a lane has of a tile.
 const FAULTS: [Fault; 8] = [
@@ -56,7 +57,7 @@ const FAULTS_OF_CONTEXTS: [Fault; 10] = [
     ),
     (
         "contexts",
-        "wanted_by[running] <= t_node",
+        "wanted_by[running] <= wanted",
         "wanted_by[running] <= 0",
     ),
     (
@@ -71,7 +72,7 @@ const FAULTS_OF_CONTEXTS: [Fault; 10] = [
         "fill_address} << CONTEXT_LOG2 | running",
         "fill_address} << CONTEXT_LOG2",
     ),
-    ("stage", "left, waiting, ", "left, "),
+    ("machine", "waiting <= kept_of_next[KEPT +: WAITING];", ""),
     ("joined_fill", "is_written <= 1;", ""),
     ("silhouette", "{a, b, of_divided, here} <= kept[next];", ""),
 ];

@@ -18,6 +18,8 @@ pub(crate) struct Machine {
     pub(crate) folders: &'static [&'static str],
     /// Several side by side.
     lanes: Option<Lanes>,
+    /// Whether it can have bricks.
+    bricks: bool,
     /// Its simulator, made once.
     made: OnceLock<(TempDir, PathBuf)>,
 }
@@ -48,6 +50,7 @@ pub(crate) static STAGE_A: Machine = Machine {
     rules: &["--paper"],
     folders: &["machine", "stage_a", "blocks"],
     lanes: None,
+    bricks: false,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_B: Machine = Machine {
@@ -56,6 +59,7 @@ pub(crate) static STAGE_B: Machine = Machine {
     rules: EXACT,
     folders: FOLDERS_B,
     lanes: None,
+    bricks: false,
     made: OnceLock::new(),
 };
 pub(crate) static STAGE_C: Machine = Machine {
@@ -64,18 +68,29 @@ pub(crate) static STAGE_C: Machine = Machine {
     rules: EXACT,
     folders: FOLDERS_C,
     lanes: None,
+    bricks: false,
+    made: OnceLock::new(),
+};
+/// The same with bricks.
+pub(crate) static STAGE_C_BRICKS: Machine = Machine {
+    name: "stage_c",
+    stage: "stage_c",
+    rules: EXACT,
+    folders: FOLDERS_C,
+    lanes: None,
+    bricks: true,
     made: OnceLock::new(),
 };
 
 impl Machine {
     /// Lanes of stage B.
     pub(crate) const fn lanes_of_stage_b(lanes: Lanes) -> Self {
-        Self::side_by_side("stage_b_lanes", "stage_b", FOLDERS_B, lanes)
+        Self::side_by_side("stage_b_lanes", "stage_b", FOLDERS_B, lanes, false)
     }
 
-    /// Lanes of stage C.
-    pub(crate) const fn lanes_of_stage_c(lanes: Lanes) -> Self {
-        Self::side_by_side("stage_c_lanes", "stage_c", FOLDERS_C, lanes)
+    /// Lanes of stage C, with bricks or without.
+    pub(crate) const fn lanes_of_stage_c(lanes: Lanes, bricks: bool) -> Self {
+        Self::side_by_side("stage_c_lanes", "stage_c", FOLDERS_C, lanes, bricks)
     }
 
     const fn side_by_side(
@@ -83,6 +98,7 @@ impl Machine {
         stage: &'static str,
         folders: &'static [&'static str],
         lanes: Lanes,
+        bricks: bool,
     ) -> Self {
         Self {
             name,
@@ -90,6 +106,7 @@ impl Machine {
             rules: EXACT,
             folders,
             lanes: Some(lanes),
+            bricks,
             made: OnceLock::new(),
         }
     }
@@ -102,7 +119,11 @@ impl Machine {
             let key = format!("\n{} = ", of.to_lowercase());
             let (head, rest) = text.split_once(&key).unwrap();
             let (_, tail) = rest.split_once(' ').unwrap();
-            text = format!("{head}{key}{number} {tail}");
+            let value = match of {
+                "BRICKS" => "true".to_owned(),
+                _ => number.to_string(),
+            };
+            text = format!("{head}{key}{value} {tail}");
         }
         text
     }
@@ -124,7 +145,9 @@ impl Machine {
                 ("TILE_LEVELS", of.tile_levels.into()),
             ]
         };
-        self.lanes.into_iter().flat_map(of_lanes).collect()
+        let bricks = self.bricks.then_some(("BRICKS", 1));
+        let lanes = self.lanes.into_iter().flat_map(of_lanes);
+        lanes.chain(bricks).collect()
     }
 
     /// Whether records lie on its stack, and not what leads to their parents.

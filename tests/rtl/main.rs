@@ -10,6 +10,7 @@
 
 mod area;
 mod blocks;
+mod bricks;
 mod energy;
 mod faults;
 mod frames;

@@ -31,7 +31,7 @@ pub use folder::{FolderError, check_free};
 pub use ports::{Field, Ports};
 
 use crate::frame::Frame;
-use crate::graph::GraphView;
+use crate::graph::{GraphView, NodeLayout};
 use crate::machine::{Machine, MachineOptions};
 use crate::project::{EngineError, FrameSetup};
 use crate::whole::{self, WholeError};
@@ -109,6 +109,7 @@ pub fn write(
             true => request.organisation,
             false => request.organisation.without_outlines(),
         };
+        let layout = NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks);
         let mut machine = Machine::new(MachineOptions {
             overflow: request.overflow,
             organisation,
@@ -128,9 +129,9 @@ pub fn write(
         write(folder::PARAMETERS, &readme::parameters(setup))?;
         write(
             frame_image::CONSTANTS,
-            &frame_image::constants(setup, graph),
+            &frame_image::constants(setup, graph, &layout),
         )?;
-        if let Some(nodes) = frame_image::nodes(graph) {
+        if let Some(nodes) = frame_image::nodes(graph, &layout) {
             write(frame_image::NODES, &nodes)?;
         }
         for recording in recordings.iter().filter(|recording| recording.rows > 0) {

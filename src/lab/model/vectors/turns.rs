@@ -59,7 +59,7 @@ fn describe(port: Port) -> (&'static str, &'static str) {
         Port::FillWrite => ("fill_write", "as fill_read"),
         Port::NodeRead => (
             "node_read",
-            "address: octree node; data: mask of its children << 32 | where they begin",
+            "address: octree node, or a word of a brick; data: mask of its children << 32 | where they begin",
         ),
         Port::AttributeRead => ("attribute_read", "address: octree node; data: 0"),
         Port::PixelWrite => (
