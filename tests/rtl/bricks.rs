@@ -71,7 +71,7 @@ const FAULTS: [Fault; 14] = [
     ("bricks", "- first_brick", ""),
     (
         "bricks",
-        "if (state == SOLID) second <= 0;\n  else if",
+        "if (state == SOLID) second <= 0;\n    else if",
         "if",
     ),
     (
