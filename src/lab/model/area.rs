@@ -203,7 +203,7 @@ pub fn light(
         };
         area.units(stage.name(), of, prices)?;
     }
-    for ((stage, width), times) in shifters(&frame, prices) {
+    for ((stage, width), times) in shifters(&frame, hardware, prices) {
         let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
         // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
         let cycles_of = |of: &StageReport| match hardware.sequential {
@@ -236,9 +236,14 @@ pub fn light(
     caches(area, hardware, prices)
 }
 
-/// Shifts that have shifters, by stage and width.
-fn shifters(frame: &LightFrame<'_>, prices: &Prices) -> BTreeMap<(Stage, u32), u64> {
+/// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
+fn shifters(
+    frame: &LightFrame<'_>,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> BTreeMap<(Stage, u32), u64> {
     match prices.costing.shifts {
+        ShiftUnits::Wires if hardware.sequential => frame.shifts.variable_in_steps(),
         ShiftUnits::Wires => frame.shifts.variable(),
         ShiftUnits::Variable => {
             let cells = frame
