@@ -3,7 +3,8 @@
 //! - *Units*: of every class of operation that the frame uses in a stage, as many as
 //!   the hardware has, but no more than any visit of the stage has passes for: what a
 //!   description gives to a stage that never uses it is not built. Shifts that are not wires have
-//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its).
+//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its;
+//!   there work that is done beside another stage is that one's).
 //! - *Registers*: a pipeline of latency `l` that takes operations every `i` cycles keeps
 //!   `l / i` results of its width, rounded up; a context keeps the record, or the ray, that it works on.
 //! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours whoever has them.
