@@ -312,7 +312,7 @@ fn energy_by_toggles_beside_the_table() {
         );
         // Four bits are next to nothing; a step of the divide is larger than the table's, section 5 of `docs/rtl.md`.
         if !["logic", DIVIDE].contains(&class) {
-            assert!((ratio / by_table - 1.0).abs() < 0.3, "{name}");
+            assert!((ratio / by_table - 1.0).abs() < 0.4, "{name}");
         }
     }
 }
