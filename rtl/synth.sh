@@ -2,9 +2,11 @@
 # Area and delay of modules, as the rows of hwmodel/tables/area.toml were made: Yosys, OSU 0.18 um cells. Areas are in
 # NAND2X1 of 24 um2, delays of gates alone. Needs yosys and qflow-tech-osu018; LIBERTY names another library.
 #
-#   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each; NETLIST=FILE writes the cells of the last
+#   synth.sh MODULE...   `module,nand2,registers_nand2,delay_ps` of each, without memories; PARAMETERS sets others
+#                        ("-chparam LANES 4"); NETLIST=FILE writes the cells of the last;
+#                        BOXES=machine: without that one, too
 #   synth.sh machine     the whole machine without its memories, for the bundled tree at 64 x 64 unless PARAMETERS says
-#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stage B:
+#                        otherwise: `stage,part,nand2,registers_nand2` of the parts of parts.txt (stages B and C:
 #                        parts_exact.txt) and of what connects them, their sum, and the same in one piece; minutes
 #
 # Modules are stage A's; STAGE=stage_b or stage_c: those of exact coverage in the place of those of the same name.
@@ -22,7 +24,10 @@ case $stage in
 esac
 include="-I.$(printf ' -I%s' $folders)"
 files=$(for folder in $folders; do ls "$folder"/*.v; done | awk -F/ '!seen[$NF]++')
-files=$(echo $files)
+# Memories are black boxes.
+boxes=$(printf 'machine/%s.v\n' memory ${BOXES:-})
+read="read_verilog -sv $include ${DEFINES:-} $(echo "$files" | grep -v -x -F "$boxes" | tr '\n' ' ')
+  read_verilog -lib -sv $include $(echo $boxes)"
 script='+strash;ifraig;scorr;dc2;strash;&get,-n;&dch,-f;&nf;&put;topo;stime'
 cells="dfflibmap -liberty $lib; abc -liberty $lib -script $script; opt_clean -purge; stat -liberty $lib"
 
@@ -34,17 +39,15 @@ synthesize() {
 whole_machine() {
   case $stage in
     stage_a) parts=parts.txt bound=13 ;;
-    stage_b) parts=parts_exact.txt bound=8 ;;
-    *) echo "the parts of $stage are not named" >&2; exit 1 ;;
+    *) parts=parts_exact.txt bound=8 ;;
   esac
   widths="-chparam PICTURE_LEVELS 6 -chparam LEVEL_BOUND $bound -chparam DEPTH 8 -chparam NODE_WIDTH 21"
   parameters=${PARAMETERS:-$widths}
-  # Memories are black boxes. Constants are passed on before the parts are cut out, and nothing else is.
-  without_memory=$(echo "$files" | tr ' ' '\n' | grep -v memory.v | tr '\n' ' ')
-  read="read_verilog -sv $include ${DEFINES:-} $without_memory; read_verilog -lib machine/memory.v
+  # Constants are passed on before the parts are cut out, and nothing else is.
+  read="$read
     hierarchy -top machine $parameters; proc; flatten; opt_expr; opt_clean; memory; opt_clean; rename -top machine"
   cut=$(awk '!/^#/ { list = ""
-      for (i = 3; i <= NF; i++) list = list " machine/c:*" $i ".*"
+      for (i = 3; i <= NF; i++) list = list " machine/" (sub("^@", "", $i) ? "a:src=*" $i "*" : "c:*" $i ".*")
       print "submod -name part_" $2 list }' $parts)
   own='select -set own machine/c:* machine/c:*flatten* %d; select -set sums machine/t:$add machine/t:$sub machine/t:$neg
     select -set shifts machine/t:$shl machine/t:$shr machine/t:$shift machine/t:$shiftx
@@ -71,7 +74,8 @@ whole_machine() {
 
 for top in "$@"; do
   if [ "$top" = machine ]; then whole_machine; continue; fi
-  synthesize "read_verilog -sv $include ${DEFINES:-} $files; hierarchy -top $top; ${BOX:-}
+  synthesize "$read
+    hierarchy -top $top ${PARAMETERS:-}; rename -top $top
     synth -flatten -top $top; $cells${NETLIST:+; write_verilog -noattr $NETLIST}"
   awk -v top="$top" '
     /Delay *=/ { for (i = 1; i <= NF; i++) if ($i == "Delay") { v = $(i + 2); if (v > delay) delay = v } }

@@ -60,6 +60,9 @@ pub struct ShiftSite {
     pub most: u32,
     /// How far they vary.
     pub kind: ShiftKind,
+    /// How often in steps of which stage: another one's where it is done beside that ([`Probe::beside`]).
+    #[serde(skip)]
+    pub in_steps: BTreeMap<Stage, u64>,
 }
 
 /// Shifts of one line, stage, width and level.
@@ -68,6 +71,14 @@ struct Seen {
     times: u64,
     least: u32,
     most: u32,
+}
+
+impl Seen {
+    fn add(&mut self, other: Self) {
+        self.times += other.times;
+        self.least = self.least.min(other.least);
+        self.most = self.most.max(other.most);
+    }
 }
 
 /// A probe that watches by how many places every line shifts.
@@ -102,11 +113,14 @@ pub struct ShiftProbe {
     seen: HashMap<SiteKey, (Place, Seen), BuildHasherDefault<SiteHasher>>,
     /// Shifts of sums, by stage and width: wires.
     halvings: BTreeMap<(Stage, u32), u64>,
+    /// The stage that was in turn last, and whether work of another one is done beside it.
+    in_turn: Option<Stage>,
+    beside: bool,
 }
 
 type Place = &'static Location<'static>;
-/// The place's address, stage, width and level.
-type SiteKey = (usize, u8, u32, u32);
+/// The place's address, its stage and the one in whose steps it is, width and level.
+type SiteKey = (usize, [u8; 2], u32, u32);
 
 /// A hash of a few numbers that nobody chooses to collide: asked for at every shift of a frame.
 #[derive(Debug, Clone, Copy, Default)]
@@ -147,17 +161,28 @@ impl ShiftProbe {
     /// Every line that shifted, by file, line, stage and width; halvings last.
     #[must_use]
     pub fn sites(&self) -> Vec<ShiftSite> {
-        // By place, stage and width: the levels.
-        let mut by_site = BTreeMap::<(&str, u32, u32, Stage, u32), Vec<Seen>>::new();
-        for (&(_, stage, bits, _), &(at, seen)) in &self.seen {
-            let stage = Stage::ALL[usize::from(stage)];
-            let key = (at.file(), at.line(), at.column(), stage, bits);
-            by_site.entry(key).or_default().push(seen);
+        #[derive(Default)]
+        struct Levels {
+            in_steps: BTreeMap<Stage, u64>,
+            of_level: BTreeMap<u32, Seen>,
         }
-        let site = |((file, line, _, stage, bits), levels): (_, Vec<Seen>)| {
-            let least = levels.iter().map(|seen| seen.least).min().unwrap_or(0);
-            let most = levels.iter().map(|seen| seen.most).max().unwrap_or(0);
-            let kind = if levels.iter().any(|seen| seen.least < seen.most) {
+        // By place, stage and width.
+        let mut by_site = BTreeMap::<(&str, u32, u32, Stage, u32), Levels>::new();
+        for (&(_, stages, bits, level), &(at, seen)) in &self.seen {
+            let [stage, step] = stages.map(|stage| Stage::ALL[usize::from(stage)]);
+            let key = (at.file(), at.line(), at.column(), stage, bits);
+            let site = by_site.entry(key).or_default();
+            *site.in_steps.entry(step).or_default() += seen.times;
+            site.of_level
+                .entry(level)
+                .and_modify(|all| all.add(seen))
+                .or_insert(seen);
+        }
+        let site = |((file, line, _, stage, bits), site): (_, Levels)| {
+            let levels = site.of_level;
+            let least = levels.values().map(|seen| seen.least).min().unwrap_or(0);
+            let most = levels.values().map(|seen| seen.most).max().unwrap_or(0);
+            let kind = if levels.values().any(|seen| seen.least < seen.most) {
                 ShiftKind::Operation
             } else if least < most {
                 ShiftKind::Level
@@ -171,10 +196,11 @@ impl ShiftProbe {
                 site: format!("{file}:{line}"),
                 stage,
                 bits,
-                times: levels.iter().map(|seen| seen.times).sum(),
+                times: levels.values().map(|seen| seen.times).sum(),
                 least,
                 most,
                 kind,
+                in_steps: site.in_steps,
             }
         };
         let mut sites: Vec<ShiftSite> = by_site.into_iter().map(site).collect();
@@ -187,6 +213,7 @@ impl ShiftProbe {
             least: 1,
             most: 1,
             kind: ShiftKind::Wires,
+            in_steps: BTreeMap::new(),
         }));
         sites
     }
@@ -198,6 +225,21 @@ impl ShiftProbe {
         for site in self.sites() {
             if site.kind != ShiftKind::Wires {
                 *sums.entry((site.stage, site.bits)).or_default() += site.times;
+            }
+        }
+        sums
+    }
+
+    /// As [`variable`](Self::variable), by the stage in whose steps hardware does it: what is done beside another stage
+    /// takes no steps of its own.
+    #[must_use]
+    pub fn variable_in_steps(&self) -> BTreeMap<(Stage, u32), u64> {
+        let mut sums = BTreeMap::new();
+        for site in self.sites() {
+            if site.kind != ShiftKind::Wires {
+                for (stage, times) in site.in_steps {
+                    *sums.entry((stage, site.bits)).or_default() += times;
+                }
             }
         }
         sums
@@ -216,10 +258,20 @@ impl ShiftProbe {
 
 impl Probe for ShiftProbe {
     #[inline]
-    fn op(&mut self, _: OpClass, _: u32, _: StageLevel, _: u32) {}
+    fn op(&mut self, _: OpClass, _: u32, place: StageLevel, _: u32) {
+        if !self.beside {
+            self.in_turn = Some(place.stage);
+        }
+    }
+
+    #[inline]
+    fn beside(&mut self, begins: bool) {
+        self.beside = begins;
+    }
 
     #[inline]
     fn op_on(&mut self, operand: Operand, class: OpClass, bits: u32, place: StageLevel) {
+        self.op(class, bits, place, 1);
         // The datapath halves sums of one bit more than a word, and nothing else of that width.
         if class == OpClass::Shift && matches!(operand, Operand::Carry | Operand::WideCarry) {
             *self.halvings.entry((place.stage, bits)).or_default() += 1;
@@ -227,22 +279,49 @@ impl Probe for ShiftProbe {
     }
 
     fn shift(&mut self, bits: u32, places: u32, place: StageLevel, site: Place) {
+        let step = match self.in_turn {
+            Some(stage) if self.beside => stage,
+            _ => place.stage,
+        };
         let key = (
             std::ptr::from_ref(site) as usize,
-            place.stage as u8,
+            [place.stage as u8, step as u8],
             bits,
             place.level,
         );
-        let (_, seen) = self.seen.entry(key).or_insert((
-            site,
-            Seen {
-                times: 0,
-                least: places,
-                most: places,
-            },
-        ));
-        seen.times += 1;
-        seen.least = seen.least.min(places);
-        seen.most = seen.most.max(places);
+        let now = Seen {
+            times: 1,
+            least: places,
+            most: places,
+        };
+        self.seen
+            .entry(key)
+            .and_modify(|(_, seen)| seen.add(now))
+            .or_insert((site, now));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Datapath, Format, Overflow};
+
+    #[test]
+    fn work_beside_a_stage_is_in_its_steps() {
+        let mut probe = ShiftProbe::new();
+        let format = Format::new(24, 8).unwrap();
+        let mut dp = Datapath::new(format, Overflow::Trap, &mut probe);
+        let word = dp.load(1);
+        for stage in [Stage::ChildBox, Stage::Push] {
+            dp.stage(stage);
+            dp.add(word, word);
+            dp.beside(Stage::VertexPool, |dp| dp.shl(word, 2));
+        }
+        dp.shl(word, 3);
+        let of = |stage, times| ((stage, 24), times);
+        let by_stage = [of(Stage::VertexPool, 2), of(Stage::Push, 1)];
+        assert_eq!(probe.variable(), BTreeMap::from(by_stage));
+        let in_steps = [of(Stage::ChildBox, 1), of(Stage::Push, 2)];
+        assert_eq!(probe.variable_in_steps(), BTreeMap::from(in_steps));
     }
 }

@@ -64,7 +64,8 @@ always @(posedge clk)
     idle <= idle & ~start | (switches & has_no_tile ? runs : {CONTEXTS{1'b0}});
     begun <= (begun | start) & ~runs;
     asks_node <= (switches & state == NODE ? asks_node | runs : asks_node) & ~shared_node_taken;
-    asks_attribute <= (switches & state == ATTRIBUTE ? asks_attribute | runs : asks_attribute) & ~shared_attribute_taken;
+    asks_attribute <= (switches & state == ATTRIBUTE ? asks_attribute | runs : asks_attribute)
+      & ~shared_attribute_taken;
     answered <= (answered | shared_node_ready | shared_attribute_ready) & ~(looks_at_answer ? runs : {CONTEXTS{1'b0}});
     if (switches) begin
       running <= next_running;

@@ -6,12 +6,12 @@
 //
 //     every cycle: the context that has waited longest for a tile begins the next one, row by row
 //
-// Only for rules under which the picture does not depend on the order of records: stages B and C; contexts: stage C. The picture has at least
-// 2^TILE_LEVELS samples a side, rounded up to a power of two. Whoever waits longest is served first; of those that
-// came in one cycle, the lowest lane, and nodes before attributes.
-module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
-               NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
-               NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
+// Only for rules under which the picture does not depend on the order of records: stages B and C; contexts: stage C.
+// The picture has at least 2^TILE_LEVELS samples a side, rounded up to a power of two. Whoever waits longest is served
+// first; of those that came in one cycle, the lowest lane and context, and nodes before attributes.
+module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BITS, PICTURE_LEVELS = 10,
+               STACK_LOG2 = `STACK_LOG2, NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2,
+               DEPTH = LEVEL_BOUND, NODE_WIDTH = `NODE_BITS, OUTER_ADDRESS = 32, BRICKS = 0) (
   input                        clk, reset,
   // The host, as of one machine: all lanes have the same constants.
   input                        constant_write,

@@ -147,7 +147,8 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   wire [FILL_ADDRESS-1:0] fill_address = fill_place(fill_level, fill_x, fill_y);
   memory #(.BITS(4), .WORDS(FILL_WORDS << CONTEXT_LOG2), .ADDRESS(FILL_ADDRESS + CONTEXT_LOG2)) fill_vectors (
     .clk(clk), .read(fill_read & ~elsewhere), .write(fill_write & ~elsewhere),
-    .address({{CONTEXT_LOG2{1'b0}}, fill_address} << CONTEXT_LOG2 | running), .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
+    .address({{CONTEXT_LOG2{1'b0}}, fill_address} << CONTEXT_LOG2 | running),
+    .data_in(state == CLEAR ? outside_picture : marked), .data_out(vector_there));
 
   // A new frame's vectors: a quadrant is full from the start if its first sample is beside the picture.
   integer q;

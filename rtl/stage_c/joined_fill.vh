@@ -11,7 +11,8 @@ wire [P-1:0] word_x = fill_x >> below_word, word_y = fill_y >> below_word;
 // In the tile, row by row, as many columns as it has.
 localparam WORD_ADDRESS = 2*(PICTURE_LEVELS - TILE_LEVELS - 2) + CONTEXT_LOG2, WORDS = 32'd1 << WORD_ADDRESS;
 wire [L-1:0] columns_log2 = word_level - TILE_LEVELS;
-wire [P-1:0] row_in_tile = word_y & ~({P{1'b1}} << columns_log2), column_in_tile = word_x & ~({P{1'b1}} << columns_log2);
+wire [P-1:0] row_in_tile = word_y & ~({P{1'b1}} << columns_log2);
+wire [P-1:0] column_in_tile = word_x & ~({P{1'b1}} << columns_log2);
 wire [WORD_ADDRESS-1:0] word_address = ((row_in_tile << columns_log2) + column_in_tile) << CONTEXT_LOG2 | running;
 wire [15:0] word_there;
 reg  [15:0] outside_word;

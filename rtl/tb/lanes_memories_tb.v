@@ -6,7 +6,8 @@ module lanes_memories_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, P
   reg [7:0] constant_address;
   reg [31:0] constant_data;
   reg [63:0] fill_word;
-  lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND),
+  lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS),
+          .PICTURE_LEVELS(PICTURE_LEVELS), .LEVEL_BOUND(LEVEL_BOUND),
           .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH), .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),
     .constant_data(constant_data), .start(start), .fetch_ready(fetch_ready), .fill(fill), .fill_word(fill_word),

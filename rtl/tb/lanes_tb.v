@@ -24,7 +24,8 @@ module lanes_tb #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, PICTURE_LE
   wire [63:0] pixel_attribute;
   integer taken_for;
   wire fetch_ready = taken_for == 0;
-  lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS), .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
+  lanes #(.LANES(LANES), .CONTEXTS(CONTEXTS), .TILE_LEVELS(TILE_LEVELS),
+          .PICTURE_LEVELS(PICTURE_LEVELS), .STACK_LOG2(STACK_LOG2),
           .LEVEL_BOUND(LEVEL_BOUND), .DEPTH(DEPTH), .NODE_WIDTH(NODE_WIDTH),
           .BRICKS(BRICKS)) dut (
     .clk(clk), .reset(reset), .constant_write(constant_write), .constant_address(constant_address),

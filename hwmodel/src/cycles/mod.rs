@@ -86,12 +86,12 @@
 //!     records asks for a tile, from cycle 0 on; in each cycle the one that asked first is given the next tile, row by row,
 //!     and begins it in the cycle after. It draws it to its end: nothing is stolen, and stack and fill vectors are a
 //!     context's own.
-//! 14. **Contexts of a sequential lane**, which need tiles, work in turns: one has the lane. From the cycle in which that
-//!     one asks a cache, or for a tile, until the one before what it asked for is there, another may have the lane. In
-//!     each such cycle the one that wanted it first is given it, of one cycle the lowest number, and goes on in the
-//!     cycle after: it looks at what it read, or begins its tile. A context wants the lane from the cycle on in
-//!     which what it asked for is there; if it has the lane still, it looks at it in that cycle. What it waits for the lane is
-//!     *block busy*.
+//! 14. **Contexts of a sequential lane**, which need tiles, work in turns: one has the lane. From the cycle in which
+//!     that one asks a cache, or for a tile, until the one before what it asked for is there, another may have the
+//!     lane. In each such cycle the one that wanted it first is given it, of one cycle the lowest number, and goes on
+//!     in the cycle after: it looks at what it read, or begins its tile. A context wants the lane from the cycle on in
+//!     which what it asked for is there; if it has the lane still, it looks at it in that cycle. What it waits for the
+//!     lane is *block busy*.
 //!
 //! # Work and span
 //!

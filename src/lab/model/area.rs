@@ -3,7 +3,8 @@
 //! - *Units*: of every class of operation that the frame uses in a stage, as many as
 //!   the hardware has, but no more than any visit of the stage has passes for: what a
 //!   description gives to a stage that never uses it is not built. Shifts that are not wires have
-//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its).
+//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its;
+//!   there work that is done beside another stage is that one's).
 //! - *Registers*: a pipeline of latency `l` that takes operations every `i` cycles keeps
 //!   `l / i` results of its width, rounded up; a context keeps the record, or the ray, that it works on.
 //! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours whoever has them.
@@ -203,7 +204,7 @@ pub fn light(
         };
         area.units(stage.name(), of, prices)?;
     }
-    for ((stage, width), times) in shifters(&frame, prices) {
+    for ((stage, width), times) in shifters(&frame, hardware, prices) {
         let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
         // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
         let cycles_of = |of: &StageReport| match hardware.sequential {
@@ -236,9 +237,14 @@ pub fn light(
     caches(area, hardware, prices)
 }
 
-/// Shifts that have shifters, by stage and width.
-fn shifters(frame: &LightFrame<'_>, prices: &Prices) -> BTreeMap<(Stage, u32), u64> {
+/// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
+fn shifters(
+    frame: &LightFrame<'_>,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> BTreeMap<(Stage, u32), u64> {
     match prices.costing.shifts {
+        ShiftUnits::Wires if hardware.sequential => frame.shifts.variable_in_steps(),
         ShiftUnits::Wires => frame.shifts.variable(),
         ShiftUnits::Variable => {
             let cells = frame
