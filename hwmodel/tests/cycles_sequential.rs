@@ -4,7 +4,9 @@
 mod cycles_common;
 
 use cycles_common::{Does, Listed, Node};
-use hwmodel::cycles::{Hardware, ImageNode, Recorder, TraceLimit, VisitSpan, simulate};
+use hwmodel::cycles::{
+    CycleReport, Hardware, ImageNode, Recorder, TraceLimit, VisitSpan, simulate,
+};
 use hwmodel::{Memory, OpClass, Stage};
 
 const HARDWARE: &str = r#"
@@ -159,7 +161,7 @@ fn what_is_done_beside_takes_no_step_of_its_own() {
 fn tiles(
     (lanes, contexts): (u32, u32),
     does: Vec<Vec<Does>>,
-) -> (Vec<(u32, Stage, u64, u64)>, u64) {
+) -> (Vec<(u32, Stage, u64, u64)>, CycleReport) {
     let toml = HARDWARE
         .replace("lanes = 1", &format!("lanes = {lanes}"))
         .replace("contexts = 1", &format!("contexts = {contexts}"))
@@ -191,7 +193,7 @@ fn tiles(
     };
     let mut rows: Vec<_> = recorder.visits().iter().map(row).collect();
     rows.sort_by_key(|&(lane, _, begins, _)| (begins, lane));
-    (rows, report.cycles)
+    (rows, report)
 }
 
 fn node(address: u64) -> Does {
@@ -201,7 +203,7 @@ fn node(address: u64) -> Does {
 #[test]
 fn tiles_are_handed_out_and_a_cache_serves_who_came_first() {
     let pixel = Does::Write(Stage::Draw, Memory::Pixel, 0);
-    let (found, cycles) = tiles(
+    let (found, report) = tiles(
         (3, 1),
         vec![vec![node(0)], vec![node(0)], vec![node(1)], vec![pixel]],
     );
@@ -219,7 +221,7 @@ fn tiles_are_handed_out_and_a_cache_serves_who_came_first() {
     ];
     assert_eq!(found, by_hand);
     // The pixel was written in cycle 14 and leaves four later.
-    assert_eq!(cycles, 18);
+    assert_eq!(report.cycles, 18);
 }
 
 #[test]
@@ -262,7 +264,7 @@ fn works_and_reads(cycles: u32) -> Vec<Does> {
 
 #[test]
 fn a_context_that_waits_lets_another_have_the_lane() {
-    let (found, cycles) = tiles((1, 2), vec![vec![node(0)], works_and_reads(3)]);
+    let (found, report) = tiles((1, 2), vec![vec![node(0)], works_and_reads(3)]);
     let by_hand = [
         // Asks in cycle 1; what it reads is there in 12, but the lane is not free until 15: looked at in 16.
         (0, Stage::OnePixel, 1, 17),
@@ -273,13 +275,16 @@ fn a_context_that_waits_lets_another_have_the_lane() {
         (1, Stage::Pop, 13, 15),
     ];
     assert_eq!(found, by_hand);
-    assert_eq!(cycles, 17);
+    assert_eq!(report.cycles, 17);
+    // The first waits 10 cycles for its line and then 4 for the lane; the second looks at it in 12, not in 6.
+    let of = &report.stages[Stage::OnePixel as usize].stalls;
+    assert_eq!((of.block_busy, of.cache_miss), (4, 10 + 6));
 }
 
 #[test]
 fn who_wanted_a_lane_first_is_given_it_and_the_lowest_of_one_cycle() {
     let works = vec![Does::Step(Stage::Centre, 9)];
-    let (found, cycles) = tiles((1, 3), vec![vec![node(0)], works_and_reads(2), works]);
+    let (found, report) = tiles((1, 3), vec![vec![node(0)], works_and_reads(2), works]);
     let by_hand = [
         // Both have what they asked for in cycle 12, and the third has the lane.
         (0, Stage::OnePixel, 1, 18),
@@ -290,7 +295,7 @@ fn who_wanted_a_lane_first_is_given_it_and_the_lowest_of_one_cycle() {
         (2, Stage::Pop, 14, 16),
     ];
     assert_eq!(found, by_hand);
-    assert_eq!(cycles, 20);
+    assert_eq!(report.cycles, 20);
 }
 
 #[test]

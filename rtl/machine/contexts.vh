@@ -1,5 +1,5 @@
 // Several contexts in turns: each has a tile, a stack and fill vectors of its own; one of them, `running`, has the
-// blocks. Where that waits, for a cache or for a tile, another may have them that waits no more: who has wanted them
+// blocks. While that waits for a cache or for a tile, one that has its answer may have them: who has wanted them
 // longest, of those of one cycle the lowest number. It goes on in the next cycle; no cycle is lost.
 //
 // What a context has in registers (`KEPT` of the stage, and what parts of it keep themselves) stays in others
@@ -21,6 +21,10 @@ wire                next_begins = |(next_runs & (begun | start));
 // Where it goes on when it has the blocks again.
 wire [5:0]          state_then = state == NODE ? LOOK : state == ATTRIBUTE ? SHOW : state;
 generate
+  // An error of whoever builds it: a module that there is not.
+  if (CONTEXTS > 1 && (SHARED == 0 || `HAS_CONTEXTS == 0 || CONTEXTS != 1 << CONTEXT_LOG2)) begin : refused
+    contexts_are_a_power_of_two_in_lanes_of_stage_c error();
+  end
   if (CONTEXTS > 1) begin : several
     arbiter #(CONTEXTS) turns (.clk(clk), .reset(reset), .enable(waits), .request(wants), .first(unused_first),
       .grant(next_runs));

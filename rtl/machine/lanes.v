@@ -77,7 +77,12 @@ module lanes #(parameter LANES = 4, CONTEXTS = 1, TILE_LEVELS = 2, W = `WORD_BIT
       end
       if (running & ~busy) {running, done} <= 2'b01;
     end
-  always @(posedge clk) failed <= ~(reset | start) & (failed | |lane_failed);
+  // A lane says so until it begins another tile, maybe of the next frame.
+  reg [LANES-1:0] failed_before;
+  always @(posedge clk) begin
+    failed_before <= lane_failed;
+    failed <= ~(reset | start) & (failed | |(lane_failed & ~failed_before));
+  end
 
   // ---------------------------------------------------------------- lanes
   wire [ALL-1:0]         node_request, node_taken, node_ready, attribute_request, attribute_taken, attribute_ready;

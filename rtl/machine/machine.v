@@ -21,7 +21,8 @@
 //
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
-// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns.
+// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns. Stage C needs at least two
+// levels of the picture below TILE_LEVELS.
 // BRICKS: of stage C; it can have frames whose nodes are laid out with bricks (bricks.vh).
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
@@ -119,7 +120,10 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
 
   // Fill vectors of the tile, level by level, row by row, without the levels that a stage has in another memory. The
   // first of a level is 0101..01, as many ones as levels. Behind them those of the nodes above the tile.
-  localparam TILE_WORDS = ((1 << (2*(PICTURE_LEVELS - TILE_LEVELS - `JOINED_LEVELS) + 2)) - 1) / 3;
+  // Of a tile of one level nothing is joined.
+  localparam VECTOR_LEVELS = PICTURE_LEVELS - TILE_LEVELS - `JOINED_LEVELS,
+    LAST_VECTORS = `JOINED_LEVELS != 0 && VECTOR_LEVELS < 1 ? 1 : VECTOR_LEVELS;
+  localparam TILE_WORDS = ((1 << (2*LAST_VECTORS + 2)) - 1) / 3;
   localparam FILL_WORDS = TILE_WORDS + TILE_LEVELS, FILL_ADDRESS = $clog2(FILL_WORDS + 2);
   function [FILL_ADDRESS-1:0] fill_place(input [L-1:0] level, input [P-1:0] x, input [P-1:0] y);
     if (TILE_LEVELS == 0)

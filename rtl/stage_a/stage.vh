@@ -11,6 +11,7 @@
 // Log2 of the stack's entries.
 `define STACK_LOG2 8
 // What a context has in registers, and its bits: there is one only.
+`define HAS_CONTEXTS 0
 `define KEPT stacked
 `define KEPT_BITS (STACK_LOG2 + 1)
 // Registers of constants.

@@ -1,4 +1,4 @@
-// Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, one a sample. The word
+// Fill vectors of stage C: the lowest two levels and the one above them are words of 16 bits, a bit a sample. The word
 // read last stays in a register as long as a record has its turn.
 wire         joined = levels >= TILE_LEVELS + 2;  // the tile has as many levels
 wire [L-1:0] word_level = levels - 2'd2;

@@ -34,7 +34,7 @@ wire [QUAD_LEVEL-1:0] p_quad_level;
 `include "bricks.vh"
 localparam ENTRY = NODE_WIDTH + LEVEL + OF_NODE + 8 + 1 + QUAD_LEVEL;
 wire [STACK_LOG2+CONTEXT_LOG2-1:0] entry = state == PUSH ? stacked[STACK_LOG2-1:0] : top;
-memory #(.BITS(ENTRY), .WORDS(CONTEXTS << STACK_LOG2), .ADDRESS(STACK_LOG2 + CONTEXT_LOG2)) stack (.clk(clk),
+memory #(.BITS(ENTRY), .WORDS(1 << (STACK_LOG2 + CONTEXT_LOG2)), .ADDRESS(STACK_LOG2 + CONTEXT_LOG2)) stack (.clk(clk),
   .read(state == POP), .write(state == PUSH & ~stack_full), .address(entry << CONTEXT_LOG2 | running),
   .data_in({first[NODE_WIDTH-1:0], r_level[LEVEL-1:0], r_of_node, left, r_inside, r_quad_level[QUAD_LEVEL-1:0]}),
   .data_out({p_first, p_level, p_of_node, p_left, p_inside, p_quad_level}));

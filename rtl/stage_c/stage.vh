@@ -8,6 +8,7 @@
 // Log2 of the stack's entries: a parent on each level.
 `define STACK_LOG2 5
 // What a context that waits has in registers, and its bits: a parent, the child in the making, how far they are.
+`define HAS_CONTEXTS 1
 `define KEPT stacked, r_inside, r_level, r_quad_level, r_quad_x, r_quad_y, r_min, r_max, r_x, r_y, r_w, r_more, \
   c_inside, c_level, c_quad_level, c_node, c_quad_x, c_quad_y, c_min, c_max, c_x, c_y, c_w, c_w_min, c_more, \
   middle, leaves, mask, first, order, left, s_level, s_x, s_y, whole, whole_level, draws

@@ -79,7 +79,8 @@ pub(super) fn convert(
         match resources.memory.zip(short) {
             Some((memory, short)) => {
                 let enough = memory + short + short / (ALLOCATORS_SHARE - 1);
-                let enough = enough.div_ceil(1 << 20);
+                // What is loaded is not the same in every run.
+                let enough = enough.div_ceil(1 << 20) + 1;
                 error.advise(format!("give it --memory {enough}M or more"))
             }
             None => error,

@@ -120,6 +120,34 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     }
 }
 
+/// Pictures and tiles of one level, where nothing is joined, on machines of the fewest levels that there are.
+#[test]
+fn small_pictures_have_room() {
+    if !is_there("iverilog") {
+        return;
+    }
+    let shelter = tempfile::tempdir().unwrap();
+    let into = shelter.path().join("frame.vvp");
+    let side_by_side = Machine::lanes_of_stage_c(lanes(1, 2, 2), false);
+    for (machine, size, levels) in [
+        (&STAGE_C, "2x2", 2),
+        (&side_by_side, "7x8", 4),
+        (&side_by_side, "4x4", 4),
+    ] {
+        let top = machine.testbench();
+        let levels = ("PICTURE_LEVELS", levels);
+        let parameters = machine.parameters().into_iter().chain([levels]);
+        let parameters: Vec<String> = parameters
+            .map(|(name, value)| parameter(top, name, value))
+            .collect();
+        icarus(machine.folders, top, &parameters, text(&into));
+        let view = ["gen:menger,depth=1", "--size", size];
+        let simulator = ["vvp", "-n", text(&into), "+most=200000"];
+        let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
+        assert_eq!(agreement.cycles[0], agreement.cycles[1], "{size}");
+    }
+}
+
 /// Operations of a list such as `3 add (33) 7 add`: how often, which, and their bits; 32 where none are told.
 pub(crate) fn operations(list: &str) -> Vec<(f64, &str, u32)> {
     let words: Vec<&str> = list.split(' ').collect();

@@ -38,7 +38,6 @@ fn an_eye_inside_too() {
 
 /// Synthesis takes all machines, and lanes: no latch, no loop, no signal with two drivers.
 #[test]
-#[ignore = "takes minutes"]
 fn yosys_takes_the_machines() {
     if !is_there("yosys") {
         return;

@@ -25,6 +25,14 @@ static LANES_C: [Machine; 7] = [
     Machine::lanes_of_stage_c(lanes(2, 4, 2), true),
 ];
 
+/// What only a larger view finds, with four contexts: who is next, and more of what each keeps.
+const FAULTS_OF_MANY_TURNS: [Fault; 4] = [
+    ("arbiter", "waiting[i] | ~waiting[j]", "1'b1"),
+    ("stage", "r_quad_x, r_quad_y, ", ""),
+    ("stage", "r_min, r_max, ", "r_min, "),
+    ("stage", "middle, leaves, ", "middle, "),
+];
+
 static SMALL: Machine = Machine::lanes_of_stage_c(lanes(2, 2, 2), true);
 
 /// Faults in what the lanes share, and in what a lane has of a tile.
@@ -103,6 +111,14 @@ fn contexts_take_turns() {
 #[ignore = "takes half a minute"]
 fn a_fault_in_the_turns_of_contexts_is_found() {
     faults_are_found(&SMALL, &WITHIN, &FAULTS_OF_CONTEXTS);
+    let view = [
+        "gen:random,depth=4,seed=5",
+        "--size",
+        "24x20",
+        "--view",
+        "iso",
+    ];
+    faults_are_found(&LANES_C[2], &view, &FAULTS_OF_MANY_TURNS);
 }
 
 #[test]
@@ -172,7 +188,7 @@ fn with_tiles(make: fn(Dice<'_>) -> Vec<String>, next: Dice<'_>) -> Vec<String> 
 
 #[test]
 #[ignore = "takes minutes"]
-fn lanes_draw_two_hundred_random_views() {
+fn lanes_draw_many_random_views() {
     for machine in LANES_B.iter().chain(&LANES_C) {
         random_views(machine, 25, &mut |next| with_tiles(any_view, next));
         random_views(machine, 25, &mut |next| with_tiles(view_from_within, next));

@@ -60,12 +60,13 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
             if !sharing.waits || sharing.wanted_by.is_empty() {
                 continue;
             }
-            let (_, next) = sharing.wanted_by.remove(0);
+            let (since, next) = sharing.wanted_by.remove(0);
             let before = std::mem::replace(&mut sharing.holder, next);
             sharing.waits = false;
             self.contexts[before as usize].step.away_from = now + 1;
             let step = &mut self.contexts[next as usize].step;
             step.away += now + 1 - step.away_from;
+            step.wanted += now + 1 - since;
             // It looks at what it read, or begins its tile.
             let looks = u64::from(step.tile.is_none());
             self.wheel.set(now + 1 + looks, next);

@@ -79,7 +79,7 @@
 //!     cycle, and its block is free when it ends. This is what a simple state machine does: `rtl/` is one.
 //!     What several lanes ask for is served in the order in which they ask, each access in its
 //!     own cycle (not, as in rule 4, all of a visit when that begins); of one cycle, nodes before attributes, and the
-//!     lowest lane first. An access takes the port of its cache for two cycles: it is looked up, and what is found is
+//!     lowest lane and context first. An access takes the port of its cache for two cycles: it is looked up, and what is found is
 //!     looked at, which a miss that waits for the port to outer memory makes longer. A line that comes in takes it, too,
 //!     for the cycles that it moves, the last before it is there.
 //! 13. **Tiles on sequential hardware** ([`Organisation::tile_levels`]) are not records on a stack. A context without
@@ -87,11 +87,11 @@
 //!     and begins it in the cycle after. It draws it to its end: nothing is stolen, and stack and fill vectors are a
 //!     context's own.
 //! 14. **Contexts of a sequential lane**, which need tiles, work in turns: one has the lane. From the cycle in which
-//!     that one asks a cache, or for a tile, until the one before what it asked for is there, another may have the
-//!     lane. In each such cycle the one that wanted it first is given it, of one cycle the lowest number, and goes on
-//!     in the cycle after: it looks at what it read, or begins its tile. A context wants the lane from the cycle on in
-//!     which what it asked for is there; if it has the lane still, it looks at it in that cycle. What it waits for the
-//!     lane is *block busy*.
+//!     it asks a cache, or for a tile, until the cycle before the answer, another may have the lane. In each such
+//!     cycle the context that has wanted it longest is given it, of one cycle the lowest number, and goes on in the
+//!     cycle after: it looks at what it read, or begins its tile. A context that does not have the lane wants it from
+//!     the cycle of the answer on; one that has it still looks at what it read in that cycle. Cycles in which a
+//!     context wants the lane are *block busy*.
 //!
 //! # Work and span
 //!

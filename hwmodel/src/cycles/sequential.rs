@@ -1,4 +1,4 @@
-//! Sequential hardware (rules 12 and 13): an access at a time, each in its own cycle, and tiles that are handed out.
+//! Sequential hardware (rules 12 to 14): an access at a time, each in its own cycle, and tiles that are handed out.
 //! `contexts.rs` has who works on a lane.
 //!
 //! What several records ask for in the same cycle is served when everything else of that cycle has happened: whoever
@@ -57,9 +57,11 @@ pub(super) struct Step {
     pub(super) tile: Option<u32>,
     /// Whether its event is the cycle in which what it waits for is there.
     waits: bool,
-    /// From when on another has the lane; and for how many cycles of its visit others had it.
+    /// From when on another has the lane; for how many cycles of its visit others had it; in how many of those it
+    /// wanted the lane.
     pub(super) away_from: u64,
     pub(super) away: u64,
+    pub(super) wanted: u64,
     /// Whether its visit is under way; the next of the turn's accesses.
     is_begun: bool,
     access: usize,
@@ -216,7 +218,7 @@ impl<W: Workload, O: Observer> Simulation<'_, W, O> {
         of.step.begun = now;
         of.step.access = of.plan.visits[of.visit].accesses.start;
         of.step.cause = None;
-        of.step.away = 0;
+        (of.step.away, of.step.wanted) = (0, 0);
         self.next_access(now, context);
     }
 

@@ -331,12 +331,11 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         let of = &mut self.contexts[context as usize];
         let visit = &of.plan.visits[of.visit];
         let report = &mut self.totals.stages[visit.stage as usize];
-        let away = of.step.away;
+        let Step { away, wanted, .. } = of.step;
         report.held += frees - (begun + visit.occupied) - away;
-        report
-            .stalls
-            .add(Cause::BlockBusy, begun - of.arrived + away);
-        report.stalls.add(cause, stalled - away);
+        let busy = begun - of.arrived + wanted;
+        report.stalls.add(Cause::BlockBusy, busy);
+        report.stalls.add(cause, stalled - wanted);
         if visit.stage == Stage::Pop {
             report.stalls.add(Cause::Steal, of.steal);
             report.stalls.add(Cause::StackSpill, of.spill);
