@@ -21,8 +21,8 @@
 //
 // SHARED: one of several side by side (lanes.v), each of which draws a tile of the picture at a time. A tile is a node
 // of the picture TILE_LEVELS below the whole of it; caches and ports are outside, and what asks for them waits.
-// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns. Stage C needs at least two
-// levels of the picture below TILE_LEVELS.
+// CONTEXTS (contexts.vh, stage C): a power of two of such walks that use the blocks in turns. Stage C needs at least
+// two levels of the picture below TILE_LEVELS.
 // BRICKS: of stage C; it can have frames whose nodes are laid out with bricks (bricks.vh).
 module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 10, STACK_LOG2 = `STACK_LOG2,
                  NODE_SETS_LOG2 = 6, ATTRIBUTE_SETS_LOG2 = 5, LEVEL_BOUND = W - 2, DEPTH = LEVEL_BOUND,
