@@ -141,7 +141,7 @@ fn small_pictures_have_room() {
             .map(|(name, value)| parameter(top, name, value))
             .collect();
         icarus(machine.folders, top, &parameters, text(&into));
-        let view = ["gen:menger,depth=1", "--size", size];
+        let view = ["gen:menger,depth=1", "--size", size, "--view", "iso"];
         let simulator = ["vvp", "-n", text(&into), "+most=200000"];
         let agreement = Expected::new(machine, &view).compare(&simulator).unwrap();
         assert_eq!(agreement.cycles[0], agreement.cycles[1], "{size}");
