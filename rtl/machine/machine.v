@@ -74,7 +74,7 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
   localparam IDLE = 0, CLEAR = 1, OBJECT = 2, OBJECT_BOX = 3, FIT = 4, CHOOSE = 5, PUSH = 6, POP = 7,
     POPPED = 8, FILLED = 9, OPEN = 10, NODE = 11, VERDICT = 12, WALK = 13, WALKED = 14, BACK = 15, CENTRE = 16,
     ORDER = 17, POOL = 18, CHILD = 19, DRAWN = 20, ATTRIBUTE = 21, SHOW = 22, PIXEL = 23, MARK = 24, ABOVE = 25,
-    SET = 26, DONE = 27;
+    SET = 26, DONE = 27, ROOT = 28;
   // Those of the stage are numbers from 32 on.
   reg [5:0] state;
   assign done = state == DONE;
@@ -468,8 +468,12 @@ module machine #(parameter W = `WORD_BITS, F = `FRACTION_BITS, PICTURE_LEVELS = 
             c_quad_x <= c_quad_x >> 1;
             c_quad_y <= c_quad_y >> 1;
             state <= ABOVE;
-          end else
+          end else if (levels == 0)
+            state <= ROOT;
+          else
             draw_on;
+        // Of a picture of one sample: is it full? Elsewhere the vector above is read meanwhile.
+        ROOT: draw_on;
         ABOVE: state <= SET;
         SET: begin
           marked <= after;

@@ -120,7 +120,8 @@ fn a_machine_of_just_a_frames_widths_draws_it() {
     }
 }
 
-/// Pictures and tiles of one level, where nothing is joined, on machines of the fewest levels that there are.
+/// Pictures of one sample; pictures and tiles of one level, where nothing is joined, on machines of the fewest levels
+/// that there are.
 #[test]
 fn small_pictures_have_room() {
     if !is_there("iverilog") {
@@ -130,6 +131,9 @@ fn small_pictures_have_room() {
     let into = shelter.path().join("frame.vvp");
     let side_by_side = Machine::lanes_of_stage_c(lanes(1, 2, 2), false);
     for (machine, size, levels) in [
+        (&STAGE_A, "1x1", 2),
+        (&STAGE_B, "1x1", 2),
+        (&STAGE_C, "1x1", 2),
         (&STAGE_C, "2x2", 2),
         (&side_by_side, "7x8", 4),
         (&side_by_side, "4x4", 4),
