@@ -14,7 +14,7 @@ mod scenes;
 
 use std::hint::black_box;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use criterion::{
     BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main,
@@ -24,7 +24,6 @@ use hwmodel::count::Counter;
 use hwmodel::{NoProbe, Probe};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use shiftvox::lab::bench::Clock;
 use shiftvox::machine::Machine;
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
 
@@ -96,12 +95,11 @@ fn paper() -> SetupOptions {
 
 /// How long `frames` frames take.
 fn time(frames: u64, mut draw: impl FnMut()) -> Duration {
-    let clock = Clock::start();
+    let started = Instant::now();
     for _ in 0..frames {
         draw();
     }
-    let elapsed = clock.elapsed();
-    Duration::from_secs_f64(elapsed.thread_ms.unwrap_or(elapsed.wall_ms) / 1e3)
+    started.elapsed()
 }
 
 /// One frame: clear and traverse.

@@ -51,15 +51,9 @@
 //!
 //! Without them (`default-features = false`) the renderer and its voxel formats are left.
 
-// Without `lab` some functions of lower modules have no caller.
-#![cfg_attr(
-    not(feature = "lab"),
-    allow(dead_code, unreachable_pub, unused_imports)
-)]
-
 mod api;
 
-pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, SceneOptions, Up};
+pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};
 
 pub use fast::{Declined, Fast, FastOptions, Instructions, Switches};
 pub use frame::Frame;
@@ -82,6 +76,8 @@ pub mod bounded;
 #[doc(hidden)]
 pub mod budget;
 #[doc(hidden)]
+pub mod drawing;
+#[doc(hidden)]
 pub mod fast;
 #[doc(hidden)]
 pub mod frame;
@@ -99,36 +95,10 @@ pub mod rays;
 pub mod scene;
 #[doc(hidden)]
 pub mod split_mix;
-mod srgb;
+#[doc(hidden)]
+pub mod srgb;
 #[doc(hidden)]
 pub mod whole;
-
-#[cfg(feature = "mesh")]
-#[doc(hidden)]
-pub mod drawing;
-#[cfg(feature = "mesh")]
-#[doc(hidden)]
-pub mod far;
-#[cfg(feature = "mesh")]
-#[doc(hidden)]
-pub mod mesh;
-#[cfg(feature = "mesh")]
-#[doc(hidden)]
-pub mod textured;
-
-#[cfg(feature = "lab")]
-#[doc(hidden)]
-pub mod lab;
-#[cfg(feature = "lab")]
-#[doc(hidden)]
-pub mod measure;
-#[cfg(feature = "lab")]
-#[doc(hidden)]
-pub mod report;
-
-#[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
 
 /// Runs the programs of a tutorial as tests.
 #[cfg(all(doctest, feature = "png"))]

@@ -5,11 +5,9 @@ mod error;
 mod picture;
 mod renderer;
 mod scene;
-mod scene_options;
 
 pub use camera::Camera;
 pub use error::Error;
 pub use picture::Picture;
 pub use renderer::{EngineKind, Renderer};
 pub use scene::{Scene, Up};
-pub use scene_options::SceneOptions;

@@ -5,11 +5,7 @@
 //! [shows](Drawable::shown) has the same form for all methods: colours, buffers, times and
 //! counters.
 
-mod far;
 mod graph;
-pub mod mesh_view;
-mod textured;
-mod triangles;
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -19,15 +15,11 @@ use serde_json::Value;
 
 use crate::budget::{self, Shortage};
 use crate::frame::{TooManySamples, count_samples};
-use crate::mesh::raster::{RasterError, SamplesError};
 use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use far::{FarDrawing, FarStyle, resident};
 pub use graph::{GraphDrawing, GraphStyle};
-pub use textured::{Erosion, TexturedDrawing, TexturedStyle};
-pub use triangles::{TrianglesDrawing, TrianglesStyle};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {
@@ -110,7 +102,6 @@ impl Rows for Buffers<'_> {
 
 /// Why a frame was not drawn.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum DrawError {
     /// The picture would take too much memory.
     #[error(transparent)]
@@ -130,31 +121,14 @@ pub enum DrawError {
     /// The colours cannot be made.
     #[error(transparent)]
     Resolve(#[from] ResolveError),
-    /// Far voxels cannot be drawn so.
+    /// A method of another crate cannot draw so.
     #[error(transparent)]
-    Far(#[from] crate::far::view::ViewError),
-    /// Textured voxels cannot be drawn so.
-    #[error(transparent)]
-    Textured(#[from] crate::textured::view::ViewError),
-    /// A file of textured voxels has no grid with so many cells.
-    #[error("the file has no grid of {cells} cells")]
-    NoGrid {
-        /// The requested number.
-        cells: u32,
-        /// The numbers that there are.
-        has: Vec<u32>,
-    },
-    /// Triangles cannot be drawn so.
-    #[error(transparent)]
-    Raster(#[from] RasterError),
-    /// A pixel cannot have so many samples.
-    #[error(transparent)]
-    Samples(#[from] SamplesError),
+    Method(Box<dyn std::error::Error + Send + Sync>),
 }
 
 /// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours
 /// for each pixel. `aa_log2`: samples per pixel and axis, as a power of two.
-fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
+pub fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let samples = count_samples(camera.width, camera.height, aa_log2)?;
     Ok(budget::check(
@@ -165,12 +139,9 @@ fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(),
 
 /// Least bytes of a pixel's colour.
 const PIXEL_BYTES: u64 = 3;
-/// Least bytes of a sample of the methods of meshes: colour, depth, and what is seen.
-const MESH_SAMPLE_BYTES: u64 = 8;
-
 /// Does something `runs` times, once at the least: the last result, and how long each run took,
 /// milliseconds.
-fn timed<T>(
+pub fn timed<T>(
     runs: u32,
     mut run: impl FnMut() -> Result<T, DrawError>,
 ) -> Result<(T, Vec<f64>), DrawError> {
@@ -189,32 +160,4 @@ fn timed<T>(
 #[must_use]
 pub fn milliseconds_since(started: Instant) -> f64 {
     started.elapsed().as_secs_f64() * 1e3
-}
-
-/// A picture that a method of meshes drew.
-#[derive(Debug)]
-struct KeptPicture {
-    picture: Picture,
-    coverage: Vec<f32>,
-    counters: Figures,
-    times_ms: Vec<f64>,
-}
-
-impl KeptPicture {
-    fn shown(&self, details: Figures) -> Shown<'_> {
-        let picture = &self.picture;
-        Shown {
-            pixels: Cow::Owned(Pixels::new(
-                picture.width,
-                picture.height,
-                picture.rgba.clone(),
-            )),
-            buffers: Buffers::Whole(picture),
-            pixels_drawn: picture.drawn(),
-            coverage: &self.coverage,
-            times_ms: &self.times_ms,
-            counters: self.counters.clone(),
-            details,
-        }
-    }
 }

@@ -56,7 +56,7 @@ use window::{TILE_LOG2, Window};
 
 /// Which instructions the engine uses. Never changes a bit of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Instructions {
     /// The best that the processor has.
     #[default]

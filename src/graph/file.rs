@@ -15,7 +15,7 @@ use super::map::map;
 use crate::bounded;
 
 /// Sections begin at multiples of this.
-pub(crate) const ALIGNMENT: u64 = 64;
+pub const ALIGNMENT: u64 = 64;
 
 /// Why a file of a mesh method was not read or written.
 #[derive(Debug, thiserror::Error)]
@@ -61,7 +61,7 @@ const NEWER: &str = "the file is of another version: convert it again with this 
 
 impl FileError {
     /// A file that is damaged somewhere.
-    pub(crate) fn damaged(
+    pub fn damaged(
         path: &Path,
         section: &'static str,
         offset: u64,
@@ -83,7 +83,7 @@ impl FileError {
     }
 
     /// The system's error for a file.
-    pub(crate) fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
+    pub fn refused(path: &Path, Refused { doing, source }: Refused) -> Self {
         Self::Io {
             file: path.to_owned(),
             doing,
@@ -93,23 +93,23 @@ impl FileError {
 }
 
 /// What the operating system refused to do with a file.
-pub(crate) struct Refused {
-    pub(crate) doing: &'static str,
-    pub(crate) source: io::Error,
+pub struct Refused {
+    pub doing: &'static str,
+    pub source: io::Error,
 }
 
 /// A file that is open, of which only the header was read.
-pub(crate) struct Opened {
-    pub(crate) file: File,
+pub struct Opened {
+    pub file: File,
     /// Its length in bytes.
-    pub(crate) bytes: u64,
+    pub bytes: u64,
     /// Its header; shorter where the file is.
-    pub(crate) beginning: Vec<u8>,
+    pub beginning: Vec<u8>,
 }
 
 /// Opens a regular file and reads its header: a file is not mapped before its
 /// length was found right.
-pub(crate) fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
+pub fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> {
     let refused = |doing: &'static str| move |source: io::Error| Refused { doing, source };
     let mut file = bounded::open(path).map_err(refused("open it"))?;
     let metadata = file.metadata().map_err(refused("ask for its length"))?;
@@ -127,7 +127,7 @@ pub(crate) fn open(path: &Path, header_bytes: usize) -> Result<Opened, Refused> 
 
 impl Opened {
     /// Maps all of it.
-    pub(crate) fn map(&self) -> Result<Arc<Mmap>, Refused> {
+    pub fn map(&self) -> Result<Arc<Mmap>, Refused> {
         let doing = "map it into memory";
         map(&self.file).map_err(|source| Refused { doing, source })
     }
@@ -135,7 +135,7 @@ impl Opened {
 
 /// The bytes of a file, mapped or held.
 #[derive(Debug)]
-pub(crate) enum Bytes {
+pub enum Bytes {
     Mapped(Arc<Mmap>),
     /// In words of 64 bits, so that records are aligned; and how many bytes count.
     Held(Vec<u64>, usize),
@@ -143,13 +143,13 @@ pub(crate) enum Bytes {
 
 impl Bytes {
     /// A copy of some bytes.
-    pub(crate) fn held(bytes: &[u8]) -> Self {
+    pub fn held(bytes: &[u8]) -> Self {
         let mut words = vec![0u64; bytes.len().div_ceil(8)];
         bytemuck::cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
         Self::Held(words, bytes.len())
     }
 
-    pub(crate) fn get(&self) -> &[u8] {
+    pub fn get(&self) -> &[u8] {
         match self {
             Self::Mapped(map) => map,
             Self::Held(words, length) => &bytemuck::cast_slice(words)[..*length],
@@ -158,12 +158,12 @@ impl Bytes {
 }
 
 /// A place in a mapped file: within the address space, as the file's length is.
-pub(crate) fn range([begin, end]: [u64; 2]) -> Range<usize> {
+pub fn range([begin, end]: [u64; 2]) -> Range<usize> {
     begin as usize..end as usize
 }
 
 /// The next section after a byte, so many items of so many bytes. Saturates.
-pub(crate) fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
+pub fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2] {
     let begin = end.div_ceil(ALIGNMENT).saturating_mul(ALIGNMENT);
     let bytes = count.saturating_mul(item_bytes as u64);
     [begin, begin.saturating_add(bytes)]
@@ -171,21 +171,21 @@ pub(crate) fn section_after(end: u64, count: u64, item_bytes: usize) -> [u64; 2]
 
 /// A format: how its header begins. Each has version, header length and file
 /// length at the same places.
-pub(crate) struct Format {
+pub struct Format {
     /// The ending of its files, with the dot.
-    pub(crate) ending: &'static str,
+    pub ending: &'static str,
     /// First eight bytes.
-    pub(crate) magic: [u8; 8],
+    pub magic: [u8; 8],
     /// Versions of the layout that are read; the last is written.
-    pub(crate) versions: RangeInclusive<u32>,
+    pub versions: RangeInclusive<u32>,
     /// What a header should begin with.
-    pub(crate) signature: &'static str,
+    pub signature: &'static str,
     /// Advice for a file that is something else.
-    pub(crate) not_ours: &'static str,
+    pub not_ours: &'static str,
 }
 
 /// Bytes of a header.
-pub(crate) const HEADER_BYTES: usize = 128;
+pub const HEADER_BYTES: usize = 128;
 
 /// Where things are in the header of every format.
 mod at {
@@ -197,7 +197,7 @@ mod at {
 
 impl Format {
     /// Refuses machines whose byte order does not allow to use a file in place.
-    pub(crate) fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
+    pub fn check_byte_order(&self, path: &Path) -> Result<(), FileError> {
         if cfg!(target_endian = "big") {
             return Err(FileError::ByteOrder {
                 file: path.to_owned(),
@@ -209,7 +209,7 @@ impl Format {
 
     /// A header that is filled in by `fields`, which is handed a function that
     /// puts bytes at an offset: with what every header has.
-    pub(crate) fn header(
+    pub fn header(
         &self,
         file_bytes: u64,
         fields: impl FnOnce(&mut dyn FnMut(usize, &[u8])),
@@ -229,7 +229,7 @@ impl Format {
     }
 
     /// Checks what every header has, of a file of `file_bytes` that begins so.
-    pub(crate) fn read<'f>(
+    pub fn read<'f>(
         &self,
         beginning: &'f [u8],
         file_bytes: u64,
@@ -276,44 +276,44 @@ impl Format {
 }
 
 /// The fields of a header that begins as it should.
-pub(crate) struct Fields<'f> {
+pub struct Fields<'f> {
     header: &'f [u8; HEADER_BYTES],
     path: &'f Path,
 }
 
 /// Offsets are those of a format: within the header.
 impl Fields<'_> {
-    pub(crate) fn version(&self) -> u32 {
+    pub fn version(&self) -> u32 {
         self.u32_at(at::VERSION)
     }
 
-    pub(crate) fn bytes_at<const N: usize>(&self, offset: usize) -> [u8; N] {
+    pub fn bytes_at<const N: usize>(&self, offset: usize) -> [u8; N] {
         std::array::from_fn(|i| self.header[offset + i])
     }
 
-    pub(crate) fn byte_at(&self, offset: usize) -> u8 {
+    pub fn byte_at(&self, offset: usize) -> u8 {
         self.header[offset]
     }
 
-    pub(crate) fn u32_at(&self, offset: usize) -> u32 {
+    pub fn u32_at(&self, offset: usize) -> u32 {
         u32::from_le_bytes(self.bytes_at(offset))
     }
 
-    pub(crate) fn u64_at(&self, offset: usize) -> u64 {
+    pub fn u64_at(&self, offset: usize) -> u64 {
         u64::from_le_bytes(self.bytes_at(offset))
     }
 
     /// As many numbers of double precision as are wanted, one after the other.
-    pub(crate) fn f64s_at<const N: usize>(&self, offset: usize) -> [f64; N] {
+    pub fn f64s_at<const N: usize>(&self, offset: usize) -> [f64; N] {
         std::array::from_fn(|k| f64::from_bits(self.u64_at(offset + 8 * k)))
     }
 
-    pub(crate) fn is_zero(&self, range: Range<usize>) -> bool {
+    pub fn is_zero(&self, range: Range<usize>) -> bool {
         self.header[range].iter().all(|&byte| byte == 0)
     }
 
     /// Says what was expected at an offset, where it does not hold.
-    pub(crate) fn ensure<E: Into<String>>(
+    pub fn ensure<E: Into<String>>(
         &self,
         holds: bool,
         offset: usize,
@@ -333,7 +333,7 @@ impl Fields<'_> {
 
 /// Checks that there is nothing between header and sections, which are in the
 /// order of the file and within it.
-pub(crate) fn check_padding(
+pub fn check_padding(
     all: &[u8],
     sections: impl Iterator<Item = [u64; 2]>,
     path: &Path,
@@ -352,7 +352,7 @@ pub(crate) fn check_padding(
 ///
 /// # Errors
 /// The writer's byte order; a machine that stores the highest byte first.
-pub(crate) fn write<'s>(
+pub fn write<'s>(
     format: &Format,
     header: &[u8; HEADER_BYTES],
     sections: impl Iterator<Item = ([u64; 2], &'s [u8])>,

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use memmap2::Mmap;
 
 /// Maps a whole file for reading.
-pub(crate) fn map(file: &File) -> io::Result<Arc<Mmap>> {
+pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
     // SAFETY: a map must not change while it is borrowed. The map is private
     // to this process and read-only, and files that this program writes are
     // never changed in place: a new file takes the name, and the map keeps the
@@ -48,7 +48,7 @@ pub(in crate::graph) fn advise(map: &Mmap, access: Access) {
 /// Lets go of the pages of a range of bytes: they are read from the file again
 /// when they are next read. False where the system has no such call, or
 /// refuses it.
-pub(crate) fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
+pub fn release(map: &Mmap, from: usize, bytes: usize) -> bool {
     #[cfg(unix)]
     {
         if from > map.len() || bytes > map.len() - from {

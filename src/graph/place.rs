@@ -10,11 +10,11 @@ const SHORTEST: f64 = 1e-90;
 const STEPS: f64 = (1u64 << 52) as f64;
 
 /// Parts along the longest side of what is drawn, or less.
-pub(crate) const MOST_PARTS: f64 = (1u64 << 21) as f64;
+pub const MOST_PARTS: f64 = (1u64 << 21) as f64;
 
 /// What single precision coordinates of a mesh are relative to: zero, unless it is so far from it that they would not
 /// hold its parts.
-pub(crate) fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
+pub fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
     let (mut extent, mut farthest) = (0.0f64, 0.0f64);
     for k in 0..3 {
         extent = extent.max(high[k] - low[k]);
@@ -27,7 +27,7 @@ pub(crate) fn centre(low: [f64; 3], high: [f64; 3]) -> [f64; 3] {
 }
 
 /// Whether a box of the world can be looked at, and its parts of length `finest` told apart.
-pub(crate) fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
+pub fn can_be_seen(low: [f64; 3], high: [f64; 3], finest: f64) -> bool {
     let most = FARTHEST.min(finest * STEPS);
     // NaN is not within.
     let is_near = |c: f64| (-most..=most).contains(&c);

@@ -60,9 +60,9 @@ pub use crate::project::OCCLUSION_ORDER;
 pub use blocks::{Block, Port};
 pub use constants::frame_registers;
 pub use engine::Machine;
-#[cfg(test)]
-pub(crate) use instruments::mutants;
-pub(crate) use instruments::{Cage, cages_along};
+#[cfg(feature = "mutants")]
+pub use instruments::mutants;
+pub use instruments::{Cage, cages_along};
 pub use instruments::{
     MOST_OPEN_TILES, NumberSpan, NumberSpans, Positions, ProvenWidths, RecordNumber, SimulateError,
     Simulated, Space, narrowed, proven_widths, visit_positions,

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 /// How a voxel's colour depends on where it looks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Shading {
     /// Colours as the file has them.
     Flat,

@@ -8,7 +8,7 @@ use crate::srgb::to_linear;
 const LIGHTS: usize = 1 << 16;
 
 /// Linear light of the sRGB bytes, 16 bits a channel, and back.
-pub(crate) struct Linear {
+pub struct Linear {
     /// Linear light of each byte, 0..=65535, rising.
     of: [u16; 256],
     /// For each linear light the byte whose light is nearest. 64 KB, of which
@@ -18,7 +18,7 @@ pub(crate) struct Linear {
 
 impl Linear {
     /// The tables, made when they are first wanted.
-    pub(crate) fn tables() -> &'static Self {
+    pub fn tables() -> &'static Self {
         static TABLES: LazyLock<Linear> = LazyLock::new(Linear::new);
         &TABLES
     }
@@ -41,7 +41,7 @@ impl Linear {
 
     /// Linear light of a colour, 0..=65535 a channel.
     #[inline]
-    pub(crate) fn decode(&self, color: [u8; 3]) -> [u32; 3] {
+    pub fn decode(&self, color: [u8; 3]) -> [u32; 3] {
         color.map(|byte| u32::from(self.of[usize::from(byte)]))
     }
 

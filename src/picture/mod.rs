@@ -24,7 +24,7 @@ pub use color::{AMBIENT, Background, KEY_LIGHT, Shading};
 pub use error::ResolveError;
 pub use hash::{hash, hash_rows};
 pub use lights::lights;
-pub(crate) use linear::Linear;
+pub use linear::Linear;
 pub use pixels::Pixels;
 pub use resolve::{Resolver, resolve};
 pub use rows::{Buffer, Rows};

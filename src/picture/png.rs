@@ -1,13 +1,13 @@
-//! PNG in and out: 8 bits a channel, sRGB.
+//! PNG in and out: 8 bits per channel, sRGB.
 
 use std::io::{BufRead, Cursor, Seek, Write};
 
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder, ImageError, ImageReader, Limits};
+use png::{BitDepth, ColorType, Compression, Decoder, Encoder, Filter, Limits, Transformations};
 
 pub use super::pixels::Pixels;
+pub use png::{DecodingError, EncodingError};
 
-/// Colours of a picture, without anything else.
+/// Colours of a picture.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Image {
     /// Pixels across.
@@ -18,39 +18,40 @@ pub struct Image {
     pub rgba: Vec<[u8; 4]>,
 }
 
-/// Most pixels a side that are read.
+/// Largest width and height that are read, pixels.
 const MAX_SIDE: u32 = crate::project::camera::MAX_SIDE;
 
 impl Pixels {
     /// Writes a PNG file's bytes.
     ///
     /// # Errors
-    /// When sizes and pixels do not fit together, and those of `to`.
-    pub fn write(&self, to: impl Write) -> Result<(), ImageError> {
-        let kind = match self.has_alpha {
-            true => ExtendedColorType::Rgba8,
-            false => ExtendedColorType::Rgb8,
-        };
-        PngEncoder::new_with_quality(to, CompressionType::Fast, FilterType::Adaptive).write_image(
-            &self.bytes,
-            self.width,
-            self.height,
-            kind,
-        )
+    /// If the picture is empty or its size does not fit its pixels, and those of `to`.
+    pub fn write(&self, to: impl Write) -> Result<(), EncodingError> {
+        let mut encoder = Encoder::new(to, self.width, self.height);
+        encoder.set_color(match self.has_alpha {
+            true => ColorType::Rgba,
+            false => ColorType::Rgb,
+        });
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::Fast);
+        encoder.set_filter(Filter::Adaptive);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.bytes)?;
+        writer.finish()
     }
 }
 
-/// The bytes of a PNG file; without an alpha channel where all pixels are opaque.
+/// The bytes of a PNG file; without an alpha channel if all pixels are opaque.
 ///
 /// # Errors
-/// When sizes and pixels do not fit together.
-pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, ImageError> {
+/// If the picture is empty or its size does not fit its pixels.
+pub fn encode(width: u32, height: u32, rgba: &[[u8; 4]]) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     Pixels::new(width, height, rgba.to_vec()).write(&mut bytes)?;
     Ok(bytes)
 }
 
-/// Pixels across and down, as a PNG file's header has them; `None` of what begins otherwise.
+/// Pixels across and down, from a PNG file's header; `None` if the bytes are no PNG.
 #[must_use]
 pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
     let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?;
@@ -62,24 +63,51 @@ pub fn size(bytes: &[u8]) -> Option<(u32, u32)> {
 /// Reads a PNG file's bytes.
 ///
 /// # Errors
-/// When they are no PNG, or one of more than 32768 pixels a side.
-pub fn decode(bytes: &[u8]) -> Result<Image, ImageError> {
+/// If they are no PNG, or one of more than 32768 pixels per side.
+pub fn decode(bytes: &[u8]) -> Result<Image, DecodingError> {
     decode_from(Cursor::new(bytes))
 }
 
-fn decode_from(input: impl BufRead + Seek) -> Result<Image, ImageError> {
-    let mut reader = ImageReader::with_format(input, image::ImageFormat::Png);
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    reader.limits(limits);
-    let image = reader.decode()?.into_rgba8();
-    let (width, height) = image.dimensions();
+fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
+    let mut decoder = Decoder::new_with_limits(input, Limits { bytes: 512 << 20 });
+    // Palettes and fewer than 8 bits become 8 bits per channel; 16 bits stay.
+    decoder.set_transformations(Transformations::EXPAND);
+    let mut reader = decoder.read_info()?;
+    let (width, height) = reader.info().size();
+    if width > MAX_SIDE || height > MAX_SIDE {
+        return Err(DecodingError::LimitsExceeded);
+    }
+    let size = reader.output_buffer_size();
+    let mut bytes = vec![0; size.ok_or(DecodingError::LimitsExceeded)?];
+    reader.next_frame(&mut bytes)?;
+    let (color, depth) = reader.output_color_type();
+    if depth == BitDepth::Sixteen {
+        let (channels, _) = bytes.as_chunks::<2>();
+        bytes = channels.iter().map(|&c| to_8_bits(u16::from_be_bytes(c))).collect();
+    }
+    let rgba = match color {
+        ColorType::Grayscale => bytes.iter().map(|&g| [g, g, g, 255]).collect(),
+        ColorType::GrayscaleAlpha => {
+            let (pixels, _) = bytes.as_chunks::<2>();
+            pixels.iter().map(|&[g, a]| [g, g, g, a]).collect()
+        }
+        ColorType::Rgba => bytes.as_chunks::<4>().0.to_vec(),
+        // A palette was expanded.
+        ColorType::Rgb | ColorType::Indexed => {
+            let (pixels, _) = bytes.as_chunks::<3>();
+            pixels.iter().map(|&[r, g, b]| [r, g, b, 255]).collect()
+        }
+    };
     Ok(Image {
         width,
         height,
-        rgba: image.pixels().map(|pixel| pixel.0).collect(),
+        rgba,
     })
+}
+
+/// Rounds to the nearest: 65535 / 255 = 257.
+fn to_8_bits(channel: u16) -> u8 {
+    ((u32::from(channel) + 128) / 257) as u8
 }
 
 #[cfg(test)]
@@ -98,5 +126,27 @@ mod tests {
         }
         assert!(decode(b"not a picture").is_err());
         assert_eq!(size(b"not a picture"), None);
+    }
+
+    #[test]
+    fn other_depths_and_color_types_are_converted() {
+        let read = |color, depth, data: &[u8]| {
+            let mut bytes = Vec::new();
+            let mut encoder = Encoder::new(&mut bytes, 2, 1);
+            encoder.set_color(color);
+            encoder.set_depth(depth);
+            encoder.set_palette(&[9, 8, 7, 6, 5, 4][..]);
+            let mut writer = encoder.write_header().unwrap();
+            writer.write_image_data(data).unwrap();
+            writer.finish().unwrap();
+            decode(&bytes).unwrap().rgba
+        };
+        let grey = [[0, 0, 0, 255], [255, 255, 255, 255]];
+        assert_eq!(read(ColorType::Grayscale, BitDepth::One, &[0b0100_0000]), grey);
+        let palette = [[6, 5, 4, 255], [9, 8, 7, 255]];
+        assert_eq!(read(ColorType::Indexed, BitDepth::One, &[0b1000_0000]), palette);
+        let sixteen = [0x01, 0x7f, 0xff, 0xff, 0x01, 0x82, 0x80, 0x00];
+        let rounded = [[1, 1, 1, 255], [2, 2, 2, 128]];
+        assert_eq!(read(ColorType::GrayscaleAlpha, BitDepth::Sixteen, &sixteen), rounded);
     }
 }

@@ -10,7 +10,7 @@ use super::npy::Values;
 
 /// A buffer of a picture: `height x width` entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Buffer {
     /// View-axis depth, world units; inf where nothing is seen.
     ///

@@ -14,7 +14,7 @@ const MAX_VISITS: u32 = 4_000_000;
 
 /// Which world axis is up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Up {
     /// +Y.
     ///
@@ -28,12 +28,12 @@ pub enum Up {
 
 impl Up {
     /// +Y or else +Z.
-    pub(crate) fn y_or_z(is_y: bool) -> Self {
+    pub fn y_or_z(is_y: bool) -> Self {
         if is_y { Self::Y } else { Self::Z }
     }
 
     /// The axis that is up in a graph: the mesh's that it was made of, else +Z.
-    pub(crate) fn of(graph: &Graph) -> Self {
+    pub fn of(graph: &Graph) -> Self {
         Self::y_or_z(graph.placement.mesh.is_some_and(|mesh| mesh.y_up))
     }
 

@@ -9,7 +9,7 @@ pub mod options;
 mod reach;
 mod real_view;
 pub mod setup;
-pub(crate) mod vector;
+pub mod vector;
 pub mod viewer;
 
 pub use camera::{Camera, CameraError};

@@ -14,7 +14,7 @@ pub const SCREEN_GUARD_SHIFT: u32 = 3;
 /// How a record holds its projected vertices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum CageKind {
     /// Eight corners (the image-order paper).
     ///
@@ -42,7 +42,7 @@ impl CageKind {
 /// Which samples a voxel covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Coverage {
     /// Every sample that its box overlaps (the image-order paper).
     ///
@@ -58,7 +58,7 @@ pub enum Coverage {
     Exact,
     /// As `Exact`, each voxel with its six opacities, blended front to back.
     #[cfg_attr(
-        feature = "cli",
+        feature = "clap",
         value(
             help = "As exact, each voxel with its six opacities (--opacities), blended front to \
              back"

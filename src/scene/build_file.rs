@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::generate::Spec;
-use super::mesh::{MeshSummary, Ready, SameFolder};
+use super::mesh::{MeshReader, MeshSummary};
 use super::open::OpenOptions;
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneInfo, Source};
@@ -36,6 +36,7 @@ pub struct BuiltFile {
 pub fn build_file(
     source: &str,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     external: ExternalOptions,
     output: &Path,
     overwrite: bool,
@@ -43,7 +44,7 @@ pub fn build_file(
 ) -> Result<BuiltFile, OpenError> {
     let found = Source::find(source)?;
     build_file_of(
-        found, source, options, external, output, overwrite, progress,
+        found, source, options, meshes, external, output, overwrite, progress,
     )
 }
 
@@ -55,6 +56,7 @@ pub fn build_file_of(
     source: Source,
     name: &str,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     external: ExternalOptions,
     output: &Path,
     overwrite: bool,
@@ -89,8 +91,8 @@ pub fn build_file_of(
             spec.voxels(&mut |voxel| builder.push(voxel), progress);
         }
         Source::File(file) if file.kind().is_some_and(FileKind::is_mesh) => {
-            let beside = SameFolder::of(file.path());
-            let ready = Ready::read(file, &beside, &options.mesh, progress)?;
+            let folder = file.path().parent().map(Path::to_owned);
+            let ready = meshes.read(file.mesh_file(folder)?, progress)?;
             // The mesh's share; nothing was pushed yet.
             if let Some(voxels) = ready.expected_voxels(progress) {
                 if voxels >= u64::from(u32::MAX) {

@@ -6,14 +6,6 @@ use std::fmt;
 use std::path::Path;
 
 use crate::graph::vxg;
-#[cfg(feature = "mesh")]
-use crate::mesh::is_binary_stl;
-
-/// Without the feature `mesh` the binary form of STL, which has no mark, is not known.
-#[cfg(not(feature = "mesh"))]
-fn is_binary_stl(_: &[u8], _: u64) -> bool {
-    false
-}
 
 /// How many bytes of a file [`detect`] should be given, where there are so many.
 pub(super) const DETECT_BYTES: usize = 4096;
@@ -111,6 +103,16 @@ pub fn detect(prefix: &[u8]) -> Option<FileKind> {
         return Some(FileKind::Gltf);
     }
     looks_like_obj(text).then_some(FileKind::Obj)
+}
+
+/// Whether a file with this beginning and length, bytes, is a binary STL mesh: 84 bytes of header, of which the last
+/// four count the triangles, and 50 bytes per triangle.
+#[must_use]
+pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
+    let count = beginning
+        .get(80..84)
+        .and_then(|count| count.try_into().ok());
+    count.is_some_and(|count| length == 84 + 50 * u64::from(u32::from_le_bytes(count)))
 }
 
 /// As [`detect`], with the length of the file: that is how a binary STL is known.

@@ -131,7 +131,7 @@ impl std::error::Error for Fault {}
 
 impl Fault {
     /// A finding in a file whose name is filled in by [`Fault::in_file`] once it is known.
-    pub(crate) fn new(
+    pub fn new(
         part: impl Into<String>,
         offset: u64,
         expected: impl Into<String>,
@@ -151,7 +151,7 @@ impl Fault {
 
 /// What went wrong below the level at which the file's name is known.
 #[derive(Debug)]
-pub(crate) enum Problem {
+pub enum Problem {
     /// See [`SceneError::Invalid`].
     Invalid(Box<Fault>),
     /// See [`SceneError::Limit`].
@@ -170,7 +170,7 @@ impl From<Box<Fault>> for Problem {
 
 impl Problem {
     /// Adds the file's name.
-    pub(crate) fn in_file(self, file: &str) -> SceneError {
+    pub fn in_file(self, file: &str) -> SceneError {
         match self {
             Self::Invalid(mut fault) => {
                 file.clone_into(&mut fault.file);
@@ -195,7 +195,7 @@ impl Problem {
 }
 
 /// At most 16 bytes as they can be shown on one line of a terminal.
-pub(crate) fn printable(bytes: &[u8]) -> String {
+pub fn printable(bytes: &[u8]) -> String {
     if bytes.is_empty() {
         return "nothing (no bytes)".to_owned();
     }

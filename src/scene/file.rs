@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::detect::{DETECT_BYTES, detect_named};
 use super::emit::Emitter;
 use super::error::{Problem, printable};
-use super::{FileKind, ReadOptions, SceneError, SceneInfo, generate, npy, ply, vox};
+use super::{FileKind, MeshFile, ReadOptions, SceneError, SceneInfo, generate, npy, ply, vox};
 use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
@@ -149,6 +149,24 @@ impl<R: Read + Seek> SceneFile<R> {
             Ok(_) => Ok(bytes),
             Err(source) => Err(Problem::Read(source).in_file(&self.name())),
         }
+    }
+
+    /// All of a mesh file; `folder` is where it finds other files.
+    ///
+    /// # Errors
+    /// If this is no mesh, or it cannot be read.
+    pub fn mesh_file(self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
+        let kind = match self.kind {
+            // The mesh reader says that a cloud has no faces, or what is wrong with its header.
+            Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
+            _ => return Err(self.refused(|file, kind| SceneError::NotMesh { file, kind })),
+        };
+        Ok(MeshFile {
+            name: self.name(),
+            kind,
+            bytes: self.bytes()?,
+            folder,
+        })
     }
 
     /// Why there is nothing of a kind in the file, where its format holds something else.

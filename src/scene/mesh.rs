@@ -1,60 +1,102 @@
-//! Meshes as scenes: read, voxelised, placed where the file has them.
+//! The interface to readers of triangle meshes, which are a crate of their own (`shiftvox-mesh`).
+//!
+//! This crate recognises mesh files and turns voxels into graphs. A [`MeshReader`] reads the triangles and turns them
+//! into voxels. [`NoMeshes`] stands in where the caller has no reader: it rejects every mesh.
 
-use std::io::{Read, Seek};
-use std::path::Path;
-use std::time::Instant;
+use std::error::Error;
+use std::path::PathBuf;
 
 use glam::DVec3;
 
-use super::open_error::OpenError;
-use super::{FileKind, SceneError, SceneFile, SceneInfo};
+use super::{FileKind, OpenError, SceneInfo};
 use crate::graph::{Graph, MeshBox, Progress, Voxel};
-use crate::mesh::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
-use crate::mesh::{self, LoadOptions, Mesh, MeshFormat, mesh_box};
-pub(super) use crate::mesh::{Beside, Nothing, SameFolder};
 
-/// Levels at which the voxels of many more levels are estimated.
-const COUNTED_DEPTH: u32 = 8;
-
-/// How a mesh becomes a scene.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct MeshOptions {
-    /// Levels below the root: at most `2^depth` voxels a side.
-    pub depth: u32,
-    /// How the file is read.
-    pub load: LoadOptions,
-    /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
-    /// scene that is built in memory has room for them.
-    pub opacities: bool,
-    /// Whether +Y is up, or else +Z, where the custom of the format is not meant: Y for all but STL.
-    pub y_up: Option<bool>,
+/// A mesh file, recognised and read whole.
+#[derive(Debug)]
+pub struct MeshFile {
+    /// The name that error messages use.
+    pub name: String,
+    /// Its format, one of those for which [`FileKind::is_mesh`] holds.
+    pub kind: FileKind,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+    /// The folder of the other files that the mesh names; `None` for a file that is held in memory.
+    pub folder: Option<PathBuf>,
 }
 
-impl Default for MeshOptions {
-    fn default() -> Self {
-        Self {
-            depth: DEFAULT_DEPTH,
-            load: LoadOptions::default(),
-            opacities: false,
-            y_up: None,
-        }
+/// Reads meshes for [`open`](super::open()) and [`build_file`](super::build_file()).
+pub trait MeshReader: Sync {
+    /// Reads a mesh and prepares its voxelisation.
+    ///
+    /// # Errors
+    /// [`OpenError::Mesh`] if the file is damaged or cannot be voxelised, [`OpenError::NoMeshes`] without a reader.
+    fn read(
+        &self,
+        file: MeshFile,
+        progress: &dyn Progress,
+    ) -> Result<Box<dyn MeshVoxels>, OpenError>;
+}
+
+/// A mesh that was read and can be voxelised.
+pub trait MeshVoxels {
+    /// Memory of the mesh, bytes.
+    fn bytes(&self) -> u64;
+
+    /// A low estimate of the number of voxels; `None` if finding them takes no longer than estimating.
+    fn expected_voxels(&self, progress: &dyn Progress) -> Option<u64>;
+
+    /// World position of voxel (0, 0, 0)'s lowest corner, and the side of a voxel, world units.
+    fn placement(&self) -> ([f64; 3], f64);
+
+    /// The points that a fitted camera must see.
+    fn mesh_box(&self) -> MeshBox;
+
+    /// Passes each voxel to `sink`, in any order, each once.
+    fn voxels(
+        &self,
+        sink: &mut dyn FnMut(Voxel),
+        progress: &dyn Progress,
+    ) -> (SceneInfo, MeshSummary);
+
+    /// Adds to a graph of the voxels what it takes from the mesh itself: opacities, if they were requested.
+    fn finish(&self, graph: &mut Graph, progress: &dyn Progress);
+}
+
+/// The reader of callers that have none: rejects every mesh.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoMeshes;
+
+impl MeshReader for NoMeshes {
+    fn read(&self, file: MeshFile, _: &dyn Progress) -> Result<Box<dyn MeshVoxels>, OpenError> {
+        Err(OpenError::NoMeshes(file.name))
     }
 }
 
-/// What a mesh was, and what voxelising it took.
+/// An error of a mesh reader, and whether its input is sound but exceeds a limit.
+#[derive(Debug)]
+pub struct MeshFailure {
+    /// Whether the input is sound and only too large.
+    pub is_limit: bool,
+    /// Whether the operating system refused to read the file.
+    pub is_io: bool,
+    /// The reader's error; its message names the file.
+    pub error: Box<dyn Error + Send + Sync>,
+}
+
+/// Properties of a mesh, and the cost of its voxelisation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSummary {
-    /// Triangles that can be drawn.
+    /// Triangles of an area above zero.
     pub triangles: u64,
     /// Vertex positions.
     pub positions: u64,
     /// Materials.
     pub materials: u64,
-    /// Lowest and highest corner of the box around it.
+    /// Lowest and highest corner of the box around it, world units.
     pub bounds: (DVec3, DVec3),
-    /// Bytes that the mesh takes in memory.
+    /// Memory of the mesh, bytes.
     pub bytes: u64,
-    /// Levels that it was voxelised at.
+    /// Octree levels below the root at which it was voxelised.
     pub depth: u32,
     /// Pairs of a voxel and a triangle that touches it.
     pub touches: u64,
@@ -62,173 +104,4 @@ pub struct MeshSummary {
     pub load_ms: f64,
     /// Time to find the voxels, without building the graph, milliseconds.
     pub voxelize_ms: f64,
-}
-
-/// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
-///
-/// # Errors
-/// Where it cannot be read, is no mesh, breaks its format's rules or holds
-/// nothing to draw.
-pub fn read_mesh(
-    path: &Path,
-    options: &LoadOptions,
-    progress: &dyn Progress,
-) -> Result<(Mesh, bool), OpenError> {
-    let file = SceneFile::open(path)?;
-    let (mesh, kind) = read(file, &SameFolder::of(path), options, progress)?;
-    Ok((mesh, is_y_up(kind)))
-}
-
-/// Whether +Y is up, by the custom of the format.
-fn is_y_up(kind: FileKind) -> bool {
-    kind != FileKind::Stl
-}
-
-/// Reads a mesh; `beside` finds the other files that it names.
-fn read<R: Read + Seek>(
-    file: SceneFile<R>,
-    beside: &dyn Beside,
-    options: &LoadOptions,
-    progress: &dyn Progress,
-) -> Result<(Mesh, FileKind), OpenError> {
-    let (format, kind) = match file.kind() {
-        Some(kind @ FileKind::PlyMesh) => (MeshFormat::Ply, kind),
-        Some(kind @ FileKind::Stl) => (MeshFormat::Stl, kind),
-        Some(kind @ FileKind::Gltf) => (MeshFormat::Gltf, kind),
-        Some(kind @ FileKind::Glb) => (MeshFormat::Glb, kind),
-        Some(kind @ FileKind::Obj) => (MeshFormat::Obj, kind),
-        // Its reader says that there are no faces, or what is wrong with the header.
-        Some(kind @ FileKind::Ply) => (MeshFormat::Ply, kind),
-        _ => {
-            return Err(file
-                .refused(|file, kind| SceneError::NotMesh { file, kind })
-                .into());
-        }
-    };
-    let name = file.name();
-    let bytes = file.bytes()?;
-    let mesh = mesh::read(&bytes, format, &name, beside, options, progress)?;
-    Ok((mesh, kind))
-}
-
-/// A mesh that is ready to be voxelised.
-pub(super) struct Ready {
-    kind: FileKind,
-    mesh: Mesh,
-    y_up: bool,
-    grid: Grid,
-    load_ms: f64,
-}
-
-impl Ready {
-    /// Reads a mesh and lays the grid around it.
-    pub(super) fn read<R: Read + Seek>(
-        file: SceneFile<R>,
-        beside: &dyn Beside,
-        options: &MeshOptions,
-        progress: &dyn Progress,
-    ) -> Result<Self, OpenError> {
-        let started = Instant::now();
-        let source_name = file.name();
-        let (mesh, kind) = read(file, beside, &options.load, progress)?;
-        let load_ms = started.elapsed().as_secs_f64() * 1e3;
-        let refused = |error| OpenError::Grid { source_name, error };
-        let grid = match Grid::around(&mesh, options.depth) {
-            Ok(grid) => grid,
-            Err(error) => return Err(refused(error)),
-        };
-        let (depth, least) = (options.depth, voxelize::least_looked_at(&mesh, &grid));
-        if least > voxelize::MOST_LOOKED_AT {
-            return Err(refused(GridError::TooMuch { depth, least }));
-        }
-        Ok(Self {
-            y_up: options.y_up.unwrap_or(is_y_up(kind)),
-            kind,
-            mesh,
-            grid,
-            load_ms,
-        })
-    }
-
-    /// Bytes that the mesh takes while it is voxelised.
-    pub(super) fn bytes(&self) -> u64 {
-        self.mesh.bytes()
-    }
-
-    /// About how many voxels there are going to be, rather fewer than more; none of so few levels that it is as
-    /// quick to find them. A surface has four times as many at each further level, what is thin fewer at first.
-    pub(super) fn expected_voxels(&self, progress: &dyn Progress) -> Option<u64> {
-        let further = self
-            .grid
-            .depth()
-            .checked_sub(COUNTED_DEPTH)
-            .filter(|&levels| levels > 3)?;
-        let count = |depth| {
-            let grid = Grid::around(&self.mesh, depth).ok()?;
-            Some(voxelize::voxelize(&self.mesh, &grid, &mut |_| (), progress).voxels)
-        };
-        let (coarse, fine) = (count(COUNTED_DEPTH - 1)?, count(COUNTED_DEPTH)?);
-        let growth = (fine as f64 / coarse as f64).min(4.0);
-        Some((fine as f64 * libm::pow(growth, f64::from(further))) as u64)
-    }
-
-    /// World position and size of voxels, as the builders take them.
-    pub(super) fn placement(&self) -> ([f64; 3], f64) {
-        self.grid.placement()
-    }
-
-    /// What fitted cameras look at.
-    pub(super) fn mesh_box(&self) -> MeshBox {
-        mesh_box(&self.mesh, self.y_up)
-    }
-
-    /// Gives the nodes of the graph that was built of the voxels opacities.
-    pub(super) fn add_opacities(&self, graph: &mut Graph, progress: &dyn Progress) {
-        let opacities = voxelize::opacities(&self.mesh, &self.grid, graph, progress);
-        graph.opacity = opacities.into();
-    }
-
-    /// Hands on the voxels and returns a summary.
-    pub(super) fn voxels(
-        &self,
-        sink: &mut dyn FnMut(Voxel),
-        progress: &dyn Progress,
-    ) -> (SceneInfo, MeshSummary) {
-        let started = Instant::now();
-        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
-        let report = voxelize::voxelize(
-            &self.mesh,
-            &self.grid,
-            &mut |voxel| {
-                for k in 0..3 {
-                    low[k] = low[k].min(voxel.index[k]);
-                    high[k] = high[k].max(voxel.index[k]);
-                }
-                sink(voxel);
-            },
-            progress,
-        );
-        let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
-        let mut info = SceneInfo::new(self.kind);
-        info.voxels = report.voxels;
-        info.stored_voxels = 0;
-        info.bounds = (report.voxels > 0).then_some((low, high));
-        info.models = 1;
-        info.instances = 1;
-        info.has_colors = true;
-        info.has_normals = true;
-        info.warnings = self.mesh.warnings().to_vec();
-        let summary = MeshSummary {
-            triangles: self.mesh.triangles().len() as u64,
-            positions: self.mesh.positions().len() as u64,
-            materials: self.mesh.materials().len() as u64,
-            bounds: self.mesh.bounds(),
-            bytes: self.mesh.bytes(),
-            depth: self.grid.depth(),
-            touches: report.touches,
-            load_ms: self.load_ms,
-            voxelize_ms,
-        };
-        (info, summary)
-    }
 }

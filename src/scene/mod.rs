@@ -16,10 +16,6 @@ mod error;
 mod file;
 pub mod generate;
 mod memory;
-#[cfg(feature = "mesh")]
-mod mesh;
-#[cfg(not(feature = "mesh"))]
-#[path = "no_mesh.rs"]
 mod mesh;
 mod npy;
 mod open;
@@ -30,18 +26,19 @@ mod ply_write;
 mod vox;
 
 pub use build_file::{BuiltFile, build_file, build_file_of};
-pub use detect::{FileKind, detect};
+pub use detect::{FileKind, detect, is_binary_stl};
 pub use emit::MAX_EXTENT;
 pub use error::{Fault, SceneError};
 pub use file::{SceneFile, Source};
-#[cfg(feature = "mesh")]
-pub use mesh::read_mesh;
-pub use mesh::{MeshOptions, MeshSummary};
+pub use mesh::{MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
 pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
 pub use open_error::OpenError;
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
 pub use ply_write::write_ply;
 pub use vox::{VoxWriter, VoxWritten};
+
+/// A tree of 30,000 voxels as a `.vox` file: the scene of the demo (`assets/ATTRIBUTION.md`).
+pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
 
 /// Reads a voxel file and hands each voxel to `sink`.
 ///

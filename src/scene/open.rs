@@ -2,10 +2,11 @@
 //! a file of any known format.
 
 use std::io::{Read, Seek};
+use std::path::{Path, PathBuf};
 
 use super::generate::Spec;
 use super::memory;
-use super::mesh::{Beside, MeshOptions, MeshSummary, Nothing, Ready, SameFolder};
+use super::mesh::{MeshReader, MeshSummary, MeshVoxels};
 use super::open_error::OpenError;
 use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::budget;
@@ -19,8 +20,6 @@ const VERIFY_BYTES: u64 = 256 << 20;
 pub struct OpenOptions {
     /// How voxel files are read.
     pub read: ReadOptions,
-    /// How meshes are read and voxelised.
-    pub mesh: MeshOptions,
     /// Graph files of so many bytes are checked in full; of larger ones, which are mapped, the header only. What
     /// is going to read all of a file has it checked at any size.
     pub verify_up_to: u64,
@@ -30,7 +29,6 @@ impl Default for OpenOptions {
     fn default() -> Self {
         Self {
             read: ReadOptions::default(),
-            mesh: MeshOptions::default(),
             verify_up_to: VERIFY_BYTES,
         }
     }
@@ -62,9 +60,10 @@ pub struct Opened {
 pub fn open(
     source: &str,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
-    open_source(Source::find(source)?, options, progress)
+    open_source(Source::find(source)?, options, meshes, progress)
 }
 
 /// [`open`], of what was found already.
@@ -74,6 +73,7 @@ pub fn open(
 pub fn open_source(
     source: Source,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let file = match source {
@@ -91,8 +91,8 @@ pub fn open_source(
             ..of_graph(graph)
         });
     }
-    let beside = SameFolder::of(file.path());
-    open_file(file, &beside, options, progress)
+    let folder = file.path().parent().map(Path::to_owned);
+    open_file(file, folder, options, meshes, progress)
 }
 
 /// A scene of a `.vxg` file's graph.
@@ -109,14 +109,15 @@ fn of_graph(graph: Graph) -> Opened {
 /// Opens voxels or a mesh.
 fn open_file<R: Read + Seek>(
     file: SceneFile<R>,
-    beside: &dyn Beside,
+    folder: Option<PathBuf>,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let name = file.name();
     if file.kind().is_some_and(FileKind::is_mesh) {
-        let ready = Ready::read(file, beside, &options.mesh, progress)?;
-        return open_mesh(&ready, options.mesh.opacities, &name, progress);
+        let mesh = meshes.read(file.mesh_file(folder)?, progress)?;
+        return open_mesh(&*mesh, &name, progress);
     }
     let mut gathered = Gathered::default();
     let read = ReadOptions {
@@ -150,22 +151,19 @@ const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
 
 /// Voxelises a mesh that was read.
 fn open_mesh(
-    ready: &Ready,
-    opacities: bool,
+    mesh: &dyn MeshVoxels,
     source: &str,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let mut gathered = Gathered::default();
-    let placement = ready.placement();
-    if let Some(voxels) = ready.expected_voxels(progress) {
+    let placement = mesh.placement();
+    if let Some(voxels) = mesh.expected_voxels(progress) {
         gathered.expect(voxels, source)?;
     }
-    let (info, summary) = ready.voxels(&mut |v| gathered.push(v), progress);
+    let (info, summary) = mesh.voxels(&mut |v| gathered.push(v), progress);
     let mut graph = gathered.finish(source, placement, progress)?;
-    graph.placement.mesh = Some(ready.mesh_box());
-    if opacities {
-        ready.add_opacities(&mut graph, progress);
-    }
+    graph.placement.mesh = Some(mesh.mesh_box());
+    mesh.finish(&mut graph, progress);
     Ok(Opened {
         graph,
         format: format!("{} mesh", info.kind),
@@ -183,13 +181,14 @@ pub fn open_bytes(
     bytes: &[u8],
     name: &str,
     options: &OpenOptions,
+    meshes: &dyn MeshReader,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let file = SceneFile::in_memory(bytes, name)?;
     if file.kind() == Some(FileKind::Vxg) {
         return Ok(of_graph(vxg::from_bytes(bytes)?));
     }
-    open_file(file, &Nothing, options, progress)
+    open_file(file, None, options, meshes, progress)
 }
 
 fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenError> {

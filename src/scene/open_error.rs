@@ -1,10 +1,8 @@
 //! Why a scene of any kind was not opened.
 
-use super::SceneError;
+use super::{MeshFailure, SceneError};
 use super::generate::SpecError;
 use crate::graph::{BuildError, ExternalError, vxg};
-#[cfg(feature = "mesh")]
-use crate::mesh::{MeshError, voxelize::GridError};
 
 /// Why a scene could not be opened.
 #[derive(Debug, thiserror::Error)]
@@ -18,23 +16,12 @@ pub enum OpenError {
     /// The file is a damaged graph.
     #[error(transparent)]
     Graph(#[from] vxg::VxgError),
-    /// The file is a mesh, and this build reads none.
-    #[cfg(not(feature = "mesh"))]
-    #[error("{0}: this is a mesh; build with the feature `mesh` to open it")]
+    /// The file is a mesh, and the caller gave no reader of meshes.
+    #[error("{0}: this is a mesh; open it with the crate shiftvox-mesh")]
     NoMeshes(String),
-    /// The file is a mesh that cannot be read.
-    #[cfg(feature = "mesh")]
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
-    /// The mesh cannot be voxelised.
-    #[cfg(feature = "mesh")]
-    #[error("{source_name}: {error}")]
-    Grid {
-        /// The scene, as the user named it.
-        source_name: String,
-        /// What is wrong with it, or with the number of levels.
-        error: GridError,
-    },
+    /// The file is a mesh that cannot be read or voxelised.
+    #[error("{}", .0.error)]
+    Mesh(MeshFailure),
     /// The voxels make no graph.
     #[error("{source_name}: {error}")]
     Build {
@@ -81,14 +68,8 @@ impl OpenError {
             } => !matches!(error, BuildError::Empty),
             Self::External { error, .. } => matches!(error, ExternalError::Disk(_)),
             Self::Scene(error) => error.is_limit(),
-            #[cfg(not(feature = "mesh"))]
             Self::NoMeshes(_) => false,
-            #[cfg(feature = "mesh")]
-            Self::Mesh(error) => error.is_limit(),
-            #[cfg(feature = "mesh")]
-            Self::Grid { error, .. } => {
-                matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. })
-            }
+            Self::Mesh(failure) => failure.is_limit,
             Self::Graph(vxg::VxgError::Io { source, .. }) => {
                 source.kind() == std::io::ErrorKind::OutOfMemory
             }

@@ -7,7 +7,7 @@ use super::FileKind;
 /// VoxelShop writes such files when asked to fit the model to its bounding box:
 /// coordinates left of the box, or far right of it, end up in one byte modulo 256.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum OutOfBounds {
     /// Take the coordinate modulo 256 that is nearest to the middle of SIZE.
     #[default]
@@ -88,7 +88,7 @@ pub struct SceneInfo {
 }
 
 impl SceneInfo {
-    pub(crate) fn new(kind: FileKind) -> Self {
+    pub fn new(kind: FileKind) -> Self {
         Self {
             kind,
             voxels: 0,

@@ -221,11 +221,11 @@ pub fn write(path: &Path, bytes: &[u8], overwrite: bool) -> Result<(), WholeErro
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
 
     /// Names of what is in a folder, in order.
-    pub(crate) fn names(folder: &Path) -> Vec<String> {
+    fn names(folder: &Path) -> Vec<String> {
         let mut names: Vec<String> = fs::read_dir(folder)
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -11,7 +11,7 @@ use shiftvox::graph::{
 };
 use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::generate::Spec;
-use shiftvox::scene::{self, OpenOptions};
+use shiftvox::scene::{self, NoMeshes, OpenOptions};
 
 const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
@@ -213,12 +213,12 @@ fn files_of_every_format_are_built_the_same() {
     sources.push("gen:sierpinski,depth=20".to_owned());
     for source in sources {
         let reading = OpenOptions::default();
-        let opened = scene::open(&source, &reading, &Silent).unwrap();
+        let opened = scene::open(&source, &reading, &NoMeshes, &Silent).unwrap();
         let mut expected = Vec::new();
         vxg::write_to(&opened.graph, &mut expected).unwrap();
         let path = folder.path().join("out.vxg");
         let external = options(10_000, Normals::FromSurface, folder.path());
-        let built = scene::build_file(&source, &reading, external, &path, true, &Silent).unwrap();
+        let built = scene::build_file(&source, &reading, &NoMeshes, external, &path, true, &Silent).unwrap();
         let file = fs::read(&path).unwrap();
         assert_eq!(difference(&file, &expected), None, "{source}");
         assert_eq!(
@@ -235,6 +235,7 @@ fn files_of_every_format_are_built_the_same() {
     let refused = scene::build_file(
         source.to_str().unwrap(),
         &reading,
+        &NoMeshes,
         external,
         &path,
         true,
@@ -253,6 +254,7 @@ fn scenes_beyond_all_numbers_are_refused_at_once() {
     let refused = scene::build_file(
         source,
         &OpenOptions::default(),
+        &NoMeshes,
         external,
         &path,
         true,
@@ -264,52 +266,4 @@ fn scenes_beyond_all_numbers_are_refused_at_once() {
         "{refused}"
     );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
-}
-
-fn shiftvox(folder: &Path, arguments: &[&str]) -> std::process::Output {
-    let mut command = assert_cmd::Command::cargo_bin("shiftvox").unwrap();
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
-}
-
-#[test]
-fn convert_builds_within_a_limit_of_memory() {
-    let folder = tempfile::tempdir().unwrap();
-    let scene = "gen:terrain,depth=7";
-    let plain = shiftvox(folder.path(), &["convert", scene, "plain.vxg"]);
-    assert!(plain.status.success());
-    let limited: &[&str] = &["convert", scene, "limited.vxg", "--memory", "64M", "--json"];
-    let found = shiftvox(folder.path(), limited);
-    assert!(found.status.success());
-    let document: serde_json::Value = serde_json::from_slice(&found.stdout).unwrap();
-    assert_eq!(document["schema"], "shiftvox.convert");
-    let read = |name: &str| fs::read(folder.path().join(name)).unwrap();
-    assert_eq!(difference(&read("limited.vxg"), &read("plain.vxg")), None);
-    let wrong: [(&[&str], i32); 5] = [
-        (limited, 1),
-        (&["convert", scene, "a.ply", "--memory", "1G"], 2),
-        (&["convert", scene, "a.vxg", "--memory", "1M"], 2),
-        (&["convert", scene, "a.vxg", "--temp", "."], 2),
-        (
-            &[
-                "convert",
-                scene,
-                "a.vxg",
-                "--memory",
-                "1G",
-                "--temp",
-                "no/folder",
-            ],
-            1,
-        ),
-    ];
-    for (arguments, code) in wrong {
-        let found = shiftvox(folder.path(), arguments);
-        assert_eq!(found.status.code(), Some(code), "{arguments:?}");
-        assert!(!found.stderr.is_empty(), "{arguments:?}");
-    }
-    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
 }

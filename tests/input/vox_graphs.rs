@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::input_support::{VoxFile, read};
 use shiftvox::graph::Silent;
-use shiftvox::scene::{OpenOptions, ReadOptions, open_bytes};
+use shiftvox::scene::{NoMeshes, OpenOptions, ReadOptions, open_bytes};
 use shiftvox::split_mix::SplitMix;
 
 /// Numbers that depend on the seed alone.
@@ -174,7 +174,7 @@ fn graphs_of_any_sharing_are_read_or_refused_in_time() {
     for seed in 0..60 {
         let file = Graph::random(1000 + seed, 30 + seed as u32 * 4).bytes();
         // Some hold no voxels, and how much memory is free decides of others.
-        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &Silent) {
+        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &NoMeshes, &Silent) {
             assert!(opened.graph.voxels < 1 << 24);
         }
     }

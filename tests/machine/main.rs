@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod alpha;
-mod bounds;
 mod certified;
 mod common;
 mod counts;
@@ -11,7 +10,6 @@ mod cycles_by_hand;
 mod engines;
 mod exact;
 mod fast;
-mod figures;
 mod golden;
 mod oracle;
 mod order;
@@ -20,9 +18,6 @@ mod rules;
 mod scene_table;
 mod scenes;
 mod setup_bits;
-mod stress;
-mod vectors;
-mod vertex_error;
 mod viewer;
 mod widths;
 mod words;

@@ -12,7 +12,7 @@ use crate::project::FrameSetup;
 /// The eight vertices of a voxel, in Morton order, as the machine holds them
 /// relative to the whole picture, in units of the last place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Cage {
+pub enum Cage {
     /// X, Y, W.
     Clip([[i64; 8]; 3]),
     /// x and y, in screen units.

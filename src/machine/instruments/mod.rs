@@ -6,8 +6,8 @@ mod descent;
 mod directed;
 mod directed_blending;
 mod inputs;
-#[cfg(test)]
-pub(crate) mod mutants;
+#[cfg(feature = "mutants")]
+pub mod mutants;
 mod positions;
 mod simulate;
 mod vertices;
@@ -15,5 +15,5 @@ mod widths;
 
 pub use positions::{Positions, Space, visit_positions};
 pub use simulate::{MOST_OPEN_TILES, SimulateError, Simulated};
-pub(crate) use vertices::{Cage, cages_along};
+pub use vertices::{Cage, cages_along};
 pub use widths::{NumberSpan, NumberSpans, ProvenWidths, RecordNumber, narrowed, proven_widths};

@@ -14,7 +14,7 @@ use crate::project::{CageKind, EngineError, FrameSetup, Stats};
 
 /// An error built into the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Mutation {
+pub enum Mutation {
     /// One unit of the last place too much in one child, cages of a corner and
     /// edges only.
     UlpInFrames,
@@ -167,7 +167,7 @@ macro_rules! with_cage {
 
 /// A machine with a mutation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Mutant(pub(crate) Mutation);
+pub struct Mutant(pub Mutation);
 
 impl Mutant {
     /// The frame as the mutant takes it.
@@ -189,7 +189,7 @@ impl Mutant {
 
     /// Draws a frame of at most `most_records` records, as
     /// [`Machine::render_within`].
-    pub(crate) fn draw(
+    pub fn draw(
         &self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
@@ -211,7 +211,7 @@ impl Mutant {
     }
 
     /// As [`cages_along`](super::cages_along).
-    pub(crate) fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+    pub fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
         let setup = &self.setup(setup);
         with_cage!(self.0, setup, L => cages_as::<L>(setup, path))
     }

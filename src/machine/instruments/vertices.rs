@@ -2,7 +2,7 @@
 
 use hwmodel::Trap;
 
-pub(crate) use super::descent::Cage;
+pub use super::descent::Cage;
 use super::descent::Descent;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::project::FrameSetup;
@@ -14,7 +14,7 @@ use crate::project::FrameSetup;
 /// # Errors
 /// If a word overflows. The machine has these vertices relative to a node of the
 /// quadtree, where they are never larger.
-pub(crate) fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+pub fn cages_along(setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
     with_cage!(setup, L => cages_as::<L>(setup, path))
 }
 

@@ -1,0 +1,303 @@
+//! `compare`: how far two pictures or two buffers are apart.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::{names, report};
+use shiftvox::bounded;
+use shiftvox::budget;
+use shiftvox_lab::measure::{ColorError, CoverageError, count_differing, difference};
+use shiftvox::picture::npy::{self, Array, Values};
+use shiftvox::picture::png::{self, Image};
+use shiftvox::whole;
+
+/// Arguments of `compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    /// File under test: .png or .npy
+    #[arg(value_name = "A")]
+    a: PathBuf,
+    /// Reference: of the same kind and size
+    #[arg(value_name = "B")]
+    b: PathBuf,
+    /// What may differ: fail with exit code 3 beyond this, instead of at the first pixel: the
+    /// number of differing pixels, or NAME=VALUE with a name of the report (psnr_* and ssim: at
+    /// least; all others: at most); repeatable
+    #[arg(long, value_name = "[NAME=]VALUE", value_delimiter = ',')]
+    threshold: Vec<Threshold>,
+    /// Picture of the differences, four times as bright
+    #[arg(long, value_name = "FILE")]
+    diff: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+/// A bound on one number of the report.
+#[derive(Debug, Clone, PartialEq)]
+struct Threshold {
+    name: String,
+    bound: f64,
+}
+
+impl FromStr for Threshold {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, bound) = text.split_once('=').unwrap_or(("differing", text));
+        let bound: f64 = bound.parse().map_err(|e| format!("{e}: `{bound}`"))?;
+        if bound.is_nan() {
+            return Err("a bound must be a number".to_owned());
+        }
+        Ok(Self {
+            name: name.to_owned(),
+            bound,
+        })
+    }
+}
+
+/// A file that can be compared.
+enum Content {
+    Picture(Image),
+    Buffer(Array),
+}
+
+/// Names and values of a comparison, and the picture of differences.
+struct Comparison {
+    kind: &'static str,
+    numbers: Vec<(String, f64)>,
+    diff: Option<(u32, u32, Vec<[u8; 4]>)>,
+}
+
+pub(super) fn run(args: &CompareArgs, console: &Console) -> Result<(), CliError> {
+    if let Some(path) = &args.diff {
+        super::outputs::check_picture_name(path)?;
+        whole::check_free(path, args.force)?;
+    }
+    let comparison = match (read(&args.a)?, read(&args.b)?) {
+        (Content::Picture(a), Content::Picture(b)) => pictures(&a, &b)?,
+        (Content::Buffer(a), Content::Buffer(b)) => buffers(&a, &b)?,
+        _ => return Err(CliError::input("a picture and a buffer cannot be compared")),
+    };
+    if let Some(path) = &args.diff {
+        let (width, height, rgba) = comparison.diff.as_ref().ok_or_else(|| {
+            CliError::usage("--diff draws pictures and buffers of the form H x W or H x W x N")
+        })?;
+        let bytes = png::encode(*width, *height, rgba)
+            .map_err(|e| CliError::new(Kind::Run, e).at(path.display()))?;
+        whole::write(path, &bytes, args.force)?;
+    }
+    print(args, &comparison, console)?;
+    if args.threshold.is_empty() {
+        return judge(
+            &["0".parse().map_err(CliError::usage)?],
+            &comparison.numbers,
+        );
+    }
+    judge(&args.threshold, &comparison.numbers)
+}
+
+/// Memory that comparing two pictures takes for each pixel, and more than reading one takes besides.
+const PICTURE_BYTES: u64 = 80;
+const READING_BYTES: u64 = 64 << 20;
+
+fn read(path: &Path) -> Result<Content, CliError> {
+    let place = path.display();
+    let bytes = bounded::read_whole(path).map_err(|e| CliError::of_reading(e).at(place))?;
+    if npy::is_npy(&bytes) {
+        // Its numbers beside its bytes.
+        budget::check("a buffer that is compared", bytes.len() as u64)
+            .map_err(|short| CliError::from(short).at(path.display()))?;
+        let array = npy::decode(&bytes).map_err(|e| CliError::input(e).at(path.display()))?;
+        return Ok(Content::Buffer(array));
+    }
+    if let Some((width, height)) = png::size(&bytes) {
+        let pixels = u64::from(width) * u64::from(height);
+        budget::check(
+            "pictures that are compared",
+            pixels * PICTURE_BYTES + READING_BYTES,
+        )
+        .map_err(|short| CliError::from(short).at(path.display()))?;
+    }
+    png::decode(&bytes).map(Content::Picture).map_err(|e| {
+        CliError::input(e)
+            .at(path.display())
+            .advise("compare takes .png pictures and .npy buffers, recognised by their content")
+    })
+}
+
+fn pictures(a: &Image, b: &Image) -> Result<Comparison, CliError> {
+    let (a, b) = (
+        (a.width, a.height, &a.rgba[..]),
+        (b.width, b.height, &b.rgba[..]),
+    );
+    let failed = |e| CliError::new(Kind::Failed, e);
+    let error = ColorError::between(a, b).map_err(failed)?;
+    let diff = difference(a, b).map_err(failed)?;
+    let numbers = [
+        ("pixels", error.pixels as f64),
+        ("differing", error.differing as f64),
+        ("max_abs", f64::from(error.max_abs)),
+        ("mean_abs", error.mean_abs),
+        ("mse_srgb", error.mse_srgb),
+        ("psnr_srgb", error.psnr_srgb),
+        ("mse_linear", error.mse_linear),
+        ("psnr_linear", error.psnr_linear),
+        ("ssim", error.ssim),
+    ];
+    Ok(Comparison {
+        kind: "picture",
+        numbers: numbers.map(|(name, value)| (name.to_owned(), value)).into(),
+        diff: Some((a.0, a.1, diff)),
+    })
+}
+
+fn buffers(a: &Array, b: &Array) -> Result<Comparison, CliError> {
+    if a.shape != b.shape {
+        return Err(CliError::new(
+            Kind::Failed,
+            format!(
+                "the buffers differ in shape: {:?} and {:?}",
+                a.shape, b.shape
+            ),
+        ));
+    }
+    let entries = a
+        .shape
+        .get(2..)
+        .unwrap_or(&[])
+        .iter()
+        .product::<usize>()
+        .max(1);
+    let (differing, max_abs, pixels) = match (&a.values, &b.values) {
+        (Values::U8(a), Values::U8(b)) => spread(a, b, entries, |v| f64::from(*v)),
+        (Values::I32(a), Values::I32(b)) => spread(a, b, entries, |v| f64::from(*v)),
+        (Values::F32(a), Values::F32(b)) => spread(a, b, entries, |v| f64::from(*v)),
+        _ => return Err(CliError::new(Kind::Failed, "the buffers differ in type")),
+    };
+    let mut numbers = vec![
+        ("pixels".to_owned(), pixels.len() as f64),
+        ("differing".to_owned(), differing as f64),
+        ("max_abs".to_owned(), max_abs),
+    ];
+    if let (Values::I32(a), Values::I32(b), 4) = (&a.values, &b.values, entries) {
+        let error = CoverageError::between(a.as_chunks::<4>().0, b.as_chunks::<4>().0);
+        numbers.extend([
+            ("covered".to_owned(), error.covered as f64),
+            ("extra".to_owned(), error.extra as f64),
+            ("missing".to_owned(), error.missing as f64),
+            ("wrong_voxel".to_owned(), error.wrong_voxel as f64),
+        ]);
+    }
+    let side = |at: usize| a.shape.get(at).and_then(|&n| u32::try_from(n).ok());
+    let diff = side(0).zip(side(1)).map(|(height, width)| {
+        let shade = |&apart: &bool| if apart { [255; 4] } else { [0, 0, 0, 255] };
+        (width, height, pixels.iter().map(shade).collect())
+    });
+    Ok(Comparison {
+        kind: "buffer",
+        numbers,
+        diff,
+    })
+}
+
+/// Pixels that differ, the largest difference (infinite where only one of two
+/// values is), and for each pixel whether it differs.
+fn spread<T: PartialEq>(
+    a: &[T],
+    b: &[T],
+    entries: usize,
+    number: impl Fn(&T) -> f64,
+) -> (u64, f64, Vec<bool>) {
+    let apart: Vec<bool> = a
+        .chunks(entries)
+        .zip(b.chunks(entries))
+        .map(|(p, q)| count_differing(p, q) > 0)
+        .collect();
+    let max_abs = a
+        .iter()
+        .zip(b)
+        .filter(|(x, y)| x != y)
+        .map(|(x, y)| (number(x) - number(y)).abs())
+        .fold(0.0, f64::max);
+    let differing = apart.iter().filter(|&&differs| differs).count();
+    (differing as u64, max_abs, apart)
+}
+
+fn print(args: &CompareArgs, comparison: &Comparison, console: &Console) -> Result<(), CliError> {
+    if console.json {
+        let mut fields = json!({ "a": names::of_path(&args.a), "b": names::of_path(&args.b), "kind": comparison.kind });
+        for (name, value) in &comparison.numbers {
+            // JSON has no infinity.
+            fields[name] = if value.is_finite() {
+                number(*value)
+            } else {
+                json!("inf")
+            };
+        }
+        return console.document(&report::document("compare", fields));
+    }
+    let rows = comparison
+        .numbers
+        .iter()
+        .map(|(name, value)| vec![name.clone(), value.to_string()])
+        .collect();
+    let head = vec![comparison.kind.to_owned(), "value".to_owned()];
+    console.data(report::table(head, rows))
+}
+
+/// A whole number as such.
+fn number(value: f64) -> Value {
+    if value.fract() == 0.0 && value.abs() < 9e15 {
+        json!(value as i64)
+    } else {
+        json!(value)
+    }
+}
+
+fn judge(thresholds: &[Threshold], numbers: &[(String, f64)]) -> Result<(), CliError> {
+    for Threshold { name, bound } in thresholds {
+        let Some((_, value)) = numbers.iter().find(|(found, _)| found == name) else {
+            let names: Vec<&str> = numbers.iter().map(|(name, _)| name.as_str()).collect();
+            return Err(
+                CliError::usage(format!("--threshold: there is no `{name}` here"))
+                    .advise(format!("there are: {}", names.join(", "))),
+            );
+        };
+        let at_least = name == "ssim" || name.starts_with("psnr");
+        let good = if at_least {
+            value >= bound
+        } else {
+            value <= bound
+        };
+        if !good {
+            let side = if at_least { "at least" } else { "at most" };
+            return Err(CliError::new(
+                Kind::Failed,
+                format!("{name} is {value}, expected {side} {bound}"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_have_sides() {
+        let numbers = vec![("differing".to_owned(), 3.0), ("ssim".to_owned(), 0.9)];
+        let judged = |text: &str| judge(&[text.parse().unwrap()], &numbers).map_err(|e| e.kind);
+        assert_eq!(judged("3"), Ok(()));
+        assert_eq!(judged("2"), Err(Kind::Failed));
+        assert_eq!(judged("ssim=0.8"), Ok(()));
+        assert_eq!(judged("ssim=0.95"), Err(Kind::Failed));
+        assert_eq!(judged("flip=1"), Err(Kind::Usage));
+    }
+}

@@ -1,0 +1,281 @@
+//! What is said, and where: data on stdout, notes and progress on stderr.
+//!
+//! A JSON document is held back until it is known how the run ends: where it fails, the document
+//! says so. Names of files may hold anything; what could move a terminal's cursor or change its
+//! colours is shown escaped.
+
+use std::borrow::Cow;
+use std::io::{self, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::Value;
+
+use super::error::{CliError, Kind};
+use super::{document, names};
+use shiftvox::graph::{Progress, Silent};
+
+/// The two streams, and how much is said on them.
+pub(super) struct Console {
+    quiet: bool,
+    verbose: u8,
+    /// Whether results are printed as JSON.
+    pub(super) json: bool,
+    progress: Box<dyn Progress>,
+    /// The document that waits for the end of the run.
+    held: Mutex<Option<Value>>,
+    /// Whether documents are printed a line each.
+    in_lines: AtomicBool,
+    /// What is printed, where it is not for stdout.
+    kept: Option<Mutex<String>>,
+}
+
+impl Console {
+    pub(super) fn new(quiet: bool, verbose: u8, json: bool) -> Self {
+        let progress: Box<dyn Progress> = if !quiet && is_drawn_on() {
+            Box::new(Bars::default())
+        } else {
+            Box::new(Silent)
+        };
+        Self {
+            quiet,
+            verbose,
+            json,
+            progress,
+            held: Mutex::default(),
+            in_lines: AtomicBool::new(false),
+            kept: None,
+        }
+    }
+
+    /// Keeps JSON documents for a caller in this process; says nothing.
+    pub(super) fn keeping() -> Self {
+        Self {
+            kept: Some(Mutex::default()),
+            ..Self::new(true, 0, true)
+        }
+    }
+
+    /// What was printed on a console that keeps it.
+    pub(super) fn kept(self) -> String {
+        let kept = self.kept.unwrap_or_default();
+        kept.into_inner().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn print(&self, text: &str) -> Result<(), CliError> {
+        let Some(kept) = &self.kept else {
+            return print(text);
+        };
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.push_str(text);
+        kept.push('\n');
+        Ok(())
+    }
+
+    /// Receives the progress of long work.
+    pub(super) fn progress(&self) -> &dyn Progress {
+        &*self.progress
+    }
+
+    /// Prints data, with a line's end.
+    pub(super) fn data(&self, text: impl AsRef<str>) -> Result<(), CliError> {
+        self.print(&harmless(text.as_ref()))
+    }
+
+    /// Prints a line of JSON at once, where results are JSON: of what comes bit by bit.
+    pub(super) fn line(&self, text: &str) -> Result<(), CliError> {
+        if !self.json {
+            return Ok(());
+        }
+        self.in_lines.store(true, Ordering::Relaxed);
+        self.print(&json_text(text))
+    }
+
+    /// Prints a JSON document: at the next one, or at the end of the run.
+    pub(super) fn document(&self, value: &Value) -> Result<(), CliError> {
+        let before = self.held().replace(value.clone());
+        match before {
+            Some(before) => self.print(&as_json(&before)),
+            None => Ok(()),
+        }
+    }
+
+    fn held(&self) -> MutexGuard<'_, Option<Value>> {
+        // A document, or none, also after a panic.
+        self.held.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Ends a run: prints the document that waits, with what went wrong. With `--json` there always
+    /// is one.
+    pub(super) fn end(&self, result: Result<(), CliError>) -> Result<(), CliError> {
+        let held = self.held().take();
+        let printed = match (&result, held) {
+            (Err(error), _) if error.kind == Kind::Pipe => Ok(()),
+            (Err(error), held) if self.json || held.is_some() => {
+                let document = document::failed(held, error);
+                match self.in_lines.load(Ordering::Relaxed) {
+                    true => self.print(&json_text(&document.to_string())),
+                    false => self.print(&as_json(&document)),
+                }
+            }
+            (_, Some(held)) => self.print(&as_json(&held)),
+            (_, None) => Ok(()),
+        };
+        result.and(printed)
+    }
+
+    /// Prints a note, except with `--quiet`.
+    pub(super) fn note(&self, text: impl AsRef<str>) {
+        if !self.quiet {
+            say(text.as_ref());
+        }
+    }
+
+    /// Prints a note with `--verbose`.
+    pub(super) fn detail(&self, text: impl AsRef<str>) {
+        if self.verbose > 0 && !self.quiet {
+            say(text.as_ref());
+        }
+    }
+
+    /// Reports an error after which the work goes on.
+    pub(super) fn error(&self, error: &CliError) {
+        report_error(error);
+    }
+}
+
+/// Prints an error on stderr.
+pub(super) fn report_error(error: &CliError) {
+    say(&format!("shiftvox: {error}"));
+}
+
+fn print(text: &str) -> Result<(), CliError> {
+    let mut out = io::stdout().lock();
+    out.write_all(text.as_bytes())?;
+    out.write_all(b"\n")?;
+    out.flush()?;
+    Ok(())
+}
+
+/// A closed stderr does not stop the work.
+fn say(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{}", harmless(text));
+}
+
+/// A text with what could do harm to a terminal escaped: control characters but lines' ends and
+/// tabs, and bytes of names that are not UTF-8.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let is_plain = |letter| letter == '\n' || letter == '\t';
+    escaped(text, |letter| match names::byte_of(letter) {
+        Some(byte) => Some(format!("\\x{byte:02x}")),
+        None if letter.is_control() && !is_plain(letter) => {
+            Some(letter.escape_default().to_string())
+        }
+        None => None,
+    })
+}
+
+/// A document, with the same escaped as JSON has it.
+pub(super) fn as_json(document: &Value) -> String {
+    json_text(&format!("{document:#}")).into_owned()
+}
+
+/// The text of a document, with the same escaped.
+fn json_text(text: &str) -> Cow<'_, str> {
+    // Those below 32 are escaped already, or lines' ends between values.
+    escaped(text, |letter| match names::byte_of(letter) {
+        Some(byte) => Some(format!("\\\\x{byte:02x}")),
+        None if letter.is_control() && letter != '\n' => {
+            Some(format!("\\u{:04x}", u32::from(letter)))
+        }
+        None => None,
+    })
+}
+
+/// A text with some letters written in another way.
+fn escaped(text: &str, other_way: impl Fn(char) -> Option<String>) -> Cow<'_, str> {
+    if !text.contains(|letter| other_way(letter).is_some()) {
+        return text.into();
+    }
+    let shown = |letter: char| other_way(letter).unwrap_or_else(|| letter.to_string());
+    text.chars().map(shown).collect()
+}
+
+/// Whether stderr is a terminal that bars can be drawn on: one that has a name, and can go back in
+/// its line.
+fn is_drawn_on() -> bool {
+    let has_name = |name: std::ffi::OsString| !name.is_empty() && name != "dumb";
+    io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)
+}
+
+/// One bar at a time, without colours, gone when the work is done.
+#[derive(Default)]
+struct Bars {
+    bar: Mutex<Option<ProgressBar>>,
+}
+
+impl Bars {
+    fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
+        // A bar is no reason to fail: whoever panicked left it usable.
+        act(&mut self.bar.lock().unwrap_or_else(PoisonError::into_inner));
+    }
+}
+
+impl Progress for Bars {
+    fn begin(&self, what: &str, steps: u64) {
+        let bar = if steps == 0 {
+            ProgressBar::new_spinner()
+        } else {
+            ProgressBar::new(steps)
+        };
+        if steps > 0
+            && let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent}% {eta}")
+        {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_message(harmless(what).into_owned());
+        self.with(|slot| {
+            if let Some(old) = slot.replace(bar) {
+                old.finish_and_clear();
+            }
+        });
+    }
+
+    fn advance(&self, steps: u64) {
+        self.with(|slot| {
+            if let Some(bar) = slot {
+                bar.inc(steps);
+            }
+        });
+    }
+
+    fn end(&self) {
+        self.with(|slot| {
+            if let Some(bar) = slot.take() {
+                bar.finish_and_clear();
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_do_not_move_the_cursor() {
+        assert_eq!(harmless("a\tb\n\u{e9}"), "a\tb\n\u{e9}");
+        assert_eq!(harmless("\u{1b}[2Jx\r\u{9b}"), "\\u{1b}[2Jx\\r\\u{9b}");
+        assert_eq!(harmless("\u{10ffff}.vox"), "\\xff.vox");
+        let document = serde_json::json!({ "a": "\u{10ffff}\u{9b}\u{1b}" });
+        let text = as_json(&document);
+        assert!(
+            text.bytes()
+                .all(|byte| (b' '..127).contains(&byte) || byte == b'\n'),
+            "{text}"
+        );
+        let read: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(read["a"], "\\xff\u{9b}\u{1b}");
+    }
+}

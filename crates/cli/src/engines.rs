@@ -1,0 +1,294 @@
+//! The only place of the command line that makes engines.
+
+use hwmodel::count::Counter;
+use hwmodel::{Memory, Probe, StageLevel};
+
+use super::args::{EngineArgs, EngineName};
+use super::error::{CliError, Kind};
+use shiftvox::fast::{Fast, FastOptions, Switches};
+use shiftvox::frame::Frame;
+use shiftvox::graph::GraphView;
+use shiftvox_lab::bench::{Candidate, Family, Frames, Variant};
+use shiftvox_lab::float_rays::FloatRays;
+use shiftvox::machine::{Machine, MachineOptions};
+use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup};
+use shiftvox::rays::Rays;
+
+/// What makes the engine that the flags name, as often as one is needed.
+pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;
+
+/// Makers of the engines of voxels.
+///
+/// # Errors
+/// When this processor or this build does not have it, or it does not draw voxels.
+pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
+    let instructions = args.isa;
+    if !instructions.are_available() {
+        return Err(CliError::new(
+            Kind::Run,
+            format!(
+                "this processor does not have the instructions of --isa {:?}",
+                args.isa
+            )
+            .to_lowercase(),
+        )
+        .advise("leave --isa out, or take --isa scalar: the picture is the same"));
+    }
+    match args.engine.unwrap_or_default() {
+        EngineName::Fast => {
+            let options = FastOptions {
+                instructions,
+                ..FastOptions::default()
+            };
+            let of_machine = machine_options(args);
+            Ok(Box::new(move || {
+                Box::new(Fast::new(options, Box::new(Machine::new(of_machine))))
+            }))
+        }
+        EngineName::Machine => {
+            let options = machine_options(args);
+            Ok(Box::new(move || Box::new(Machine::new(options))))
+        }
+        EngineName::Rays if args.rules.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
+            "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
+        )
+        .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
+        EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
+        EngineName::Far => Err(CliError::usage(
+            "--engine far draws a .far file, and only render, turntable and view do",
+        )
+        .advise("make one of a mesh: shiftvox convert MESH OUT.far; then shiftvox render OUT.far")),
+        EngineName::Textured => Err(CliError::usage(
+            "--engine textured draws a .tvx file, and only render, turntable and view do",
+        )
+        .advise("make one of a mesh: shiftvox convert MESH OUT.tvx; then shiftvox render OUT.tvx")),
+    }
+}
+
+fn machine_options(args: &EngineArgs) -> MachineOptions {
+    MachineOptions {
+        overflow: args.rules.overflow(),
+        ..MachineOptions::default()
+    }
+}
+
+/// Draws one frame on the machine and counts its operations.
+///
+/// # Errors
+/// When the frame cannot be finished.
+pub(super) fn count_operations(
+    args: &EngineArgs,
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+) -> Result<Counter, CliError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let (_, counter) = Machine::new(machine_options(args)).render_probed(
+        graph,
+        setup,
+        &mut frame,
+        Counter::new(),
+    )?;
+    Ok(counter)
+}
+
+pub(super) const MACHINE: Candidate = Candidate {
+    name: "machine",
+    about: "the paper's loop in machine words",
+    work: "records",
+    parallel: false,
+    make: |_| Box::new(Machine::default()),
+};
+
+/// The default engine.
+pub(super) const FAST: Candidate = Candidate {
+    name: "fast",
+    about: "the machine's bits, sample by sample",
+    work: "records",
+    parallel: true,
+    make: |threads| fast(threads, |_| {}),
+};
+
+/// A fast engine on so many threads, with a switch off.
+fn fast(threads: usize, switch: fn(&mut Switches)) -> Box<dyn Engine + Send> {
+    let mut switches = Switches::default();
+    switch(&mut switches);
+    let options = FastOptions {
+        threads,
+        switches,
+        ..FastOptions::default()
+    };
+    Box::new(Fast::new(options, Box::new(Machine::default())))
+}
+
+/// What the experiments take for the truth.
+pub(super) const REFERENCE: Candidate = Candidate {
+    name: "rays",
+    about: "the exact reference, in wide integers",
+    work: "nodes_tested",
+    parallel: true,
+    make: |_| Box::new(Rays),
+};
+
+/// A renderer that is not ours, for comparison.
+const FLOAT_RAYS: Candidate = Candidate {
+    name: "float-rays",
+    about: "an ordinary ray caster in f32",
+    work: "steps",
+    parallel: false,
+    make: |_| Box::new(FloatRays),
+};
+
+/// All engines that the experiments can measure.
+pub(super) const CANDIDATES: &[Candidate] = &[FAST, MACHINE, REFERENCE, FLOAT_RAYS];
+
+/// Those whose growth is measured where none is named.
+pub(super) const SCALED: &[&str] = &["fast", "machine"];
+
+/// What can be switched off, by engine.
+pub(super) const FAMILIES: &[Family] = &[
+    Family {
+        whole: FAST,
+        variants: FAST_VARIANTS,
+    },
+    Family {
+        whole: MACHINE,
+        variants: MACHINE_VARIANTS,
+    },
+];
+
+/// The fast engine with everything on.
+const WHOLE_FAST: Variant = Variant {
+    name: "",
+    about: "",
+    adjust: |_| {},
+    make: FAST.make,
+    frames: Frames::Drawn,
+};
+/// The machine with everything on.
+const WHOLE_MACHINE: Variant = Variant {
+    make: MACHINE.make,
+    ..WHOLE_FAST
+};
+
+/// The machine without occlusion order, and without the rejection that it
+/// allows: so many of these two.
+pub(super) fn order_family(variants: usize) -> Family {
+    Family {
+        whole: MACHINE,
+        variants: MACHINE_VARIANTS.split_at(variants.min(2)).0,
+    }
+}
+
+const FAST_VARIANTS: &[Variant] = &[
+    Variant {
+        name: "hidden windows looked into",
+        about: "nodes behind what is drawn go on down; the picture must be the same",
+        make: |threads| fast(threads, |on| on.hidden = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "off-screen nodes looked into",
+        about: "nodes beside the picture, or that hold no sample, go on down; the picture must be \
+         the same",
+        make: |threads| fast(threads, |on| on.off_screen = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "a full picture goes on",
+        about: "no stop when every sample is drawn; the picture must be the same",
+        make: |threads| fast(threads, |on| on.full = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "bricks off",
+        about: "voxel by voxel in the last levels; the picture must be the same",
+        make: |threads| fast(threads, |on| on.bricks = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "whole blocks off",
+        about: "solids drawn by exact planes sample by sample, without looking at blocks and tiles \
+         first; the picture must be the same",
+        make: |threads| fast(threads, |on| on.whole_blocks = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "absent children looked at",
+        about: "above bricks all eight children have their windows looked at, whether they exist \
+         or not; the picture must be the same",
+        make: |threads| fast(threads, |on| on.absent_children = false),
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "level of detail off",
+        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
+         exact one",
+        adjust: |options| options.lod_px = 0.0,
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "unchanged frame kept",
+        about: "NOT off but on: a viewer is asked for the frame that it shows; only colours are \
+         written. All other rows draw every frame",
+        frames: Frames::Kept,
+        ..WHOLE_FAST
+    },
+    Variant {
+        name: "attributes of all read",
+        about: "colour and normal also of each node that the paper's walk fetches, in its order, \
+         not of those seen alone; the picture must be the same",
+        frames: Frames::WithAttributesOf(fetched),
+        ..WHOLE_FAST
+    },
+];
+
+const MACHINE_VARIANTS: &[Variant] = &[
+    Variant {
+        name: "occlusion order off",
+        about: "children in the order 0 to 7 for every eye: the picture is WRONG, far voxels hide \
+         near ones",
+        make: |_| {
+            Box::new(Machine::new(MachineOptions {
+                order: [0, 1, 2, 3, 4, 5, 6, 7],
+                ..MachineOptions::default()
+            }))
+        },
+        ..WHOLE_MACHINE
+    },
+    Variant {
+        name: "fill-vector rejection off",
+        about: "hidden records go on down to their samples; the picture must be the same",
+        make: |_| {
+            Box::new(Machine::new(MachineOptions {
+                reject_filled: false,
+                ..MachineOptions::default()
+            }))
+        },
+        ..WHOLE_MACHINE
+    },
+    Variant {
+        name: "level of detail off",
+        about: "--lod 0: down to the leaves, also below a pixel; the picture changes towards the \
+         exact one",
+        adjust: |options| options.lod_px = 0.0,
+        ..WHOLE_MACHINE
+    },
+];
+
+/// The nodes that the machine fetches for a frame.
+fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
+    /// Notes the nodes in the order in which they are read.
+    struct FetchedNodes(Vec<u32>);
+    impl Probe for FetchedNodes {
+        fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
+            if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
+                self.0.push(node);
+            }
+        }
+    }
+    let mut frame = Frame::nodes_only(setup.width, setup.height);
+    let fetched_nodes = FetchedNodes(Vec::new());
+    let (_, fetched_nodes) =
+        Machine::default().render_probed(graph, setup, &mut frame, fetched_nodes)?;
+    Ok(fetched_nodes.0)
+}

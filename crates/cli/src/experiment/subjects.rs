@@ -1,0 +1,161 @@
+//! Scenes of the experiments, and from where they are seen.
+
+use glam::DVec3;
+
+use crate::args::{CameraArgs, SceneArgs};
+use crate::console::Console;
+use crate::error::CliError;
+use crate::scenes;
+use crate::scenes::Scene;
+use shiftvox_lab::bench::Subject;
+use shiftvox::project::{Bounds, Camera};
+
+/// What stands for the bundled scene.
+pub(in crate) const BUNDLED: &str = "bundled";
+/// Scenes where none is named.
+const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
+
+/// A camera in sides of a cube, from the cube's lowest corner; 60 degrees, z up.
+struct Standpoint {
+    eye: [f64; 3],
+    target: [f64; 3],
+}
+
+/// The benchmark's view of the terrain from outside.
+const OUTSIDE: Standpoint = Standpoint {
+    eye: [1.6, -0.7, 1.25],
+    target: [0.5, 0.5, 0.3],
+};
+/// The benchmark's view of the sponge from the front.
+const FRONT: Standpoint = Standpoint {
+    eye: [0.47, -0.95, 0.53],
+    target: [0.475, 0.5, 0.475],
+};
+/// The bundled tree, as in `benches/`.
+const TREE: Standpoint = Standpoint {
+    eye: [1.1, -0.5, 0.8],
+    target: [0.5, 0.5, 0.4],
+};
+
+impl Standpoint {
+    fn camera(&self, low: DVec3, side: f64) -> Camera {
+        Camera {
+            eye: low + DVec3::from_array(self.eye) * side,
+            target: low + DVec3::from_array(self.target) * side,
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 1,
+            height: 1,
+        }
+    }
+}
+
+/// Scenes of the command line, or of the configuration file, or the standard ones.
+pub(in crate) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+    names_or(given, from_config, &DEFAULT)
+}
+
+/// The same with other scenes where none is named.
+pub(in crate) fn names_or(
+    given: &[String],
+    from_config: Vec<String>,
+    default: &[&str],
+) -> Vec<String> {
+    if !given.is_empty() {
+        given.to_vec()
+    } else if !from_config.is_empty() {
+        from_config
+    } else {
+        default.iter().map(|&name| name.to_owned()).collect()
+    }
+}
+
+/// A scene's name as part of a file's: letters, digits, and hyphens between them.
+pub(in crate) fn file_stem(name: &str) -> String {
+    let name = name.strip_prefix("gen:").unwrap_or(name);
+    let letters = |c: char| !c.is_ascii_alphanumeric();
+    let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
+    words.join("-")
+}
+
+/// Opens a scene. Terrain, sponge and the bundled tree have their standard
+/// cameras unless the flags say another; all others are fitted into `size`.
+pub(in crate) fn open(
+    name: &str,
+    camera: &CameraArgs,
+    scene_args: &SceneArgs,
+    size: (u32, u32),
+    console: &Console,
+) -> Result<Subject, CliError> {
+    camera.check().map_err(CliError::usage)?;
+    let scene = if name == BUNDLED {
+        scenes::demo(console.progress())?
+    } else {
+        scenes::open(name, scene_args, console)?
+    };
+    let standard = standard_camera(name, &scene).filter(|_| camera.settings().is_empty());
+    let camera = standard.unwrap_or_else(|| {
+        let bounds = Bounds::of(&scene.graph);
+        camera.camera(&bounds, scene.up, size, 0.0)
+    });
+    Ok(Subject {
+        name: name.to_owned(),
+        graph: scene.graph,
+        camera,
+    })
+}
+
+fn standard_camera(name: &str, scene: &Scene) -> Option<Camera> {
+    let placement = &scene.graph.placement;
+    let side = (1u64 << scene.graph.depth) as f64 * placement.voxel_size;
+    let world = DVec3::from_array(placement.world_origin);
+    let lowest = DVec3::from_array(placement.origin_index.map(|c| c as f64));
+    // Generators fill a cube from index 0, whether or not its lowest layers are empty.
+    let generated = |name_of: &str| {
+        let spec = name.strip_prefix("gen:")?;
+        (spec.split(',').next() == Some(name_of)).then_some(world)
+    };
+    if let Some(low) = generated("terrain") {
+        Some(OUTSIDE.camera(low, side))
+    } else if let Some(low) = generated("menger") {
+        Some(FRONT.camera(low, side))
+    } else if name == BUNDLED {
+        Some(TREE.camera(world + lowest * placement.voxel_size, side))
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files() {
+        let stems = ["gen:terrain,depth=8", "a/b c.vox", BUNDLED].map(file_stem);
+        assert_eq!(stems, ["terrain-depth-8", "a-b-c-vox", "bundled"]);
+    }
+
+    #[test]
+    fn standard_cameras_are_the_benchmarks() {
+        let console = Console::new(true, 0, false);
+        let open = |name: &str| {
+            let (camera, scene) = (CameraArgs::default(), SceneArgs::default());
+            open(name, &camera, &scene, (64, 64), &console).unwrap()
+        };
+        // The benchmark's are given for depth 10, a side of 1024 voxels, and
+        // for five steps of the sponge, 243 voxels in a cube of 256.
+        let close = |found: DVec3, expected: [f64; 3], scale: f64| {
+            let expected = DVec3::from_array(expected);
+            assert!((found * scale - expected).length() < 1e-9, "{found}");
+        };
+        let terrain = open("gen:terrain,depth=6").camera;
+        close(terrain.eye, [1638.4, -716.8, 1280.0], 16.0);
+        close(terrain.target, [512.0, 512.0, 307.2], 16.0);
+        let menger = open("gen:menger,depth=3").camera;
+        close(menger.eye, [120.32, -243.2, 135.68], 8.0);
+        close(menger.target, [121.6, 128.0, 121.6], 8.0);
+        assert_eq!((terrain.fov_degrees, menger.fov_degrees), (60.0, 60.0));
+        assert!(open("gen:sphere,depth=3").camera.fov_degrees < 60.0);
+    }
+}

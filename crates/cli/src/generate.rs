@@ -1,0 +1,77 @@
+//! `generate`: a scene from integers alone, or a mesh from a seed, written to a file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use serde_json::json;
+
+use super::args::SceneArgs;
+use super::console::Console;
+use super::error::CliError;
+use super::{names, report, scene_files, scenes};
+use shiftvox_mesh::generate;
+use shiftvox::scene::Source;
+use shiftvox::whole;
+
+/// Arguments of `generate`.
+#[derive(Debug, Args)]
+pub struct GenerateArgs {
+    /// Generator and its settings: gen:terrain,depth=10,seed=1 (gen: may be left out); or a mesh,
+    /// mesh:tree,seed=2
+    #[arg(value_name = "SPEC")]
+    spec: String,
+    /// File to write; its ending names the format: .vxg, .vox or .ply; a mesh: .ply
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Replace a file that exists
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
+    if args.spec.starts_with(generate::PREFIX) {
+        return mesh(args, console);
+    }
+    scene_files::check_ending(&args.output)?;
+    whole::check_free(&args.output, args.force)?;
+    let spec = if Source::is_generated(&args.spec) {
+        args.spec.clone()
+    } else {
+        format!("gen:{}", args.spec)
+    };
+    let scene = scenes::open(&spec, &SceneArgs::default(), console)?;
+    let written = scene_files::write(&scene, &args.output, args.force, console.progress())?;
+    scene_files::report_written("generate", &spec, &args.output, &written, console)
+}
+
+/// Writes a mesh.
+fn mesh(args: &GenerateArgs, console: &Console) -> Result<(), CliError> {
+    let (kind, seed) = generate::parse(&args.spec).map_err(CliError::input)?;
+    let output = &args.output;
+    if output.extension().and_then(|e| e.to_str()) != Some("ply") {
+        let message = format!("{}: a mesh is written as .ply", output.display());
+        return Err(CliError::usage(message).advise("end the name in .ply"));
+    }
+    whole::check_free(output, args.force)?;
+    let mesh = generate::generate(kind, seed);
+    let bytes = generate::ply(&mesh);
+    whole::write(output, &bytes, args.force)?;
+    let triangles = mesh.triangles().len() as u64;
+    console.note(format!(
+        "{}: {} triangles, {} bytes",
+        output.display(),
+        report::grouped(triangles),
+        report::grouped(bytes.len() as u64)
+    ));
+    if console.json {
+        let fields = json!({
+            "input": args.spec,
+            "output": names::of_path(output),
+            "triangles": triangles,
+            "bytes": bytes.len(),
+        });
+        console.document(&report::document("generate", fields))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,282 @@
+//! The registry of drawing methods, the only one of the command line.
+//!
+//! It opens a scene once, finds the method that draws it, refuses flags that this method does not
+//! follow, and hands the scene on as one [`Drawable`].
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::{DataBudget, EngineArgs, EngineName, Erosion, PictureArgs, SceneArgs};
+use super::console::Console;
+use super::error::CliError;
+use super::fatal_signals;
+use super::scenes::{self, Scene};
+use super::{engines, names};
+use shiftvox::drawing::{self, Drawable, GraphDrawing, GraphStyle, milliseconds_since};
+use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::far::FarFile;
+use shiftvox::picture::Buffer;
+use shiftvox::scene::{FileKind, Source};
+use shiftvox_mesh::textured::TexturedFile;
+
+/// What a scene is drawn with.
+#[derive(Clone, Copy)]
+pub(super) struct DrawArgs<'a> {
+    pub(super) engine: &'a EngineArgs,
+    pub(super) picture: &'a PictureArgs,
+    pub(super) scene: &'a SceneArgs,
+    /// Of far voxels: how much of the nodes' data may be in memory.
+    pub(super) memory: Option<DataBudget>,
+    /// Whether pictures' hashes are wanted.
+    pub(super) is_hashed: bool,
+}
+
+/// A method that draws one kind of file, which nothing else draws.
+struct FileMethod {
+    engine: EngineName,
+    /// As flags name it.
+    name: &'static str,
+    file: FileKind,
+    /// Buffers that it has beside the picture, two or more.
+    buffers: &'static [Buffer],
+    /// Flags that it follows, of those that not every engine does.
+    flags: &'static [&'static str],
+    open: fn(&Path, &DrawArgs<'_>) -> Result<Content, CliError>,
+}
+
+const METHODS: [FileMethod; 2] = [
+    FileMethod {
+        engine: EngineName::Far,
+        name: "far",
+        file: FileKind::Far,
+        buffers: &[Buffer::Depth, Buffer::Node, Buffer::Color],
+        flags: &["far-opacity"],
+        open: |path, args| {
+            Ok(Content::Far(match args.memory {
+                Some(memory) => FarFile::open_within(path, memory.bytes)?,
+                None => FarFile::open(path)?,
+            }))
+        },
+    },
+    FileMethod {
+        engine: EngineName::Textured,
+        name: "textured",
+        file: FileKind::Tvx,
+        buffers: &[Buffer::Depth, Buffer::Color],
+        flags: &["erosion", "erosion-grid"],
+        open: |path, args| {
+            check_memory(args)?;
+            Ok(Content::Textured(TexturedFile::open(path)?))
+        },
+    },
+];
+
+/// An open scene, and the engine that draws it.
+pub(super) struct Opened {
+    pub(super) engine: EngineName,
+    /// Time to open, milliseconds.
+    pub(super) load_ms: f64,
+    content: Content,
+}
+
+enum Content {
+    Graph(Box<Scene>),
+    Far(FarFile),
+    Textured(TexturedFile),
+}
+
+/// Opens a scene for the engine that the flags name, or else for the one that draws its kind of
+/// file.
+///
+/// # Errors
+/// A bad scene, or flags that do not go with it.
+pub(super) fn open(name: &str, args: &DrawArgs<'_>, console: &Console) -> Result<Opened, CliError> {
+    let started = Instant::now();
+    fatal_signals::reads(name);
+    let asked = args.engine.engine;
+    let source = Source::find(names::path(name));
+    let kind = source.as_ref().ok().and_then(Source::kind);
+    let named = METHODS.iter().find(|method| Some(method.engine) == asked);
+    let its = || METHODS.iter().find(|method| Some(method.file) == kind);
+    let Some(method) = named.or_else(its) else {
+        check_memory(args)?;
+        args.engine.check_of_voxels().map_err(CliError::usage)?;
+        let scene_args = args.engine.rules.scene_args(args.scene);
+        let scene = scenes::open_source(
+            source?,
+            name,
+            &scene_args,
+            scenes::Verify::IfSmall,
+            started,
+            console,
+        )?;
+        return Ok(Opened {
+            engine: asked.unwrap_or_default(),
+            load_ms: scene.load_ms,
+            content: Content::Graph(Box::new(scene)),
+        });
+    };
+    method.check(name, kind, args)?;
+    let content = (method.open)(&names::path(name), args)?;
+    Ok(Opened {
+        engine: method.engine,
+        load_ms: milliseconds_since(started),
+        content,
+    })
+}
+
+fn check_memory(args: &DrawArgs<'_>) -> Result<(), CliError> {
+    match args.memory {
+        Some(_) => Err(CliError::usage("--memory is for .far files")),
+        None => Ok(()),
+    }
+}
+
+impl FileMethod {
+    /// Refuses what this method does not draw, and flags that it does not follow.
+    fn check(
+        &self,
+        scene: &str,
+        kind: Option<FileKind>,
+        args: &DrawArgs<'_>,
+    ) -> Result<(), CliError> {
+        let Self { name, file, .. } = self;
+        if args.engine.engine.is_some_and(|asked| asked != self.engine) {
+            let message = format!("{scene}: this is a {file} file");
+            let advice = format!("draw it with --engine {name}, or name no engine");
+            return Err(CliError::usage(message).advise(advice));
+        }
+        if kind != Some(self.file) {
+            // The method's reader says that the file is not there, or what else it is.
+            let refused = (self.open)(&names::path(scene), args).map(|_| ());
+            return refused.map_err(|error| {
+                error.advise(format!(
+                    "--engine {name} draws {file} files: shiftvox convert MESH OUT{file}"
+                ))
+            });
+        }
+        let mut given = args.engine.given();
+        given.extend(args.scene.given());
+        if let Some(idle) = given.iter().find(|flag| !self.flags.contains(flag)) {
+            let message = format!("{scene}: --{idle} changes nothing of a {file} file");
+            return Err(CliError::usage(message).advise("leave it out"));
+        }
+        let unknown = |buffer: &&Buffer| !self.buffers.contains(buffer);
+        if let Some(unknown) = args.picture.aov.iter().find(unknown) {
+            let mut known: Vec<&str> = self.buffers.iter().map(|buffer| buffer.name()).collect();
+            let last = known.pop().unwrap_or_default();
+            let message = format!("{scene}: --engine {name} has no --aov {}", unknown.name());
+            return Err(
+                CliError::usage(message).advise(format!("it has {} and {last}", known.join(", ")))
+            );
+        }
+        Ok(())
+    }
+}
+
+impl Opened {
+    /// The voxels, where it is a scene of voxels.
+    #[cfg(feature = "view")]
+    pub(super) fn graph(&self) -> Option<&shiftvox::graph::Graph> {
+        match &self.content {
+            Content::Graph(scene) => Some(&scene.graph),
+            Content::Far(_) | Content::Textured(_) => None,
+        }
+    }
+
+    /// Refuses flags that the scene's method does not follow, as [`open`] does, for flags that
+    /// change while it is open.
+    ///
+    /// # Errors
+    /// The first such flag.
+    #[cfg(feature = "view")]
+    pub(super) fn check(&self, name: &str, args: &DrawArgs<'_>) -> Result<(), CliError> {
+        let of_file = match &self.content {
+            Content::Graph(_) => None,
+            Content::Far(_) => Some(FileKind::Far),
+            Content::Textured(_) => Some(FileKind::Tvx),
+        };
+        match METHODS.iter().find(|method| Some(method.file) == of_file) {
+            Some(method) => method.check(name, of_file, args),
+            None => args.engine.check_of_voxels().map_err(CliError::usage),
+        }
+    }
+
+    /// Whether all of the file was checked; methods of meshes check what they read when they read
+    /// it.
+    pub(super) fn is_verified(&self) -> bool {
+        match &self.content {
+            Content::Graph(scene) => scene.is_verified,
+            Content::Far(_) | Content::Textured(_) => true,
+        }
+    }
+
+    /// The scene as something that can be drawn, with light, samples and rules as the flags say.
+    ///
+    /// # Errors
+    /// When there is no such engine, or its flags contradict each other.
+    pub(super) fn drawable(&self, args: &DrawArgs<'_>) -> Result<Box<dyn Drawable + '_>, CliError> {
+        let picture = args.picture;
+        let (shading, background) = (picture.shade, picture.background.unwrap_or_default());
+        let aa_log2 = picture.aa_log2();
+        Ok(match &self.content {
+            Content::Graph(scene) => Box::new(of_graph(scene, args)?),
+            Content::Far(file) => {
+                let style = FarStyle {
+                    voxel_px: args.engine.rules.mesh_lod(),
+                    aa_log2,
+                    opacity: args.engine.far_opacity.unwrap_or_default(),
+                    shading,
+                    background,
+                };
+                Box::new(FarDrawing::new(file, style))
+            }
+            Content::Textured(file) => {
+                let style = TexturedStyle {
+                    erosion: erosion(args.engine)?,
+                    aa_log2,
+                    shading,
+                    background,
+                };
+                Box::new(TexturedDrawing::new(file, style))
+            }
+        })
+    }
+}
+
+/// A voxel scene as something that can be drawn.
+///
+/// # Errors
+/// When there is no such engine.
+pub(super) fn of_graph<'s>(
+    scene: &'s Scene,
+    args: &DrawArgs<'_>,
+) -> Result<GraphDrawing<'s>, CliError> {
+    let style = GraphStyle {
+        options: args.engine.rules.options(args.picture.aa_log2()),
+        shading: args.picture.shade,
+        background: args.picture.background.unwrap_or_default(),
+        buffers: args.picture.aov.clone(),
+        is_hashed: args.is_hashed,
+    };
+    let maker = engines::maker(args.engine)?;
+    Ok(GraphDrawing::new(&scene.graph, scene.up, style, maker))
+}
+
+fn erosion(args: &EngineArgs) -> Result<shiftvox_mesh::drawing::Erosion, CliError> {
+    match args.erosion.unwrap_or_default() {
+        Erosion::Auto if args.erosion_grid.is_some() => Err(CliError::usage(
+            "--erosion-grid needs --erosion K; auto chooses the grid too",
+        )),
+        Erosion::Auto => Ok(shiftvox_mesh::drawing::Erosion::Auto {
+            texel_px: args.rules.mesh_lod(),
+        }),
+        Erosion::Level(_) if args.rules.lod.is_some() => Err(CliError::usage(
+            "--lod says how large texels are with --erosion auto, not with a number of erosions",
+        )),
+        Erosion::Level(level) => Ok(shiftvox_mesh::drawing::Erosion::Level {
+            level,
+            cells: args.erosion_grid,
+        }),
+    }
+}

@@ -1,0 +1,251 @@
+//! Flags of `model`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
+use hwmodel::cycles::{Hardware, PRESETS};
+
+use super::explore::args::ExploreArgs;
+use shiftvox::bounded;
+use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
+use crate::error::{CliError, Kind};
+use crate::experiment::export::ExportArgs;
+use shiftvox_lab::bench::Scan;
+use shiftvox_lab::float_rays::RayOrder;
+use shiftvox_lab::model::cost::Prices;
+
+/// Arguments of `model`.
+#[derive(Debug, Args)]
+pub(in crate) struct ModelArgs {
+    /// Scene: a file, a generator, or `bundled` [default: bundled]
+    #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
+    pub(super) scenes: Vec<String>,
+    /// Pixels: 512 for a square, or 640x360
+    #[arg(long, value_name = "N|WxH", default_value = "512")]
+    pub(super) size: Size,
+    #[command(flatten)]
+    pub(super) hardware: HardwareArgs,
+    #[command(flatten)]
+    pub(super) tables: TableArgs,
+    #[command(flatten)]
+    pub(super) explore: ExploreArgs,
+    #[command(flatten)]
+    pub(super) files: FileArgs,
+    #[command(flatten)]
+    pub(super) export: ExportArgs,
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+    #[command(flatten)]
+    pub(super) scene: SceneArgs,
+    #[command(flatten)]
+    pub(super) rules: RuleArgs,
+}
+
+/// The hardware, and what its parts cost.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Hardware")]
+pub(super) struct HardwareArgs {
+    /// Hardware: tiny, paper, light, wide, or a TOML file like those (--print-hw shows one) [default: light;
+    /// paper where boxes and not outlines are drawn, and with --rules]
+    #[arg(long = "hw", value_name = "NAME|FILE")]
+    hw: Option<String>,
+    /// Print the description of the hardware, and do nothing else
+    #[arg(long)]
+    pub(super) print_hw: bool,
+    /// TOML file with costs of your own, which go before the shipped ones
+    #[arg(long, value_name = "FILE")]
+    costs: Option<PathBuf>,
+    /// What gates are chosen for
+    #[arg(long, value_enum, default_value_t)]
+    goal: Goal,
+    /// How the span of eight values is found, for energy
+    #[arg(long, value_enum, default_value_t)]
+    spans: MinMaxUnits,
+    /// Count shifts by constants as shifters, not as wires
+    #[arg(long)]
+    shifters: bool,
+    /// Order of the ray caster's rays [default: the one of least energy]
+    #[arg(long, value_enum, value_name = "ORDER")]
+    pub(super) ray_order: Option<RayOrder>,
+}
+
+/// What is reported beside the frame itself.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Tables")]
+pub(super) struct TableArgs {
+    /// Both cages, three drawing rules and the tolerances of each side by side
+    #[arg(long)]
+    pub(super) rules: bool,
+    /// The same frame with 1 to 64 lanes
+    #[arg(long)]
+    pub(super) lanes: bool,
+    /// The same frame in words of many widths: bits=16..48, or with steps: bits=16..64+4
+    #[arg(long, value_name = "bits=A..B", value_parser = bits_scan)]
+    pub(super) sweep: Option<Scan>,
+    /// Node caches of 4 KiB to 1 MiB, for this hardware and for the ray caster in every order
+    #[arg(long)]
+    pub(super) caches: bool,
+    /// What each setting of the hardware's organisation gives, alone and on top of those before
+    #[arg(long)]
+    pub(super) steps: bool,
+    /// Growing pictures of this object, and growing objects in this picture
+    #[arg(long)]
+    pub(super) growth: bool,
+    /// All of these; widths from 16 to 64 in steps of 4, where --sweep says no other
+    #[arg(long)]
+    pub(super) all: bool,
+}
+
+/// Files beside those of every experiment.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Output")]
+pub(super) struct FileArgs {
+    /// One self-contained page with everything, picture and heat map of records
+    #[arg(long, value_name = "FILE")]
+    pub(super) html: Option<PathBuf>,
+    /// Statistics in the manner of gem5: name, value, # description
+    #[arg(long, value_name = "FILE")]
+    pub(super) stats: Option<PathBuf>,
+    /// Heat map of records per pixel, PNG
+    #[arg(long, value_name = "FILE")]
+    pub(super) heat: Option<PathBuf>,
+    /// Trace of the first records: .json for Perfetto, .vcd for waveform viewers
+    #[arg(long, value_name = "FILE")]
+    pub(super) trace: Option<PathBuf>,
+    /// Records of the trace
+    #[arg(long, value_name = "N", default_value_t = 2000)]
+    pub(super) trace_records: u64,
+    /// Folder of test vectors of each block ($readmemh), with a manifest
+    #[arg(long, value_name = "DIR")]
+    pub(super) vectors: Option<PathBuf>,
+    /// Records of the test vectors
+    #[arg(long, value_name = "N", default_value_t = 1000,
+          value_parser = clap::value_parser!(u64).range(1..))]
+    pub(super) vector_records: u64,
+}
+
+fn bits_scan(text: &str) -> Result<Scan, String> {
+    // A range without steps goes by ones.
+    let stepped = if text.contains(['*', '+']) {
+        text.to_owned()
+    } else {
+        format!("{text}+1")
+    };
+    let scan: Scan = stepped.parse()?;
+    if scan.name() != "bits" {
+        return Err(format!("only `bits` can be swept, not `{}`", scan.name()));
+    }
+    let range = hwmodel::MIN_BITS..=hwmodel::MAX_BITS;
+    match scan.values().iter().find(|bits| !range.contains(bits)) {
+        Some(bits) => Err(format!(
+            "a word has {} to {} bits, not {bits}",
+            range.start(),
+            range.end()
+        )),
+        None => Ok(scan),
+    }
+}
+
+/// Reads a file that the user names.
+pub(super) fn read(path: &Path) -> Result<String, CliError> {
+    bounded::read_settings(path)
+        .map_err(|error| CliError::new(Kind::Input, error).at(path.display().to_string()))
+}
+
+/// The description of a hardware by its name: one that ships, or a file, seen from a folder.
+fn text_named(name: &str, folder: &Path) -> Result<String, CliError> {
+    if let Some((_, text)) = PRESETS.iter().find(|(of, _)| *of == name) {
+        return Ok((*text).to_owned());
+    }
+    let path = folder.join(name);
+    if !path.exists() {
+        let names: Vec<&str> = PRESETS.iter().map(|(name, _)| *name).collect();
+        return Err(CliError::new(
+            Kind::Input,
+            format!("no hardware and no file is called {name}"),
+        )
+        .advise(format!(
+            "take one of {}, or print one with --print-hw and change it",
+            names.join(", ")
+        )));
+    }
+    read(&path)
+}
+
+/// The hardware of a name: see [`text_named`].
+pub(super) fn hardware_named(name: &str, folder: &Path) -> Result<Hardware, CliError> {
+    Hardware::from_toml(&text_named(name, folder)?)
+        .map_err(|error| CliError::new(Kind::Input, error).at(name))
+}
+
+impl ModelArgs {
+    /// The hardware's name or file: the best one known for the rule, unless told otherwise. Tiles are of use only to
+    /// rules that draw outlines, and rules are compared on the paper's own hardware.
+    fn hardware_name(&self) -> &str {
+        let draws_outlines = self.rules.options(0).coverage.draws_outlines();
+        let best = if draws_outlines && !self.tables.rules {
+            "light"
+        } else {
+            "paper"
+        };
+        self.hardware.hw.as_deref().unwrap_or(best)
+    }
+
+    /// The hardware's description as TOML: a shipped one with its comments, or the user's.
+    pub(super) fn hardware_text(&self) -> Result<String, CliError> {
+        text_named(self.hardware_name(), Path::new(""))
+    }
+
+    /// The hardware.
+    pub(super) fn hardware(&self) -> Result<Hardware, CliError> {
+        hardware_named(self.hardware_name(), Path::new(""))
+    }
+}
+
+impl HardwareArgs {
+    /// The cost tables and choices.
+    pub(super) fn prices(&self) -> Result<Prices, CliError> {
+        let wrong = |error| CliError::new(Kind::Input, error);
+        let mut table = CostTable::load_shipped().map_err(wrong)?;
+        if let Some(path) = &self.costs {
+            let name = path.display().to_string();
+            let text = read(path)?;
+            let own = CostTable::empty()
+                .with_overrides(&name, &text)
+                .map_err(wrong)?;
+            // What nothing is priced by is a slip of the pen.
+            let known = table.operations();
+            let own = own.operations();
+            if let Some(stranger) = own.iter().find(|name| !known.contains(name)) {
+                let known = known.join(", ");
+                let message = format!("there is no operation `{stranger}`; there are {known}");
+                return Err(CliError::new(Kind::Input, message).at(name));
+            }
+            table = table.with_overrides(&name, &text).map_err(wrong)?;
+        }
+        Ok(Prices {
+            table,
+            costing: Costing {
+                shifts: if self.shifters {
+                    ShiftUnits::Variable
+                } else {
+                    ShiftUnits::Wires
+                },
+                min_max: self.spans,
+            },
+            goal: self.goal,
+        })
+    }
+}
+
+impl TableArgs {
+    /// Word widths to sweep.
+    pub(super) fn widths(&self) -> Option<Vec<u32>> {
+        match (&self.sweep, self.all) {
+            (Some(scan), _) => Some(scan.values()),
+            (None, true) => Some((16..=64).step_by(4).collect()),
+            (None, false) => None,
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Flags of `model --explore`.
+
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::Args;
+
+/// What is explored, and which part of it.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Explore")]
+pub(in crate::model) struct ExploreArgs {
+    /// Many hardware designs, and which of them no other beats in time, area, energy and wrong samples: a TOML file of
+    /// ranges, or bundled (--print-space shows it). Takes several scenes; --json prints a line for each point as soon
+    /// as it is there
+    #[arg(long, value_name = "SPACE|bundled", conflicts_with_all = [
+        "hw", "rules", "lanes", "sweep", "caches", "growth", "all", "stats", "heat", "trace", "vectors",
+    ])]
+    pub(in crate::model) explore: Option<String>,
+    /// Print the space, and do nothing else
+    #[arg(long, requires = "explore")]
+    pub(super) print_space: bool,
+    /// Points by number: 7, or 7..12 with both ends; one of them with --print-hw: its hardware
+    #[arg(long, value_name = "FROM..TO", requires = "explore")]
+    pub(super) points: Option<Points>,
+    /// File to which results are appended line by line. Points that it has are not measured again; several
+    /// such files, one after the other, are one
+    #[arg(long, value_name = "FILE", requires = "explore")]
+    pub(super) results: Option<PathBuf>,
+}
+
+/// Numbers of points, both ends included.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Points(pub(super) RangeInclusive<usize>);
+
+impl FromStr for Points {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (from, to) = text.split_once("..").unwrap_or((text, text));
+        match (from.parse(), to.parse()) {
+            (Ok(from), Ok(to)) if from <= to => Ok(Self(from..=to)),
+            _ => Err("expected the number of a point, or FROM..TO, such as 7..12".to_owned()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_by_number() {
+        assert_eq!("7".parse(), Ok(Points(7..=7)));
+        assert_eq!("7..12".parse(), Ok(Points(7..=12)));
+        for bad in ["", "12..7", "..", "1..", "-1", "1..2..3"] {
+            assert!(bad.parse::<Points>().is_err(), "{bad}");
+        }
+    }
+}

@@ -1,0 +1,271 @@
+//! `model --explore`: which of many designs are worth building.
+
+pub(super) mod args;
+mod output;
+mod page;
+mod results;
+mod words;
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::Path;
+
+use serde_json::{Value, json};
+use xxhash_rust::xxh3::xxh3_64;
+
+use args::ExploreArgs;
+
+use super::args::{ModelArgs, hardware_named, read};
+use super::findings::setup_options;
+use crate::console::Console;
+use crate::document;
+use crate::error::{CliError, Kind};
+use crate::experiment::subjects;
+use crate::report;
+use shiftvox_lab::bench::Subject;
+use shiftvox_lab::model::cost::Prices;
+use shiftvox_lab::model::explore::front::{self, FrontPoint};
+use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
+use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
+use shiftvox_lab::model::explore::{self, Explored};
+use shiftvox::project::Camera;
+use shiftvox::whole;
+use results::ResultsFile;
+
+/// What was found of a scene.
+struct Explorations {
+    scene: String,
+    /// Points of the space.
+    all: usize,
+    points: Vec<PointLine>,
+    front: Vec<FrontPoint>,
+}
+
+pub(super) fn run(
+    space: &str,
+    args: &ModelArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    let text = text_of(space)?;
+    if args.explore.print_space {
+        return console.data(text.trim_end());
+    }
+    let space = open_space(space, &text)?;
+    let picked = picked(&args.explore, space.len())?;
+    if args.hardware.print_hw {
+        return print_hardware(&space, picked, console);
+    }
+    if args.rules.bits.is_some() && space.axes().iter().any(|axis| axis.key == "bits") {
+        return Err(CliError::usage(
+            "the space has a range of bits: leave --bits out",
+        ));
+    }
+    super::output::check(args)?;
+    let prices = args.hardware.prices()?;
+    let names = subjects::names_or(&args.scenes, from_config, &[subjects::BUNDLED]);
+    let size = (args.size.width, args.size.height);
+    let scene_args = args.rules.scene_args(&args.scene);
+    let mut scenes: Vec<(Subject, Value)> = Vec::new();
+    for name in &names {
+        if scenes.iter().any(|(subject, _)| subject.name == *name) {
+            return Err(CliError::usage(format!("{name}: a scene twice")));
+        }
+        let subject = subjects::open(name, &args.camera, &scene_args, size, console)?;
+        let header = header(&subject, args, &space, &prices);
+        scenes.push((subject, header));
+    }
+    let headers: Vec<Value> = scenes.iter().map(|(_, header)| header.clone()).collect();
+    let (mut file, mut recorded) = match &args.explore.results {
+        None => (None, Default::default()),
+        Some(path) => {
+            let (file, recorded) = ResultsFile::open(path, &headers)?;
+            let mut numbers = recorded.points.keys().map(|(_, number)| number);
+            if let Some(stranger) = numbers.find(|&&number| number >= space.len()) {
+                let told = format!("there is no point {stranger}");
+                return Err(CliError::input(told).at(path.display()));
+            }
+            (Some(file), recorded)
+        }
+    };
+    let asked = Asked {
+        args,
+        space: &space,
+        picked,
+        prices: &prices,
+        console,
+    };
+    let mut found = Vec::new();
+    for (subject, header) in &scenes {
+        let name = &subject.name;
+        let header = kind_first("space", header);
+        if let Some(file) = file
+            .as_mut()
+            .filter(|_| recorded.scenes.insert(name.clone()))
+        {
+            file.append(&header)?;
+        }
+        console.line(&header)?;
+        let known = recorded
+            .points
+            .range((name.clone(), 0)..=(name.clone(), usize::MAX));
+        let known = known
+            .map(|((_, number), line)| (*number, line.clone()))
+            .collect();
+        let points = measure(&asked, subject, known, &mut file);
+        let points = points.map_err(|error| error.at(name))?;
+        found.push(Explorations {
+            scene: name.clone(),
+            all: space.len(),
+            front: front::front(&points),
+            points,
+        });
+    }
+    output::write(&found, args, console)
+}
+
+/// The text of a space: one that ships, or a file.
+fn text_of(name: &str) -> Result<String, CliError> {
+    if let Some((_, text)) = SPACES.iter().find(|(of, _)| *of == name) {
+        return Ok((*text).to_owned());
+    }
+    read(Path::new(name))
+}
+
+fn open_space(name: &str, text: &str) -> Result<Space, CliError> {
+    // Descriptions are files beside the space.
+    let folder = whole::folder_of(Path::new(name));
+    let open = |name: &str| hardware_named(name, folder).map_err(|error| error.to_string());
+    Space::from_toml(text, open).map_err(|error| CliError::input(error).at(name))
+}
+
+/// The points that are asked for, of so many.
+fn picked(args: &ExploreArgs, all: usize) -> Result<Range<usize>, CliError> {
+    match &args.points {
+        Some(points) if *points.0.end() >= all => Err(CliError::usage(format!(
+            "--points: the space has points 0 to {}",
+            all - 1
+        ))),
+        Some(points) => Ok(*points.0.start()..points.0.end() + 1),
+        None => Ok(0..all),
+    }
+}
+
+/// Prints a point's hardware, as `--hw` takes it.
+fn print_hardware(space: &Space, picked: Range<usize>, console: &Console) -> Result<(), CliError> {
+    if picked.len() != 1 {
+        return Err(CliError::usage(
+            "--print-hw prints one hardware: say which with --points",
+        ));
+    }
+    let point = space.point(picked.start).map_err(CliError::input)?;
+    let text = toml::to_string(&point.hardware).map_err(|e| CliError::new(Kind::Run, e))?;
+    let bits = point.bits.map_or_else(String::new, |bits| {
+        format!("# to be drawn with --bits {bits}\n")
+    });
+    let number = point.number;
+    console.data(format!(
+        "# Point {number}: {point}\n{bits}\n{}",
+        text.trim_end()
+    ))
+}
+
+/// What results are of: a run takes none of another.
+fn header(subject: &Subject, args: &ModelArgs, space: &Space, prices: &Prices) -> Value {
+    let graph = &subject.graph;
+    // Everything that figures depend on and that has no name of its own.
+    let digest = |of: &[u8]| format!("{:016x}", xxh3_64(of));
+    document::document(
+        "explore",
+        json!({
+            "space": digest(format!("{space:?}").as_bytes()),
+            "space_points": space.len(),
+            "prices": digest(format!("{prices:?}").as_bytes()),
+            "scene": {
+                "name": subject.name,
+                "voxels": graph.voxels,
+                "nodes": graph.len(),
+                "masks": digest(&graph.mask),
+                "camera": report::camera(&subject.camera),
+            },
+            "width": args.size.width,
+            "height": args.size.height,
+            "options": format!("{:?}", setup_options(args)),
+            "overflow": format!("{:?}", args.rules.overflow()),
+            "ray_order": args.hardware.ray_order,
+        }),
+    )
+}
+
+/// What is measured of every scene.
+struct Asked<'a> {
+    args: &'a ModelArgs,
+    space: &'a Space,
+    picked: Range<usize>,
+    prices: &'a Prices,
+    console: &'a Console,
+}
+
+/// Measures the points of a scene that are picked and not known. Returns all that are known then.
+fn measure(
+    asked: &Asked<'_>,
+    subject: &Subject,
+    mut known: BTreeMap<usize, PointLine>,
+    file: &mut Option<ResultsFile>,
+) -> Result<Vec<PointLine>, CliError> {
+    let Asked {
+        args,
+        space,
+        picked,
+        prices,
+        console,
+    } = asked;
+    let wanted = picked.clone().filter(|number| !known.contains_key(number));
+    let points = wanted.map(|number| space.point(number));
+    let points = points
+        .collect::<Result<Vec<Point>, _>>()
+        .map_err(CliError::input)?;
+    if points.len() < picked.len() {
+        let there = picked.len() - points.len();
+        console.note(format!(
+            "{}: {there} points are there already",
+            subject.name
+        ));
+    }
+    let camera = Camera {
+        width: args.size.width,
+        height: args.size.height,
+        ..subject.camera
+    };
+    let options = setup_options(args);
+    let explored = Explored {
+        graph: &subject.graph,
+        camera: &camera,
+        options: &options,
+        overflow: args.rules.overflow(),
+        order: args.hardware.ray_order,
+        prices,
+    };
+    // Lines are printed in the points' order, also those that were there.
+    let mut next = picked.start;
+    let mut print_up_to = |known: &BTreeMap<usize, PointLine>, end: usize| {
+        for line in known.range(next..end).map(|(_, line)| line) {
+            console.line(&line.to_json())?;
+        }
+        next = end;
+        Ok::<(), CliError>(())
+    };
+    if !points.is_empty() {
+        let (known, print_up_to) = (&mut known, &mut print_up_to);
+        explore::explore(explored, &points, console.progress(), |point, outcome| {
+            let line = PointLine::new(&subject.name, point, outcome);
+            if let Some(file) = file {
+                file.append(&line.to_json())?;
+            }
+            known.insert(point.number, line);
+            print_up_to(known, point.number + 1)
+        })?;
+    }
+    print_up_to(&known, picked.end)?;
+    Ok(known.into_values().collect())
+}

@@ -1,0 +1,58 @@
+//! The file of results: lines are appended to it as points are measured.
+
+use std::fs::{self, File, TryLockError};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use shiftvox::bounded;
+use crate::error::{CliError, Kind};
+use shiftvox_lab::model::explore::lines::{self, Recorded};
+use shiftvox::whole;
+
+/// A file of results that is open, and nobody else's.
+pub(super) struct ResultsFile {
+    file: File,
+    path: PathBuf,
+}
+
+impl ResultsFile {
+    /// Opens or makes a file, and reads what it has. What was not written to its end is cut off.
+    pub(super) fn open(path: &Path, asked: &[Value]) -> Result<(Self, Recorded), CliError> {
+        let at = |kind: Kind| {
+            move |error: &dyn std::fmt::Display| CliError::new(kind, error).at(path.display())
+        };
+        if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+            return Err(at(Kind::Input)(&"it is not a regular file"));
+        }
+        whole::make_folder(whole::folder_of(path))?;
+        let mut options = File::options();
+        let file = options.create(true).append(true).open(path);
+        let file = file.map_err(|error| at(Kind::Run)(&error))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(at(Kind::Run)(&"another run writes to it"));
+            }
+            // Where files cannot be locked there is no harm in one run.
+            Err(TryLockError::Error(_)) => {}
+        }
+        let text = bounded::read_whole(path).map_err(|error| at(Kind::Run)(&error))?;
+        let recorded = lines::read(&text, asked).map_err(|error| {
+            at(Kind::Input)(&error).advise("give another name with --results, or remove the file")
+        })?;
+        if recorded.bytes < text.len() {
+            file.set_len(recorded.bytes as u64)
+                .map_err(|error| at(Kind::Run)(&error))?;
+        }
+        let path = path.to_owned();
+        Ok((Self { file, path }, recorded))
+    }
+
+    /// Appends a line.
+    pub(super) fn append(&mut self, line: &str) -> Result<(), CliError> {
+        let written = self.file.write_all(format!("{line}\n").as_bytes());
+        written.map_err(|error| CliError::new(Kind::Run, error).at(self.path.display()))
+    }
+}

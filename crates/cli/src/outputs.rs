@@ -1,0 +1,157 @@
+//! Names and contents of the files that a picture becomes.
+
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::args::Setting;
+use super::error::CliError;
+use shiftvox::budget;
+use shiftvox::drawing::{Buffers, Shown};
+use shiftvox::picture::{Buffer, Rows, npy};
+use shiftvox::whole;
+use shiftvox::whole::Prepared;
+
+/// The file of a buffer: `{out stem}.{aov}.npy` beside the picture.
+pub(super) fn buffer_path(picture: &Path, buffer: Buffer) -> PathBuf {
+    picture.with_extension(format!("{}.npy", buffer.name()))
+}
+
+/// All files that a picture and its buffers become.
+pub(super) fn paths(picture: &Path, buffers: &[Buffer]) -> Vec<PathBuf> {
+    let beside = buffers.iter().map(|&buffer| buffer_path(picture, buffer));
+    std::iter::once(picture.to_owned()).chain(beside).collect()
+}
+
+/// Fails before the work if a file would have to be replaced without `--force`.
+pub(super) fn check_free(paths: &[PathBuf], force: bool) -> Result<(), CliError> {
+    for path in paths {
+        whole::check_free(path, force)?;
+    }
+    Ok(())
+}
+
+/// Fails before the work if the buffers of so many pictures take more disk than is free.
+pub(super) fn check_room(
+    picture: &Path,
+    buffers: &[Buffer],
+    (width, height): (u32, u32),
+    pictures: usize,
+) -> Result<(), CliError> {
+    let pixels = u64::from(width) * u64::from(height) * pictures as u64;
+    let bytes = |buffer: &Buffer| match buffer {
+        Buffer::Color => 4,
+        other => 4 * other.entries() as u64,
+    };
+    let needed = pixels.saturating_mul(buffers.iter().map(bytes).sum());
+    Ok(budget::check_disk(whole::folder_of(picture), needed)?)
+}
+
+/// Whether the name is one of a picture that we write.
+pub(super) fn check_picture_name(path: &Path) -> Result<(), CliError> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or("");
+    if ending.eq_ignore_ascii_case("png") {
+        return Ok(());
+    }
+    Err(
+        CliError::usage(format!("{}: pictures are written as PNG", path.display()))
+            .advise("end the name in .png; for numbers use --aov, which writes .npy files"),
+    )
+}
+
+/// Writes a picture's colours, and the buffers that are asked for: all of them or none.
+pub(super) fn write(
+    shown: &Shown<'_>,
+    path: &Path,
+    buffers: &[Buffer],
+    force: bool,
+) -> Result<(), CliError> {
+    Ok(whole::keep(prepare(shown, path, buffers, force)?)?)
+}
+
+/// Writes all of them under temporary names, for [`whole::keep`].
+pub(super) fn prepare(
+    shown: &Shown<'_>,
+    path: &Path,
+    buffers: &[Buffer],
+    force: bool,
+) -> Result<Vec<Prepared>, CliError> {
+    let picture = whole::prepare(path, force, |file| {
+        let mut file = BufWriter::new(file);
+        shown.pixels.write(&mut file).map_err(io::Error::other)?;
+        file.flush()
+    })?;
+    let mut files = vec![picture];
+    for &buffer in buffers {
+        let path = buffer_path(path, buffer);
+        files.push(prepare_buffer(&shown.buffers, buffer, &path, force)?);
+    }
+    Ok(files)
+}
+
+/// Writes a buffer as it is made.
+fn prepare_buffer(
+    picture: &Buffers<'_>,
+    buffer: Buffer,
+    path: &Path,
+    force: bool,
+) -> Result<Prepared, CliError> {
+    let (width, height) = picture.size();
+    let mut shape = vec![height as usize, width as usize];
+    if buffer.entries() > 1 {
+        shape.push(buffer.entries());
+    }
+    let mut failed = None;
+    let written = whole::prepare(path, force, |file| {
+        file.write_all(&npy::header(&shape, &buffer.none()))?;
+        for rows in picture.steps() {
+            match picture.rows(buffer, rows) {
+                Ok(values) => file.write_all(&values.bytes())?,
+                Err(error) => {
+                    failed = Some(error);
+                    return Err(io::Error::other("rows cannot be made"));
+                }
+            }
+        }
+        Ok(())
+    });
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    Ok(written?)
+}
+
+/// The two files that `--outdir` leaves.
+pub(super) fn record_paths(outdir: &Path) -> [PathBuf; 2] {
+    [outdir.join("config.toml"), outdir.join("stats.json")]
+}
+
+/// Writes the resolved configuration and the report of a run.
+pub(super) fn write_record(
+    outdir: &Path,
+    settings: Vec<Setting>,
+    report: &serde_json::Value,
+    force: bool,
+) -> Result<(), CliError> {
+    let table: toml::Table = settings
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect();
+    let [config, stats] = record_paths(outdir);
+    whole::write(&config, table.to_string().as_bytes(), force)?;
+    whole::write(&stats, format!("{report:#}\n").as_bytes(), force)?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buffers_stand_beside_the_picture() {
+        let found = paths(Path::new("a/b.c.png"), &[Buffer::Depth]);
+        assert_eq!(
+            found,
+            [Path::new("a/b.c.png"), Path::new("a/b.c.depth.npy")]
+        );
+    }
+}

@@ -1,0 +1,205 @@
+//! Scenes written to files.
+
+use std::path::Path;
+
+use serde_json::json;
+
+use super::args::SceneArgs;
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::scenes::{self, Scene};
+use super::{names, report};
+use shiftvox::budget;
+use shiftvox::graph::{ExternalOptions, ExternalReport, Graph, Progress, Voxel, vxg};
+use shiftvox::scene::{self, Source};
+use shiftvox::whole;
+
+/// Most voxels that are written to a voxel file.
+const MAX_WRITTEN: u64 = 1 << 28;
+
+/// Least bytes of a node in a `.vxg`, of a voxel in a `.ply` and in a `.vox`.
+const NODE_BYTES: u64 = 5;
+const PLY_BYTES: u64 = 27;
+const VOX_BYTES: u64 = 4;
+
+/// Where a conversion reads and writes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Conversion<'a> {
+    /// The scene, as the user named it.
+    pub(super) input: &'a str,
+    /// The file.
+    pub(super) output: &'a Path,
+    /// Whether a file that exists is replaced.
+    pub(super) force: bool,
+    /// How the scene is read.
+    pub(super) scene: &'a SceneArgs,
+}
+
+/// What a conversion wrote.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Written {
+    /// Voxels in the scene.
+    pub(super) voxels: u64,
+    /// Bytes written.
+    pub(super) bytes: u64,
+    /// What the user should know.
+    pub(super) warnings: Vec<String>,
+}
+
+/// Refuses, before any work, a name whose ending is that of no format that scenes are written in.
+pub(super) fn check_ending(output: &Path) -> Result<(), CliError> {
+    match output.extension().and_then(|e| e.to_str()) {
+        Some("vxg" | "vox" | "ply") => Ok(()),
+        _ => Err(CliError::usage(format!(
+            "{}: cannot tell the format to write from the ending",
+            output.display()
+        ))
+        .advise("end the name in .vxg, .vox or .ply; of a mesh also in .far or .tvx")),
+    }
+}
+
+/// Writes a scene in the format that the output's ending names.
+///
+/// # Errors
+/// An unknown format (usage), a file that exists, or a failed write.
+pub(super) fn write(
+    scene: &Scene,
+    output: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<Written, CliError> {
+    let graph = &scene.graph;
+    let mut warnings = Vec::new();
+    let ending = output.extension().and_then(|e| e.to_str()).unwrap_or("");
+    let least = match ending {
+        "vxg" => NODE_BYTES * graph.len() as u64,
+        "ply" => graph.voxels.saturating_mul(PLY_BYTES),
+        _ => graph.voxels.saturating_mul(VOX_BYTES),
+    };
+    budget::check_disk(whole::folder_of(output), least)?;
+    progress.begin("writing", 0);
+    match ending {
+        "vxg" => whole::write_with(output, force, |file| {
+            vxg::write_to(graph, file).map_err(std::io::Error::other)
+        })?,
+        "vox" => {
+            let mut writer = scene::VoxWriter::new();
+            for voxel in voxels(graph)? {
+                writer.add(voxel);
+            }
+            whole::write_with(output, force, |file| {
+                let written = writer.write(file)?;
+                if written.colors_given > written.colors_kept {
+                    warnings.push(format!(
+                        "{} colours were reduced to the {} that a .vox holds",
+                        written.colors_given, written.colors_kept
+                    ));
+                }
+                Ok(())
+            })?;
+        }
+        "ply" => {
+            let all = voxels(graph)?;
+            whole::write_with(output, force, |file| {
+                scene::write_ply(file, all, true).map(|_| ())
+            })?;
+        }
+        _ => check_ending(output)?,
+    }
+    progress.end();
+    let bytes = std::fs::metadata(output).map_or(0, |m| m.len());
+    Ok(Written {
+        voxels: graph.voxels,
+        bytes,
+        warnings,
+    })
+}
+
+/// Builds a `.vxg` file of a scene within a limit of memory.
+///
+/// # Errors
+/// A bad input, a file that exists, or a failed write.
+pub(super) fn build_file(
+    source: &str,
+    args: &SceneArgs,
+    external: ExternalOptions,
+    output: &Path,
+    force: bool,
+    progress: &dyn Progress,
+) -> Result<(Written, Option<ExternalReport>), CliError> {
+    let found = Source::find(names::path(source))?;
+    let mut options = scenes::options(args);
+    options.voxels.verify_up_to = u64::MAX;
+    let built = scene::build_file_of(
+        found,
+        source,
+        &options.voxels,
+        &options.mesh,
+        external,
+        output,
+        force,
+        progress,
+    )?;
+    let written = Written {
+        voxels: built.voxels,
+        bytes: built.bytes,
+        warnings: built.info.map(|info| info.warnings).unwrap_or_default(),
+    };
+    Ok((written, built.report))
+}
+
+/// The finest voxels of a graph at their file indices; a large leaf is many.
+fn voxels(graph: &Graph) -> Result<impl Iterator<Item = Voxel> + '_, CliError> {
+    if graph.voxels > MAX_WRITTEN {
+        return Err(CliError::new(
+            Kind::Limit,
+            format!("a voxel file of {} voxels is too large", graph.voxels),
+        )
+        .advise("write a .vxg, or convert a scene of fewer levels"));
+    }
+    Ok(graph.voxels().flat_map(move |cell| {
+        let corner = graph.file_index(&cell);
+        let side = 1i64 << (graph.depth - cell.level);
+        let color = graph.color_of(cell.node);
+        let normal = graph.normal_of(cell.node);
+        (0..side * side * side).map(move |i| {
+            let offset = [i / (side * side), i / side % side, i % side];
+            Voxel {
+                // Within `i32`, as the builder made sure.
+                index: std::array::from_fn(|k| (corner[k] + offset[k]) as i32),
+                color,
+                normal: Some(normal).filter(|n| !n.is_none()),
+            }
+        })
+    }))
+}
+
+/// Reports what was written.
+pub(super) fn report_written(
+    command: &str,
+    input: &str,
+    output: &Path,
+    written: &Written,
+    console: &Console,
+) -> Result<(), CliError> {
+    for warning in &written.warnings {
+        console.note(format!("{}: {warning}", output.display()));
+    }
+    console.note(format!(
+        "{}: {} voxels, {} bytes",
+        output.display(),
+        report::grouped(written.voxels),
+        report::grouped(written.bytes)
+    ));
+    if console.json {
+        let fields = json!({
+            "input": input,
+            "output": names::of_path(output),
+            "voxels": written.voxels,
+            "bytes": written.bytes,
+            "warnings": written.warnings,
+        });
+        console.document(&report::document(command, fields))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,249 @@
+//! The only place of the command line that opens and makes scenes.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::SceneArgs;
+use super::console::Console;
+use super::error::CliError;
+use super::fatal_signals;
+use super::names;
+use shiftvox::drawing::milliseconds_since;
+use shiftvox::graph::{Graph, Progress};
+use shiftvox_mesh::{LoadOptions, Mesh};
+use shiftvox::project::Up;
+use shiftvox_lab::report::grouped;
+use shiftvox::scene::{self, FileKind, NoMeshes, MeshSummary, Opened, ReadOptions, Source};
+use shiftvox_mesh::open::{MeshOptions, OpenOptions};
+
+/// The scene that the demo draws: a tree, see `assets/ATTRIBUTION.md`.
+const DEMO: &[u8] = scene::BUNDLED_TREE;
+
+/// A scene that is ready to be drawn.
+#[derive(Debug)]
+pub(super) struct Scene {
+    /// What to draw.
+    pub(super) graph: Graph,
+    /// What the user called it.
+    pub(super) source: String,
+    /// The format, in words.
+    pub(super) format: String,
+    /// Which axis is up.
+    pub(super) up: Up,
+    /// What the mesh was, where it was one.
+    pub(super) mesh: Option<MeshSummary>,
+    /// Entries of the file's palette, if it has one.
+    pub(super) palette: Option<usize>,
+    /// What the user should know although the scene could be read.
+    pub(super) warnings: Vec<String>,
+    /// Whether all of the file was checked.
+    pub(super) is_verified: bool,
+    /// Time to read and build, milliseconds.
+    pub(super) load_ms: f64,
+}
+
+/// Scenes of the command line, or else of the configuration file.
+pub(super) fn choose(given: &[String], from_config: Vec<String>) -> Result<Vec<String>, CliError> {
+    let names = if given.is_empty() {
+        from_config
+    } else {
+        given.to_vec()
+    };
+    if names.is_empty() {
+        return Err(CliError::usage("no scene was given")
+            .advise("name a file or a generator such as gen:terrain,depth=10,seed=1"));
+    }
+    Ok(names)
+}
+
+/// Opens a file or makes a `gen:` scene, and prints its warnings.
+///
+/// # Errors
+/// A bad input with file, offset, what was expected and what to do.
+pub(super) fn open(name: &str, args: &SceneArgs, console: &Console) -> Result<Scene, CliError> {
+    let started = Instant::now();
+    open_source(
+        Source::find(names::path(name))?,
+        name,
+        args,
+        Verify::IfSmall,
+        started,
+        console,
+    )
+}
+
+/// How much of a graph file is verified before it is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verify {
+    /// All of a small one, the header of a large one.
+    IfSmall,
+    /// All.
+    All,
+}
+
+/// [`open`], of what was found already, at `started`. Commands that read all of a scene verify all
+/// of it.
+///
+/// # Errors
+/// As [`open`].
+pub(super) fn open_source(
+    source: Source,
+    name: &str,
+    args: &SceneArgs,
+    verify: Verify,
+    started: Instant,
+    console: &Console,
+) -> Result<Scene, CliError> {
+    fatal_signals::reads(name);
+    let mut options = options(args);
+    if verify == Verify::All {
+        options.voxels.verify_up_to = u64::MAX;
+    }
+    let opened = scene::open_source(source, &options.voxels, &options.mesh, console.progress())?;
+    let scene = ready(opened, name, args.mesh_up, started);
+    if !scene.is_verified {
+        console.note(format!(
+            "{name}: not verified: a file of this size is checked by `shiftvox info` and \
+             `convert`, which read all of it"
+        ));
+    }
+    for warning in &scene.warnings {
+        console.note(format!("{name}: {warning}"));
+    }
+    if let Some(mesh) = &scene.mesh {
+        let said = if args.depth.is_some() {
+            ""
+        } else {
+            ", the default; --depth says another"
+        };
+        console.note(format!(
+            "{name}: {} triangles voxelised with {} levels{said}: {} voxels in {:.1} ms",
+            grouped(mesh.triangles),
+            mesh.depth,
+            grouped(scene.graph.voxels),
+            mesh.voxelize_ms
+        ));
+    }
+    console.detail(format!(
+        "{name}: {} voxels, {} nodes, {} levels, read and built in {:.1} ms",
+        grouped(scene.graph.voxels),
+        grouped(scene.graph.len() as u64),
+        scene.graph.depth,
+        scene.load_ms
+    ));
+    Ok(scene)
+}
+
+/// Whether a scene is a file of triangles.
+///
+/// # Errors
+/// Where it is a file that cannot be read.
+pub(super) fn is_mesh(name: &str) -> Result<bool, CliError> {
+    Ok(Source::find(names::path(name))?
+        .kind()
+        .is_some_and(FileKind::is_mesh))
+}
+
+/// Reads a mesh for its triangles, and says which axis is up.
+///
+/// # Errors
+/// A bad input with file, place, what was expected and what to do.
+pub(super) fn read_mesh(
+    source: &str,
+    args: &SceneArgs,
+    progress: &dyn Progress,
+) -> Result<(Mesh, Up), CliError> {
+    if source.starts_with("gen:") {
+        return Err(CliError::input(format!(
+            "{source}: a generator makes voxels, and a mesh is needed here"
+        )));
+    }
+    fatal_signals::reads(source);
+    let (mesh, y_up) = shiftvox_mesh::open::read_mesh(&names::path(source), &load_options(args), progress)?;
+    Ok((mesh, args.up_or(Up::y_or_z(y_up))))
+}
+
+/// [`read_mesh`], and prints the mesh's warnings.
+///
+/// # Errors
+/// As [`read_mesh`].
+pub(super) fn open_mesh(
+    source: &str,
+    args: &SceneArgs,
+    console: &Console,
+) -> Result<(Mesh, Up), CliError> {
+    let (mesh, up) = read_mesh(source, args, console.progress())?;
+    for warning in mesh.warnings() {
+        console.note(format!("{source}: {warning}"));
+    }
+    Ok((mesh, up))
+}
+
+/// The bundled scene of the demo.
+///
+/// # Errors
+/// None: the tests open it.
+pub(super) fn demo(progress: &dyn Progress) -> Result<Scene, CliError> {
+    let started = Instant::now();
+    let name = "the bundled scene";
+    let options = scene::OpenOptions::default();
+    let opened = scene::open_bytes(DEMO, name, &options, &NoMeshes, progress)?;
+    Ok(ready(opened, name, None, started))
+}
+
+/// How scenes are read.
+pub(super) fn options(args: &SceneArgs) -> OpenOptions {
+    OpenOptions {
+        voxels: scene::OpenOptions {
+            read: ReadOptions {
+                oob: args.oob,
+                ..ReadOptions::default()
+            },
+            ..scene::OpenOptions::default()
+        },
+        mesh: MeshOptions {
+            depth: args.mesh_depth(),
+            load: load_options(args),
+            opacities: args.opacities,
+            y_up: args.mesh_up.map(|up| up == Up::Y),
+        },
+    }
+}
+
+fn load_options(args: &SceneArgs) -> LoadOptions {
+    LoadOptions {
+        mtl_colors: args.mesh_colors,
+        ..LoadOptions::default()
+    }
+}
+
+fn ready(mut opened: Opened, source: &str, mesh_up: Option<Up>, started: Instant) -> Scene {
+    let info = opened.info.as_ref();
+    // What was said of a file that keeps it is kept in what is written of it.
+    if let (Some(up), Some(mesh)) = (mesh_up, &mut opened.graph.placement.mesh) {
+        mesh.y_up = up == Up::Y;
+    }
+    Scene {
+        source: source.to_owned(),
+        format: opened.format,
+        up: mesh_up.unwrap_or(Up::of(&opened.graph)),
+        mesh: opened.mesh,
+        palette: info.map(|i| i.palette.len()).filter(|&entries| entries > 0),
+        warnings: info.map(|i| i.warnings.clone()).unwrap_or_default(),
+        graph: opened.graph,
+        is_verified: opened.is_verified,
+        load_ms: milliseconds_since(started),
+    }
+}
+
+/// A scene's name without folder and ending, for `{stem}`.
+#[must_use]
+pub(super) fn stem(source: &str) -> String {
+    if Source::is_generated(source) {
+        let name = source.trim_start_matches(scene::generate::PREFIX);
+        return name.replace([',', '=', '/', '\\'], "-");
+    }
+    Path::new(source)
+        .file_stem()
+        .map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned())
+}

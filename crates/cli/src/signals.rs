@@ -1,0 +1,57 @@
+//! Signals that stop the program: Ctrl-C, `kill`, a closed terminal.
+//!
+//! Files that are not whole yet are removed; then the program ends by the signal, as if it had not
+//! been caught, so that shells and scripts see why (130 for Ctrl-C). Without signals (not Unix), or
+//! where it is killed, a temporary file is left, which the next run that writes to its folder
+//! removes ([`shiftvox::whole`]).
+
+/// Installs the handlers. A file that grows beyond a limit (SIGXFSZ) is an error of the write and
+/// no longer the program's end. A signal that the program was started to ignore, as shells and `nohup` do
+/// for work in the background, stays ignored.
+#[cfg(unix)]
+pub(super) fn tidy_up_when_stopped() {
+    use std::sync::Arc;
+
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
+    use signal_hook::iterator::Signals;
+    use signal_hook::low_level::emulate_default_handler;
+
+    use shiftvox::whole::remove_unfinished;
+
+    // Nobody reads the flag: what counts is that the signal is caught.
+    let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
+    let ignored = ignored_signals();
+    let wanted = [SIGINT, SIGTERM, SIGHUP]
+        .into_iter()
+        .filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    // Where signals cannot be had the program is stopped as any other.
+    let Ok(mut signals) = Signals::new(wanted) else {
+        return;
+    };
+    let wait = move || {
+        if let Some(signal) = signals.forever().next() {
+            remove_unfinished(|| {
+                let _ = emulate_default_handler(signal);
+                // Not reached where the system has the signal's default.
+                std::process::exit(128 + signal);
+            });
+        }
+    };
+    // No thread, no tidying; the signals' defaults are gone by then, but the work goes on.
+    let _ = std::thread::Builder::new()
+        .name("signals".to_owned())
+        .spawn(wait);
+}
+
+#[cfg(not(unix))]
+pub(super) fn tidy_up_when_stopped() {}
+
+/// The signals that this process was started to ignore, a bit each, from signal 1 on. Only Linux
+/// says.
+#[cfg(unix)]
+fn ignored_signals() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok())
+        .unwrap_or(0)
+}

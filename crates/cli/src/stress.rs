@@ -1,0 +1,254 @@
+//! `stress`: the numerical stability sweep.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use serde_json::json;
+
+use super::console::Console;
+use super::error::{CliError, Kind};
+use super::experiment::context::Context;
+use super::experiment::export;
+use super::report;
+use shiftvox_lab::stress::{self, Case, End, Findings, Hold, Outcome, SweepPlan, rows, tables};
+use shiftvox::whole;
+
+/// Arguments of `stress`.
+#[derive(Debug, Args)]
+pub(super) struct StressArgs {
+    /// Scenes: generators, plane:depth,a,b,c, solid:depth, cyclic:depth,seed or
+    /// voxels:depth,x.y.z+x.y.z [default: thirteen of them]
+    #[arg(value_name = "SCENE")]
+    scenes: Vec<String>,
+    /// Chooses viewpoints and rules; the same seed gives the same sweep
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// All widths from 16 to 64 bits, more scenes, larger pictures, most rules: hours
+    #[arg(long)]
+    thorough: bool,
+    /// Word widths in bits
+    #[arg(long, value_name = "LIST", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(16..=64))]
+    bits: Vec<u32>,
+    /// Pictures' sides, pixels
+    #[arg(long, value_name = "LIST", value_delimiter = ',',
+          value_parser = clap::value_parser!(u32).range(1..=2048))]
+    size: Vec<u32>,
+    /// Rules (coverage, tolerance, cage, level of detail) for each scene, viewpoint and format, of
+    /// 56
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    rules: Option<u32>,
+    /// Viewpoints that the seed chooses, beside the thirteen standard ones
+    #[arg(long, value_name = "N")]
+    viewpoints: Option<u32>,
+    /// Draw one case alone: a line that a failing sweep prints
+    #[arg(long, value_name = "CASE", conflicts_with_all = ["scenes", "thorough", "bits", "size", "rules", "viewpoints"])]
+    case: Option<Case>,
+    /// All results, as --json prints them
+    #[arg(long, value_name = "FILE")]
+    export_json: Option<PathBuf>,
+    /// Replace files that exist
+    #[arg(long)]
+    force: bool,
+}
+
+/// Failing cases that are printed.
+const PRINTED: usize = 10;
+
+pub(super) fn run(
+    args: &StressArgs,
+    from_config: Vec<String>,
+    console: &Console,
+) -> Result<(), CliError> {
+    if let Some(case) = &args.case {
+        return run_case(case, console);
+    }
+    if let Some(path) = &args.export_json {
+        whole::check_free(path, args.force)?;
+    }
+    let plan = plan(args, &from_config)?;
+    let context = Context::now();
+    let started = std::time::Instant::now();
+    let findings = stress::sweep(&plan, console.progress()).map_err(CliError::input)?;
+    let seconds = started.elapsed().as_secs_f64();
+    let document = document(&plan, &findings, &context);
+    if let Some(path) = &args.export_json {
+        whole::write(path, format!("{document:#}\n").as_bytes(), args.force)?;
+        console.note(format!("{}: written", path.display()));
+    }
+    match console.json {
+        true => console.document(&document)?,
+        false => export::print(&tables(&plan, &findings), console)?,
+    }
+    let total = findings.total();
+    console.note(format!(
+        "{} frames in {seconds:.0} s",
+        report::grouped(total.cases)
+    ));
+    if total.failed == 0 {
+        return Ok(());
+    }
+    for failed in findings
+        .failed
+        .iter()
+        .filter(|f| f.minimal.is_some())
+        .take(PRINTED)
+    {
+        let minimal = failed.minimal.as_deref().unwrap_or(&failed.case);
+        let detail = failed.minimal_detail.as_deref().unwrap_or(&failed.detail);
+        console.note(format!(
+            "{}: {detail}\n  shiftvox stress --case '{minimal}'",
+            failed.check.name()
+        ));
+        if let Some(render) = &failed.render {
+            console.note(format!("  {render}"));
+        }
+    }
+    Err(CliError::new(
+        Kind::Failed,
+        format!(
+            "{} of {} frames did not keep what they must",
+            report::grouped(total.failed),
+            report::grouped(total.cases)
+        ),
+    ))
+}
+
+fn plan(args: &StressArgs, from_config: &[String]) -> Result<SweepPlan, CliError> {
+    let mut plan = SweepPlan::new(args.seed, args.thorough);
+    let named = match args.scenes.is_empty() {
+        true => from_config,
+        false => &args.scenes,
+    };
+    if !named.is_empty() {
+        let scenes = named.iter().map(|text| text.parse());
+        plan.scenes = scenes
+            .collect::<Result<_, String>>()
+            .map_err(CliError::input)?;
+    }
+    if !args.bits.is_empty() {
+        plan.bits.clone_from(&args.bits);
+        plan.bits.sort_unstable();
+        plan.bits.dedup();
+    }
+    if !args.size.is_empty() {
+        plan.pixels.clone_from(&args.size);
+    }
+    if let Some(rules) = args.rules {
+        plan.rules = rules as usize;
+    }
+    if let Some(viewpoints) = args.viewpoints {
+        plan.random_viewpoints = viewpoints;
+    }
+    Ok(plan)
+}
+
+fn document(plan: &SweepPlan, findings: &Findings, context: &Context) -> serde_json::Value {
+    let table = rows(plan, findings);
+    let rows: Vec<serde_json::Value> = table
+        .rows
+        .iter()
+        .map(|row| {
+            let fields = table.columns.iter().zip(row);
+            fields
+                .map(|(name, cell)| ((*name).to_owned(), json!(cell)))
+                .collect()
+        })
+        .collect();
+    let worst: Vec<serde_json::Value> = findings
+        .worst
+        .iter()
+        .map(|((hold, bits), worst)| {
+            json!({ "held_in": Hold::ALL[*hold], "bits": bits, "worst": worst })
+        })
+        .collect();
+    let viewpoints: serde_json::Map<String, serde_json::Value> = findings
+        .viewpoints
+        .iter()
+        .map(|(name, tally)| ((*name).to_owned(), json!(tally)))
+        .collect();
+    let failures: serde_json::Map<String, serde_json::Value> = findings
+        .failures
+        .iter()
+        .map(|(check, count)| (check.name().to_owned(), json!(count)))
+        .collect();
+    report::document(
+        "stress",
+        json!({
+            "command": context.command_line(),
+            "seed": plan.seed,
+            "total": findings.total(),
+            "failures": failures,
+            "failed": findings.failed,
+            "traps": findings.traps,
+            "refusals": findings.refusals,
+            "viewpoints": viewpoints,
+            "vertices": worst,
+            "results": rows,
+        }),
+    )
+}
+
+/// Draws one case and prints what was found.
+fn run_case(case: &Case, console: &Console) -> Result<(), CliError> {
+    let outcome = stress::run_case(case, stress::PATIENCE).map_err(CliError::input)?;
+    if console.json {
+        let fields = json!({ "case": case.to_string(), "outcome": outcome });
+        console.document(&report::document("stress case", fields))?;
+    } else {
+        console.data(description(case, &outcome))?;
+    }
+    match outcome.failures.first() {
+        None => Ok(()),
+        Some(first) => Err(CliError::new(
+            Kind::Failed,
+            format!("{}: {}", first.check.name(), first.detail),
+        )),
+    }
+}
+
+fn description(case: &Case, outcome: &Outcome) -> String {
+    let mut lines = vec![case.to_string()];
+    lines.push(match &outcome.end {
+        End::Drawn => format!(
+            "drawn with {} records; {} samples covered by the oracle, {} extra, {} missing, {} of \
+             another voxel",
+            report::grouped(outcome.records),
+            outcome.coverage.covered,
+            outcome.coverage.extra,
+            outcome.coverage.missing,
+            outcome.coverage.wrong_voxel
+        ),
+        End::Trapped(trap) => format!("trapped: {trap}"),
+        End::Refused(reason) => format!("refused: {reason}"),
+        End::CutOff => format!(
+            "given up after {} records",
+            report::grouped(outcome.records)
+        ),
+    });
+    if outcome.inside > 0 {
+        lines.push(format!(
+            "{} holes in {} samples inside a closed surface",
+            outcome.holes, outcome.inside
+        ));
+    }
+    for (hold, worst) in Hold::ALL.iter().zip(&outcome.worst) {
+        if worst.vertices > 0 {
+            lines.push(format!(
+                "{}: {} coordinates of vertices, worst {:.3e} px of at most {:.3e}",
+                hold.name(),
+                worst.vertices,
+                worst.error_px,
+                worst.bound_px
+            ));
+        }
+    }
+    for failure in &outcome.failures {
+        lines.push(format!(
+            "NOT KEPT, {}: {}",
+            failure.check.name(),
+            failure.detail
+        ));
+    }
+    lines.join("\n")
+}

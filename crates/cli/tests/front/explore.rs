@@ -1,0 +1,575 @@
+//! `model --explore`: what its points are, how a run is gone on with and shared out, what it refuses.
+
+use std::fs;
+use std::path::PathBuf;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use shiftvox_lab::float_rays::RayOrder;
+use shiftvox_lab::model::explore::front::{Objective, front};
+use shiftvox_lab::model::explore::lines::PointLine;
+use shiftvox_lab::model::explore::space::{SPACES, Space};
+use shiftvox_lab::model::explore::{PointFigures, PointOutcome, RivalFigures};
+use shiftvox_lab::model::range::Range;
+use tempfile::TempDir;
+
+const SCENE: &str = "gen:menger,depth=3";
+
+/// Two organisations, words that are too narrow for a right picture, a clock that is too fast.
+const SPACE: &str = r#"
+hardware = ["paper", "light"]
+[ranges]
+bits = [18, 32]
+clock_mhz = [200.0, 400.0]
+contexts = { from = 2, to = 4, times = 2 }
+node_cache.bytes = { from = 1024, to = 4096, times = 4 }
+"#;
+
+/// A folder with a space in it.
+struct Folder(TempDir);
+
+impl Folder {
+    fn new(space: &str) -> Self {
+        let folder = Self(TempDir::new().unwrap());
+        fs::write(folder.path("space.toml"), space).unwrap();
+        folder
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, scene: &str, more: &[&str]) -> Command {
+        let mut command = Command::cargo_bin("shiftvox").expect("built beside the tests");
+        command.current_dir(self.0.path());
+        command.args(["model", scene, "--size", "40", "--explore", "space.toml"]);
+        command.args(more);
+        command
+    }
+
+    /// What a run prints, which succeeds.
+    fn run(&self, more: &[&str]) -> String {
+        let output = self.command(SCENE, more).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{told}");
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// The exit code of a run, and what it says.
+    fn refusal(&self, scene: &str, more: &[&str]) -> (i32, String) {
+        let output = self.command(scene, more).output().unwrap();
+        let told = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code().unwrap(), told)
+    }
+}
+
+fn lines(text: &str, kind: &str) -> Vec<Value> {
+    let all = text.lines().map(|line| serde_json::from_str(line).unwrap());
+    all.filter(|line: &Value| line["kind"] == kind).collect()
+}
+
+fn sum(parts: [&Value; 3], end: &str) -> f64 {
+    parts
+        .iter()
+        .fold(0.0, |sum, part| sum + part[end].as_f64().unwrap())
+}
+
+/// Asserts that points have the figures that `model` has of their hardware alone.
+fn assert_as_alone(folder: &Folder, points: &[Value]) {
+    for found in points {
+        let number = found["point"].to_string();
+        let hardware = folder.run(&["--points", &number, "--print-hw"]);
+        fs::write(folder.path("hw.toml"), hardware).unwrap();
+        let bits = found["values"]["bits"].as_u64().unwrap_or(32).to_string();
+        let mut alone = Command::cargo_bin("shiftvox").unwrap();
+        alone.current_dir(folder.0.path());
+        alone.args(["model", SCENE, "--size", "40", "--hw", "hw.toml", "--json"]);
+        let output = alone.args(["--bits", &bits]).output().unwrap();
+        let model: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let cycles = &model["simulated"]["cycles"];
+        assert_eq!(found["cycles"], cycles["cycles"], "{found}");
+        let rate = cycles["frames_per_second"].as_f64().unwrap();
+        let time = found["time_ms"].as_f64().unwrap();
+        assert!((time * rate / 1e3 - 1.0).abs() < 1e-12);
+        assert_eq!(found["limits"], cycles["bottleneck"]["resource"]);
+        let error = &model["coverage_error"];
+        let wrong = ["extra", "missing", "wrong_voxel"].map(|of| error[of].as_u64().unwrap());
+        assert_eq!(found["wrong_samples"], wrong.iter().sum::<u64>());
+        assert_eq!(found["differing_samples"], model["differing_samples"]);
+        let units = model["clock"]["units"].as_array().unwrap();
+        let meets = |of: &Value| of["depth"].as_u64() >= of["depth_needed"].as_u64();
+        assert_eq!(found["meets_clock"], units.iter().all(meets));
+        let rays = &model["ray_caster"];
+        assert_eq!(found["ray_caster"]["order"], rays["order"]);
+        assert_eq!(found["ray_caster"]["cycles"], rays["cycles"]["cycles"]);
+        for (found, model) in [(found, &model), (&found["ray_caster"], rays)] {
+            for (end, name) in [("value", "total"), ("low", "low"), ("high", "high")] {
+                assert_eq!(found["area_nand2"][end], model["area"][name], "{found}");
+                let cost = ["operations", "on_chip", "outer"].map(|of| &model["cost"][of]);
+                assert_eq!(found["energy_pj"][end], sum(cost, name), "{found}");
+            }
+        }
+    }
+}
+
+/// Where parents lie on the stack cycles come from turns that were recorded once: on hardware of
+/// every kind they are those of the machine itself.
+#[test]
+fn recorded_turns_take_the_same_cycles() {
+    let folder = Folder::new(
+        "hardware = [\"light\"]\n[ranges]\nindependence = [\"none\", \"image\", \"both\"]\nlanes = [1, 3]\n\
+         organisation.tile_levels = [0, 2]\nstack.entries = [1, 64]\n",
+    );
+    let points = lines(&folder.run(&["--json"]), "point");
+    assert_eq!(points.len(), 24);
+    assert_as_alone(&folder, &points);
+}
+
+#[test]
+fn points_have_the_figures_of_model() {
+    let folder = Folder::new(SPACE);
+    let text = folder.run(&["--json"]);
+    let points = lines(&text, "point");
+    assert_eq!(points.len(), 32);
+    let numbered = points.iter().zip(0..);
+    assert!(
+        numbered
+            .into_iter()
+            .all(|(point, number)| point["point"] == number)
+    );
+    assert_as_alone(
+        &folder,
+        &[0, 9, 14, 17, 26, 31].map(|at: usize| points[at].clone()),
+    );
+    // Not all alike in anything.
+    for key in [
+        "wrong_samples",
+        "meets_clock",
+        "cycles",
+        "area_nand2",
+        "energy_pj",
+    ] {
+        assert!(points.iter().any(|of| of[key] != points[0][key]), "{key}");
+    }
+    // What is too slow for its clock is on no front, although it would be the fastest.
+    let front = &lines(&text, "front")[0];
+    let on_front = front["front"].as_array().unwrap();
+    assert!(!on_front.is_empty());
+    assert!(on_front.iter().all(|of| of["meets_clock"] == true));
+    assert!(front["too_slow_for_their_clock"].as_u64() > Some(0));
+}
+
+#[test]
+fn a_run_is_the_same_on_one_thread_on_two_and_after_an_interruption() {
+    let folder = Folder::new(SPACE);
+    let whole = folder.run(&["--json", "--threads", "1", "--results", "one.jsonl"]);
+    let two = folder.run(&["--json", "--threads", "2", "--results", "two.jsonl"]);
+    assert!(whole == two, "one thread and two");
+    let file = fs::read(folder.path("one.jsonl")).unwrap();
+    assert!(file == fs::read(folder.path("two.jsonl")).unwrap());
+    // The file is what was printed, without the front.
+    assert!(whole.as_bytes().starts_with(&file));
+    assert_eq!(lines(&whole[file.len()..], "front").len(), 1);
+    // Stopped in the middle of a line, of the first one too, and after one.
+    for end in [file.len() * 2 / 3, 20, 0, file.len() - 1, file.len()] {
+        fs::write(folder.path("one.jsonl"), &file[..end]).unwrap();
+        let after = folder.run(&["--json", "--results", "one.jsonl"]);
+        assert!(after == whole, "stopped at byte {end}");
+        assert!(fs::read(folder.path("one.jsonl")).unwrap() == file);
+    }
+    // What stands there is not measured again: a figure that cannot be stays.
+    let text = String::from_utf8(file).unwrap();
+    let marked = text.replacen("\"cycles\":", "\"cycles\":1000000", 1);
+    fs::write(folder.path("one.jsonl"), &marked).unwrap();
+    let after = folder.run(&["--json", "--results", "one.jsonl"]);
+    assert!(after.starts_with(&marked));
+}
+
+#[test]
+fn parts_come_together() {
+    let folder = Folder::new(SPACE);
+    let whole = folder.run(&["--json"]);
+    let mut all = String::new();
+    for points in ["21..31", "0..9", "10..20"] {
+        // The lines of a part, as they are printed, are results too.
+        all += &folder.run(&["--json", "--points", points]);
+    }
+    fs::write(folder.path("all.jsonl"), &all).unwrap();
+    let merged = folder.run(&["--json", "--results", "all.jsonl"]);
+    assert!(merged == whole);
+    let after = fs::read_to_string(folder.path("all.jsonl")).unwrap();
+    assert!(after == all, "nothing was left to measure");
+    let some = folder.run(&["--json", "--points", "5..7"]);
+    let numbers = lines(&some, "point")
+        .into_iter()
+        .map(|of| of["point"].clone());
+    assert_eq!(numbers.collect::<Vec<_>>(), [5, 6, 7]);
+    let front = &lines(&some, "front")[0];
+    assert_eq!(
+        (&front["points"], &front["space_points"]),
+        (&3.into(), &32.into())
+    );
+}
+
+#[test]
+fn tables_plots_and_a_page() {
+    let folder = Folder::new(SPACE);
+    let told = folder.run(&[
+        "--html",
+        "page.html",
+        "--export-svg",
+        "front.svg",
+        "--export-csv",
+        "all.csv",
+        "--export-json",
+        "front.json",
+        "--export-markdown",
+        "front.md",
+    ]);
+    assert!(told.contains("40 x 40: of 32 hardware designs "), "{told}");
+    let read = |name: &str| fs::read_to_string(folder.path(name)).unwrap();
+    let page = read("page.html");
+    assert!(!page.contains("<script"));
+    let linked = page.replace("http://www.w3.org/2000/svg", "");
+    assert!(!linked.contains("http"), "nothing of it is elsewhere");
+    let found: Value = serde_json::from_str(&read("front.json")).unwrap();
+    assert_eq!(found["schema"], "shiftvox.explore");
+    let points = found["scenes"][0]["front"].as_array().unwrap();
+    for point in points {
+        let name = format!("s0p{}", point["point"]);
+        // A dot in each of three plots, and what is said of it.
+        assert_eq!(page.matches(&format!("class=\"{name}\"")).count(), 3);
+        assert_eq!(page.matches(&format!("class=\"words {name}\"")).count(), 1);
+        assert_eq!(page.matches(&format!(".{name}:hover")).count(), 1);
+    }
+    assert_eq!(read("all.csv").lines().count(), 33);
+    let on_front = read("all.csv")
+        .lines()
+        .filter(|line| line.contains(",yes,,"))
+        .count();
+    assert_eq!(on_front, points.len());
+    assert!(read("front.svg").contains("no other is clearly better"));
+    assert!(read("front.md").contains("| point |"));
+}
+
+/// In words of 16 bits a terrain of this depth cannot be set up: a result like others.
+#[test]
+fn what_cannot_draw_the_frame_is_told() {
+    let folder = Folder::new("[ranges]\nstack.overflow = \"error\"\nstack.entries = [4, 256]\n");
+    let text = folder.run(&["--json"]);
+    let points = lines(&text, "point");
+    assert_eq!(
+        (&points[0]["outcome"], &points[1]["outcome"]),
+        (&"refused".into(), &"drawn".into())
+    );
+    let reason = points[0]["reason"].as_str().unwrap();
+    assert!(
+        reason.contains("the 4 entries of lane 0's stack"),
+        "{reason}"
+    );
+    let front = &lines(&text, "front")[0];
+    assert_eq!(
+        (&front["refused"], front["front"].as_array().unwrap().len()),
+        (&1.into(), 1)
+    );
+}
+
+#[test]
+fn bad_spaces_are_refused_by_name() {
+    let bad = [
+        ("ranges = 3", "ranges: it must be a table"),
+        (
+            "[range]\nlanes = [1]",
+            "there is no `range`; a space has `hardware` and [ranges]",
+        ),
+        (
+            "[ranges]\nlane = [1]",
+            "there is no `ranges.lane`; hardware `paper` has",
+        ),
+        (
+            "[ranges]\nnode_cache.size = [1]",
+            "there is no `ranges.node_cache.size`",
+        ),
+        ("[ranges]\nnode_cache.size = [1]", "attribute"),
+        (
+            "[ranges]\nstages.blend.add.count = [1]",
+            "there is no `ranges.stages.blend.add.count`",
+        ),
+        ("[ranges]\nlanes = []", "ranges.lanes: it has no values"),
+        ("[ranges.node_cache]", "ranges.node_cache: it has no values"),
+        (
+            "[ranges]\nlanes = [1, 2, 1]",
+            "ranges.lanes: it has 1 twice",
+        ),
+        (
+            "[ranges]\nlanes = [[1]]",
+            "ranges.lanes: its values must be numbers, words or booleans",
+        ),
+        (
+            "[ranges]\nlanes = { from = 3, to = 2, step = 1 }",
+            "ranges.lanes: it is empty, from 3 to 2",
+        ),
+        (
+            "[ranges]\nlanes = { from = 1, to = 2 }",
+            "ranges.lanes: it needs one of `step`",
+        ),
+        (
+            "[ranges]\nlanes = { from = 1, to = 2, times = 1 }",
+            "ranges.lanes: it needs one of",
+        ),
+        (
+            "[ranges]\nlanes = { from = 0, to = 2, times = 2 }",
+            "ranges.lanes: it needs one of",
+        ),
+        (
+            "[ranges]\nlanes = { from = 1, to = -2, step = 1 }",
+            "ranges.lanes: `to` must be a whole",
+        ),
+        (
+            "[ranges]\nlanes = { from = 1, to = 2, by = 1 }",
+            "there is no `ranges.lanes.by`",
+        ),
+        ("[ranges]\nlanes = [0]", "lanes is 0; it must be 1 to 256"),
+        (
+            "[ranges]\nlanes = [\"many\"]",
+            "point 0, hardware = \"paper\", lanes = \"many\"",
+        ),
+        (
+            "[ranges]\norganisation.stack = [\"heaps\"]",
+            "unknown variant `heaps`",
+        ),
+        (
+            "[ranges]\nnode_cache.bytes = [4096, 100]",
+            "point 1, hardware = \"paper\", node_cache.bytes = 100",
+        ),
+        (
+            "[ranges]\nnode_cache.bytes = [100]",
+            "node_cache.bytes is 100; it must be a multiple of ways",
+        ),
+        (
+            "[ranges]\nbits = [8, 32]",
+            "ranges.bits: 8: a word has 16 to 64 bits",
+        ),
+        (
+            "hardware = [\"papier\"]",
+            "hardware `papier`: no hardware and no file is called papier",
+        ),
+        (
+            "hardware = [3]",
+            "hardware: it must be a list of names or files",
+        ),
+        ("hardware = []", "hardware: it has no values"),
+        (
+            "[ranges]\nlanes = { from = 1, to = 256, step = 1 }\ncontexts = { from = 1, to = 64, step = 1 }\n\
+          stack.entries = { from = 1, to = 99, step = 1 }",
+            "more than 65536 points",
+        ),
+        ("lanes = [1", "TOML parse error"),
+    ];
+    for (space, expected) in bad {
+        let folder = Folder::new(space);
+        let (code, told) = folder.refusal(SCENE, &[]);
+        assert_eq!(code, 4, "{space}: {told}");
+        assert!(told.contains("space.toml: "), "{space}: {told}");
+        assert!(
+            told.contains(expected) || expected == "attribute",
+            "{space}: {told}"
+        );
+    }
+}
+
+#[test]
+fn results_of_something_else_are_refused_by_name() {
+    let folder = Folder::new("[ranges]\ncontexts = [4, 8]\n");
+    folder.run(&["--results", "there.jsonl"]);
+    let there = fs::read_to_string(folder.path("there.jsonl")).unwrap();
+    let refused = |scene: &str, more: &[&str], expected: &str| {
+        let more = [&["--results", "there.jsonl"], more].concat();
+        let (code, told) = folder.refusal(scene, &more);
+        assert_eq!(code, 4, "{told}");
+        assert!(
+            told.contains("there.jsonl: line ") && told.contains(expected),
+            "{told}"
+        );
+        let after = fs::read_to_string(folder.path("there.jsonl")).unwrap();
+        assert!(after.len() >= there.len() / 2, "it is left as it was");
+    };
+    refused("gen:menger,depth=2", &[], "`scene` is");
+    refused(SCENE, &["--bits", "40"], "`options` is");
+    refused(SCENE, &["--goal", "delay"], "`prices` is");
+    refused(
+        SCENE,
+        &["--eye", "9,9,9", "--target", "0,0,0"],
+        "`scene` is",
+    );
+    // What could not have become a line of results is nobody's to cut off.
+    let notes = "precious notes without an end of line";
+    fs::write(folder.path("notes.txt"), notes).unwrap();
+    let (code, told) = folder.refusal(SCENE, &["--results", "notes.txt"]);
+    assert_eq!(code, 4, "{told}");
+    assert_eq!(fs::read_to_string(folder.path("notes.txt")).unwrap(), notes);
+    fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 16]\n").unwrap();
+    refused(SCENE, &[], "`space` is");
+    fs::write(folder.path("space.toml"), "[ranges]\ncontexts = [4, 8]\n").unwrap();
+    for (from, to, expected) in [
+        (
+            "\"schema_version\":1",
+            "\"schema_version\":9",
+            "`schema_version` is 9, not 1",
+        ),
+        (
+            "{\"kind\":\"point\"",
+            "{\"kind\":\"",
+            "line 2: this is no result",
+        ),
+        (
+            "\"kind\":\"point\"",
+            "\"kind\":\"poem\"",
+            "line 2: this is no result",
+        ),
+        (
+            "{\"kind\":\"space\"",
+            "{\"kind\":\"front\"",
+            "line 2: what this point is of",
+        ),
+        (
+            "\"point\":1,",
+            "\"point\":7,",
+            "there.jsonl: there is no point 7",
+        ),
+    ] {
+        let broken = there.replacen(from, to, 1);
+        assert_ne!(broken, there, "{from}");
+        fs::write(folder.path("there.jsonl"), &broken).unwrap();
+        let (code, told) = folder.refusal(SCENE, &["--results", "there.jsonl"]);
+        assert_eq!(code, 4, "{told}");
+        assert!(told.contains(expected), "{told}");
+        assert_eq!(
+            fs::read_to_string(folder.path("there.jsonl")).unwrap(),
+            broken
+        );
+    }
+}
+
+#[test]
+fn wrong_command_lines() {
+    let folder = Folder::new("[ranges]\nbits = [24, 32]\n");
+    for (more, expected) in [
+        (&["--points", "2"][..], "the space has points 0 to 1"),
+        (&["--print-hw"], "say which with --points"),
+        (&["--bits", "32"], "leave --bits out"),
+        (&["--hw", "light"], "cannot be used with"),
+        (&["--caches"], "cannot be used with"),
+        (&[SCENE], "a scene twice"),
+    ] {
+        let (code, told) = folder.refusal(SCENE, more);
+        assert_eq!(code, 2, "{more:?}: {told}");
+        assert!(told.contains(expected), "{more:?}: {told}");
+    }
+    let mut alone = Command::cargo_bin("shiftvox").unwrap();
+    alone
+        .args(["model", "--results", "x.jsonl"])
+        .assert()
+        .code(2);
+}
+
+/// The space that ships holds two designs that ship, and is what `--print-space` prints.
+#[test]
+fn the_bundled_space_holds_paper_and_light() {
+    let mut print = Command::cargo_bin("shiftvox").unwrap();
+    print.args(["model", "--explore", "bundled", "--print-space"]);
+    let told = String::from_utf8(print.output().unwrap().stdout).unwrap();
+    assert_eq!(told.trim_end(), SPACES[0].1.trim_end());
+    use hwmodel::cycles::Hardware;
+    let open = |name: &str| Hardware::preset(name).map_err(|error| error.to_string());
+    let space = Space::from_toml(&told, open).unwrap();
+    for name in ["paper", "light"] {
+        let hardware = Hardware::preset(name).unwrap();
+        let points = (0..space.len()).map(|number| space.point(number).unwrap());
+        let mut alike = points.filter(|of| of.hardware == hardware && of.bits == Some(32));
+        assert!(alike.next().is_some(), "{name}");
+    }
+}
+
+fn line(point: usize, [time_ms, area, energy, wrong]: [f64; 4]) -> PointLine {
+    let range = |value: f64| Range::new((value, value / 2.0, value * 2.0));
+    let figures = PointFigures {
+        cycles: 1,
+        time_ms,
+        area_nand2: range(area),
+        energy_pj: range(energy),
+        wrong_samples: wrong as u64,
+        differing_samples: 0,
+        meets_clock: true,
+        limits: String::new(),
+        ray_caster: RivalFigures {
+            order: RayOrder::Rows,
+            cycles: 1,
+            area_nand2: range(1.0),
+            energy_pj: range(1.0),
+        },
+    };
+    PointLine {
+        scene: "a".to_owned(),
+        point,
+        values: Default::default(),
+        outcome: PointOutcome::Drawn(Box::new(figures)),
+    }
+}
+
+fn choices(points: &[PointLine]) -> Vec<(usize, bool)> {
+    let front = front(points);
+    front
+        .iter()
+        .map(|of| (of.line.point, of.stands_out))
+        .collect()
+}
+
+#[test]
+fn a_front_by_hand() {
+    let mut points = vec![
+        line(0, [4.0, 1.0, 2.0, 0.0]),
+        line(1, [2.0, 2.0, 2.0, 0.0]),
+        line(2, [1.0, 8.0, 2.0, 0.0]),
+        line(3, [2.0, 2.0, 2.0, 0.0]), // as 1
+        line(4, [2.0, 3.0, 2.0, 0.0]), // beaten by 1
+        line(5, [2.0, 2.0, 1.0, 3.0]),
+        line(6, [0.5, 0.5, 0.5, 0.0]), // misses its clock
+        line(7, [0.5, 0.5, 0.5, 0.0]), // refused
+    ];
+    if let PointOutcome::Drawn(figures) = &mut points[6].outcome {
+        figures.meets_clock = false;
+    }
+    let reason = String::new();
+    points[7].outcome = PointOutcome::Refused { reason };
+    let found = front(&points);
+    let numbers: Vec<usize> = found.iter().map(|of| of.line.point).collect();
+    assert_eq!(numbers, [2, 5, 1, 0]);
+    assert!(found.iter().all(|of| of.stands_out));
+    // Of the first, area: a quarter for twice the time (1), or an eighth for four times (0), alike; the
+    // faster one comes first. Energy: half, but for a fourfold of wrong samples and one, and twice the time (5).
+    let told: Vec<String> = found[0].gives_up.iter().map(ToString::to_string).collect();
+    assert_eq!(told[0], "area x 0.25 for time x 2.00: #1");
+    assert_eq!(
+        told[1],
+        "energy x 0.50 for wrong samples x 4.00, time x 2.00: #5"
+    );
+    // Of point 1: time, area, energy; nothing has fewer wrong samples than none.
+    let gains: Vec<Objective> = found[2]
+        .gives_up
+        .iter()
+        .map(|of| of.gain.objective)
+        .collect();
+    assert_eq!(gains, [Objective::Time, Objective::Area, Objective::Energy]);
+    // A point that is hardly slower and clearly smaller stands for another.
+    points.push(line(8, [1.05, 6.0, 2.0, 0.0]));
+    let clear = choices(&points);
+    assert_eq!(
+        clear,
+        [(2, false), (8, true), (5, true), (1, true), (0, true)]
+    );
+    points.pop();
+    // The order of the points does not matter.
+    points.reverse();
+    assert_eq!(front(&points), found);
+}

@@ -1,0 +1,22 @@
+//! The command line and the pictures it writes.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+mod bench;
+mod buffers;
+mod damaged;
+mod disk;
+mod explore;
+mod external;
+mod knot;
+mod limits;
+mod manners;
+mod model;
+mod one_camera;
+mod pictures;
+mod printed;
+mod program;
+mod refusals;
+mod resolve;
+mod robust;
+mod stress;
+mod vectors;

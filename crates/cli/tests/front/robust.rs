@@ -1,0 +1,390 @@
+//! Every command under bad conditions, drawn from a seed: little memory, small files, full disks, folders that cannot be
+//! written, closed pipes, signals at any time. It ends by itself with an exit code, or by the signal; it never panics; and
+//! whatever file there is, is whole.
+//!
+//! `SHIFTVOX_ROBUST` is the number of runs, where more than the usual few are wanted.
+#![cfg(unix)]
+
+use std::fs::{self, File};
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::cargo_bin;
+use shiftvox_mesh::far::FarFile;
+use shiftvox::graph::{Silent, vxg};
+use shiftvox_mesh::open::{OpenOptions, open_bytes};
+use shiftvox::split_mix::SplitMix;
+use shiftvox_mesh::textured::TexturedFile;
+
+/// What is run: every command, on inputs from `../in`.
+const LINES: [&str; 33] = [
+    "",
+    "render gen:terrain,depth=7 --size 700 -o a.png --aov depth,voxel --force --json",
+    "render ../in/knot.obj --depth 6 --size 200 -o k.png --outdir run --force",
+    "render ../in/knot.far --size 200 -o f.png --memory 1M --force",
+    "render ../in/knot.tvx --size 200 --hash --json",
+    "convert ../in/ball.vox t.vxg --force",
+    "convert gen:terrain,depth=8 b.vxg --memory 64M --force --json",
+    "convert ../in/ball.vox c.vxg --memory 64M --force",
+    "convert ../in/knot.obj d.vxg --depth 6 --opacities --force",
+    "convert ../in/ball.vxg t.ply --force",
+    "convert ../in/ball.ply t.vox --force --json",
+    "convert ../in/knot.obj k.far --rays 1000 --leaf-triangles 500 --force",
+    "convert ../in/knot.obj k.tvx --grid 8 --texels 4 --force",
+    "generate gen:menger,depth=4 -o g.vxg --force",
+    "info gen:menger,depth=4 ../in/ball.vxg ../in/knot.far ../in/knot.tvx --json",
+    "turntable gen:menger,depth=3 -o ##.png --frames 6 --size 300 --aov normal --force",
+    "triangles ../in/knot.obj -o tri.png --size 300 --aov depth --force",
+    "compare ../in/a.png ../in/b.png --threshold ssim=0 --diff d.png --force",
+    "model gen:menger,depth=2 --size 48 --json",
+    "model gen:menger,depth=1 --size 48 --vectors rows --vector-records 200 --force",
+    "stress gen:menger,depth=1 --bits 32 --size 16 --rules 1 --viewpoints 0 --export-json s.json --force",
+    "reproduce --sides 16 --object-side 16 --runs 1 --growing gen:terrain,depth=5 --outdir r --force",
+    "bench engines gen:menger,depth=2 --size 64 --runs 1 --export-json engines.json --force",
+    "bench scaling gen:menger,depth=2 --scan size=16..32*2 --runs 1 --max-voxels 2e3 --export-csv e.csv --force",
+    "bench ablation gen:menger,depth=2 --size 48 --runs 1 --export-svg e.svg --force",
+    "bench vertex-error",
+    "bench error gen:menger,depth=1 --size 16 --runs 1 --reference-samples 2 --lods 0 --aas 1 --bits 32 --json",
+    "bench flicker gen:menger,depth=2 --size 16 --frames 3 --motions pan --reference-samples 2 --export-svg f.svg --force",
+    "bench methods ../in/knot.obj --size 16 --runs 1 --warmup 0 --frames 0 --depth 4 --only triangles,voxels --json",
+    "bench walk ../in/knot.far --size 32 --frames 2 --export-json walk.json --force",
+    "completions bash",
+    "man bench error",
+    "render --help",
+];
+/// Makes the inputs.
+const INPUTS: [&str; 7] = [
+    "generate gen:sphere,depth=4 -o ball.vox",
+    "generate gen:sphere,depth=4 -o ball.vxg",
+    "generate gen:sphere,depth=4 -o ball.ply",
+    "render ball.vox --size 100 -o a.png",
+    "render ball.vox --size 100 --zoom 2 -o b.png",
+    "convert knot.obj knot.far --rays 1000 --leaf-triangles 500",
+    "convert knot.obj knot.tvx --grid 8 --texels 4",
+];
+/// The longest that a run may take.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// What is bad about a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+enum Condition {
+    /// A limit of address space, MB.
+    Memory(u64),
+    /// A limit of each file, blocks of 512 bytes.
+    FileSize(u64),
+    /// A disk of so many KB.
+    SmallDisk(u64),
+    ReadOnly,
+    StdoutFull,
+    StdoutClosed,
+    ReaderGone,
+    /// A signal after so many milliseconds.
+    Signal(i32, u64),
+}
+
+impl Condition {
+    fn drawn(dice: &mut SplitMix) -> Self {
+        match dice.below(10) {
+            0 | 1 => Self::Memory(40 + dice.below(160)),
+            2 => Self::FileSize(dice.below(200)),
+            3 => Self::SmallDisk(4 + dice.below(200)),
+            4 => Self::ReadOnly,
+            5 => Self::StdoutFull,
+            6 => [Self::StdoutClosed, Self::ReaderGone][dice.below(2) as usize],
+            _ => Self::Signal([2, 15, 9, 1][dice.below(4) as usize], dice.below(16).pow(2)),
+        }
+    }
+
+    /// What a shell does before and after the command; `None` where this system cannot.
+    fn script(self, can: Can) -> Option<String> {
+        let run = "exec \"$0\" \"$@\"";
+        Some(match self {
+            Self::Memory(megabytes) => format!("ulimit -v {}; {run}", megabytes << 10),
+            Self::FileSize(blocks) => format!("trap '' XFSZ; ulimit -f {blocks}; {run}"),
+            // The disk is gone when the shell ends: what is on it is looked at as a copy.
+            Self::SmallDisk(kilobytes) if can.mount => format!(
+                "exec unshare -m sh -c 'mount -t tmpfs -o size={kilobytes}k none \"$PWD\" && cd \"$PWD\" || exit 99; \
+                 rm -r ../left; \"$0\" \"$@\"; code=$?; cp -a . ../left; exit $code' \"$0\" \"$@\""
+            ),
+            // Nothing is closed to root.
+            Self::ReadOnly if can.drop_root => {
+                "exec setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" \"$@\"".to_owned()
+            }
+            Self::ReadOnly if !can.is_root => run.to_owned(),
+            Self::StdoutFull if Path::new("/dev/full").exists() => format!("{run} > /dev/full"),
+            Self::StdoutClosed => format!("{run} >&-"),
+            Self::ReaderGone | Self::Signal(..) => run.to_owned(),
+            _ => return None,
+        })
+    }
+}
+
+/// What this system lets a test do.
+#[derive(Debug, Clone, Copy)]
+struct Can {
+    mount: bool,
+    is_root: bool,
+    drop_root: bool,
+}
+
+impl Can {
+    fn found(folder: &Path) -> Self {
+        let does = |script: &str| {
+            let mut shell = Command::new("sh");
+            shell.args(["-c", script]).arg(cargo_bin("shiftvox"));
+            let status = shell.current_dir(folder).stderr(Stdio::null()).status();
+            status.is_ok_and(|status| status.success())
+        };
+        Self {
+            mount: does("unshare -m sh -c 'mount -t tmpfs -o size=64k none \"$PWD\"'"),
+            is_root: does("[ $(id -u) = 0 ]"),
+            drop_root: does(
+                "setpriv --reuid 65534 --regid 65534 --clear-groups \"$0\" --version > /dev/null",
+            ),
+        }
+    }
+}
+
+fn start(folder: &Path, script: &str, line: &str) -> Child {
+    let stderr = File::create(folder.join("../stderr")).unwrap();
+    Command::new("sh")
+        .args(["-c", script])
+        .arg(cargo_bin("shiftvox"))
+        .args(line.split_whitespace())
+        .env("RAYON_NUM_THREADS", "2")
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(stderr)
+        .spawn()
+        .unwrap()
+}
+
+/// Waits, and sends a signal on the way.
+fn wait(child: &mut Child, mut signal: Option<(i32, u64)>) -> ExitStatus {
+    let started = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status;
+        }
+        if let Some((number, ms)) = signal
+            && started.elapsed().as_millis() as u64 >= ms
+        {
+            let sent = Command::new("kill")
+                .args([format!("-{number}"), child.id().to_string()])
+                .status();
+            assert!(sent.is_ok());
+            signal = None;
+        }
+        if started.elapsed() > PATIENCE {
+            child.kill().unwrap();
+            panic!("it does not end");
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// The numbers that a `.npy` has by its header.
+fn npy_entries(bytes: &[u8]) -> u64 {
+    let header = String::from_utf8_lossy(&bytes[..128]).into_owned();
+    let shape = header.split("'shape': (").nth(1).unwrap();
+    let sides = shape.split(')').next().unwrap().split(", ");
+    sides
+        .map(|side| side.trim_matches(',').parse::<u64>().unwrap())
+        .product()
+}
+
+/// Fails where a file is not whole; says whether there are unfinished ones.
+fn inspect(folder: &Path, what: &str) -> bool {
+    let mut has_unfinished = false;
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        if name.ends_with(".tmp") {
+            has_unfinished = true;
+            continue;
+        }
+        if name == "rows" {
+            assert!(path.join("manifest.json").exists(), "{what}: {name}");
+        }
+        if path.is_dir() {
+            has_unfinished |= inspect(&path, what);
+            continue;
+        }
+        let bytes = fs::read(&path).unwrap();
+        let ends = |end: &[u8]| bytes.trim_ascii_end().ends_with(end);
+        let is_whole = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("vxg") => vxg::verify(&path).is_ok(),
+            Some("far") => FarFile::open(&path).is_ok_and(|file| file.verify().is_ok()),
+            Some("tvx") => TexturedFile::open(&path).is_ok_and(|file| file.verify().is_ok()),
+            Some("vox" | "ply") => {
+                open_bytes(&bytes, &name, &OpenOptions::default(), &Silent).is_ok()
+            }
+            Some("png") => bytes.ends_with(b"IEND\xaeB`\x82"),
+            Some("npy") => {
+                // Each belongs to a picture.
+                let picture = name.split('.').next().unwrap();
+                folder.join(format!("{picture}.png")).exists()
+                    && bytes.len() as u64 == 128 + 4 * npy_entries(&bytes)
+            }
+            Some("json") => serde_json::from_slice::<serde_json::Value>(&bytes).is_ok(),
+            Some("svg") => ends(b"</svg>"),
+            Some("html") => ends(b"</html>"),
+            Some("csv" | "md" | "toml" | "hex" | "txt" | "v" | "vh") => bytes.ends_with(b"\n"),
+            _ => panic!("{what}: {name} should not be there"),
+        };
+        assert!(is_whole, "{what}: {name} is not whole");
+    }
+    has_unfinished
+}
+
+/// What runs came to.
+#[derive(Debug, Default)]
+struct Counts {
+    runs: u64,
+    stopped: u64,
+    refused: u64,
+    limits: u64,
+    not_possible: u64,
+}
+
+/// Runs of the seeds that fall to one thread, in a shelter of its own.
+fn runs(seeds: impl Iterator<Item = u64>) -> Counts {
+    let shelter = tempfile::tempdir().unwrap();
+    let at = |name: &str| shelter.path().join(name);
+    for folder in ["in", "work", "left"] {
+        fs::create_dir(at(folder)).unwrap();
+    }
+    let open = |mode| fs::set_permissions(at("work"), fs::Permissions::from_mode(mode)).unwrap();
+    fs::set_permissions(shelter.path(), fs::Permissions::from_mode(0o755)).unwrap();
+    let assets = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("assets");
+    for name in ["knot.obj", "knot.mtl"] {
+        fs::copy(assets.join(name), at("in").join(name)).unwrap();
+    }
+    for line in INPUTS {
+        let made = wait(&mut start(&at("in"), "exec \"$0\" \"$@\"", line), None);
+        assert!(
+            made.success(),
+            "{line}: {}",
+            fs::read_to_string(at("stderr")).unwrap()
+        );
+    }
+    let can = Can::found(&at("work"));
+    let mut counts = Counts::default();
+    for seed in seeds {
+        let mut dice = SplitMix::new(seed);
+        // Every command in turn.
+        let line = LINES[seed as usize % LINES.len()];
+        let condition = Condition::drawn(&mut dice);
+        let what = format!("run {seed}: {condition:?}: shiftvox {line}");
+        let Some(script) = condition.script(can) else {
+            counts.not_possible += 1;
+            continue;
+        };
+        counts.runs += 1;
+        if condition == Condition::ReadOnly {
+            open(0o555);
+        }
+        let mut child = start(&at("work"), &script, line);
+        let mut signal = None;
+        match condition {
+            Condition::ReaderGone => drop(child.stdout.take()),
+            Condition::Signal(number, ms) => signal = Some((number, ms)),
+            _ => {}
+        }
+        // What it prints is read as it comes.
+        let reader = child.stdout.take().map(|mut stdout| {
+            std::thread::spawn(move || std::io::copy(&mut stdout, &mut std::io::sink()))
+        });
+        let status = wait(&mut child, signal);
+        reader.map(|thread| thread.join().unwrap());
+        open(0o755);
+        let told = fs::read_to_string(at("stderr")).unwrap();
+        assert!(!told.contains("panicked"), "{what}: {told}");
+        match (status.code(), status.signal()) {
+            (Some(0), None) => {}
+            (Some(code @ (1 | 5)), None) => {
+                counts.refused += 1;
+                counts.limits += u64::from(code == 5);
+                assert!(
+                    !told.is_empty() || condition == Condition::StdoutClosed,
+                    "{what}: nothing is told"
+                );
+            }
+            (None, Some(by)) if signal.is_some_and(|(sent, _)| sent == by) => counts.stopped += 1,
+            // Too little for the program to be loaded.
+            (Some(126 | 127), None) if matches!(condition, Condition::Memory(_)) => {}
+            _ => panic!("{what}: {status}: {told}"),
+        }
+        let looked_at = match condition {
+            Condition::SmallDisk(_) => at("left"),
+            _ => at("work"),
+        };
+        let was_killed = status.signal() == Some(9);
+        let is_tidy = !inspect(&looked_at, &what);
+        assert!(is_tidy || was_killed, "{what}: unfinished files, {status}");
+        // What was killed is tidied up by who writes there next.
+        if was_killed && !is_tidy {
+            let status = wait(
+                &mut start(&at("work"), "exec \"$0\" \"$@\" > /dev/null", line),
+                None,
+            );
+            let told = fs::read_to_string(at("stderr")).unwrap();
+            assert!(status.success(), "{what}: {told}");
+            assert!(!inspect(&at("work"), &what), "{what}: left for ever");
+        }
+    }
+    counts
+}
+
+#[test]
+fn whatever_happens_it_ends_in_order() {
+    let usual = 4 * LINES.len() as u64;
+    let all = std::env::var("SHIFTVOX_ROBUST").map_or(usual, |runs| runs.parse().unwrap());
+    let both = std::thread::scope(|scope| {
+        let threads = [0, 1].map(|first| scope.spawn(move || runs((first..all).step_by(2))));
+        threads.map(|thread| thread.join().unwrap())
+    });
+    eprintln!("{both:?}");
+    let sum = |of: fn(&Counts) -> u64| both.iter().map(of).sum::<u64>();
+    let (stopped, refused) = (sum(|counts| counts.stopped), sum(|counts| counts.refused));
+    assert!(
+        stopped > 0 && refused > 10 && sum(|counts| counts.limits) > 0,
+        "{both:?}"
+    );
+}
+
+#[test]
+fn every_command_is_run() {
+    let commands = |line: &[&str]| -> Vec<String> {
+        let output = Command::new(cargo_bin("shiftvox"))
+            .args(line)
+            .arg("--help")
+            .output()
+            .unwrap();
+        let help = String::from_utf8(output.stdout).unwrap();
+        let list = help.split("Commands:\n").nth(1).unwrap();
+        let list = list.split("\n\n").next().unwrap().lines();
+        // Other lines go on with what a command is for.
+        let names = list.filter_map(|line| {
+            line.strip_prefix("  ")
+                .filter(|rest| !rest.starts_with(' '))
+        });
+        names
+            .map(|rest| rest.split_whitespace().next().unwrap().to_owned())
+            .collect()
+    };
+    for (before, known) in [("", commands(&[])), ("bench ", commands(&["bench"]))] {
+        assert!(known.len() >= 8, "{known:?}");
+        // A page is served until it is stopped (`tests/view`).
+        let others = ["help", "view"];
+        for name in { known.iter() }.filter(|name| !others.contains(&name.as_str())) {
+            let begins = format!("{before}{name}");
+            let is_run = LINES.iter().any(|line| line.starts_with(&begins));
+            assert!(is_run, "shiftvox {begins}");
+        }
+    }
+}

@@ -1,0 +1,262 @@
+//! A build that is stopped leaves no broken file, and nothing that is in the way.
+#![cfg(unix)]
+
+use std::fs;
+use std::os::unix::process::ExitStatusExt;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::cargo::cargo_bin;
+use rustix::process::{Pid, Signal, kill_process};
+use shiftvox_mesh::far::FarFile;
+
+/// A binary STL: a rough sheet of 20,000 triangles, of numbers that do not pack well.
+fn stl() -> Vec<u8> {
+    let mut bytes = vec![0; 80];
+    bytes.extend(20_000u32.to_le_bytes());
+    for i in 0..20_000 {
+        let noise = |salt: u32| {
+            let bits = (i as u32 * 4 + salt).wrapping_mul(0x9e37_79b1);
+            (bits ^ bits >> 15).wrapping_mul(0x85eb_ca6b) as f32 / u32::MAX as f32
+        };
+        let x = (i % 100) as f32 + 0.3 * noise(0);
+        let y = (i / 100) as f32 + 0.3 * noise(1);
+        let corners = [[x, y, 0.0], [x + 1.0, y, 0.0], [x, y + 1.0, 0.0]];
+        let numbers = [[0.0, 0.0, 1.0]].into_iter().chain(corners).flatten();
+        bytes.extend(numbers.flat_map(|n: f32| n.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// Triangles alone, as one leaf: built at once, ten megabytes to write.
+fn start(folder: &Path) -> Child {
+    let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
+    let arguments: Vec<&str> = arguments.split(' ').collect();
+    Command::new(cargo_bin("shiftvox"))
+        .current_dir(folder)
+        .args(arguments)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+fn send(child: &Child, signal: Signal) {
+    // It fails where the process has ended by then, which the caller sees.
+    let _ = kill_process(Pid::from_child(child), signal);
+}
+
+/// Files that are not finished.
+fn unfinished(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().file_name().into_string().unwrap());
+    names.filter(|name| name.ends_with(".tmp")).collect()
+}
+
+/// Starts builds until one is caught by the signal while it writes.
+fn stop_while_writing(folder: &Path, signal: Signal) {
+    for _ in 0..20 {
+        let mut child = start(folder);
+        let started = Instant::now();
+        while unfinished(folder).is_empty() && child.try_wait().unwrap().is_none() {
+            assert!(
+                started.elapsed() < Duration::from_secs(120),
+                "nothing is written"
+            );
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        send(&child, signal);
+        let status = child.wait().unwrap();
+        let is_old = fs::read(folder.join("sheet.far")).unwrap() == b"old";
+        if status.signal() == Some(signal.as_raw()) && is_old {
+            return;
+        }
+        // It had written all before the signal came.
+        assert!(!is_old, "{status}");
+        let whole = FarFile::open(&folder.join("sheet.far")).unwrap();
+        whole.verify().unwrap();
+        fs::write(folder.join("sheet.far"), b"old").unwrap();
+    }
+    panic!("no build was caught while it wrote");
+}
+
+#[test]
+fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    fs::write(at.join("sheet.far"), b"old").unwrap();
+    // Long before anything is written.
+    let mut child = start(at);
+    std::thread::sleep(Duration::from_millis(50));
+    send(&child, Signal::TERM);
+    assert_eq!(child.wait().unwrap().signal(), Some(Signal::TERM.as_raw()));
+    assert!(unfinished(at).is_empty());
+    // While it is written.
+    stop_while_writing(at, Signal::TERM);
+    assert_eq!(unfinished(at), [""; 0]);
+    // Killed, it can tidy nothing up: what is left is named, and the next build removes it.
+    stop_while_writing(at, Signal::KILL);
+    let left = unfinished(at);
+    assert_eq!(left.len(), 1);
+    assert!(left[0].starts_with(".shiftvox-sheet.far-"), "{left:?}");
+    assert!(start(at).wait().unwrap().success());
+    assert_eq!(unfinished(at), [""; 0]);
+    assert!(FarFile::open(&at.join("sheet.far")).is_ok());
+}
+
+/// A build of many nodes, some of which take their time, of which what is finished is kept.
+fn start_to_resume(folder: &Path, more: &[&str]) -> Command {
+    let arguments =
+        "convert sheet.stl kept.far --leaf-triangles 200 --grid 32 --rays 2000000 --resume";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    command
+        .current_dir(folder)
+        .args(arguments.split(' '))
+        .args(more);
+    command
+}
+
+#[test]
+fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    let whole = "convert sheet.stl whole.far --leaf-triangles 200 --grid 32 --rays 2000000 -q";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    let built = command.current_dir(at).args(whole.split(' ')).status();
+    assert!(built.unwrap().success());
+    let expected = fs::read(at.join("whole.far")).unwrap();
+    let part = at.join("kept.far.part");
+    let length = || fs::metadata(&part).map_or(0, |there| there.len());
+    // Stopped by either signal after a sixth each, and its last node cut short.
+    for (sixths, signal) in [(1, Signal::TERM), (2, Signal::KILL)] {
+        let enough = expected.len() as u64 * sixths / 6;
+        let mut quiet = start_to_resume(at, &["-q"]);
+        let mut child = quiet.stderr(Stdio::null()).spawn().unwrap();
+        while length() < enough && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        send(&child, signal);
+        assert_eq!(child.wait().unwrap().signal(), Some(signal.as_raw()));
+        assert!(!at.join("kept.far").exists());
+        assert!(length() >= enough);
+        let kept = fs::File::options().write(true).open(&part).unwrap();
+        kept.set_len(length() - 5).unwrap();
+    }
+    // Of something else it is not resumed.
+    let refused = |more: &[&str]| {
+        let output = start_to_resume(at, more).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.contains("kept.far.part"), "{stderr}");
+        stderr
+    };
+    assert!(refused(&["--far-opacity", "none"]).contains("other options"));
+    let mut other = stl();
+    other[84 + 12] ^= 1;
+    fs::write(at.join("sheet.stl"), other).unwrap();
+    assert!(refused(&[]).contains("another mesh"));
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    assert!(length() > expected.len() as u64 / 4);
+    assert!(start_to_resume(at, &["-q"]).status().unwrap().success());
+    assert!(fs::read(at.join("kept.far")).unwrap() == expected);
+    assert!(!part.exists());
+}
+
+/// Builds `a.far` of twenty copies of `sheet.stl`, with more settings.
+fn convert_copies(at: &Path, settings: &str) -> Command {
+    let always = "convert sheet.stl a.far --leaf-triangles 5000 --force -q";
+    let mut command = Command::new(cargo_bin("shiftvox"));
+    command
+        .current_dir(at)
+        .args(always.split(' '))
+        .args(settings.split(' '));
+    command
+}
+
+#[test]
+fn a_budget_of_memory_changes_no_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    let convert = |more: &[&str]| {
+        // 400,000 triangles, several clusters.
+        let mut command = convert_copies(at, "--instances 20 --grid 32 --rays 200000");
+        let output = command.args(more).output().unwrap();
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        (
+            output.status.code(),
+            stderr,
+            fs::read(at.join("a.far")).unwrap_or_default(),
+        )
+    };
+    let (code, stderr, free) = convert(&[]);
+    assert_eq!(code, Some(0), "{stderr}");
+    let (code, stderr, bound) = convert(&["--memory", "190M"]);
+    assert_eq!(code, Some(0), "{stderr}");
+    assert!(free == bound && !free.is_empty());
+    let (code, stderr, _) = convert(&["--memory", "64M"]);
+    assert_eq!(code, Some(5));
+    assert!(
+        stderr.contains("sheet.stl") && stderr.contains("--memory"),
+        "{stderr}"
+    );
+}
+
+/// The most memory that a process had, bytes; Linux reports it, and keeps it until it has ended.
+fn most_memory(process: u32) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kibibytes: u64 = line.split_whitespace().next()?.parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+#[test]
+fn a_budget_of_memory_is_kept() {
+    const BUDGET: u64 = 110 << 20;
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sheet.stl"), stl()).unwrap();
+    let most = |more: &[&str]| {
+        // 800,000 triangles: 64 MB of clusters, more than there is room for.
+        let mut command = convert_copies(at, "--instances 40 --rays 3000000");
+        let mut child = command.args(more).spawn().unwrap();
+        let mut most = None;
+        while child.try_wait().unwrap().is_none() {
+            most = most_memory(child.id()).max(most);
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        assert!(child.wait().unwrap().success());
+        most
+    };
+    let budget = BUDGET.to_string();
+    let (Some(free), Some(bound)) = (most(&[]), most(&["--memory", &budget])) else {
+        eprintln!("skipped: the system does not report a process's memory");
+        return;
+    };
+    assert!(bound <= BUDGET && BUDGET < free, "{bound} {BUDGET} {free}");
+}
+
+#[test]
+fn a_signal_that_is_ignored_stays_ignored() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sheet.stl"), stl()).unwrap();
+    // As `nohup` does it.
+    let mut child = Command::new("sh")
+        .current_dir(folder.path())
+        .args(["-c", "trap '' HUP; exec \"$0\" convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 20"])
+        .arg(cargo_bin("shiftvox"))
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    send(&child, Signal::HUP);
+    assert!(child.wait().unwrap().success());
+    assert!(folder.path().join("sheet.far").exists());
+}

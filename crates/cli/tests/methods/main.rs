@@ -1,0 +1,12 @@
+//! Meshes, far voxels and textured voxels by the command line.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+mod compared;
+mod far;
+mod far_stopped;
+#[path = "../../../mesh/tests/mesh/gltf_bytes.rs"]
+mod gltf_bytes;
+mod mesh;
+#[path = "../../../mesh/tests/mesh/shapes.rs"]
+mod shapes;
+mod textured;

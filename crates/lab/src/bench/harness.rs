@@ -1,0 +1,380 @@
+//! Interleaved runs: every contender draws a frame, then every one the next.
+//!
+//! What drifts while a measurement goes on (other work, clock rates) then
+//! hits all alike, and a contender does not find the caches as its own last
+//! frame left them. A frame is: clear, traverse, colour of each sample
+//! written. Buffers are made before the first frame and reused. One frame
+//! before those is for the counters and the picture.
+
+use std::collections::BTreeMap;
+use std::hint::black_box;
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use super::clock::{Clock, Elapsed};
+use super::statistics::Summary;
+use shiftvox::frame::{Colors, Frame};
+use shiftvox::graph::{Graph, Progress};
+use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
+
+/// How often each contender draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Schedule {
+    /// Frames before those that count.
+    pub warmup: u32,
+    /// Frames that count, 1 or more.
+    pub runs: u32,
+}
+
+/// An engine and the frame that it draws.
+pub struct Contender<'c> {
+    /// What an error calls it.
+    pub name: String,
+    /// What it draws.
+    pub graph: &'c Graph,
+    /// The frame.
+    pub setup: FrameSetup,
+    /// Threads of the pool that it draws in, 1 or more.
+    pub threads: usize,
+    /// What draws it.
+    pub drawer: Drawer<'c>,
+    /// Nodes whose attributes are read besides those that are seen.
+    pub attributes: Vec<u32>,
+}
+
+/// What draws the frames of a contender.
+pub enum Drawer<'c> {
+    /// An engine, every one.
+    Engine(Box<dyn Engine + Send>),
+    /// A viewer, those that change: the first.
+    Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
+}
+
+impl<'c> Contender<'c> {
+    /// A contender that draws every frame, on one thread.
+    pub(super) fn alone(
+        name: String,
+        graph: &'c Graph,
+        setup: FrameSetup,
+        engine: Box<dyn Engine + Send>,
+    ) -> Self {
+        Self {
+            name,
+            graph,
+            setup,
+            threads: 1,
+            drawer: Drawer::Engine(engine),
+            attributes: Vec::new(),
+        }
+    }
+}
+
+/// What a contender took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Wall time of a frame.
+    pub wall: Summary,
+    /// Processor time of the drawing thread; only for contenders on one
+    /// thread, and where the system measures it.
+    pub thread: Option<Summary>,
+    /// Counters of one frame.
+    pub counters: Stats,
+}
+
+/// Why there is no measurement.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BenchError {
+    /// An engine did not finish its frame.
+    #[error("{who}: {source}")]
+    Engine {
+        /// The contender.
+        who: String,
+        /// The engine's error.
+        source: EngineError,
+    },
+    /// A frame cannot be set up.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// Samples make no picture, or none that can be compared.
+    #[error("{0}")]
+    Picture(String),
+    /// The system gave no threads.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were requested.
+        threads: usize,
+        /// The system's reason.
+        reason: String,
+    },
+}
+
+/// A picture whose memory is there before the first frame.
+fn colors(width: u32, height: u32) -> Colors {
+    let mut colors = Colors::new(width, height);
+    colors.words.fill(1);
+    colors
+}
+
+/// Runs contenders. Keeps thread pools and buffers between races.
+pub struct Harness<'p> {
+    schedule: Schedule,
+    progress: &'p dyn Progress,
+    pools: BTreeMap<usize, ThreadPool>,
+    buffers: BTreeMap<(u32, u32), Colors>,
+}
+
+impl<'p> Harness<'p> {
+    /// A harness; `progress` advances with every frame, between frames.
+    #[must_use]
+    pub fn new(schedule: Schedule, progress: &'p dyn Progress) -> Self {
+        Self {
+            schedule,
+            progress,
+            pools: BTreeMap::new(),
+            buffers: BTreeMap::new(),
+        }
+    }
+
+    /// Measures all contenders in turn. `look` is shown each contender's first
+    /// frame, voxels and all, by the contender's place in the list, outside of the times.
+    ///
+    /// # Errors
+    /// When an engine fails, or there are no threads.
+    pub fn race(
+        &mut self,
+        contenders: &mut [Contender<'_>],
+        look: &mut dyn FnMut(usize, &Frame),
+    ) -> Result<Vec<Measured>, BenchError> {
+        for contender in &*contenders {
+            self.make_pool(contender.threads)?;
+            let (width, height) = (contender.setup.width, contender.setup.height);
+            self.buffers
+                .entry((width, height))
+                .or_insert_with(|| colors(width, height));
+        }
+        let rounds = self.schedule.warmup + self.schedule.runs.max(1);
+        let mut times: Vec<Vec<Elapsed>> = contenders
+            .iter()
+            .map(|_| Vec::with_capacity(rounds as usize))
+            .collect();
+        let mut counters = vec![Stats::new(); contenders.len()];
+        let frames = u64::from(rounds + 1) * contenders.len() as u64;
+        self.progress.begin("measuring", frames);
+        for (place, contender) in contenders.iter_mut().enumerate() {
+            let (frame, stats) = self.whole_frame(contender)?;
+            look(place, &frame);
+            counters[place] = stats;
+            self.progress.advance(1);
+        }
+        for round in 0..rounds {
+            for (place, contender) in contenders.iter_mut().enumerate() {
+                let elapsed = self.frame(contender)?;
+                if round >= self.schedule.warmup {
+                    times[place].push(elapsed);
+                }
+                self.progress.advance(1);
+            }
+        }
+        self.progress.end();
+        let of = |(contender, (times, counters)): (&Contender<'_>, (Vec<Elapsed>, Stats))| {
+            let wall: Vec<f64> = times.iter().map(|t| t.wall_ms).collect();
+            let thread: Option<Vec<f64>> = times.iter().map(|t| t.thread_ms).collect();
+            Measured {
+                wall: Summary::of(&wall),
+                thread: thread
+                    .filter(|_| contender.threads == 1)
+                    .map(|thread| Summary::of(&thread)),
+                counters,
+            }
+        };
+        Ok(contenders
+            .iter()
+            .zip(times.into_iter().zip(counters))
+            .map(of)
+            .collect())
+    }
+
+    /// How often each contender draws.
+    #[must_use]
+    pub fn schedule(&self) -> Schedule {
+        self.schedule
+    }
+
+    /// Forgets the buffers, which the next race makes anew.
+    pub fn release_buffers(&mut self) {
+        self.buffers.clear();
+    }
+
+    fn make_pool(&mut self, threads: usize) -> Result<(), BenchError> {
+        if self.pools.contains_key(&threads) {
+            return Ok(());
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.map_err(|e| BenchError::Threads {
+            threads,
+            reason: e.to_string(),
+        })?;
+        self.pools.insert(threads, pool);
+        Ok(())
+    }
+
+    /// A frame with its voxels and counters, which is not timed.
+    fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
+        let setup = &contender.setup;
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        let (graph, drawer) = (contender.graph.view(), &mut contender.drawer);
+        let mut draw = || match drawer {
+            Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
+            Drawer::Viewer(viewer) => {
+                viewer.render(setup)?;
+                // What is timed is a frame after that.
+                let stats = viewer.render(setup)?;
+                if let Some(shown) = viewer.frame() {
+                    frame.clone_from(shown);
+                }
+                Ok(stats)
+            }
+        };
+        let stats = match self.pools.get(&contender.threads) {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        let stats = stats.map_err(|source| BenchError::Engine {
+            who: contender.name.clone(),
+            source,
+        })?;
+        Ok((frame, stats))
+    }
+
+    /// One frame; the clocks run inside the pool, around the work alone.
+    fn frame(&mut self, contender: &mut Contender<'_>) -> Result<Elapsed, BenchError> {
+        let Contender {
+            name,
+            graph,
+            setup,
+            threads,
+            drawer,
+            attributes,
+        } = contender;
+        let size = (setup.width, setup.height);
+        let colors = self
+            .buffers
+            .entry(size)
+            .or_insert_with(|| Colors::new(size.0, size.1));
+        let mut draw = || {
+            let clock = Clock::start();
+            let drawn = match drawer {
+                Drawer::Engine(engine) => {
+                    engine.draw_colors(&graph.view(), &graph.color, setup, colors)
+                }
+                Drawer::Viewer(viewer) => viewer.draw(setup).map(drop),
+            };
+            if let Drawer::Viewer(viewer) = drawer
+                && let Some(frame) = viewer.frame()
+            {
+                colors.take(&graph.color, frame);
+            }
+            black_box(colors.words.as_slice());
+            black_box(sum_of_attributes(graph, attributes));
+            (clock.elapsed(), drawn)
+        };
+        let (elapsed, drawn) = match self.pools.get(threads) {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        drawn.map_err(|source| BenchError::Engine {
+            who: name.clone(),
+            source,
+        })?;
+        Ok(elapsed)
+    }
+}
+
+/// Reads colour and normal of some nodes.
+fn sum_of_attributes(graph: &Graph, nodes: &[u32]) -> u64 {
+    let of = |&node: &u32| {
+        let ([red, ..], normal) = (graph.color_of(node), graph.normal_of(node));
+        u64::from(red) + u64::from(normal.0)
+    };
+    nodes.iter().map(of).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use super::*;
+    use shiftvox::graph::{GraphView, Placement, Silent, Store};
+    use shiftvox::project::{Camera, SetupOptions};
+
+    /// Notes its name for each frame and how many threads it finds.
+    struct NameRecorder(&'static str, Arc<Mutex<Vec<(&'static str, usize)>>>);
+
+    impl Engine for NameRecorder {
+        fn render(
+            &mut self,
+            _: &GraphView<'_>,
+            _: &FrameSetup,
+            frame: &mut Frame,
+        ) -> Result<Stats, EngineError> {
+            frame.clear();
+            frame.node[0] = 0;
+            let mut notes = self.1.lock().unwrap();
+            notes.push((self.0, rayon::current_num_threads()));
+            Ok(vec![("frames", notes.len() as u64)])
+        }
+    }
+
+    #[test]
+    fn contenders_take_turns_in_pools_of_their_own() {
+        let graph = Graph {
+            depth: 0,
+            root: 0,
+            mask: Store::from(vec![]),
+            first: Store::from(vec![]),
+            links: Store::from(vec![]),
+            color: Store::from(vec![[1, 2, 3]]),
+            normal: Store::from(vec![]),
+            opacity: Store::from(vec![]),
+            level_start: vec![],
+            voxels: 1,
+            placement: Placement::default(),
+        };
+        let camera = Camera {
+            eye: glam::DVec3::new(0.5, -3.0, 0.5),
+            target: glam::DVec3::splat(0.5),
+            up: glam::DVec3::Z,
+            fov_degrees: 60.0,
+            width: 4,
+            height: 2,
+        };
+        let setup =
+            FrameSetup::new(&camera, &graph.placement, 0, &SetupOptions::default()).unwrap();
+        let notes = Arc::new(Mutex::new(Vec::new()));
+        let contender = |name: &'static str, threads| Contender {
+            name: name.to_owned(),
+            graph: &graph,
+            setup: setup.clone(),
+            threads,
+            drawer: Drawer::Engine(Box::new(NameRecorder(name, Arc::clone(&notes)))),
+            attributes: Vec::new(),
+        };
+        let mut contenders = [contender("a", 1), contender("b", 2)];
+        let schedule = Schedule { warmup: 1, runs: 2 };
+        let mut seen = Vec::new();
+        let measured = Harness::new(schedule, &Silent)
+            .race(&mut contenders, &mut |place, frame| {
+                seen.push((place, frame.drawn()));
+            })
+            .unwrap();
+        let round = [("a", 1), ("b", 2)];
+        assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
+        assert_eq!(seen, [(0, 1), (1, 1)]);
+        assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
+        // Counters are those of the first frame, which is not timed; one
+        // thread's time is measured for one thread alone.
+        assert_eq!(measured[1].counters, [("frames", 2)]);
+        assert_eq!(measured[1].thread, None);
+        assert_eq!(measured[0].thread.is_some(), cfg!(unix));
+    }
+}

@@ -1,0 +1,289 @@
+//! The picture that others are measured against: many exact rays a pixel, or
+//! many samples of a mesh's triangles.
+
+use rayon::prelude::*;
+
+use super::voxels::PixelStyle;
+use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
+use shiftvox::graph::{Graph, Progress};
+use crate::bench::BenchError;
+use shiftvox_mesh::Surface;
+use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
+use shiftvox::picture::{Background, Shader, Shading};
+use shiftvox::project::{Camera, FrameSetup};
+use shiftvox::rays::{Caster, MAX_CASTER_LEVELS};
+use shiftvox::split_mix::mix;
+
+/// How a reference is sampled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sampling {
+    /// Strata of a pixel along each axis, as a power of two, 0..=4; one sample each.
+    pub strata_log2: u32,
+    /// Which places in the strata are taken: another seed, another picture.
+    pub seed: u64,
+}
+
+/// A picture of many samples, box-filtered in linear light.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// sRGB, opaque, rounded once after the filter.
+    pub rgba: Vec<[u8; 4]>,
+    /// Share of each pixel's samples that see something, 0 to 1.
+    pub shares: Vec<f32>,
+}
+
+/// Most levels by which places in a stratum are distinguished.
+const MOST_JITTER_LEVELS: u32 = 4;
+
+/// What a reference takes of its picture's levels: a picture whose image root
+/// has more than this many is too large for one.
+pub const MAX_REFERENCE_LEVELS: u32 = MAX_CASTER_LEVELS - 4;
+
+/// Casts a reference of a frame (one sample a pixel: `setup.options.aa_log2`
+/// is 0) whose image root has at most [`MAX_REFERENCE_LEVELS`] levels.
+///
+/// The samples are those of a grid that is up to 256 times as fine as the
+/// pixels, so that the exact rays, which go down to the finest voxels whatever
+/// the frame's level of detail, start from the same integers as the frame:
+/// a pixel's strata are squares of that grid, and each has one of its grid
+/// points drawn by lot. The result depends on frame and sampling alone.
+/// `progress` advances by rows.
+#[must_use]
+pub fn cast(
+    graph: &Graph,
+    setup: &FrameSetup,
+    shading: Shading,
+    background: Background,
+    sampling: Sampling,
+    progress: &dyn Progress,
+) -> Reference {
+    let strata_log2 = sampling.strata_log2.min(4);
+    let spare = MAX_CASTER_LEVELS.saturating_sub(setup.levels + strata_log2);
+    let jitter_log2 = spare.min(MOST_JITTER_LEVELS);
+    let mut grid = setup.without_detail();
+    grid.levels += strata_log2 + jitter_log2;
+    let view = graph.view();
+    let pixels = Pixels {
+        caster: Caster::new(&view, &grid),
+        shader: Shader::new(graph, &grid, shading, background),
+        strata_log2,
+        jitter_log2,
+        seed: sampling.seed,
+    };
+    progress.begin("casting the reference", u64::from(setup.height));
+    let mut rows = Vec::with_capacity(setup.height as usize);
+    // In blocks, so that progress is reported from this thread.
+    let block = 4 * rayon::current_num_threads().max(1) as u32;
+    for first in (0..setup.height).step_by(block as usize) {
+        let last = (first + block).min(setup.height);
+        let row = |y: u32| -> Vec<_> { (0..setup.width).map(|x| pixels.pixel(x, y)).collect() };
+        rows.par_extend((first..last).into_par_iter().map(row));
+        progress.advance(u64::from(last - first));
+    }
+    progress.end();
+    let all = rows.concat();
+    Reference {
+        width: setup.width,
+        height: setup.height,
+        rgba: all.iter().map(|pixel| pixel.0).collect(),
+        shares: all.iter().map(|pixel| pixel.1).collect(),
+    }
+}
+
+/// Samples a pixel of the reference of a mesh.
+pub(super) const TRIANGLE_SAMPLES: u32 = 256;
+
+/// A reference of a mesh: its triangles at 256 samples a pixel, one drawn by
+/// lot in each of equal squares: another seed, another picture.
+///
+/// # Errors
+/// When the camera cannot see, or the picture is too large.
+pub(in crate) fn of_triangles(
+    surface: &dyn Surface,
+    camera: &Camera,
+    style: PixelStyle,
+    seed: u64,
+    progress: &dyn Progress,
+) -> Result<Reference, BenchError> {
+    let failed = |e: &dyn std::fmt::Display| BenchError::Picture(e.to_string());
+    let view = view_of(camera, surface.bounds()).map_err(|e| failed(&e))?;
+    let samples = Samples::new(TRIANGLE_SAMPLES, Pattern::Stratified { seed });
+    let options = RasterOptions {
+        samples: samples.map_err(|e| failed(&e))?,
+        light: light_of(&view, style.shading),
+        background: Some(style.background),
+    };
+    let drawn = raster::draw(surface, &view, &options, progress).map_err(|e| failed(&e))?;
+    Ok(Reference {
+        width: drawn.width,
+        height: drawn.height,
+        rgba: drawn.rgba,
+        shares: drawn.coverage,
+    })
+}
+
+struct Pixels<'g> {
+    caster: Caster<'g>,
+    shader: Shader<'g>,
+    strata_log2: u32,
+    jitter_log2: u32,
+    seed: u64,
+}
+
+impl Pixels<'_> {
+    /// Colour and share of a pixel.
+    fn pixel(&self, x: u32, y: u32) -> ([u8; 4], f32) {
+        let strata = 1u32 << self.strata_log2;
+        let (mut light, mut seen) = ([0u32; 3], 0u32);
+        for j in 0..strata {
+            for i in 0..strata {
+                let stratum = (x << self.strata_log2 | i, y << self.strata_log2 | j);
+                let (u, v) = self.place_in(stratum);
+                let of_sample = match self.caster.nearest(u, v) {
+                    Some((node, voxel)) => {
+                        seen += 1;
+                        self.shader.light(u, v, node, voxel)
+                    }
+                    None => self.shader.background().unwrap_or_default(),
+                };
+                // At most 2^8 samples of 16 bits.
+                for (sum, light) in light.iter_mut().zip(of_sample) {
+                    *sum += light;
+                }
+            }
+        }
+        let samples_log2 = 2 * self.strata_log2;
+        let half = (1u32 << samples_log2) >> 1;
+        let [r, g, b] = self
+            .shader
+            .encode(light.map(|sum| (sum + half) >> samples_log2));
+        let share = seen as f32 / (1u32 << samples_log2) as f32;
+        ([r, g, b, 255], share)
+    }
+
+    /// The grid point that is taken in a stratum.
+    fn place_in(&self, (x, y): (u32, u32)) -> (u32, u32) {
+        let lot = mix(self.seed ^ mix(u64::from(x) << 32 | u64::from(y)));
+        let mask = (1u32 << self.jitter_log2) - 1;
+        let (dx, dy) = (lot as u32 & mask, (lot >> 32) as u32 & mask);
+        (x << self.jitter_log2 | dx, y << self.jitter_log2 | dy)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use shiftvox::frame::Frame;
+    use shiftvox::graph::{Placement, Silent, Store};
+    use shiftvox::picture::resolve;
+    use shiftvox::project::{Engine, SetupOptions};
+    use shiftvox::rays::Rays;
+
+    /// One voxel, `[0, 1]^3`.
+    fn cube() -> Graph {
+        Graph {
+            depth: 0,
+            root: 0,
+            mask: Store::from(vec![]),
+            first: Store::from(vec![]),
+            links: Store::from(vec![]),
+            color: Store::from(vec![[200, 40, 90]]),
+            normal: Store::from(vec![]),
+            opacity: Store::from(vec![]),
+            level_start: vec![],
+            voxels: 1,
+            placement: Placement::default(),
+        }
+    }
+
+    /// A camera that looks along y at the cube `[0, 1]^3`, whose near face is
+    /// `side` pixels a side and begins at pixel `(left, left)` of 8 x 8.
+    fn facing(left: f64, side: f64) -> Camera {
+        let fov = 2.0 * libm::atan(4.0 / (8.0 * side));
+        let (x, z) = ((4.0 - left) / side, 1.0 - (4.0 - left) / side);
+        Camera {
+            eye: DVec3::new(x, -8.0, z),
+            target: DVec3::new(x, 0.0, z),
+            up: DVec3::Z,
+            fov_degrees: fov.to_degrees(),
+            width: 8,
+            height: 8,
+        }
+    }
+
+    fn cast_at(camera: &Camera, strata_log2: u32, seed: u64) -> Reference {
+        let graph = cube();
+        let setup = FrameSetup::new(
+            camera,
+            &graph.placement,
+            graph.depth,
+            &SetupOptions::default(),
+        )
+        .unwrap();
+        let sampling = Sampling { strata_log2, seed };
+        let black = Background::Color([0; 3]);
+        cast(&graph, &setup, Shading::Flat, black, sampling, &Silent)
+    }
+
+    #[test]
+    fn shares_are_areas() {
+        // From (2.25, 2.25) to (4.75, 4.75): a rim of 3/4 on both sides.
+        let reference = cast_at(&facing(2.25, 2.5), 4, 1);
+        let share = |x: usize, y: usize| f64::from(reference.shares[y * 8 + x]);
+        assert_eq!((share(0, 0), share(3, 3), share(5, 5)), (0.0, 1.0, 0.0));
+        let area: f64 = reference.shares.iter().map(|&s| f64::from(s)).sum();
+        assert!((area - 6.25).abs() < 0.02, "{area}");
+        for rim in [share(2, 3), share(3, 2), share(4, 3), share(3, 4)] {
+            assert!((rim - 0.75).abs() < 0.02, "{rim}");
+        }
+        assert!((share(2, 2) - 0.5625).abs() < 0.02, "{}", share(2, 2));
+        assert_eq!(reference.rgba[3 * 8 + 3], [200, 40, 90, 255]);
+        assert_eq!(reference.rgba[0], [0, 0, 0, 255]);
+        // Light is averaged, not bytes: half of black and white is 188.
+        let half = reference.rgba[3 * 8 + 2][0];
+        assert!((174..=179).contains(&half), "{half}");
+    }
+
+    #[test]
+    fn seeds_differ_a_little_and_runs_do_not() {
+        let camera = facing(2.3, 3.1);
+        let [a, again, b] = [7, 7, 8].map(|seed| cast_at(&camera, 3, seed));
+        assert_eq!(a, again);
+        assert_ne!(a, b);
+        let apart = a.shares.iter().zip(&b.shares).map(|(a, b)| (a - b).abs());
+        assert!(apart.fold(0.0, f32::max) < 0.2);
+    }
+
+    #[test]
+    fn one_stratum_without_jitter_is_the_oracles_picture() {
+        let graph = cube();
+        let camera = facing(2.3, 3.1);
+        let setup = FrameSetup::new(
+            &camera,
+            &graph.placement,
+            graph.depth,
+            &SetupOptions::default(),
+        )
+        .unwrap();
+        let mut frame = Frame::new(8, 8, false);
+        Rays.render(&graph.view(), &setup, &mut frame).unwrap();
+        let background = Background::default();
+        let picture = resolve(&frame, &graph, &setup, Shading::Lambert, background).unwrap();
+        let view = graph.view();
+        let pixels = Pixels {
+            caster: Caster::new(&view, &setup),
+            shader: Shader::new(&graph, &setup, Shading::Lambert, background),
+            strata_log2: 0,
+            jitter_log2: 0,
+            seed: 1,
+        };
+        let found: Vec<[u8; 4]> = (0..64).map(|i| pixels.pixel(i % 8, i / 8).0).collect();
+        assert_eq!(found, picture.rgba);
+    }
+}

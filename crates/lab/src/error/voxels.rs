@@ -1,0 +1,274 @@
+//! The project's own engines as a method.
+
+use hwmodel::count::Counter;
+use hwmodel::cycles::Organisation;
+use hwmodel::{Memory, Stage};
+
+use super::cut::cut_at;
+use super::method::{Examined, Method, Refused, Samples, drawn};
+use super::vertices::vertex_levels;
+use shiftvox::drawing::{Buffers, Drawable, GraphDrawing, GraphStyle, Shown};
+use shiftvox::frame::{Frame, NO_NODE};
+use shiftvox::graph::Graph;
+use crate::bench::MakeEngine;
+use crate::model::record::{record_bits, record_fields};
+use shiftvox::machine::Machine;
+use shiftvox::picture::npy::Values;
+use shiftvox::picture::{Background, Buffer, Rows, Shading};
+use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions, Stats, Up};
+
+/// How samples become colours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PixelStyle {
+    /// Shading.
+    pub shading: Shading,
+    /// What is behind the object; a colour, so that pictures are opaque.
+    pub background: [u8; 3],
+}
+
+impl Default for PixelStyle {
+    fn default() -> Self {
+        let background = match Background::default() {
+            Background::Color(color) => color,
+            Background::None => [0; 3],
+        };
+        Self {
+            shading: Shading::default(),
+            background,
+        }
+    }
+}
+
+/// Bytes that an access moves: child mask and list of a node, its colour
+/// and normal, a fill vector (four bits, a byte here), a pixel's node.
+const NODE_BYTES: u64 = 5;
+const ATTRIBUTE_BYTES: u64 = 5;
+const FILL_VECTOR_BYTES: u64 = 1;
+const PIXEL_BYTES: u64 = 4;
+const ACCUMULATOR_BYTES: u64 = (hwmodel::memory::ACCUMULATOR_BITS as u64).div_ceil(8);
+
+/// An engine of this project with settings, on one thread. Times are the engine's; counters
+/// are those of the machine, which draws the same bits, so that methods can be
+/// compared by what the hardware would do.
+#[must_use]
+pub fn voxel_method<'g>(
+    graph: &'g Graph,
+    (engine, make): (&'static str, MakeEngine),
+    options: SetupOptions,
+    style: PixelStyle,
+) -> Method<'g> {
+    let drawing = move |graph: &'g Graph| of_voxels(graph, make, options, style);
+    let with_cut_of = move |camera: &Camera, other: &Camera| {
+        let cut = cut_at(graph, &setup(graph, other, &options)?);
+        // Solids are exactly the nodes that the cut stops at.
+        let options = SetupOptions {
+            lod_px: 0.0,
+            ..options
+        };
+        let mut on_cut = of_voxels(&cut, make, options, style);
+        Ok(drawn(&mut on_cut, camera)?.pixels.rgba())
+    };
+    Method {
+        family: "voxels",
+        name: name(engine, &options),
+        settings: settings(engine, &options),
+        kind: kind(&options),
+        drawing: Box::new(move || Box::new(drawing(graph)) as Box<dyn Drawable>),
+        examine: Box::new(move |shown, camera| examine(graph, &options, shown, camera)),
+        with_cut_of: (options.lod_px != 0.0).then(|| Box::new(with_cut_of) as _),
+    }
+}
+
+fn of_voxels(
+    graph: &Graph,
+    make: MakeEngine,
+    options: SetupOptions,
+    style: PixelStyle,
+) -> GraphDrawing<'_> {
+    let style = GraphStyle {
+        options,
+        shading: style.shading,
+        background: Background::Color(style.background),
+        buffers: vec![Buffer::Voxel],
+        is_hashed: false,
+    };
+    // Which axis is up matters to fitted cameras alone.
+    GraphDrawing::new(graph, Up::Z, style, move || make(1))
+}
+
+fn setup(graph: &Graph, camera: &Camera, options: &SetupOptions) -> Result<FrameSetup, Refused> {
+    FrameSetup::new(camera, &graph.placement, graph.depth, options).map_err(Refused::because)
+}
+
+fn examine(
+    graph: &Graph,
+    options: &SetupOptions,
+    shown: &Shown<'_>,
+    camera: &Camera,
+) -> Result<Examined, Refused> {
+    let Buffers::Resolved(resolver) = &shown.buffers else {
+        return Err(Refused::because("no engine of voxels"));
+    };
+    let (frame, (_, height)) = (resolver.frame(), resolver.size());
+    let depth = shown.buffers.rows(Buffer::Depth, 0..height);
+    let Values::F32(depth) = depth.map_err(Refused::because)? else {
+        return Err(Refused::because("no depths"));
+    };
+    let setup = setup(graph, camera, options)?;
+    let aa_log2 = options.aa_log2;
+    let handed = |(name, _): &(&str, _)| *name == "handed_to_machine";
+    Ok(Examined {
+        shares: shares(frame, aa_log2),
+        vertices: vertex_levels(camera, &setup, &frame.voxel),
+        counters: counters(graph, &setup)?,
+        samples: Some(Samples {
+            aa_log2,
+            voxel: frame.voxel.clone(),
+            depth,
+        }),
+        remark: remark(options, shown.counters.iter().any(handed)),
+    })
+}
+
+/// `handed`: whether the fast engine left the frame to the machine.
+fn remark(o: &SetupOptions, handed: bool) -> Option<String> {
+    let is_paper =
+        (o.cage, o.coverage) == (CageKind::Corners, Coverage::Any) && o.tolerance_px.is_infinite();
+    match (is_paper, handed) {
+        (true, true) => Some("the paper's; drawn by the machine".to_owned()),
+        (true, false) => Some("the paper's".to_owned()),
+        (false, true) => Some("drawn by the machine".to_owned()),
+        (false, false) => None,
+    }
+}
+
+fn counters(graph: &Graph, setup: &FrameSetup) -> Result<Stats, Refused> {
+    let mut frame = Frame::nodes_only(setup.width, setup.height);
+    let drawn = Machine::default().render_probed(&graph.view(), setup, &mut frame, Counter::new());
+    let (stats, counter) = drawn.map_err(Refused::because)?;
+    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
+    let at = |stages: &[Stage]| counter.sum(|cell| stages.contains(&cell.stage));
+    let record = u64::from(
+        record_bits(&record_fields(setup, graph.len(), Organisation::default())).div_ceil(8),
+    );
+    let bytes = [
+        (Memory::Stack, record),
+        (Memory::Node, NODE_BYTES),
+        (Memory::Attribute, ATTRIBUTE_BYTES),
+        (Memory::FillVector, FILL_VECTOR_BYTES),
+        (Memory::Pixel, PIXEL_BYTES),
+        (Memory::Accumulator, ACCUMULATOR_BYTES),
+    ];
+    let touched = bytes
+        .iter()
+        .map(|&(memory, size)| size * (counter.reads(memory) + counter.writes(memory)));
+    Ok(vec![
+        ("operations", counter.ops()),
+        ("records", stat("records")),
+        (
+            "vertex_operations",
+            at(&[Stage::VertexPool, Stage::ChildBox, Stage::ToScreen]),
+        ),
+        ("quadtree_operations", at(&[Stage::QuadtreeFit])),
+        ("bytes_touched", touched.sum()),
+        ("changed_to_screen", stat("changed_to_screen")),
+    ])
+}
+
+/// A tolerance in words: `1/8`, `0`, `inf`.
+#[must_use]
+pub fn tolerance_in_words(tolerance_px: f64) -> String {
+    if tolerance_px.is_infinite() {
+        return "inf".to_owned();
+    }
+    let inverse = 1.0 / tolerance_px;
+    if tolerance_px < 1.0 && inverse.is_finite() && inverse == libm::round(inverse) {
+        return format!("1/{inverse}");
+    }
+    tolerance_px.to_string()
+}
+
+fn name(engine: &str, o: &SetupOptions) -> String {
+    let mut name = o.coverage.name().to_owned();
+    if !o.coverage.draws_outlines() {
+        name += &format!(" {}", tolerance_in_words(o.tolerance_px));
+    }
+    name += &format!(" {}", o.cage.name());
+    if o.bits != 64 || o.frac.is_some() {
+        name += &format!(" {} bits", o.bits);
+    }
+    if let Some(frac) = o.frac {
+        name += &format!(" .{frac}");
+    }
+    if o.lod_px != o.coverage.default_lod() {
+        name += &format!(" lod {}", o.lod_px);
+    }
+    if o.aa_log2 > 0 {
+        name += &format!(" aa {}", 1 << o.aa_log2);
+    }
+    if engine != "fast" {
+        name += &format!(", {}", engine);
+    }
+    name
+}
+
+fn settings(engine: &str, o: &SetupOptions) -> Vec<(&'static str, String)> {
+    vec![
+        ("coverage", o.coverage.name().to_owned()),
+        ("tolerance", tolerance_in_words(o.tolerance_px)),
+        ("cage", o.cage.name().to_owned()),
+        ("bits", o.bits.to_string()),
+        ("lod", o.lod_px.to_string()),
+        ("aa", (1 << o.aa_log2).to_string()),
+        ("engine", engine.to_owned()),
+    ]
+}
+
+fn kind(o: &SetupOptions) -> String {
+    let aa = match o.aa_log2 {
+        0 => String::new(),
+        aa => format!(", aa {}", 1 << aa),
+    };
+    format!("{}{aa}", o.coverage.name())
+}
+
+/// The share of each pixel's samples that see something.
+fn shares(frame: &Frame, aa_log2: u32) -> Vec<f32> {
+    let (side, across) = (1usize << aa_log2, frame.width as usize);
+    let (width, height) = (across >> aa_log2, frame.height as usize >> aa_log2);
+    let pixel = |x: usize, y: usize| {
+        let rows = (0..side).map(|j| (y * side + j) * across + x * side);
+        let samples = (side * side) as f32;
+        if let Some(blend) = &frame.blend {
+            let taken = rows.flat_map(|at| &blend[at..at + side]);
+            return taken.map(|b| 1.0 - f32::from(b.left) / 256.0).sum::<f32>() / samples;
+        }
+        let seen = rows.flat_map(|at| &frame.node[at..at + side]);
+        seen.filter(|&&node| node != NO_NODE).count() as f32 / samples
+    };
+    (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .map(|(x, y)| pixel(x, y))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tolerances_in_words() {
+        let words = [0.0, 0.125, 1.0 / 64.0, 0.3, 2.0, f64::INFINITY].map(tolerance_in_words);
+        assert_eq!(words, ["0", "1/8", "1/64", "0.3", "2", "inf"]);
+    }
+
+    #[test]
+    fn shares_of_samples() {
+        let mut frame = Frame::nodes_only(4, 2);
+        for at in [0, 2, 3, 6, 7] {
+            frame.node[at] = 0;
+        }
+        assert_eq!(shares(&frame, 1), [0.25, 1.0]);
+        assert_eq!(shares(&frame, 0)[..4], [1.0, 0.0, 1.0, 1.0]);
+    }
+}

@@ -1,0 +1,289 @@
+//! The ray caster as hardware: every step counted while it is executed.
+//!
+//! So that the comparison with the machine is fair to the ray caster, its rays
+//! are made as cheaply as a ray can be: in every order a constant added to the last
+//! direction, the eye as the origin of all; nothing is charged for the first of a row,
+//! and for choosing among constants nothing at all.
+
+use serde::Serialize;
+
+use super::arithmetic::{Arithmetic, FloatStep};
+use super::caster::Caster;
+use super::{MAX_LEVEL, RayOrder, Rays};
+use shiftvox::frame::Frame;
+use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::project::FrameSetup;
+
+/// Steps of a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct FloatRayCounts {
+    steps: [u64; FloatStep::ALL.len()],
+    /// Of those, the ones that had to follow one another within a ray.
+    waits: [u64; FloatStep::ALL.len()],
+    /// Rays cast: one a sample.
+    pub rays: u64,
+    /// Cells that rays examined.
+    pub cells: u64,
+}
+
+impl FloatRayCounts {
+    /// Steps of one kind.
+    #[must_use]
+    pub fn of(&self, step: FloatStep) -> u64 {
+        self.steps[step as usize]
+    }
+
+    /// Steps of one kind in the rays' longest chains.
+    #[must_use]
+    pub fn waits(&self, step: FloatStep) -> u64 {
+        self.waits[step as usize]
+    }
+
+    /// Adds steps of one kind, so many of them in the longest chain.
+    pub fn add(&mut self, step: FloatStep, times: u64, waits: u64) {
+        self.steps[step as usize] += times;
+        self.waits[step as usize] += waits;
+    }
+
+    /// All steps that are arithmetic, and not accesses to a memory.
+    #[must_use]
+    pub fn arithmetic(&self) -> u64 {
+        let of = |step: &FloatStep| self.of(*step);
+        FloatStep::ALL[..=FloatStep::Shift as usize]
+            .iter()
+            .map(of)
+            .sum()
+    }
+}
+
+/// What a ray reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayRead {
+    /// A word of a node, by its place among all words.
+    Node(u64),
+    /// Colour and normal of a node.
+    Attribute(u32),
+}
+
+/// Counts steps, and calls `reads` for every node and attribute that is read.
+struct Counting<'n> {
+    counts: FloatRayCounts,
+    reads: &'n mut dyn FnMut(RayRead),
+}
+
+impl Arithmetic for Counting<'_> {
+    #[inline]
+    fn count(&mut self, step: FloatStep, times: u32) {
+        self.counts.steps[step as usize] += u64::from(times);
+    }
+
+    #[inline]
+    fn wait(&mut self, step: FloatStep, times: u32) {
+        self.counts.waits[step as usize] += u64::from(times);
+    }
+
+    #[inline]
+    fn node(&mut self, word: u64) {
+        self.counts.steps[FloatStep::NodeRead as usize] += 1;
+        (self.reads)(RayRead::Node(word));
+    }
+}
+
+/// Draws a frame in `f32`, its rays in `order`, and counts what that takes.
+/// `layout`: how nodes lie in memory.
+/// `reads` is called for every node and attribute that is read, in order.
+pub fn count(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    frame: &mut Frame,
+    order: RayOrder,
+    layout: NodeLayout,
+    reads: &mut dyn FnMut(RayRead),
+) -> FloatRayCounts {
+    frame.clear();
+    let rays = Rays::new(setup);
+    let caster = Caster {
+        graph,
+        last_level: setup.depth.min(MAX_LEVEL),
+        depth: setup.depth,
+        layout,
+    };
+    let mut by = Counting {
+        counts: FloatRayCounts::default(),
+        reads,
+    };
+    let eye = rays.eye.map(|c| c as f32);
+    let right = rays.right.map(|c| c as f32);
+    let width = frame.width as usize;
+    let mut direction = [0f32; 3];
+    order.for_each(frame.width, frame.height, |i, j| {
+        // Sums drift along a row; the other orders' rays are taken as they should be.
+        if i == 0 || order != RayOrder::Rows {
+            direction = rays.direction(i, j).map(|c| c as f32);
+        }
+        let mut steps = 0;
+        if let Some((seen, voxel)) = caster.cast(eye, direction, &mut steps, &mut by) {
+            let at = j as usize * width + i as usize;
+            frame.node[at] = seen;
+            by.count(FloatStep::AttributeRead, 1);
+            (by.reads)(RayRead::Attribute(seen));
+            by.count(FloatStep::PixelWrite, 1);
+            if let Some(to) = frame.voxel.get_mut(at) {
+                *to = voxel;
+            }
+        }
+        by.counts.rays += 1;
+        by.counts.cells += steps;
+        by.wait(FloatStep::FloatAdd, 1);
+        for k in 0..3 {
+            direction[k] = by.add(direction[k], right[k]);
+        }
+    });
+    by.counts
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use shiftvox::graph::Silent;
+    use crate::float_rays::FloatRays;
+    use crate::measure::CoverageError;
+    use shiftvox::project::{Camera, Engine, SetupOptions};
+    use shiftvox_mesh::open::{OpenOptions, open};
+
+    fn setup(spec: &str, camera: &Camera) -> (shiftvox::graph::Graph, FrameSetup) {
+        let graph = open(spec, &OpenOptions::default(), &Silent).unwrap().graph;
+        let options = SetupOptions::default();
+        let setup = FrameSetup::new(camera, &graph.placement, graph.depth, &options).unwrap();
+        (graph, setup)
+    }
+
+    fn camera(eye: [f64; 3], target: [f64; 3], side: u32) -> Camera {
+        Camera {
+            eye: DVec3::from_array(eye),
+            target: DVec3::from_array(target),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: side,
+            height: side,
+        }
+    }
+
+    #[test]
+    fn a_ray_that_misses_costs_its_set_up() {
+        // All components of all four directions are below 0: nothing is mirrored.
+        let camera = camera([90.0, 80.0, 70.0], [70.0, 60.0, 50.0], 2);
+        let (graph, setup) = setup("gen:sphere,depth=2", &camera);
+        let mut frame = Frame::new(2, 2, false);
+        let counts = count(
+            &graph.view(),
+            &setup,
+            &mut frame,
+            RayOrder::Rows,
+            NodeLayout::default(),
+            &mut |_| (),
+        );
+        assert_eq!(frame.drawn(), 0);
+        assert_eq!((counts.rays, counts.cells), (4, 0));
+        let rays = 4;
+        // The inverse of three slopes, and the bias of three planes.
+        assert_eq!(counts.of(FloatStep::FloatDivide), 3 * rays);
+        // Three biases, and the cube's six planes.
+        assert_eq!(counts.of(FloatStep::FloatMultiply), (3 + 6) * rays);
+        // The six planes, and the step to the next ray.
+        assert_eq!(counts.of(FloatStep::FloatAdd), (6 + 3) * rays);
+        // Three least slopes; of three planes the last and the first; 0.
+        assert_eq!(counts.of(FloatStep::FloatMinMax), (3 + 2 + 2 + 1) * rays);
+        assert_eq!(counts.of(FloatStep::FloatCompare), (3 + 1) * rays);
+        assert_eq!(counts.of(FloatStep::NodeRead), 0);
+        assert_eq!(counts.arithmetic(), (3 + 9 + 9 + 8 + 4 + 3) * rays);
+        assert_eq!(counts.of(FloatStep::AttributeRead), 0);
+        // One after the other: a divide, two products, the plane's sum and the next
+        // ray's, four minima and maxima, a compare.
+        for (step, waits) in [
+            (FloatStep::FloatDivide, 1),
+            (FloatStep::FloatMultiply, 2),
+            (FloatStep::FloatAdd, 2),
+            (FloatStep::FloatMinMax, 4),
+            (FloatStep::FloatCompare, 1),
+            (FloatStep::NodeRead, 0),
+        ] {
+            assert_eq!(counts.waits(step), waits * rays, "{step:?}");
+        }
+    }
+
+    #[test]
+    fn it_draws_the_ray_caster_s_picture_and_tells_of_every_node() {
+        let camera = camera([100.0, -45.0, 80.0], [32.0, 32.0, 20.0], 128);
+        let (graph, setup) = setup("gen:terrain,depth=6", &camera);
+        let mut plain = Frame::new(128, 128, false);
+        let mut counted = plain.clone();
+        let stats = FloatRays.render(&graph.view(), &setup, &mut plain).unwrap();
+        let (mut nodes, mut attributes) = (0, Vec::new());
+        let mut reads = |read| match read {
+            RayRead::Node(_) => nodes += 1,
+            RayRead::Attribute(node) => attributes.push(node),
+        };
+        let view = graph.view();
+        let counts = count(
+            &view,
+            &setup,
+            &mut counted,
+            RayOrder::Rows,
+            NodeLayout::default(),
+            &mut reads,
+        );
+        let error = CoverageError::between(&counted.voxel, &plain.voxel);
+        assert!(error.covered > 1000);
+        assert!(error.differing() <= 8, "{error:?}");
+        assert_eq!(counts.of(FloatStep::NodeRead), nodes);
+        assert_eq!(counts.of(FloatStep::PixelWrite), counted.drawn() as u64);
+        let steps = stats.iter().find(|(name, _)| *name == "steps").unwrap().1;
+        assert!(counts.cells.abs_diff(steps) * 100 < steps);
+        // Each ray that hits reads the attribute of what it shows.
+        let shown = counted
+            .node
+            .iter()
+            .filter(|&&node| node != shiftvox::frame::NO_NODE);
+        assert!(shown.eq(&attributes));
+        assert_eq!(counts.of(FloatStep::AttributeRead), attributes.len() as u64);
+        // A node that says which children are leaves saves each ray that hits the last read.
+        let mut frame = plain.clone();
+        let masks = NodeLayout::new(&view, true, false);
+        let with_leaf_masks = count(
+            &view,
+            &setup,
+            &mut frame,
+            RayOrder::Rows,
+            masks,
+            &mut |_| (),
+        );
+        assert_eq!(frame, counted);
+        let hits = counted.drawn() as u64;
+        assert_eq!(
+            with_leaf_masks.of(FloatStep::NodeRead) + hits,
+            counts.of(FloatStep::NodeRead)
+        );
+        // A chain is no longer than all steps of a kind.
+        for step in FloatStep::ALL {
+            assert!(counts.waits(step) <= counts.of(step), "{step:?}");
+        }
+        // The other orders draw the same, but for roundings.
+        for order in [RayOrder::Tiles, RayOrder::Morton] {
+            let mut frame = plain.clone();
+            let other = count(
+                &view,
+                &setup,
+                &mut frame,
+                order,
+                NodeLayout::default(),
+                &mut |_| (),
+            );
+            assert!(CoverageError::between(&frame.voxel, &plain.voxel).differing() <= 8);
+            assert_eq!(other.rays, counts.rays);
+            assert!(other.arithmetic().abs_diff(counts.arithmetic()) * 100 < counts.arithmetic());
+        }
+    }
+}

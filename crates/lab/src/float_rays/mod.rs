@@ -1,0 +1,257 @@
+//! A ray caster in `f32`: the stand-in for renderers that are not ours.
+//!
+//! One ray for each sample through the octree, with a stack, children in the
+//! order in which the ray meets them (Revelles, Urena, Lastra 2000; the form
+//! is that of Laine and Karras, *Efficient Sparse Voxel Octrees*, 2010). No
+//! allocation for a ray, nothing tested twice, the first leaf ends it: a
+//! plain implementation. One thread, no packets.
+//!
+//! The object is the cube `[1, 2]^3`, so that a cell's position along an axis
+//! is the mantissa of an `f32` and its level a bit of it. Space is mirrored
+//! where the ray runs upwards; in mirrored space it runs downwards on every axis.
+
+mod arithmetic;
+mod caster;
+mod counted;
+mod order;
+
+pub use arithmetic::FloatStep;
+use arithmetic::Plain;
+use caster::Caster;
+pub use counted::{FloatRayCounts, RayRead, count};
+pub use order::RayOrder;
+
+use shiftvox::frame::{Frame, NO_NODE};
+use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::project::vector::cross;
+use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
+
+/// Bits of an `f32`'s mantissa, hence levels that positions can resolve.
+const MANTISSA_BITS: u32 = 23;
+/// Deepest level that is examined; nodes there are drawn as one voxel.
+pub const MAX_LEVEL: u32 = MANTISSA_BITS - 2;
+/// Least magnitude of a direction's component, so that its inverse is finite
+/// and products with it stay far from overflow.
+const LEAST_SLOPE: f32 = 1.0 / (1 << MANTISSA_BITS) as f32;
+
+/// The ray caster in floating point. Drawing rule, cage, tolerance and level
+/// of detail of the set-up are ignored: a sample shows what its centre sees,
+/// within the precision of `f32`.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FloatRays;
+
+impl Engine for FloatRays {
+    /// Never fails. `steps` counts the cells that rays examined. Does not
+    /// fill `frame.records`. Nodes at [`MAX_LEVEL`] are drawn as one voxel.
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        frame.clear();
+        let rays = Rays::new(setup);
+        let caster = Caster {
+            graph,
+            last_level: setup.depth.min(MAX_LEVEL),
+            depth: setup.depth,
+            layout: NodeLayout::default(),
+        };
+        let mut steps = 0;
+        let mut drawn = 0;
+        let width = frame.width as usize;
+        let rows = frame.node.chunks_mut(width.max(1));
+        for (j, nodes) in rows.enumerate() {
+            for (i, node) in nodes.iter_mut().enumerate() {
+                let (origin, direction) = rays.of_sample(i as u32, j as u32);
+                if let Some((seen, voxel)) = caster.cast(origin, direction, &mut steps, &mut Plain)
+                {
+                    *node = seen;
+                    // None where the frame is of nodes alone.
+                    if let Some(to) = frame.voxel.get_mut(j * width + i) {
+                        *to = voxel;
+                    }
+                    drawn += 1;
+                }
+            }
+        }
+        debug_assert_eq!(
+            drawn,
+            frame.node.iter().filter(|&&n| n != NO_NODE).count() as u64
+        );
+        Ok(vec![
+            ("samples", frame.node.len() as u64),
+            ("samples_drawn", drawn),
+            ("steps", steps),
+        ])
+    }
+}
+
+/// The rays of a frame, in the object's cube `[1, 2]^3`.
+struct Rays {
+    /// The eye.
+    eye: [f64; 3],
+    /// Direction of the first sample's ray, and its change for each sample
+    /// right and down.
+    first: [f64; 3],
+    right: [f64; 3],
+    down: [f64; 3],
+}
+
+impl Rays {
+    /// Inverts the frame's view: once a frame, in `f64`.
+    fn new(setup: &FrameSetup) -> Self {
+        let edge = setup.edge_clip.map(|e| e.map(|c| c as f64));
+        let origin = setup.origin_clip.map(|c| c as f64);
+        let normal = [0, 1, 2].map(|k| cross(edge[(k + 1) % 3], edge[(k + 2) % 3]));
+        let determinant = dot(normal[0], edge[0]);
+        let side = (1u64 << setup.depth) as f64;
+        // Object coordinates, in cubes, of a clip vector.
+        let object = |clip: [f64; 3]| normal.map(|n| dot(n, clip) / determinant / side);
+        let sample = 1.0 / (1u64 << setup.levels) as f64;
+        // The first sample's centre is half a sample from the corner.
+        let first = object([sample / 2.0, sample / 2.0, 1.0]);
+        let longest = first.iter().fold(0.0f64, |most, c| most.max(c.abs()));
+        let unit = 1.0 / longest;
+        Self {
+            eye: object(origin.map(|c| -c)).map(|c| 1.0 + c),
+            first: first.map(|c| c * unit),
+            right: object([sample, 0.0, 0.0]).map(|c| c * unit),
+            down: object([0.0, sample, 0.0]).map(|c| c * unit),
+        }
+    }
+
+    /// Direction of a sample's ray.
+    fn direction(&self, i: u32, j: u32) -> [f64; 3] {
+        let (i, j) = (f64::from(i), f64::from(j));
+        std::array::from_fn(|k| self.first[k] + self.right[k] * i + self.down[k] * j)
+    }
+
+    /// Origin and direction of a sample's ray. The origin is where the ray
+    /// comes near the cube, so that `f32` keeps its digits for the way inside.
+    fn of_sample(&self, i: u32, j: u32) -> ([f32; 3], [f32; 3]) {
+        let direction = self.direction(i, j);
+        let to_centre: [f64; 3] = std::array::from_fn(|k| 1.5 - self.eye[k]);
+        let nearest = dot(to_centre, direction) / dot(direction, direction);
+        // Half the cube's diagonal is below 1.
+        let length = dot(direction, direction).sqrt();
+        let start = (nearest - 1.0 / length).max(0.0);
+        let origin = std::array::from_fn(|k| (self.eye[k] + direction[k] * start) as f32);
+        (origin, direction.map(|c| c as f32))
+    }
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use shiftvox::graph::{Graph, Silent};
+    use crate::measure::CoverageError;
+    use shiftvox::project::{Camera, SetupOptions};
+    use shiftvox::rays::Rays as Oracle;
+    use shiftvox_mesh::open::{OpenOptions, open};
+
+    fn graph(spec: &str) -> Graph {
+        open(spec, &OpenOptions::default(), &Silent).unwrap().graph
+    }
+
+    /// Draws both; eye and target in sides of the object's cube.
+    fn against_oracle(graph: &Graph, eye: [f64; 3], target: [f64; 3]) -> (CoverageError, Stats) {
+        let placement = &graph.placement;
+        let low = DVec3::from_array(placement.origin_index.map(|c| c as f64));
+        let side = (1u64 << graph.depth) as f64;
+        let camera = Camera {
+            eye: low + DVec3::from_array(eye) * side,
+            target: low + DVec3::from_array(target) * side,
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 256,
+            height: 256,
+        };
+        let setup =
+            FrameSetup::new(&camera, placement, graph.depth, &SetupOptions::default()).unwrap();
+        let mut exact = Frame::new(256, 256, false);
+        let mut float = exact.clone();
+        // It has no level of detail.
+        let whole = setup.without_detail();
+        Oracle.render(&graph.view(), &whole, &mut exact).unwrap();
+        let stats = FloatRays.render(&graph.view(), &setup, &mut float).unwrap();
+        let error = CoverageError::between(&float.voxel, &exact.voxel);
+        for (a, b) in float.voxel.iter().zip(&float.node) {
+            assert_eq!(a[3] < 0, *b == NO_NODE);
+        }
+        (error, stats)
+    }
+
+    #[test]
+    fn it_sees_what_the_oracle_sees() {
+        let outside = ([1.6, -0.7, 1.25], [0.5, 0.5, 0.3]);
+        let front = ([0.47, -0.95, 0.53], [0.475, 0.5, 0.475]);
+        // All octants of direction, and far away.
+        let views = [
+            outside,
+            front,
+            ([-0.6, 1.4, -0.8], [0.5, 0.5, 0.5]),
+            ([1.3, 1.9, 0.6], [0.4, 0.5, 0.5]),
+            ([-1.3, -0.4, 1.6], [0.4, 0.5, 0.5]),
+            ([6.0, -14.0, 8.0], [0.5, 0.5, 0.4]),
+        ];
+        for spec in ["gen:terrain,depth=8", "gen:menger,depth=4"] {
+            let graph = graph(spec);
+            for (eye, target) in views {
+                let (error, _) = against_oracle(&graph, eye, target);
+                eprintln!("{spec} from {eye:?}: {error:?}");
+                assert!(error.covered > 0, "{spec} from {eye:?}");
+                assert!(error.differing() <= 12, "{spec} from {eye:?}: {error:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn it_sees_from_inside_and_through_cycles() {
+        for spec in [
+            "gen:menger,depth=3",
+            "gen:sierpinski,depth=9",
+            "gen:sphere,depth=6",
+        ] {
+            let graph = graph(spec);
+            for eye in [[0.51, 0.37, 0.47], [0.26, 0.74, 0.41]] {
+                let (error, stats) = against_oracle(&graph, eye, [0.9, 0.8, 0.3]);
+                eprintln!("{spec} from {eye:?}: {error:?}");
+                assert!(error.covered > 0, "{spec} from {eye:?}");
+                assert!(error.differing() <= 12, "{spec} from {eye:?}: {error:?}");
+                let steps = stats.iter().find(|(name, _)| *name == "steps");
+                assert!(steps.is_some_and(|&(_, steps)| steps < 256 * 256 * 200));
+            }
+        }
+    }
+
+    #[test]
+    fn one_voxel_and_rays_along_the_axes() {
+        // Odd sizes have a ray through the middle with two components 0.
+        let graph = graph("gen:sphere,depth=1");
+        let camera = Camera {
+            eye: DVec3::new(0.7, -4.0, 0.6),
+            target: DVec3::new(0.7, 0.0, 0.6),
+            up: DVec3::Z,
+            fov_degrees: 40.0,
+            width: 17,
+            height: 17,
+        };
+        let options = SetupOptions::default();
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options).unwrap();
+        let mut frame = Frame::new(17, 17, false);
+        FloatRays.render(&graph.view(), &setup, &mut frame).unwrap();
+        assert_ne!(frame.node[8 * 17 + 8], NO_NODE);
+        let leaf = GraphView::default();
+        let setup = FrameSetup::new(&camera, &graph.placement, 0, &options).unwrap();
+        FloatRays.render(&leaf, &setup, &mut frame).unwrap();
+        assert_eq!(frame.voxel[8 * 17 + 8], [0; 4]);
+        assert_eq!(frame.voxel[0], shiftvox::frame::NO_VOXEL);
+    }
+}

@@ -1,0 +1,111 @@
+//! The order in which rays are cast: what a cache finds depends on it.
+
+use serde::{Deserialize, Serialize};
+
+/// An order of a picture's rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum RayOrder {
+    /// Row by row, from the left.
+    Rows,
+    /// Tiles of 8 x 8 row by row, and the rays of each row by row.
+    Tiles,
+    /// Along the Z curve (Morton), whose every quadrant is done before the next.
+    Morton,
+}
+
+/// Side of a tile, samples.
+const TILE: u32 = 8;
+
+impl RayOrder {
+    /// All orders.
+    pub const ALL: [Self; 3] = [Self::Rows, Self::Tiles, Self::Morton];
+
+    /// The order in words.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rows => "rows",
+            Self::Tiles => "tiles of 8 x 8",
+            Self::Morton => "Morton",
+        }
+    }
+
+    /// Calls `visit` with column and row of every sample of a picture, once each.
+    pub fn for_each(self, width: u32, height: u32, mut visit: impl FnMut(u32, u32)) {
+        match self {
+            Self::Rows => {
+                for j in 0..height {
+                    (0..width).for_each(|i| visit(i, j));
+                }
+            }
+            Self::Tiles => {
+                for top in (0..height).step_by(TILE as usize) {
+                    for left in (0..width).step_by(TILE as usize) {
+                        for j in top..height.min(top + TILE) {
+                            (left..width.min(left + TILE)).for_each(|i| visit(i, j));
+                        }
+                    }
+                }
+            }
+            Self::Morton => {
+                let side = u64::from(width.max(height).max(1).next_power_of_two());
+                for place in 0..side * side {
+                    let (i, j) = (even_bits(place), even_bits(place >> 1));
+                    if i < width && j < height {
+                        visit(i, j);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Every second bit of a number, from bit 0 on.
+fn even_bits(number: u64) -> u32 {
+    let mut bits = number & 0x5555_5555_5555_5555;
+    for (shift, mask) in [
+        (1, 0x3333_3333_3333_3333),
+        (2, 0x0f0f_0f0f_0f0f_0f0f),
+        (4, 0x00ff_00ff_00ff_00ff),
+        (8, 0x0000_ffff_0000_ffff),
+        (16, 0x0000_0000_ffff_ffff),
+    ] {
+        bits = (bits | bits >> shift) & mask;
+    }
+    bits as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn order(order: RayOrder, width: u32, height: u32) -> Vec<(u32, u32)> {
+        let mut visited = Vec::new();
+        order.for_each(width, height, |i, j| visited.push((i, j)));
+        visited
+    }
+
+    #[test]
+    fn every_sample_once() {
+        for of in RayOrder::ALL {
+            let mut visited = order(of, 19, 13);
+            assert_eq!(visited.len(), 19 * 13, "{of:?}");
+            visited.sort_unstable();
+            visited.dedup();
+            assert_eq!(visited.len(), 19 * 13, "{of:?}");
+            assert!(visited.iter().all(|&(i, j)| i < 19 && j < 13));
+        }
+    }
+
+    #[test]
+    fn by_hand() {
+        let first = |of, at: usize| order(of, 16, 16)[at];
+        assert_eq!(first(RayOrder::Rows, 17), (1, 1));
+        assert_eq!(first(RayOrder::Tiles, 9), (1, 1));
+        assert_eq!(first(RayOrder::Tiles, 64), (8, 0));
+        // 0b1101: columns from bits 0 and 2, 0b11; rows from bits 1 and 3, 0b10.
+        assert_eq!(first(RayOrder::Morton, 13), (3, 2));
+    }
+}

@@ -1,0 +1,16 @@
+//! Experiments: what the renderer's rules cost and what they do to a picture.
+//! Each gives plain data and a table. What was found: `spec/lab.md`.
+
+pub mod bench;
+pub mod bounds;
+pub mod error;
+pub mod far_path;
+pub mod flicker;
+pub mod float_rays;
+pub mod measure;
+pub mod methods;
+pub mod model;
+pub mod report;
+pub mod reproduce;
+pub mod stress;
+pub mod vertex_error;

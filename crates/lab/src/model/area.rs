@@ -1,0 +1,399 @@
+//! Area of a whole design: units, registers, memories and control.
+//!
+//! - *Units*: of every class of operation that the frame uses in a stage, as many as
+//!   the hardware has, but no more than any visit of the stage has passes for: what a
+//!   description gives to a stage that never uses it is not built. Shifts that are not wires have
+//!   shifters, as many as keep pace with the stage: shifts over its busy cycles (of a sequential hardware, all of its;
+//!   there work that is done beside another stage is that one's).
+//! - *Registers*: a pipeline of latency `l` that takes operations every `i` cycles keeps
+//!   `l / i` results of its width, rounded up; a context keeps the record, or the ray, that it works on.
+//! - *Memories*: SRAM by the bit. Several ports are billed as one, which favours whoever has them.
+//! - *Control*: a share of units and registers, by the table. Wires are in nothing.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use hwmodel::cost::{Breakdown, CostError, ShiftUnits, operation_of};
+use hwmodel::count::Counter;
+use hwmodel::cycles::{self, Cache, CycleReport, Hardware, StageReport};
+use hwmodel::shifts::ShiftProbe;
+use hwmodel::{OpClass, Stage};
+use serde::Serialize;
+
+use super::cost::{Prices, accumulator_bits, stack_bits};
+use super::fill_bits::fill_store_bits;
+use super::range::Range;
+use super::ray_cycles::{self, RayHardware};
+use super::record::context_bits;
+use shiftvox::project::FrameSetup;
+
+/// Area of a design, NAND2 equivalents, line by line.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct DesignArea {
+    /// Of what computes.
+    pub units: Breakdown,
+    /// Of pipelines and contexts.
+    pub registers: Breakdown,
+    /// Of memories on the chip.
+    pub memories: Breakdown,
+    /// Of control.
+    pub control: Breakdown,
+    /// All of it: the middle of its range.
+    pub total: f64,
+    /// Its low end.
+    pub low: f64,
+    /// Its high end.
+    pub high: f64,
+}
+
+impl DesignArea {
+    /// Its parts, by name.
+    #[must_use]
+    pub fn parts(&self) -> [(&'static str, &Breakdown); 4] {
+        [
+            ("units", &self.units),
+            ("registers", &self.registers),
+            ("memories", &self.memories),
+            ("control", &self.control),
+        ]
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn range(&self) -> Range {
+        Range::new((self.total, self.low, self.high))
+    }
+
+    /// Adds control, and the parts up.
+    fn finish(mut self, prices: &Prices) -> Result<Self, CostError> {
+        let share = prices.table.area("control", 1, prices.goal)?;
+        let logic = self.units.total + self.registers.total;
+        self.control
+            .push("control", "control", 1, logic.round() as u64, share);
+        let sum = self.parts().map(|(_, part)| Range::from(part));
+        let sum = sum.into_iter().fold(Range::default(), |a, b| a + b);
+        (self.total, self.low, self.high) = (sum.value, sum.low, sum.high);
+        Ok(self)
+    }
+
+    /// Adds units with their pipelines: `depth` results on their way in each.
+    fn units(&mut self, name: &str, of: Units<'_>, prices: &Prices) -> Result<(), CostError> {
+        let Units {
+            operation,
+            width,
+            count,
+            depth,
+        } = of;
+        let each = prices.table.area(operation, width, prices.goal)?;
+        self.units.push(name, operation, width, count, each);
+        if depth > 0 {
+            let each = prices.table.area("register", width, prices.goal)?;
+            let name = format!("{name}, pipeline of {operation}");
+            self.registers
+                .push(&name, "register", width, count * depth, each);
+        }
+        Ok(())
+    }
+
+    /// Adds registers of so many bits.
+    fn register_bits(&mut self, name: &str, bits: u64, prices: &Prices) -> Result<(), CostError> {
+        let each = prices.table.area("register", REGISTER_BITS, prices.goal)?;
+        let registers = bits.div_ceil(u64::from(REGISTER_BITS));
+        self.registers
+            .push(name, "register", REGISTER_BITS, registers, each);
+        Ok(())
+    }
+
+    /// Adds a memory of so many bits, if there are any.
+    fn memory(&mut self, name: &str, bits: u64, prices: &Prices) -> Result<(), CostError> {
+        if bits > 0 {
+            let each = prices.table.area("sram_bit", 1, prices.goal)?;
+            self.memories.push(name, "sram_bit", 1, bits, each);
+        }
+        Ok(())
+    }
+
+    /// Adds a cache: its lines and their tags.
+    fn cache(&mut self, name: &str, cache: &Cache, prices: &Prices) -> Result<(), CostError> {
+        self.memory(name, 8 * u64::from(cache.bytes), prices)?;
+        self.memory(&format!("{name}, tags"), tag_bits(cache), prices)
+    }
+}
+
+/// Units of one kind.
+struct Units<'a> {
+    operation: &'a str,
+    width: u32,
+    count: u64,
+    depth: u64,
+}
+
+/// Registers of contexts are billed by bytes.
+const REGISTER_BITS: u32 = 8;
+/// Bits of an address in outer memory.
+const ADDRESS_BITS: u32 = 32;
+/// Bits of what a ray keeps in its context: slopes, planes' constants, corner (three words
+/// each), entry, exit, exit of the parent, side, direction to come (three words), and
+/// node, mask, two octants, level.
+const RAY_BITS: u64 = 32 * (3 + 3 + 3 + 4 + 3) + 32 + 8 + 3 + 3 + 5;
+/// Bits of a brick's voxels, which a ray keeps too, and where they begin.
+const BRICK_BITS: u64 = 64 + 32;
+
+/// Bits beside a cache's lines: the rest of the address, whether the line is
+/// there, and its turn among its set's.
+#[must_use]
+pub fn tag_bits(cache: &Cache) -> u64 {
+    let lines = u64::from(cache.sets()) * u64::from(cache.ways);
+    let found = cache.line_bytes.ilog2() + cache.sets().ilog2();
+    let turn = u32::BITS - (cache.ways - 1).leading_zeros();
+    lines * u64::from(ADDRESS_BITS.saturating_sub(found) + 1 + turn)
+}
+
+/// Results on their way in a unit.
+fn depth(unit: &cycles::Unit) -> u64 {
+    u64::from(unit.latency.div_ceil(unit.interval.max(1)))
+}
+
+/// What the light hardware did in a frame.
+#[derive(Debug, Clone, Copy)]
+pub struct LightFrame<'a> {
+    /// Operations.
+    pub counter: &'a Counter,
+    /// Shifts.
+    pub shifts: &'a ShiftProbe,
+    /// Cycles.
+    pub cycles: &'a CycleReport,
+    /// The view.
+    pub setup: &'a FrameSetup,
+    /// Bits of a stack's entry.
+    pub record_bits: u32,
+}
+
+/// Area of the light hardware, as far as the frame uses it.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn light(
+    frame: LightFrame<'_>,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<DesignArea, CostError> {
+    let mut area = DesignArea::default();
+    let lanes = u64::from(hardware.lanes);
+    let used: BTreeSet<(Stage, OpClass)> = frame
+        .counter
+        .cells()
+        .map(|cell| (cell.stage, cell.class))
+        .collect();
+    for (stage, class) in used {
+        let Some(unit) = hardware.unit(stage, class) else {
+            continue;
+        };
+        let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
+        let most = report.map_or(u64::MAX, |of| of.most_passes[class as usize]);
+        let count = lanes * u64::from(unit.count).min(most.max(1));
+        let (operation, width, count) = match (stage, class) {
+            // Of eight constants: one inversion of the octant.
+            (Stage::Order, OpClass::Logic) => ("invert", unit.width, lanes),
+            _ => (operation_of(class, ShiftUnits::Variable), unit.width, count),
+        };
+        let of = Units {
+            operation,
+            width,
+            count,
+            depth: depth(&unit),
+        };
+        area.units(stage.name(), of, prices)?;
+    }
+    for ((stage, width), times) in shifters(&frame, hardware, prices) {
+        let report = frame.cycles.stages.iter().find(|of| of.stage == stage);
+        // A sequential hardware issues nothing at once: its operations take all of the stage's cycles.
+        let cycles_of = |of: &StageReport| match hardware.sequential {
+            true => of.alone,
+            false => of.busy,
+        };
+        let busy = report.map_or(1, cycles_of).max(1);
+        let of = Units {
+            operation: operation_of(OpClass::Shift, ShiftUnits::Variable),
+            width,
+            count: lanes * times.div_ceil(busy),
+            depth: 0,
+        };
+        area.units(&format!("{}, shifters", stage.name()), of, prices)?;
+    }
+    let each = context_bits(frame.setup, frame.record_bits, hardware.organisation);
+    let contexts = hardware.all_contexts() * each;
+    area.register_bits("records of the contexts", contexts, prices)?;
+    area.memory(
+        "record stack",
+        stack_bits(hardware, frame.record_bits),
+        prices,
+    )?;
+    area.memory(
+        "fill vectors",
+        fill_store_bits(frame.setup, hardware),
+        prices,
+    )?;
+    area.memory("accumulators", accumulator_bits(frame.setup), prices)?;
+    caches(area, hardware, prices)
+}
+
+/// Shifts that have shifters, by stage and width; of a sequential hardware by the stage in whose cycles they are done.
+fn shifters(
+    frame: &LightFrame<'_>,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> BTreeMap<(Stage, u32), u64> {
+    match prices.costing.shifts {
+        ShiftUnits::Wires if hardware.sequential => frame.shifts.variable_in_steps(),
+        ShiftUnits::Wires => frame.shifts.variable(),
+        ShiftUnits::Variable => {
+            let cells = frame
+                .counter
+                .sum_by(|cell| (cell.class, cell.stage, cell.bits));
+            let shifts = cells.into_iter().filter(|(key, _)| key.0 == OpClass::Shift);
+            shifts
+                .map(|((_, stage, bits), times)| ((stage, bits), times))
+                .collect()
+        }
+    }
+}
+
+/// Area of the ray caster beside a hardware.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn of_rays(
+    rays: &RayHardware,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<DesignArea, CostError> {
+    let mut area = DesignArea::default();
+    let lanes = u64::from(hardware.lanes);
+    for (&step, unit) in &rays.units {
+        let Some((operation, _)) = ray_cycles::operation(step) else {
+            continue;
+        };
+        let of = Units {
+            operation,
+            width: unit.width,
+            count: lanes * u64::from(unit.count),
+            // An iterative unit keeps its remainder in registers that its row has.
+            depth: if unit.interval > 1 { 0 } else { depth(unit) },
+        };
+        area.units(step.name(), of, prices)?;
+    }
+    let contexts = lanes * u64::from(rays.contexts);
+    let brick = if hardware.organisation.bricks {
+        BRICK_BITS
+    } else {
+        0
+    };
+    area.register_bits(
+        "rays of the contexts",
+        contexts * (RAY_BITS + brick),
+        prices,
+    )?;
+    area.memory(
+        "stacks of rays",
+        lanes * ray_cycles::stack_bits(rays),
+        prices,
+    )?;
+    caches(area, hardware, prices)
+}
+
+/// Adds what both designs have, and control.
+fn caches(
+    mut area: DesignArea,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<DesignArea, CostError> {
+    area.cache("node cache", &hardware.node_cache, prices)?;
+    area.cache("attribute cache", &hardware.attribute_cache, prices)?;
+    area.finish(prices)
+}
+
+#[cfg(test)]
+mod tests {
+    use hwmodel::cost::{CostTable, Costing, Goal};
+
+    use super::*;
+
+    fn prices() -> Prices {
+        Prices {
+            table: CostTable::load_shipped().unwrap(),
+            costing: Costing::default(),
+            goal: Goal::Area,
+        }
+    }
+
+    #[test]
+    fn tags_by_hand() {
+        let mut cache = Hardware::preset("paper").unwrap().node_cache;
+        (cache.bytes, cache.ways, cache.line_bytes) = (16384, 4, 64);
+        // 256 lines in 64 sets: 32 - 6 - 6 bits of address, one, and two for four ways.
+        assert_eq!(tag_bits(&cache), 256 * (20 + 1 + 2));
+        (cache.bytes, cache.ways) = (64, 1);
+        assert_eq!(tag_bits(&cache), 26 + 1);
+    }
+
+    /// One unit and its pipeline, a context, a memory, control; rows: an adder of 32 bits is 232.9,
+    /// a register of 32 bits 128, of 8 bits 32.
+    #[test]
+    fn parts_by_hand() {
+        let prices = prices();
+        let mut area = DesignArea::default();
+        let of = Units {
+            operation: "add",
+            width: 32,
+            count: 3,
+            depth: 2,
+        };
+        area.units("centre", of, &prices).unwrap();
+        area.register_bits("contexts", 20, &prices).unwrap();
+        area.memory("stack", 1000, &prices).unwrap();
+        area.memory("nothing", 0, &prices).unwrap();
+        let area = area.finish(&prices).unwrap();
+        assert!((area.units.total - 3.0 * 232.9).abs() < 1e-9);
+        assert!((area.registers.total - (6.0 * 128.0 + 3.0 * 32.0)).abs() < 1e-9);
+        // 140 F^2 at an efficiency of 0.8, to 5.59 um2 at 0.4, over 24 um2.
+        assert!(
+            (area.memories.low - 236.3).abs() < 1e-9,
+            "{}",
+            area.memories.low
+        );
+        assert!(
+            (area.memories.high - 582.3).abs() < 1e-9,
+            "{}",
+            area.memories.high
+        );
+        assert_eq!(area.memories.lines.len(), 1);
+        // 10 to 30 % of 698.7 + 864, rounded.
+        assert!(
+            (area.control.low - 156.3).abs() < 1e-9,
+            "{}",
+            area.control.low
+        );
+        let low = 698.7 + 864.0 + 236.3 + 156.3;
+        assert!((area.low - low).abs() < 1e-6 && area.low < area.total && area.total < area.high);
+    }
+
+    #[test]
+    fn a_divider_of_many_cycles_has_no_pipeline() {
+        let hardware = Hardware::preset("paper").unwrap();
+        let rays = RayHardware::shipped();
+        let area = of_rays(&rays, &hardware, &prices()).unwrap();
+        let lines = &area.registers.lines;
+        assert!(lines.iter().all(|line| !line.name.contains("divide")));
+        let adders = lines
+            .iter()
+            .find(|line| line.name.contains("float_add"))
+            .unwrap();
+        assert_eq!(adders.times, 4 * 2);
+        let stacks = area
+            .memories
+            .lines
+            .iter()
+            .find(|line| line.name == "stacks of rays");
+        assert_eq!(stacks.unwrap().times, 16 * 24 * 64);
+    }
+}

@@ -1,0 +1,333 @@
+//! Energy of a frame, by the cost tables.
+
+use std::collections::BTreeMap;
+
+use hwmodel::Memory;
+use hwmodel::cost::{
+    Breakdown, CostError, CostTable, Costing, Goal, ShiftUnits, Store, Stores, energy_of,
+    memory_energy_of,
+};
+use hwmodel::count::{Accesses, Counter};
+use hwmodel::cycles::{CycleReport, Hardware};
+use hwmodel::memory::{ACCUMULATOR_BITS, RecordKind, RecordProbe, Widths};
+use hwmodel::shifts::ShiftProbe;
+use serde::Serialize;
+
+use super::fill_bits::fill_store_bits;
+use super::frame::Counted;
+use shiftvox::frame::quadtree::nodes_to;
+use shiftvox::project::{Coverage, FrameSetup};
+
+/// The tables, and the choices that counts leave open.
+#[derive(Debug, Clone)]
+pub struct Prices {
+    /// Areas and energies.
+    pub table: CostTable,
+    /// How shifts and spans are built.
+    pub costing: Costing,
+    /// What gates are chosen for.
+    pub goal: Goal,
+}
+
+/// What a frame costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct FrameCost {
+    /// Energy of the operations, pJ.
+    pub operations: Breakdown,
+    /// Energy of the memories on the chip, pJ.
+    pub on_chip: Breakdown,
+    /// Energy of what goes to outer memory and comes from there, pJ.
+    pub outer: Breakdown,
+    /// Bits that go there and come from there.
+    pub traffic: OuterTraffic,
+}
+
+impl FrameCost {
+    /// All of it, pJ: value, and the ends of its range.
+    #[must_use]
+    pub fn total(&self) -> (f64, f64, f64) {
+        let parts = [&self.operations, &self.on_chip, &self.outer];
+        parts.iter().fold((0.0, 0.0, 0.0), |sum, part| {
+            (sum.0 + part.total, sum.1 + part.low, sum.2 + part.high)
+        })
+    }
+}
+
+/// Bits of the fill vectors of a picture: four for each node of its quadtree.
+#[must_use]
+pub fn fill_vector_bits(setup: &FrameSetup) -> u64 {
+    4 * nodes_to(setup.levels) as u64
+}
+
+/// Bits of a hardware's stacks.
+#[must_use]
+pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
+    u64::from(hardware.stacks()) * u64::from(hardware.stack.entries) * u64::from(record_bits)
+}
+
+/// Bits of the accumulators of a frame: none where no voxel is blended.
+#[must_use]
+pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
+    if setup.options.coverage != Coverage::Alpha {
+        return 0;
+    }
+    u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)
+}
+
+/// Bits that go to outer memory and come from there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+pub struct OuterTraffic {
+    /// Lines of nodes, read.
+    pub node_bits: u64,
+    /// Lines of attributes, read.
+    pub attribute_bits: u64,
+    /// Records without an entry on the stack: written, and read as many.
+    pub spilled_bits: u64,
+    /// Pixels, written.
+    pub pixel_bits: u64,
+}
+
+impl OuterTraffic {
+    /// All bits that are moved.
+    #[must_use]
+    pub fn bits(&self) -> u64 {
+        self.node_bits + self.attribute_bits + 2 * self.spilled_bits + self.pixel_bits
+    }
+}
+
+/// Bits of a word of outer memory. Neighbours share words.
+const OUTER_WORD_BITS: u32 = 64;
+
+/// Energy of traffic to outer memory, pJ, by what it is for.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn outer_energy(traffic: &OuterTraffic, table: &CostTable) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for (name, operation, bits) in [
+        ("lines of nodes", "dram_read", traffic.node_bits),
+        ("lines of attributes", "dram_read", traffic.attribute_bits),
+        ("spilled records", "dram_write", traffic.spilled_bits),
+        ("spilled records", "dram_read", traffic.spilled_bits),
+        ("pixels", "dram_write", traffic.pixel_bits),
+    ] {
+        let each = table.energy(operation, OUTER_WORD_BITS)?;
+        let words = bits.div_ceil(u64::from(OUTER_WORD_BITS));
+        sum.push(name, operation, OUTER_WORD_BITS, words, each);
+    }
+    Ok(sum)
+}
+
+/// Energy of a frame on a hardware. Accesses to nodes and attributes go to
+/// the hardware's caches, their misses to outer memory, line by line; spilled records go there
+/// and come back; pixels go there.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn frame_cost(
+    counted: &Counted,
+    cycles: &CycleReport,
+    widths: &Widths,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    prices: &Prices,
+) -> Result<FrameCost, CostError> {
+    let table = &prices.table;
+    let bytes = |bits: u64| Store::Sram {
+        bytes: bits.div_ceil(8).max(1),
+    };
+    let stack = u64::from(hardware.stack.entries) * u64::from(widths.stack_bits);
+    let stores = Stores {
+        stack: bytes(stack),
+        node: bytes(8 * u64::from(hardware.node_cache.bytes)),
+        attribute: bytes(8 * u64::from(hardware.attribute_cache.bytes)),
+        fill_vector: bytes(
+            fill_store_bits(setup, hardware) / u64::from(hardware.fill_vectors.banks),
+        ),
+        pixel: Store::Dram,
+        // As many as samples, on the chip: neighbours come again and again.
+        accumulator: bytes(accumulator_bits(setup)),
+    };
+    let counter = &counted.counter;
+    let mut accesses: BTreeMap<Memory, Accesses> = counter.accesses_by(|cell| cell.memory);
+    accesses.remove(&Memory::Stack);
+    let pixels = accesses.remove(&Memory::Pixel).unwrap_or_default();
+    let mut on_chip = stack_energy(&counted.records, stack.div_ceil(8).max(1), table)?;
+    let others = memory_energy_of(&accesses, widths, &stores, table)?;
+    for line in others.lines {
+        on_chip.push(
+            &line.name,
+            &line.operation,
+            line.width,
+            line.times,
+            line.each,
+        );
+    }
+    let traffic = OuterTraffic {
+        node_bits: 8 * cycles.node_cache.bytes_in,
+        attribute_bits: 8 * cycles.attribute_cache.bytes_in,
+        spilled_bits: cycles.stack.spilled_bits,
+        pixel_bits: pixels.writes * u64::from(widths.pixel_bits),
+    };
+    let outer = outer_energy(&traffic, table)?;
+    Ok(FrameCost {
+        operations: operations_energy(counter, &counted.shifts, prices)?,
+        on_chip,
+        outer,
+        traffic,
+    })
+}
+
+/// Energy of a stack of `bytes`, pJ. A record moves the bits that it holds:
+/// the stack is taken to be written and read field by field, in parallel.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn stack_energy(
+    records: &RecordProbe,
+    bytes: u64,
+    table: &CostTable,
+) -> Result<Breakdown, CostError> {
+    let mut sum = Breakdown::default();
+    for kind in RecordKind::ALL {
+        let (bits, accesses) = (records.bits().of(kind), records.of(kind));
+        for (operation, times) in [
+            ("sram_read", accesses.reads),
+            ("sram_write", accesses.writes),
+        ] {
+            if times > 0 {
+                let each = table.memory_energy(operation, bytes, bits)?;
+                let name = format!("stack, {}", kind.name());
+                sum.push(&name, operation, bits, times, each);
+            }
+        }
+    }
+    Ok(sum)
+}
+
+/// Energy of the operations, pJ: those of the counter, and of its shifts those
+/// that are no wires.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn operations_energy(
+    counter: &Counter,
+    shifts: &ShiftProbe,
+    prices: &Prices,
+) -> Result<Breakdown, CostError> {
+    let mut sum = energy_of(counter, &prices.table, prices.costing)?;
+    if prices.costing.shifts == ShiftUnits::Wires {
+        let mut by_bits = BTreeMap::<u32, u64>::new();
+        for ((_, bits), times) in shifts.variable() {
+            *by_bits.entry(bits).or_default() += times;
+        }
+        for (bits, times) in by_bits {
+            let each = prices.table.energy("shift_var", bits)?;
+            sum.push("shifts that are no wires", "shift_var", bits, times, each);
+        }
+    }
+    Ok(sum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwmodel::{Datapath, Format, OpClass, Overflow, Stage};
+
+    /// Rows: a shifter of 32 bits takes 0.1334 pJ, an adder 0.1.
+    #[test]
+    fn shifts_that_vary_are_billed_and_wires_are_not() {
+        let prices = Prices {
+            table: CostTable::load_shipped().unwrap(),
+            costing: Costing::default(),
+            goal: Goal::Area,
+        };
+        let mut probes = (Counter::new(), ShiftProbe::new());
+        let format = Format::new(32, 8).unwrap();
+        let mut dp = Datapath::new(format, Overflow::Trap, &mut probes);
+        dp.stage(Stage::QuadtreeFit);
+        let word = dp.load(3);
+        for places in 1..=5 {
+            dp.shl(word, 1); // wires
+            dp.shr(word, places); // a shifter
+        }
+        dp.add(word, word);
+        let (counter, shifts) = probes;
+        assert_eq!(counter.ops_of(OpClass::Shift), 10);
+        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+        assert!(
+            (sum.total - (0.1 + 5.0 * 0.1334)).abs() < 1e-9,
+            "{}",
+            sum.total
+        );
+        let all = Costing {
+            shifts: ShiftUnits::Variable,
+            ..Costing::default()
+        };
+        let prices = Prices {
+            costing: all,
+            ..prices
+        };
+        let sum = operations_energy(&counter, &shifts, &prices).unwrap();
+        assert!(
+            (sum.total - (0.1 + 10.0 * 0.1334)).abs() < 1e-9,
+            "{}",
+            sum.total
+        );
+    }
+
+    /// 64 bits from 8 KB are 10 pJ, and so is writing them.
+    #[test]
+    fn records_move_the_bits_that_they_hold() {
+        use hwmodel::memory::RecordBits;
+        use hwmodel::{Probe, StageLevel};
+        let table = CostTable::load_shipped().unwrap();
+        let bits = RecordBits {
+            clip: 640,
+            screen: 320,
+            finest: 64,
+            finest_level: Some(1),
+        };
+        let mut records = RecordProbe::new(bits);
+        let place = StageLevel {
+            stage: Stage::Push,
+            level: 0,
+        };
+        records.write(Memory::Stack, 0, place); // the object, in clip space
+        records.record(0, 0);
+        records.read(Memory::Stack, 0, place);
+        for address in 0..3 {
+            records.write(Memory::Stack, address, place); // finest voxels
+        }
+        records.record(1, 1);
+        records.read(Memory::Stack, 2, place);
+        let sum = stack_energy(&records, 8192, &table).unwrap();
+        // Of the object 100 pJ twice; of the voxels 10 pJ three times and once.
+        assert!((sum.total - (200.0 + 40.0)).abs() < 1e-9, "{}", sum.total);
+        // As the widest, all six accesses would be 100 pJ.
+        let widest = RecordBits::uniform(640);
+        assert_eq!(widest.widest(), bits.widest());
+    }
+
+    /// 1950 pJ is the middle of 1300 to 2600 for 64 bits, read or written.
+    #[test]
+    fn a_spilled_record_is_written_and_read() {
+        let table = CostTable::load_shipped().unwrap();
+        let traffic = OuterTraffic {
+            node_bits: 512,
+            attribute_bits: 0,
+            spilled_bits: 936,
+            pixel_bits: 24,
+        };
+        // 8 words of a line; 15 words out, 15 words back; 1 word of a pixel.
+        let sum = outer_energy(&traffic, &table).unwrap();
+        assert!((sum.total - (8.0 + 15.0 + 15.0 + 1.0) * 1950.0).abs() < 1e-6);
+        assert!((sum.low - 39.0 * 1300.0).abs() < 1e-6);
+        assert_eq!(traffic.bits(), 512 + 2 * 936 + 24);
+        let of = |name: &str| -> u64 {
+            let lines = sum.lines.iter().filter(|line| line.name == name);
+            lines.map(|line| line.times).sum()
+        };
+        assert_eq!(of("spilled records"), 30);
+    }
+}

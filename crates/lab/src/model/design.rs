@@ -1,0 +1,55 @@
+//! The light hardware's figures for a frame that was counted and simulated.
+
+use hwmodel::cycles::{CycleReport, Hardware};
+use hwmodel::memory::Widths;
+
+use super::ModelError;
+use super::area::{self, DesignArea, LightFrame};
+use super::clock::{self, ClockCheck};
+use super::cost::{self, FrameCost, Prices};
+use super::frame::{self, Counted};
+use shiftvox::graph::Graph;
+use shiftvox::project::FrameSetup;
+
+/// What a frame costs on the light hardware, and what that hardware is.
+#[derive(Debug, Clone)]
+pub struct LightDesign {
+    /// Bits that accesses move.
+    pub widths: Widths,
+    /// Energy and traffic.
+    pub cost: FrameCost,
+    /// Area.
+    pub area: DesignArea,
+    /// Its units against its clock.
+    pub clock: ClockCheck,
+}
+
+impl LightDesign {
+    /// Prices a frame.
+    ///
+    /// # Errors
+    /// When the cost tables lack a figure.
+    pub fn price(
+        graph: &Graph,
+        setup: &FrameSetup,
+        counted: &Counted,
+        cycles: &CycleReport,
+        hardware: &Hardware,
+        prices: &Prices,
+    ) -> Result<Self, ModelError> {
+        let widths = frame::widths(setup, graph, hardware);
+        let used = LightFrame {
+            counter: &counted.counter,
+            shifts: &counted.shifts,
+            cycles,
+            setup,
+            record_bits: counted.record_bits(),
+        };
+        Ok(Self {
+            cost: cost::frame_cost(counted, cycles, &widths, setup, hardware, prices)?,
+            area: area::light(used, hardware, prices)?,
+            clock: clock::check(&counted.counter, hardware, prices)?,
+            widths,
+        })
+    }
+}

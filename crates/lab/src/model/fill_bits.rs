@@ -1,0 +1,46 @@
+//! Bits of the fill vectors: what is on the chip, and what an access moves.
+
+use hwmodel::cycles::{Hardware, Organisation};
+
+use shiftvox::frame::quadtree::nodes_to;
+use shiftvox::project::FrameSetup;
+
+/// Bits of a fill vector.
+const FILL_VECTOR_BITS: u32 = 4;
+/// Bits of a word that takes the place of the vectors of a node two levels above the samples and of all below it.
+const JOINED_FILL_BITS: u32 = 16;
+
+/// Levels above the tiles of a picture, and whether there are joined vectors below them.
+fn fill_levels(setup: &FrameSetup, organisation: Organisation) -> (u32, bool) {
+    let above = organisation.tile_levels.min(setup.levels);
+    let joined = organisation.joined_fill && setup.levels >= above + 2;
+    (above, joined)
+}
+
+/// Bits that an access to the fill vectors moves.
+#[must_use]
+pub fn fill_access_bits(setup: &FrameSetup, organisation: Organisation) -> u32 {
+    match fill_levels(setup, organisation).1 {
+        true => JOINED_FILL_BITS,
+        false => FILL_VECTOR_BITS,
+    }
+}
+
+/// Bits of the fill vectors that a hardware has on the chip: those of the picture or, where it is drawn by tiles, of
+/// as many tiles as contexts. A context takes up a tile only if no record of its lane is ready, so on one lane no
+/// more tiles are under way than contexts; where lanes take work from one another, there may be a few more.
+#[must_use]
+pub fn fill_store_bits(setup: &FrameSetup, hardware: &Hardware) -> u64 {
+    let (above, joined) = fill_levels(setup, hardware.organisation);
+    let levels = setup.levels - above;
+    let bits = match (joined, levels.checked_sub(3)) {
+        (false, _) => u64::from(FILL_VECTOR_BITS) * nodes_to(levels) as u64,
+        (true, rest) => {
+            let words = 1u64 << (2 * (levels - 2));
+            let vectors = rest.map_or(0, |levels| nodes_to(levels) as u64);
+            u64::from(JOINED_FILL_BITS) * words + u64::from(FILL_VECTOR_BITS) * vectors
+        }
+    };
+    let tiles = hardware.all_contexts().min(1u64 << (2 * above));
+    tiles * (bits + u64::from(FILL_VECTOR_BITS * above))
+}

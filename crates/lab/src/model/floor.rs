@@ -1,0 +1,243 @@
+//! What every design must move to draw a frame from a graph in a node format, whatever it computes: the price of that
+//! is a floor under its energy.
+//!
+//! - the lines that hold the attributes of the voxels that are seen;
+//! - the lines that hold the nodes above them: without them nobody knows that they are there, and where;
+//! - the pixels.
+//!
+//! Each line once, as with a cache that forgets nothing. Arithmetic and memories on the chip cost nothing here.
+
+use std::collections::BTreeSet;
+
+use hwmodel::cost::{CostError, CostTable};
+use hwmodel::cycles::Hardware;
+use hwmodel::memory::PIXEL_BITS;
+use serde::Serialize;
+
+use super::caches::{self, CacheRow};
+use super::cost::{OuterTraffic, outer_energy};
+use super::range::Range;
+use shiftvox::frame::{Frame, NO_NODE};
+use shiftvox::graph::{Graph, NodeLayout};
+
+/// The least that a frame moves, and what that costs.
+#[derive(Debug, Clone, Serialize)]
+pub struct Floor {
+    /// Lines of the nodes above what is seen.
+    pub node_lines: u64,
+    /// Lines of the attributes of what is seen.
+    pub attribute_lines: u64,
+    /// Samples that show something.
+    pub pixels: u64,
+    /// Energy of the nodes' lines, pJ.
+    pub nodes_pj: Range,
+    /// Of the attributes' lines.
+    pub attributes_pj: Range,
+    /// Of the pixels.
+    pub pixels_pj: Range,
+    /// All of it.
+    pub energy_pj: Range,
+}
+
+/// The floor of a frame, for the node format and the lines of a hardware.
+///
+/// # Errors
+/// When the tables lack a figure.
+pub fn floor(
+    graph: &Graph,
+    frame: &Frame,
+    hardware: &Hardware,
+    table: &CostTable,
+) -> Result<Floor, CostError> {
+    let view = graph.view();
+    let organisation = hardware.organisation;
+    let layout = NodeLayout::new(&view, organisation.leaf_masks, organisation.bricks);
+    let line_of = |cache: &hwmodel::cycles::Cache, entry: u64| {
+        entry * u64::from(cache.entry_bytes) / u64::from(cache.line_bytes)
+    };
+    let (mut nodes, mut attributes) = (BTreeSet::new(), BTreeSet::new());
+    let mut seen = BTreeSet::new();
+    let mut pixels = 0;
+    for (&node, &voxel) in frame.node.iter().zip(&frame.voxel) {
+        if node == NO_NODE {
+            continue;
+        }
+        pixels += 1;
+        if !seen.insert(voxel) {
+            continue;
+        }
+        attributes.insert(line_of(&hardware.attribute_cache, u64::from(node)));
+        let [x, y, z, level] = voxel;
+        let mut above = view.root;
+        for at in 0..=level.max(0) as u32 {
+            // What a leaf is, stands in its parent, or in itself.
+            if at == level as u32 && layout.leaf_masks {
+                break;
+            }
+            for word in layout.words(above, at) {
+                nodes.insert(line_of(&hardware.node_cache, word));
+            }
+            if at == level as u32 {
+                break;
+            }
+            let place = graph.depth - at - 1;
+            let octant = [x, y, z]
+                .iter()
+                .fold(0u8, |bits, c| bits << 1 | (c >> place & 1) as u8);
+            match view.child(above, octant) {
+                Some(child) => above = child,
+                None => break,
+            }
+        }
+    }
+    let lines = |lines: usize, cache: &hwmodel::cycles::Cache| {
+        8 * u64::from(cache.line_bytes) * lines as u64
+    };
+    let price = |traffic: OuterTraffic| {
+        outer_energy(&traffic, table).map(|sum| Range::new((sum.total, sum.low, sum.high)))
+    };
+    let none = OuterTraffic::default();
+    let nodes_pj = price(OuterTraffic {
+        node_bits: lines(nodes.len(), &hardware.node_cache),
+        ..none
+    })?;
+    let attributes_pj = price(OuterTraffic {
+        attribute_bits: lines(attributes.len(), &hardware.attribute_cache),
+        ..none
+    })?;
+    let pixels_pj = price(OuterTraffic {
+        pixel_bits: pixels * u64::from(PIXEL_BITS),
+        ..none
+    })?;
+    Ok(Floor {
+        node_lines: nodes.len() as u64,
+        attribute_lines: attributes.len() as u64,
+        pixels,
+        nodes_pj,
+        attributes_pj,
+        pixels_pj,
+        energy_pj: nodes_pj + attributes_pj + pixels_pj,
+    })
+}
+
+/// Whether half of the ray caster's energy can be had with a node cache of one size.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct HalfRow {
+    /// Size of the node cache, bytes.
+    pub bytes: u32,
+    /// Half of the ray caster's energy, pJ.
+    pub half_pj: Range,
+    /// The floor under every design's energy, pJ.
+    pub floor_pj: Range,
+    /// What the light hardware takes, of the ray caster's energy.
+    pub light_share: f64,
+    /// What the floor alone takes of it.
+    pub floor_share: f64,
+    /// Whether the floor is above the half, at the low and at the high price of outer memory.
+    pub is_impossible: bool,
+}
+
+/// The floor beside the table over sizes of the node cache.
+#[must_use]
+pub fn halves(rows: &[CacheRow], floor: &Floor) -> Vec<HalfRow> {
+    rows.iter()
+        .map(|row| {
+            let (ray, floor_pj) = (row.best.energy_pj, floor.energy_pj);
+            let half_pj = ray.times(0.5);
+            HalfRow {
+                bytes: row.bytes,
+                half_pj,
+                floor_pj,
+                light_share: row.light.energy_pj.value / ray.value,
+                floor_share: floor_pj.value / ray.value,
+                is_impossible: floor_pj.low > half_pj.low && floor_pj.high > half_pj.high,
+            }
+        })
+        .collect()
+}
+
+/// What the table says of half of the ray caster's energy.
+#[must_use]
+pub fn sentence(rows: &[HalfRow], floor: &Floor) -> String {
+    let uj = |range: Range| range.value / 1e6;
+    let sizes = |impossible: bool| -> String {
+        let of = rows.iter().filter(|row| row.is_impossible == impossible);
+        let all: Vec<String> = of.map(|row| caches::size(row.bytes)).collect();
+        all.join(", ")
+    };
+    let mut text = format!(
+        "Every design must move {:.0} uJ: attributes of what is seen {:.0}, the nodes above it {:.0}, pixels {:.0}",
+        uj(floor.energy_pj),
+        uj(floor.attributes_pj),
+        uj(floor.nodes_pj),
+        uj(floor.pixels_pj),
+    );
+    if rows.iter().any(|row| row.is_impossible) {
+        text += &format!(
+            ". That alone is more than half of the ray caster's energy with node caches of {}",
+            sizes(true)
+        );
+    }
+    if rows.iter().any(|row| !row.is_impossible) {
+        text += &format!(
+            ". It leaves room for half of the ray caster's energy with node caches of {}",
+            sizes(false)
+        );
+    }
+    text + "."
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hwmodel::cycles::Organisation;
+
+    use shiftvox::graph::{BuildOptions, Builder, Silent, Voxel};
+
+    /// Two voxels of opposite corners, depth 2: the root, two nodes below it, two voxels.
+    #[test]
+    fn two_voxels_by_hand() {
+        let mut builder = Builder::new(BuildOptions::default());
+        for at in [[0, 0, 0], [3, 3, 3]] {
+            builder.push(Voxel {
+                index: at,
+                ..Voxel::default()
+            });
+        }
+        let graph = builder.finish(([0.0; 3], 1.0), &Silent).unwrap();
+        assert_eq!((graph.depth, graph.len()), (2, 5));
+        let mut frame = Frame::new(2, 1, false);
+        frame.node = vec![3, 4];
+        frame.voxel = vec![[0, 0, 0, 2], [3, 3, 3, 2]];
+        let mut hardware = Hardware::preset("paper").unwrap();
+        (
+            hardware.node_cache.line_bytes,
+            hardware.attribute_cache.line_bytes,
+        ) = (16, 8);
+        let table = CostTable::load_shipped().unwrap();
+        let of = |organisation: Organisation| {
+            let hardware = Hardware {
+                organisation,
+                ..hardware.clone()
+            };
+            floor(&graph, &frame, &hardware, &table).unwrap()
+        };
+        // Nodes 0 to 4 in lines of two; attributes 3 and 4 in lines of one; 48 bits.
+        let plain = of(Organisation::default());
+        assert_eq!((plain.node_lines, plain.attribute_lines), (3, 2));
+        let price = (3.0 * 2.0 + 2.0 + 1.0) * 1950.0;
+        assert!((plain.energy_pj.value - price).abs() < 1e-6);
+        // Without the leaves: nodes 0, 1, 2.
+        let masks = Organisation {
+            leaf_masks: true,
+            ..Organisation::default()
+        };
+        assert_eq!(of(masks).node_lines, 2);
+        // The root is a brick of two words.
+        let bricks = Organisation {
+            bricks: true,
+            ..masks
+        };
+        assert_eq!(of(bricks).node_lines, 1);
+    }
+}

@@ -1,0 +1,248 @@
+//! One frame of the machine, with everything counted.
+
+use std::borrow::Cow;
+
+use hwmodel::Memory;
+use hwmodel::Overflow;
+use hwmodel::count::Counter;
+use hwmodel::cycles::{self, CycleReport, Hardware, NoObserver, Observer, Organisation, Recording};
+use hwmodel::memory::{MemoryProbe, PIXEL_BITS, RecordProbe, Widths};
+use hwmodel::shifts::ShiftProbe;
+
+use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
+use super::{ModelError, fill_bits};
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, GraphView};
+use shiftvox::machine::{Machine, MachineOptions, SimulateError, Simulated, narrowed};
+use crate::measure::CoverageError;
+use shiftvox::picture::{Shading, lights};
+use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
+use shiftvox::rays::Rays;
+
+/// What was counted while a frame was drawn.
+#[derive(Debug)]
+pub struct Counted {
+    /// The picture, with records by sample.
+    pub frame: Frame,
+    /// Operations and accesses.
+    pub counter: Counter,
+    /// Where accesses went.
+    pub memory: MemoryProbe,
+    /// By how many places lines shift.
+    pub shifts: ShiftProbe,
+    /// What the records on the stack held.
+    pub records: RecordProbe,
+    /// The machine's own counters.
+    pub stats: Stats,
+    /// The fields of a record.
+    pub fields: Vec<RecordField>,
+}
+
+impl Counted {
+    /// Bits of a record on the stack.
+    #[must_use]
+    pub fn record_bits(&self) -> u32 {
+        record_bits(&self.fields)
+    }
+
+    /// A counter of the machine by its name; 0 if it has none of that name.
+    #[must_use]
+    pub fn stat(&self, name: &str) -> u64 {
+        let found = self.stats.iter().find(|(n, _)| *n == name);
+        found.map_or(0, |&(_, count)| count)
+    }
+
+    /// Samples that another picture shows otherwise.
+    #[must_use]
+    pub fn differing(&self, other: &Frame) -> u64 {
+        let pairs = self.frame.voxel.iter().zip(&other.voxel);
+        pairs.filter(|(a, b)| a != b).count() as u64
+    }
+
+    /// Operations a record.
+    #[must_use]
+    pub fn operations_per_record(&self) -> f64 {
+        self.counter.ops() as f64 / self.counter.records().max(1) as f64
+    }
+}
+
+/// Bits that an access of each memory moves.
+#[must_use]
+pub fn widths(setup: &FrameSetup, graph: &Graph, hardware: &Hardware) -> Widths {
+    Widths {
+        stack_bits: record_bits(&record_fields(setup, graph.len(), hardware.organisation)),
+        node_bits: 8 * hardware.node_cache.entry_bytes,
+        attribute_bits: 8 * hardware.attribute_cache.entry_bytes,
+        fill_vector_bits: fill_bits::fill_access_bits(setup, hardware.organisation),
+        pixel_bits: PIXEL_BITS,
+    }
+}
+
+/// A machine with an overflow policy, organised as a hardware is.
+fn machine(overflow: Overflow, organisation: Organisation) -> Machine {
+    Machine::new(MachineOptions {
+        overflow,
+        organisation,
+        ..MachineOptions::default()
+    })
+}
+
+/// The set-up in the words that an organisation has.
+fn in_words(setup: &FrameSetup, organisation: Organisation) -> Cow<'_, FrameSetup> {
+    match organisation.packed {
+        true => Cow::Owned(narrowed(setup)),
+        false => Cow::Borrowed(setup),
+    }
+}
+
+/// Draws a frame and counts. Nodes have a miss curve for the hardware's lines.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count(
+    graph: &Graph,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+) -> Result<Counted, EngineError> {
+    let setup = &*in_words(setup, hardware.organisation);
+    let line = hardware.node_cache.line_bytes;
+    let memory = MemoryProbe::new(widths(setup, graph, hardware)).with_curve(Memory::Node, line);
+    let mut frame = Frame::new(setup.width, setup.height, true);
+    let light = lights(graph, setup, Shading::Lambert);
+    let view = GraphView {
+        light: &light,
+        ..graph.view()
+    };
+    let organisation = hardware.organisation;
+    let records = RecordProbe::new(bits_by_kind(setup, graph.len(), organisation));
+    let probes = ((Counter::new(), ShiftProbe::new()), (memory, records));
+    let mut machine = machine(overflow, organisation);
+    let (stats, ((counter, shifts), (memory, records))) =
+        machine.render_probed(&view, setup, &mut frame, probes)?;
+    Ok(Counted {
+        frame,
+        counter,
+        memory,
+        shifts,
+        records,
+        stats,
+        fields: record_fields(setup, graph.len(), hardware.organisation),
+    })
+}
+
+/// Draws a frame and counts operations alone.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count_operations(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    overflow: Overflow,
+) -> Result<(Frame, Counter, Stats), EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let probe = Counter::new();
+    let mut machine = machine(overflow, Organisation::default());
+    let (stats, counter) = machine.render_probed(graph, setup, &mut frame, probe)?;
+    Ok((frame, counter, stats))
+}
+
+/// Draws a frame and counts what its operations and area are priced by.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn count_priced(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    organisation: Organisation,
+    overflow: Overflow,
+) -> Result<(Frame, Counter, ShiftProbe, Stats), EngineError> {
+    let setup = &*in_words(setup, organisation);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let probes = (Counter::new(), ShiftProbe::new());
+    let mut machine = machine(overflow, organisation);
+    let (stats, (counter, shifts)) = machine.render_probed(graph, setup, &mut frame, probes)?;
+    Ok((frame, counter, shifts, stats))
+}
+
+/// Draws a frame on a hardware, cycle by cycle, with records of the frame's bits.
+///
+/// # Errors
+/// When a word overflows under the trap policy, or a stack that does not spill.
+pub fn simulate<O: Observer>(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    overflow: Overflow,
+    observer: &mut O,
+) -> Result<(Frame, Simulated), ModelError> {
+    let setup = &*in_words(setup, hardware.organisation);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let hardware = with_records(graph, setup, hardware);
+    let mut machine = machine(overflow, hardware.organisation);
+    let simulated = machine.simulate(graph, setup, &mut frame, &hardware, observer)?;
+    Ok((frame, simulated))
+}
+
+/// A hardware, with the bits of a frame's records.
+fn with_records(graph: &GraphView<'_>, setup: &FrameSetup, hardware: &Hardware) -> Hardware {
+    let mut hardware = hardware.clone();
+    hardware.stack.record = bits_by_kind(setup, graph.mask.len(), hardware.organisation);
+    hardware
+}
+
+/// Records a frame's turns where they do not depend on the hardware, but for its organisation, and take no
+/// more than `most_bytes`. With them, the picture.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn record_turns(
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    organisation: Organisation,
+    overflow: Overflow,
+    most_bytes: usize,
+) -> Result<Option<(Frame, Recording)>, ModelError> {
+    let setup = &*in_words(setup, organisation);
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    // One that lets every frame through.
+    let mut hardware = Hardware::preset("tiny")?;
+    hardware.organisation = organisation;
+    let mut machine = machine(overflow, organisation);
+    let turns = machine.record_turns(graph, setup, &mut frame, &hardware, most_bytes)?;
+    Ok(turns.map(|turns| (frame, turns)))
+}
+
+/// What [`simulate`] says of the cycles of a frame whose turns are recorded, on hardware that is not sequential.
+///
+/// # Errors
+/// When a stack is full that does not spill.
+pub fn replay(
+    turns: &Recording,
+    graph: &GraphView<'_>,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+) -> Result<CycleReport, ModelError> {
+    let setup = &*in_words(setup, hardware.organisation);
+    let hardware = with_records(graph, setup, hardware);
+    hardware.check()?;
+    let mut workload = turns.replay(&hardware);
+    let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
+    Ok(report.map_err(SimulateError::from)?)
+}
+
+/// The exact picture of a frame's view, down to the finest voxels.
+///
+/// # Errors
+/// Never; the oracle's errors are the engines'.
+pub fn reference(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Frame, EngineError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    Rays.render(graph, &setup.without_detail(), &mut frame)?;
+    Ok(frame)
+}
+
+/// How far a frame is from the exact one.
+#[must_use]
+pub fn error(frame: &Frame, exact: &Frame) -> CoverageError {
+    CoverageError::between(&frame.voxel, &exact.voxel)
+}

@@ -1,0 +1,335 @@
+//! For comparison: a ray caster in floating point, drawing the same view with
+//! the same node format and caches, counted and priced by the same tables.
+
+use hwmodel::cost::{Breakdown, CostError, CostTable, Store, Tally, energy_of_tallies};
+use hwmodel::cycles::{self, Hardware, HardwareError};
+use hwmodel::memory::{Cache, PIXEL_BITS};
+use hwmodel::{Memory, cycles::Bound};
+use serde::Serialize;
+
+use super::ModelError;
+use super::area::{self, DesignArea};
+use super::cost::{FrameCost, OuterTraffic, Prices, outer_energy};
+use super::frame;
+use super::ray_cycles::{self, RayCycles, RayHardware, RayMisses};
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, NodeLayout};
+use crate::float_rays::{self, FloatRayCounts, FloatStep, RayOrder, RayRead};
+use crate::measure::CoverageError;
+use shiftvox::project::FrameSetup;
+
+/// What the ray caster took, its rays in one order.
+#[derive(Debug, Clone, Serialize)]
+pub struct RayCasterReport {
+    /// The order of its rays.
+    pub order: RayOrder,
+    /// Steps by kind.
+    pub counts: FloatRayCounts,
+    /// Hits and misses of nodes in a cache like the hardware's.
+    pub node_hits: u64,
+    /// See `node_hits`.
+    pub node_misses: u64,
+    /// Misses of attributes in a cache like the hardware's.
+    pub attribute_misses: u64,
+    /// What the frame costs.
+    pub cost: FrameCost,
+    /// How long it takes at least.
+    pub cycles: RayCycles,
+    /// Its area, NAND2 equivalents.
+    pub area: DesignArea,
+    /// Coverage against exact rays.
+    pub error: CoverageError,
+    /// The orders that were tried, and the frame's energy in each, pJ.
+    pub orders: Vec<OrderEnergy>,
+}
+
+/// Energy of a frame whose rays come in an order.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct OrderEnergy {
+    /// The order.
+    pub order: RayOrder,
+    /// Energy, pJ.
+    pub energy_pj: f64,
+}
+
+impl RayCasterReport {
+    /// What takes longest, if all else costs no time.
+    #[must_use]
+    pub fn bottleneck(&self) -> Option<&Bound> {
+        self.cycles.bounds.first()
+    }
+}
+
+/// A frame's rays, cast in one order beside caches of several sizes.
+#[derive(Debug)]
+pub struct RayRun {
+    order: RayOrder,
+    counts: FloatRayCounts,
+    /// Hits and misses of nodes, for each node cache asked for.
+    nodes: Vec<(u64, u64)>,
+    attribute_misses: u64,
+    error: CoverageError,
+}
+
+fn cache_of(cache: &cycles::Cache) -> Result<Cache, ModelError> {
+    Cache::new(u64::from(cache.bytes), cache.ways, cache.line_bytes).map_err(|error| {
+        // `Hardware::check` lets none through that this refuses.
+        ModelError::Hardware(HardwareError::Syntax(error.to_string()))
+    })
+}
+
+/// Casts a frame's rays. `node_caches`: the sizes to try, as the hardware's
+/// otherwise; `exact`: the true picture.
+///
+/// # Errors
+/// When a size is no cache's.
+pub fn cast(
+    graph: &Graph,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    node_caches: &[u32],
+    order: RayOrder,
+    exact: &Frame,
+) -> Result<RayRun, ModelError> {
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let mut nodes = Vec::new();
+    for &bytes in node_caches {
+        let like = hardware.node_cache;
+        nodes.push(cache_of(&cycles::Cache { bytes, ..like })?);
+    }
+    let mut attributes = cache_of(&hardware.attribute_cache)?;
+    let node_entry = u64::from(hardware.node_cache.entry_bytes);
+    let attribute_entry = u64::from(hardware.attribute_cache.entry_bytes);
+    let view = graph.view();
+    let organisation = hardware.organisation;
+    let layout = NodeLayout::new(&view, organisation.leaf_masks, organisation.bricks);
+    let counts = float_rays::count(
+        &view,
+        setup,
+        &mut frame,
+        order,
+        layout,
+        &mut |read| match read {
+            RayRead::Node(word) => {
+                for cache in &mut nodes {
+                    cache.access(word * node_entry);
+                }
+            }
+            RayRead::Attribute(node) => {
+                attributes.access(u64::from(node) * attribute_entry);
+            }
+        },
+    );
+    Ok(RayRun {
+        order,
+        counts,
+        nodes: nodes.iter().map(|c| (c.hits(), c.misses())).collect(),
+        attribute_misses: attributes.misses(),
+        error: frame::error(&frame, exact),
+    })
+}
+
+/// Prices a run with the node cache of `hardware`, which was the `at`th that it had.
+///
+/// # Errors
+/// When the cost tables lack a figure.
+pub fn price(
+    run: &RayRun,
+    at: usize,
+    hardware: &Hardware,
+    rays: &RayHardware,
+    prices: &Prices,
+) -> Result<RayCasterReport, CostError> {
+    let (node_hits, node_misses) = run.nodes[at];
+    let misses = RayMisses {
+        node: node_misses,
+        attribute: run.attribute_misses,
+    };
+    let counts = run.counts;
+    let line_bits = |cache: &cycles::Cache| 8 * u64::from(cache.line_bytes);
+    let traffic = OuterTraffic {
+        node_bits: misses.node * line_bits(&hardware.node_cache),
+        attribute_bits: misses.attribute * line_bits(&hardware.attribute_cache),
+        pixel_bits: counts.of(FloatStep::PixelWrite) * u64::from(PIXEL_BITS),
+        ..OuterTraffic::default()
+    };
+    let cost = cost_of(&counts, &traffic, hardware, rays, &prices.table)?;
+    Ok(RayCasterReport {
+        order: run.order,
+        counts,
+        node_hits,
+        node_misses,
+        attribute_misses: run.attribute_misses,
+        orders: vec![OrderEnergy {
+            order: run.order,
+            energy_pj: cost.total().0,
+        }],
+        cost,
+        cycles: ray_cycles::cycles(&counts, misses, &traffic, rays, hardware),
+        area: area::of_rays(rays, hardware, prices)?,
+        error: run.error,
+    })
+}
+
+/// Casts a frame's rays in an order, or, where none is chosen, in the order of
+/// least energy. `exact`: the true picture.
+///
+/// # Errors
+/// When the cost tables lack a figure.
+pub fn measure(
+    graph: &Graph,
+    setup: &FrameSetup,
+    hardware: &Hardware,
+    prices: &Prices,
+    order: Option<RayOrder>,
+    exact: &Frame,
+) -> Result<RayCasterReport, ModelError> {
+    let tried = order.map_or(RayOrder::ALL.to_vec(), |order| vec![order]);
+    let sizes = [hardware.node_cache.bytes];
+    let runs = tried
+        .into_iter()
+        .map(|order| cast(graph, setup, hardware, &sizes, order, exact));
+    let runs = runs.collect::<Result<Vec<_>, _>>()?;
+    Ok(cheapest(
+        &runs,
+        0,
+        hardware,
+        &RayHardware::shipped(),
+        prices,
+    )?)
+}
+
+/// Of runs in several orders, the one of least energy, priced as [`price`] does. There must be one.
+///
+/// # Errors
+/// When the cost tables lack a figure.
+pub fn cheapest(
+    runs: &[RayRun],
+    at: usize,
+    hardware: &Hardware,
+    rays: &RayHardware,
+    prices: &Prices,
+) -> Result<RayCasterReport, CostError> {
+    let mut best: Option<RayCasterReport> = None;
+    let mut orders = Vec::new();
+    for run in runs {
+        let report = price(run, at, hardware, rays, prices)?;
+        orders.extend(report.orders.iter().copied());
+        let energy = |report: &RayCasterReport| report.cost.total().0;
+        if best
+            .as_ref()
+            .is_none_or(|best| energy(&report) < energy(best))
+        {
+            best = Some(report);
+        }
+    }
+    let Some(best) = best else {
+        unreachable!("there is an order");
+    };
+    Ok(RayCasterReport { orders, ..best })
+}
+
+fn cost_of(
+    counts: &FloatRayCounts,
+    traffic: &OuterTraffic,
+    hardware: &Hardware,
+    rays: &RayHardware,
+    table: &CostTable,
+) -> Result<FrameCost, CostError> {
+    let operations: Vec<Tally> = FloatStep::ALL
+        .iter()
+        .filter_map(|&step| {
+            let (name, width) = ray_cycles::operation(step)?;
+            Some(Tally {
+                operation: name.to_owned(),
+                width,
+                times: counts.of(step),
+            })
+        })
+        .collect();
+    let mut on_chip = Breakdown::default();
+    let sram = |bytes: u64| Store::Sram { bytes };
+    let nodes = sram(u64::from(hardware.node_cache.bytes));
+    let node_bits = 8 * hardware.node_cache.entry_bytes;
+    let attributes = sram(u64::from(hardware.attribute_cache.bytes));
+    let attribute_bits = 8 * hardware.attribute_cache.entry_bytes;
+    let stack = sram(ray_cycles::stack_bits(rays) / 8);
+    let (read, write) = ("sram_read", "sram_write");
+    let accesses = [
+        (Memory::Node, read, nodes, node_bits, FloatStep::NodeRead),
+        (
+            Memory::Attribute,
+            read,
+            attributes,
+            attribute_bits,
+            FloatStep::AttributeRead,
+        ),
+        (
+            Memory::Stack,
+            read,
+            stack,
+            ray_cycles::ASIDE_BITS,
+            FloatStep::StackRead,
+        ),
+        (
+            Memory::Stack,
+            write,
+            stack,
+            ray_cycles::ASIDE_BITS,
+            FloatStep::StackWrite,
+        ),
+    ];
+    for (memory, operation, store, bits, step) in accesses {
+        if let Store::Sram { bytes } = store {
+            let each = table.memory_energy(operation, bytes, bits)?;
+            on_chip.push(memory.name(), operation, bits, counts.of(step), each);
+        }
+    }
+    Ok(FrameCost {
+        operations: energy_of_tallies(&operations, table)?,
+        on_chip,
+        outer: outer_energy(traffic, table)?,
+        traffic: *traffic,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use hwmodel::cost::{CostTable, Costing, Goal};
+
+    use super::*;
+
+    /// Ten reads of attributes and two lines of them, nothing else.
+    #[test]
+    fn attributes_are_billed() {
+        let hardware = Hardware::preset("paper").unwrap();
+        let mut counts = FloatRayCounts::default();
+        counts.add(FloatStep::AttributeRead, 10, 0);
+        let run = RayRun {
+            order: RayOrder::Rows,
+            counts,
+            nodes: vec![(0, 0)],
+            attribute_misses: 2,
+            error: CoverageError::default(),
+        };
+        let prices = Prices {
+            table: CostTable::load_shipped().unwrap(),
+            costing: Costing::default(),
+            goal: Goal::Area,
+        };
+        let report = price(&run, 0, &hardware, &RayHardware::shipped(), &prices).unwrap();
+        // 64 bits from 8 KB are 10 pJ; a line of 64 bytes is eight words of 1950 pJ.
+        assert!((report.cost.on_chip.total - 100.0).abs() < 1e-9);
+        assert!((report.cost.outer.total - 2.0 * 8.0 * 1950.0).abs() < 1e-6);
+        // Two misses of 61 cycles, four at once.
+        assert_eq!(report.cycles.cycles, 30);
+        // The area's float adders: four of the row's middle.
+        let add = report
+            .area
+            .units
+            .lines
+            .iter()
+            .find(|line| line.operation == "float_add");
+        assert!((add.unwrap().total - 4.0 * (5243.1 + 7112.8) / 2.0).abs() < 1e-6);
+    }
+}

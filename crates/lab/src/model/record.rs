@@ -1,0 +1,407 @@
+//! How many bits a record has on the machine's stack, field by field: what an
+//! architect needs for the stack's width.
+//!
+//! Numbers have as many bits as their greatest value needs, coordinates those
+//! of the frame's format or, packed, those that its set-up proves to be enough. Poses share their bits: a record has one at a time,
+//! and under the rules that draw outlines there is one pose alone.
+
+use hwmodel::cycles::{Organisation, StackHolds};
+use hwmodel::memory::RecordBits;
+use serde::Serialize;
+
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::{Machine, MachineOptions, NumberSpan, RecordNumber, proven_widths};
+use shiftvox::project::vector::cross;
+use shiftvox::project::{CageKind, EngineError, FrameSetup};
+
+/// A field of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordField {
+    /// Its name.
+    pub name: &'static str,
+    /// Its bits, all parts of it together.
+    pub bits: u32,
+    /// The poses in which a record has it.
+    pub held: FieldPresence,
+}
+
+/// When a record has a field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FieldPresence {
+    /// Always.
+    Always,
+    /// In clip space.
+    InClipSpace,
+    /// In screen space.
+    InScreenSpace,
+    /// As a finest voxel, which has no children and hence no need of vertices.
+    AsFinestVoxel,
+}
+
+/// Bits of a number from 0 to `greatest`.
+fn bits_to(greatest: u64) -> u32 {
+    u64::BITS - greatest.leading_zeros()
+}
+
+/// The fields of a frame's records, as an organisation stores them. `nodes`: of the graph.
+#[must_use]
+pub fn record_fields(
+    setup: &FrameSetup,
+    nodes: usize,
+    organisation: Organisation,
+) -> Vec<RecordField> {
+    let word = setup.format.bits();
+    let wide = setup.format.wide().bits();
+    let (corners, edges) = match setup.options.cage {
+        CageKind::Corners => (8, 0),
+        CageKind::Frame => (1, 3),
+    };
+    let vertices = corners + edges;
+    let exact = setup.options.coverage.draws_outlines();
+    let organisation = if exact {
+        organisation
+    } else {
+        organisation.without_outlines()
+    };
+    let proven = match organisation.packed {
+        true => proven_widths(setup, nodes),
+        false => None,
+    };
+    let bits_of = |number: RecordNumber, otherwise: u32| match &proven {
+        Some(proven) => proven.numbers[&number].bits().min(otherwise),
+        None => otherwise,
+    };
+    let position = bits_to(1 << setup.level_bound());
+    let field = |name, bits, held| RecordField { name, bits, held };
+    let mut fields = vec![
+        field(
+            "octree node",
+            bits_to(nodes.saturating_sub(1) as u64),
+            FieldPresence::Always,
+        ),
+        field(
+            "octree level",
+            bits_to(u64::from(setup.level_bound())),
+            FieldPresence::Always,
+        ),
+    ];
+    if organisation.stack != StackHolds::Children {
+        // Its node need not be read again: the place of its children stands where the node's would.
+        if organisation.bricks {
+            let places = bits_to(nodes.saturating_sub(1) as u64);
+            fields.push(field("voxels of a brick", 64, FieldPresence::Always));
+            fields.push(field("where they begin", places, FieldPresence::Always));
+        }
+        // Of a brick, which children it has follows from its voxels.
+        let masks = match (organisation.leaf_masks, organisation.bricks) {
+            (true, false) => 16,
+            _ => 8,
+        };
+        fields.push(field("which children it has", masks, FieldPresence::Always));
+        fields.push(field("children left", 8, FieldPresence::Always));
+    }
+    let quad_level = bits_to(u64::from(setup.levels));
+    if organisation.stack == StackHolds::Path {
+        fields.push(field("inside", 1, FieldPresence::Always));
+        fields.push(field("quadtree level", quad_level, FieldPresence::Always));
+        return fields;
+    }
+    fields.extend([
+        // A part of a solid is below its voxel's level; under the exact rule
+        // solids have no parts.
+        field(
+            "level of the voxel",
+            if exact {
+                0
+            } else {
+                bits_to(u64::from(setup.depth))
+            },
+            FieldPresence::Always,
+        ),
+        match exact {
+            true => field("solid, inside", 2, FieldPresence::Always),
+            false => field("solid, inside, pose", 3, FieldPresence::Always),
+        },
+        field(
+            "lowest vertex",
+            3 * bits_of(RecordNumber::Lowest, position),
+            FieldPresence::Always,
+        ),
+        // It can be had from the lowest vertex and the level; the image-order paper keeps it.
+        field("highest vertex", 3 * position, FieldPresence::Always),
+        field("quadtree level", quad_level, FieldPresence::Always),
+        field("quadtree place", 2 * setup.levels, FieldPresence::Always),
+        field(
+            "clip X, Y, W",
+            corners
+                * (2 * bits_of(RecordNumber::ClipXy, word) + bits_of(RecordNumber::ClipW, word))
+                + edges
+                    * (2 * bits_of(RecordNumber::EdgeXy, word)
+                        + bits_of(RecordNumber::EdgeW, word)),
+            FieldPresence::InClipSpace,
+        ),
+        field(
+            "least W",
+            bits_of(RecordNumber::LeastW, word),
+            FieldPresence::InClipSpace,
+        ),
+    ]);
+    if exact {
+        // Three planes of three coefficients, and three constants.
+        let planes = 6 * bits_of(RecordNumber::PlaneAb, wide)
+            + 3 * bits_of(RecordNumber::PlaneC, wide)
+            + 3 * bits_of(RecordNumber::AxisC, wide);
+        fields.push(field("silhouette planes", planes, FieldPresence::Always));
+        fields.push(field("least W above 0", 1, FieldPresence::AsFinestVoxel));
+    } else {
+        fields.push(field(
+            "screen x, y",
+            2 * vertices * word,
+            FieldPresence::InScreenSpace,
+        ));
+        fields.push(field("box", 4 * word, FieldPresence::InScreenSpace));
+    }
+    fields
+}
+
+/// Bits of one of a record's numbers, or of a constant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct NumberWidths {
+    /// Its name.
+    pub name: &'static str,
+    /// How many of them there are.
+    pub count: u32,
+    /// Bits that the frame's records took.
+    pub seen: u32,
+    /// Bits that the set-up proves to be enough.
+    pub proven: u32,
+    /// Bits that the hardware has.
+    pub used: u32,
+}
+
+/// The constants that every record is compared with or moved by, which set-up writes to registers, six of each: name, what they
+/// span in this frame, what they can, and their bits without packing.
+fn setup_constants(setup: &FrameSetup) -> [(&'static str, NumberSpan, NumberSpan, u32); 2] {
+    let span_of = |values: &mut dyn Iterator<Item = i128>| {
+        let spans = values.map(NumberSpan::of);
+        spans.reduce(NumberSpan::with).unwrap_or_default()
+    };
+    // All eyes beyond the object compare alike.
+    let beyond = (1i128 << (setup.depth + setup.sub_levels)) + 1;
+    let eye = setup.eye_floor.iter().chain(&setup.eye_ceil);
+    let eye = span_of(&mut eye.map(|&c| i128::from(c).clamp(-1, beyond)));
+    let anywhere = NumberSpan::of(-1).with(NumberSpan::of(beyond));
+    let edges = setup.edge_clip.map(|edge| edge.map(i128::from));
+    let normals = (0..3).map(|k| cross(edges[(k + 1) % 3], edges[(k + 2) % 3]));
+    let axes = span_of(&mut normals.flat_map(|[a, b, _]| [a, b]));
+    let format = setup.format;
+    [
+        ("eye, of set-up", eye, anywhere, format.bits()),
+        (
+            "axis plane's a, b, of set-up",
+            axes,
+            axes,
+            format.wide().bits(),
+        ),
+    ]
+}
+
+/// The widths of a record's numbers in a frame, and of set-up's constants; none under the rules that do not draw outlines.
+///
+/// # Errors
+/// When a word overflows under the trap policy.
+pub fn number_widths(
+    graph: &Graph,
+    setup: &FrameSetup,
+    organisation: Organisation,
+) -> Result<Vec<NumberWidths>, EngineError> {
+    let Some(proven) = proven_widths(setup, graph.len()) else {
+        return Ok(Vec::new());
+    };
+    let mut machine = Machine::new(MachineOptions {
+        organisation,
+        ..MachineOptions::default()
+    });
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let seen = machine.seen_numbers(&graph.view(), setup, &mut frame)?;
+    let word = setup.format.bits();
+    let wide = setup.format.wide().bits();
+    let (corners, edges) = match setup.options.cage {
+        CageKind::Corners => (8, 0),
+        CageKind::Frame => (1, 3),
+    };
+    let position = bits_to(1 << setup.level_bound());
+    let row = |number: RecordNumber| {
+        let bits = proven.numbers[&number].bits();
+        // How many there are, and their bits without packing; what is not a coordinate has its proven bits anyway.
+        let (count, plain) = match number {
+            RecordNumber::Node | RecordNumber::Level | RecordNumber::QuadLevel => (1, bits),
+            RecordNumber::QuadPlace => (2, bits),
+            RecordNumber::Lowest | RecordNumber::Highest => (3, position),
+            RecordNumber::ClipXy => (2 * corners, word),
+            RecordNumber::ClipW => (corners, word),
+            RecordNumber::EdgeXy => (2 * edges, word),
+            RecordNumber::EdgeW => (edges, word),
+            RecordNumber::LeastW => (1, word),
+            RecordNumber::PlaneAb => (6, wide),
+            RecordNumber::PlaneC | RecordNumber::AxisC => (3, wide),
+        };
+        NumberWidths {
+            name: number.name(),
+            count,
+            seen: seen.get(&number).map_or(0, |span| span.bits()),
+            proven: bits,
+            used: match organisation.packed {
+                true => bits.min(plain),
+                false => plain,
+            },
+        }
+    };
+    let rows = RecordNumber::ALL.into_iter().map(row);
+    let constants = setup_constants(setup).map(|(name, span, bound, plain)| NumberWidths {
+        name,
+        count: 6,
+        seen: span.bits(),
+        proven: bound.bits(),
+        used: match organisation.packed {
+            true => bound.bits().min(plain),
+            false => plain,
+        },
+    });
+    Ok(rows.filter(|row| row.count > 0).chain(constants).collect())
+}
+
+/// Bits of a stack's entry, which holds records of any kind.
+#[must_use]
+pub fn record_bits(fields: &[RecordField]) -> u32 {
+    bits_held(fields, None).widest()
+}
+
+/// Bits of a context's registers: the record that it works on, and, where parents lie on the stack, the parent
+/// with its children's vertices.
+#[must_use]
+pub fn context_bits(setup: &FrameSetup, record_bits: u32, organisation: Organisation) -> u64 {
+    let record = u64::from(record_bits);
+    let word = u64::from(setup.format.bits());
+    match (organisation.stack, setup.options.cage) {
+        (StackHolds::Children, _) => record,
+        // Of each coordinate: 27 vertices, or what the children's corners and edges are made from.
+        (StackHolds::Parents, CageKind::Corners) => 2 * record + 3 * 27 * word,
+        (StackHolds::Parents, CageKind::Frame) => 2 * record + 3 * 4 * word,
+        (StackHolds::Path, cage) => {
+            // The stack's entry is not the record; a node's number takes 32 bits at most.
+            let whole = Organisation {
+                stack: StackHolds::Parents,
+                ..organisation
+            };
+            let nodes = u32::MAX as usize;
+            let record = record_bits_of(setup, nodes, whole);
+            match cage {
+                CageKind::Corners => 2 * record + 3 * 27 * word,
+                // The parent's numbers are its lowest child's, the edges doubled: wires.
+                CageKind::Frame => 2 * record,
+            }
+        }
+    }
+}
+
+fn record_bits_of(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> u64 {
+    u64::from(record_bits(&record_fields(setup, nodes, organisation)))
+}
+
+/// Bits of a frame's records by their kind. Under the rules that draw outlines
+/// a cube at the level of the finest voxels is drawn and has no parts: of its
+/// vertices its turn needs one thing, whether all are before the eye.
+#[must_use]
+pub fn bits_by_kind(setup: &FrameSetup, nodes: usize, organisation: Organisation) -> RecordBits {
+    // A parent is never a finest voxel.
+    let has_finest =
+        setup.options.coverage.draws_outlines() && organisation.stack == StackHolds::Children;
+    let fields = record_fields(setup, nodes, organisation);
+    bits_held(&fields, has_finest.then_some(setup.depth))
+}
+
+fn bits_held(fields: &[RecordField], finest_level: Option<u32>) -> RecordBits {
+    let sum = |held: FieldPresence| -> u32 {
+        let of = fields.iter().filter(|field| field.held == held);
+        of.map(|field| field.bits).sum()
+    };
+    let always = sum(FieldPresence::Always);
+    RecordBits {
+        clip: always + sum(FieldPresence::InClipSpace),
+        screen: always + sum(FieldPresence::InScreenSpace),
+        finest: always + sum(FieldPresence::AsFinestVoxel),
+        finest_level,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+    use shiftvox::graph::Placement;
+    use shiftvox::project::Coverage;
+    use shiftvox::project::{Camera, SetupOptions};
+
+    fn setup(options: SetupOptions) -> FrameSetup {
+        let camera = Camera {
+            eye: DVec3::new(40.0, 30.0, 20.0),
+            target: DVec3::splat(8.0),
+            up: DVec3::Z,
+            fov_degrees: 60.0,
+            width: 200,
+            height: 100,
+        };
+        let setup = FrameSetup::new(&camera, &Placement::default(), 4, &options).unwrap();
+        assert_eq!(setup.levels, 8);
+        setup
+    }
+
+    fn bits(options: SetupOptions, nodes: usize) -> u32 {
+        let setup = setup(options);
+        record_bits(&record_fields(&setup, nodes, Organisation::default()))
+    }
+
+    #[test]
+    fn contexts_of_parents_hold_two_records_and_the_children_s_vertices() {
+        let frame = setup(SetupOptions::default());
+        let parents = Organisation {
+            stack: StackHolds::Parents,
+            ..Organisation::default()
+        };
+        assert_eq!(context_bits(&frame, 1000, Organisation::default()), 1000);
+        assert_eq!(context_bits(&frame, 1000, parents), 2000 + 3 * 4 * 64);
+    }
+
+    #[test]
+    fn bits_by_hand() {
+        let options = |coverage, cage| SetupOptions {
+            bits: 32,
+            frac: Some(8),
+            cage,
+            ..SetupOptions::of(coverage)
+        };
+        // Node 10, level 3, flags 2, two corners of three times 0..=16, quadtree
+        // level 0..=8 and 8 bits each way.
+        let always = 10 + 3 + 2 + 2 * 3 * 5 + 4 + 16;
+        let exact = options(Coverage::Exact, CageKind::Frame);
+        let clip = 3 * 4 * 32 + 32 + 12 * 64;
+        assert_eq!(bits(exact, 1024), always + clip);
+        assert_eq!(bits(exact, 1025), always + clip + 1);
+        // A finest voxel: no vertices, and of the least W whether it is above 0.
+        let by_kind = bits_by_kind(&setup(exact), 1024, Organisation::default());
+        assert_eq!(by_kind.clip, always + clip);
+        assert_eq!(by_kind.finest, always + 12 * 64 + 1);
+        assert_eq!(by_kind.finest_level, Some(4));
+        let any = options(Coverage::Any, CageKind::Corners);
+        // A third of the fraction's bits lies below the finest voxels: levels
+        // to 6, of voxels to 4, places to 64.
+        let always = 10 + 3 + 3 + 3 + 2 * 3 * 7 + 4 + 16;
+        assert_eq!(bits(any, 1024), always + 3 * 8 * 32 + 32);
+        let by_kind = bits_by_kind(&setup(any), 1024, Organisation::default());
+        assert_eq!(by_kind.screen, always + 2 * 8 * 32 + 4 * 32);
+        assert_eq!(by_kind.finest_level, None);
+    }
+}

@@ -1,0 +1,65 @@
+//! What a frame's hardware is given before it starts: its constants, and the nodes in its memory.
+//! `rtl/` draws whole frames from these files (`docs/rtl.md`).
+
+use std::fmt::Write;
+
+use shiftvox::graph::{GraphView, NodeLayout};
+use shiftvox::machine::frame_registers;
+use shiftvox::project::FrameSetup;
+
+/// The file of constants: a register a line, from number 0 on.
+pub(super) const CONSTANTS: &str = "frame.constants.hex";
+/// The file of nodes: a word of 64 bits a line, from node 0 on; of a brick two.
+pub(super) const NODES: &str = "frame.nodes.hex";
+
+/// The constants, each as wide as a word.
+pub(super) fn constants(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> String {
+    let format = setup.format;
+    let mask = u64::MAX >> (64 - format.bits());
+    let digits = format.bits().div_ceil(4) as usize;
+    let mut text =
+        String::from("// Registers of the frame's constants, from number 0 on: docs/rtl.md.\n");
+    for value in frame_registers(setup, graph, layout) {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{:0digits$x}", value as u64 & mask);
+    }
+    text
+}
+
+/// The nodes: which children each has, which of them have none, and where they begin; where the layout has bricks, those
+/// in two words, and none below. `None`: children are not side by side, or numbers are too great, which words cannot say.
+pub(super) fn nodes(graph: &GraphView<'_>, layout: &NodeLayout) -> Option<String> {
+    if !graph.links.is_empty() {
+        return None;
+    }
+    let bricks = layout.bricks();
+    let mut text = String::from(
+        "// Nodes from number 0 on: leaves << 40 | mask of children << 32 | where they begin.\n",
+    );
+    let whole = match bricks.is_empty() {
+        true => graph.mask.len(),
+        false => bricks.start as usize,
+    };
+    for (&mask, &first) in graph.mask.iter().zip(graph.first).take(whole) {
+        // Children lie side by side, in octant order.
+        let octants = (0..8).filter(|octant| mask >> octant & 1 != 0);
+        let leaves = octants
+            .zip(first as usize..)
+            .fold(0, |bits, (octant, child)| {
+                bits | u64::from(graph.mask.get(child) == Some(&0)) << octant
+            });
+        let word = leaves << 40 | u64::from(mask) << 32 | u64::from(first);
+        let _ = writeln!(text, "{word:016x}");
+    }
+    if !bricks.is_empty() {
+        text.push_str(
+            "// Bricks: voxels; leaves << 56 | where children begin << 28 | where voxels begin.\n",
+        );
+    }
+    for brick in bricks {
+        for word in NodeLayout::brick_words(graph, brick)? {
+            let _ = writeln!(text, "{word:016x}");
+        }
+    }
+    Some(text)
+}

@@ -1,0 +1,432 @@
+//! One case: drawn, and compared with the oracle, the specification and the bounds.
+
+use super::case::Case;
+use super::outcome::{Check, End, Outcome};
+use super::subject::Subject;
+use super::vertex::{self, Vertices};
+use shiftvox::fast::{Fast, FastOptions};
+use shiftvox::frame::Frame;
+use shiftvox::graph::Graph;
+use shiftvox::machine::Machine;
+use crate::measure::CoverageError;
+use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
+use shiftvox::rays::Rays;
+
+/// Largest tolerance, samples, at which a hole is a failure.
+pub const STRICT_TOLERANCE: f64 = 1.0 / 64.0;
+/// From so many records on no frame is merely long: any rule is then expected to have ended.
+pub const PATIENCE: u64 = 200_000_000;
+/// Voxels whose vertices are examined in a frame.
+const VOXELS_LOOKED_AT: usize = 6;
+/// Levels below finest voxels to which vertices are followed.
+const LEVELS_BELOW: u32 = 3;
+
+/// The last oracle's picture without level of detail, for cases with the same integers.
+#[derive(Debug, Default)]
+pub(crate) struct Oracle {
+    last: Option<(FrameSetup, Frame)>,
+}
+
+impl Oracle {
+    fn picture(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        let same = |last: &FrameSetup| {
+            // What the oracle looks at.
+            last.origin_clip == setup.origin_clip
+                && last.edge_clip == setup.edge_clip
+                && last.sub_levels == setup.sub_levels
+                && (last.width, last.height, last.levels)
+                    == (setup.width, setup.height, setup.levels)
+        };
+        if let Some((last, frame)) = &self.last
+            && same(last)
+        {
+            return frame.clone();
+        }
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        // The oracle has no error to give.
+        let _ = Rays.render(&graph.view(), &setup.without_detail(), &mut frame);
+        self.last = Some((setup.clone(), frame.clone()));
+        frame
+    }
+
+    /// The picture that `exact` must show: at the frame's level of detail.
+    fn picture_with_detail(&mut self, graph: &Graph, setup: &FrameSetup) -> Frame {
+        if setup.lod_limit.is_none() {
+            return self.picture(graph, setup);
+        }
+        let mut frame = Frame::new(setup.width, setup.height, false);
+        // The oracle has no error to give.
+        let _ = Rays.render(&graph.view(), setup, &mut frame);
+        frame
+    }
+
+    /// Forgets it: another graph comes.
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+}
+
+/// Draws a case and checks it.
+pub(crate) fn check(
+    subject: &dyn Subject,
+    case: &Case,
+    graph: &Graph,
+    most_records: u64,
+    oracle: &mut Oracle,
+) -> Outcome {
+    let setup = match case.setup(graph) {
+        Ok(setup) => setup,
+        Err(error) => {
+            let kind = match error {
+                SetupError::Collapsed { .. } => "the view collapses",
+                SetupError::OutOfRange => "out of 64-bit range",
+                SetupError::Depth(_) => "too deep",
+                _ => "not a view",
+            };
+            return Outcome::new(End::Refused(kind.to_owned()));
+        }
+    };
+    let mut frame = Frame::new(setup.width, setup.height, false);
+    let drawn = subject.draw(&graph.view(), &setup, &mut frame, most_records);
+    let stats = match drawn {
+        Ok(Some(stats)) => stats,
+        Ok(None) => {
+            let mut outcome = Outcome::new(End::CutOff);
+            outcome.records = most_records;
+            if case.options.coverage == Coverage::Exact || most_records >= PATIENCE {
+                let left = format!("records are left after {most_records}");
+                outcome.fail(Check::Ends, left);
+            }
+            return outcome;
+        }
+        Err(EngineError::Trap(trap)) => {
+            let mut outcome = Outcome::new(End::Trapped(trap.to_string()));
+            if setup.has_headroom {
+                outcome.fail(Check::Headroom, trap.to_string());
+            }
+            return outcome;
+        }
+    };
+    let stat = |name: &str| stats.iter().find(|(n, _)| *n == name).map_or(0, |s| s.1);
+    let mut outcome = Outcome::new(End::Drawn);
+    outcome.records = stat("records");
+    let right = oracle.picture(graph, &setup);
+    outcome.coverage = CoverageError::between(&frame.voxel, &right.voxel);
+    let seen = CheckedFrame {
+        setup: &setup,
+        frame: &frame,
+        right: &right,
+        is_at_bound: stat("at_level_bound") > 0,
+    };
+    if seen.is_exact() {
+        let defined = oracle.picture_with_detail(graph, &setup);
+        seen.check_exact(&defined, &mut outcome);
+    }
+    seen.check_place(&mut outcome);
+    seen.check_order(&mut outcome);
+    if case.scene.is_closed() {
+        seen.check_holes(&mut outcome);
+    }
+    check_vertices(subject, case, graph, &seen, &mut outcome);
+    check_engines(graph, &seen, &mut outcome);
+    outcome
+}
+
+/// A frame beside the right one.
+struct CheckedFrame<'s> {
+    setup: &'s FrameSetup,
+    frame: &'s Frame,
+    right: &'s Frame,
+    /// Whether records met the level bound: words too narrow for the view.
+    is_at_bound: bool,
+}
+
+type Voxel = [i32; 4];
+
+impl CheckedFrame<'_> {
+    fn is_exact(&self) -> bool {
+        self.setup.options.coverage == Coverage::Exact
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.setup.options.tolerance_px
+    }
+
+    fn at(&self, sample: usize) -> (usize, usize) {
+        let width = self.frame.width as usize;
+        (sample % width, sample / width)
+    }
+
+    /// The oracle's voxels at a sample and the eight about it, if all are covered.
+    fn around(&self, sample: usize) -> Option<[Voxel; 9]> {
+        let (width, height) = (self.frame.width as usize, self.frame.height as usize);
+        let (x, y) = self.at(sample);
+        if x == 0 || y == 0 || x + 1 == width || y + 1 == height {
+            return None;
+        }
+        let all: [Voxel; 9] =
+            std::array::from_fn(|i| self.right.voxel[(y + i / 3 - 1) * width + x + i % 3 - 1]);
+        let near = |v: &Voxel| {
+            // Only `exact` draws what is nearer than the near plane.
+            self.is_exact() || self.depths(v).0 >= i128::from(self.setup.near)
+        };
+        all.iter().all(|v| v[3] >= 0 && near(v)).then_some(all)
+    }
+
+    /// A voxel's corners: lowest and highest, finest voxels.
+    fn corners(&self, voxel: &Voxel) -> ([i64; 3], [i64; 3]) {
+        let side = 1i64 << (self.setup.depth - (voxel[3] as u32).min(self.setup.depth));
+        let low = [0, 1, 2].map(|k| i64::from(voxel[k]));
+        (low, low.map(|c| c + side))
+    }
+
+    /// X, Y, W of a voxel's eight vertices.
+    fn vertices(&self, voxel: &Voxel) -> [[i128; 3]; 8] {
+        let (low, high) = self.corners(voxel);
+        std::array::from_fn(|v| {
+            std::array::from_fn(|c| {
+                (0..3).fold(i128::from(self.setup.origin_clip[c]), |sum, k| {
+                    let u = if v >> (2 - k) & 1 != 0 {
+                        high[k]
+                    } else {
+                        low[k]
+                    };
+                    sum + i128::from(u) * i128::from(self.setup.edge_clip[k][c])
+                })
+            })
+        })
+    }
+
+    /// Least and greatest depth.
+    fn depths(&self, voxel: &Voxel) -> (i128, i128) {
+        let w = self.vertices(voxel).map(|p| p[2]);
+        let least = w.iter().copied().min().unwrap_or(0);
+        (least, w.iter().copied().max().unwrap_or(0))
+    }
+
+    /// Whether every line of sight that meets both meets `front` first: of
+    /// all planes between the two, the eye is on the side of `front`.
+    fn hides(&self, front: &Voxel, behind: &Voxel) -> bool {
+        let (low_a, high_a) = self.corners(front);
+        let (low_b, high_b) = self.corners(behind);
+        let sub = self.setup.sub_levels;
+        let mut parted = false;
+        for k in 0..3 {
+            // The eye between rounded down and up: it must be clearly on a side.
+            let (floor, ceil) = (self.setup.eye_floor[k], self.setup.eye_ceil[k]);
+            if high_a[k] <= low_b[k] {
+                if ceil > low_b[k] << sub {
+                    return false;
+                }
+                parted = true;
+            } else if high_b[k] <= low_a[k] {
+                if floor < high_b[k] << sub {
+                    return false;
+                }
+                parted = true;
+            }
+        }
+        parted
+    }
+
+    /// Of a frame under `exact`: it is the one that is `defined`, and has all
+    /// samples that are covered without level of detail.
+    fn check_exact(&self, defined: &Frame, outcome: &mut Outcome) {
+        let differs = |sample: &usize| {
+            self.frame.voxel[*sample] != defined.voxel[*sample]
+                || self.frame.node[*sample] != defined.node[*sample]
+        };
+        let all = 0..self.frame.voxel.len();
+        if let Some(sample) = all.clone().find(differs) {
+            outcome.fail(
+                Check::Exact,
+                format!(
+                    "{} samples differ, the first at {:?}: {:?}, should be {:?}",
+                    all.clone().filter(differs).count(),
+                    self.at(sample),
+                    self.frame.voxel[sample],
+                    defined.voxel[sample]
+                ),
+            );
+        }
+        let missing =
+            |sample: &usize| self.right.voxel[*sample][3] >= 0 && self.frame.voxel[*sample][3] < 0;
+        if let Some(sample) = all.clone().find(missing) {
+            outcome.fail(
+                Check::Missing,
+                format!(
+                    "{} samples missing, the first at {:?}",
+                    outcome.coverage.missing,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+
+    /// A voxel that is seen lies before the eye, and not wholly to one side
+    /// of its sample by more than a sample and the tolerance.
+    fn check_place(&self, outcome: &mut Outcome) {
+        let tolerance = self.tolerance();
+        if !tolerance.is_finite() {
+            return;
+        }
+        let margin = 1 + libm::ceil(tolerance) as i128;
+        let near = if self.is_exact() {
+            1
+        } else {
+            i128::from(self.setup.near)
+        };
+        for (sample, voxel) in self.frame.voxel.iter().enumerate() {
+            if voxel[3] < 0 {
+                continue;
+            }
+            let (x, y) = self.at(sample);
+            let vertices = self.vertices(voxel);
+            let before = vertices.iter().any(|p| p[2] >= near);
+            let beside = [x, y].into_iter().enumerate().any(|(c, at)| {
+                let (low, high) = (at as i128 - margin, at as i128 + 1 + margin);
+                // Margins are made of whole units, at most one too wide.
+                let position = |p: &[i128; 3], units: i128| (p[c] + units) << self.setup.levels;
+                let left = |p: &[i128; 3]| position(p, 1) < low * p[2];
+                let right = |p: &[i128; 3]| position(p, -1) > high * p[2];
+                vertices.iter().all(left) || vertices.iter().all(right)
+            });
+            if !before || beside {
+                let what = if before {
+                    "beside it"
+                } else {
+                    "behind the eye"
+                };
+                outcome.fail(
+                    Check::Place,
+                    format!("sample ({x}, {y}) shows {voxel:?}, which is {what}"),
+                );
+                return;
+            }
+        }
+    }
+
+    /// A sample whose voxel hides what is shown: under `exact` any, else in the middle of a voxel,
+    /// where no seam is.
+    fn check_order(&self, outcome: &mut Outcome) {
+        if !self.tolerance().is_finite() {
+            return;
+        }
+        let strict = self.is_exact();
+        let mut first = None;
+        for sample in 0..self.frame.voxel.len() {
+            let (shown, right) = (&self.frame.voxel[sample], &self.right.voxel[sample]);
+            if shown[3] < 0 || right[3] < 0 || shown == right || !self.hides(right, shown) {
+                continue;
+            }
+            let middle = || {
+                self.around(sample)
+                    .is_some_and(|all| all.iter().all(|v| v == right))
+            };
+            if strict || (!self.is_at_bound && middle()) {
+                outcome.order += 1;
+                first.get_or_insert((sample, *shown, *right));
+            }
+        }
+        if let Some((sample, shown, right)) = first {
+            outcome.fail(
+                Check::Order,
+                format!(
+                    "{} samples, the first at {:?}: {shown:?} is seen, {right:?} hides it",
+                    outcome.order,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+
+    fn check_holes(&self, outcome: &mut Outcome) {
+        let mut first = None;
+        for sample in 0..self.frame.voxel.len() {
+            let Some(around) = self.around(sample) else {
+                continue;
+            };
+            outcome.inside += 1;
+            let shown = &self.frame.voxel[sample];
+            let through = || around.iter().all(|front| self.hides(front, shown));
+            if shown[3] < 0 || through() {
+                outcome.holes += 1;
+                first.get_or_insert(sample);
+            }
+        }
+        // The image-order paper's rules part a voxel down to the level bound; where a record
+        // meets that, words are too narrow for the view, and what is left of a
+        // voxel is drawn at one sample, or by its box. An infinite tolerance is
+        // the image-order paper's to the letter. Holes of both are listed, not failures.
+        let is_promised =
+            self.is_exact() || self.tolerance() <= STRICT_TOLERANCE && !self.is_at_bound;
+        if let Some(sample) = first.filter(|_| is_promised) {
+            outcome.fail(
+                Check::Holes,
+                format!(
+                    "{} of {} samples inside a closed surface, the first at {:?}",
+                    outcome.holes,
+                    outcome.inside,
+                    self.at(sample)
+                ),
+            );
+        }
+    }
+}
+
+/// The way from the root to a voxel, and a few levels into it.
+fn path(setup: &FrameSetup, voxel: &Voxel, salt: usize) -> Vec<u8> {
+    let octant = |bit: u32| (0..3).fold(0u8, |octant, k| octant << 1 | (voxel[k] >> bit & 1) as u8);
+    let mut path: Vec<u8> = (0..setup.depth).rev().map(octant).collect();
+    let below = setup.sub_levels.min(LEVELS_BELOW) as usize;
+    path.extend((0..below).map(|at| (salt * 5 + at * 3 + 1) as u8 & 7));
+    path
+}
+
+fn check_vertices(
+    subject: &dyn Subject,
+    case: &Case,
+    graph: &Graph,
+    seen: &CheckedFrame<'_>,
+    outcome: &mut Outcome,
+) {
+    let Some(bounds) = vertex::bounds_of(&case.world_camera(), &case.placement(graph), seen.setup)
+    else {
+        return;
+    };
+    let shown: Vec<&Voxel> = seen.right.voxel.iter().filter(|v| v[3] >= 0).collect();
+    let step = (shown.len() / VOXELS_LOOKED_AT).max(1);
+    let mut found = Vertices::default();
+    for (salt, voxel) in shown.into_iter().step_by(step).enumerate() {
+        let way = path(seen.setup, voxel, salt);
+        vertex::check_path(subject, seen.setup, &bounds, &way, &mut found);
+    }
+    outcome.worst = found.worst;
+    if let Some(detail) = found.differs {
+        outcome.fail(Check::Specification, detail);
+    }
+    if let Some(detail) = found.beyond {
+        outcome.fail(Check::Bound, detail);
+    }
+}
+
+fn check_engines(graph: &Graph, seen: &CheckedFrame<'_>, outcome: &mut Outcome) {
+    // What the fast engine does not draw it hands to the machine.
+    if !seen.is_exact() || !seen.setup.has_headroom {
+        return;
+    }
+    let options = FastOptions {
+        threads: 1,
+        ..FastOptions::default()
+    };
+    let mut fast = Fast::new(options, Box::new(Machine::default()));
+    let mut frame = Frame::new(seen.setup.width, seen.setup.height, false);
+    match fast.render(&graph.view(), seen.setup, &mut frame) {
+        Ok(_) if frame == *seen.frame => {}
+        Ok(_) => {
+            let differing = crate::measure::count_differing(&frame.voxel, &seen.frame.voxel);
+            outcome.fail(Check::Engines, format!("{differing} samples differ"));
+        }
+        Err(error) => outcome.fail(Check::Engines, error.to_string()),
+    }
+}

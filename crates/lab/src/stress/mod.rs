@@ -1,0 +1,29 @@
+//! Numerical stability: word formats x cameras x scenes x rules, each frame
+//! held against the oracle, the specification and the bounds on its error.
+//!
+//! `sweep` runs a [`SweepPlan`]; what fails is shrunk to a small [`Case`], a line
+//! of text that [`run_case`] draws again. Method and findings: `spec/lab.md`.
+
+pub mod case;
+mod check;
+mod findings;
+#[cfg(test)]
+mod mutants;
+mod outcome;
+pub mod scene;
+mod shrink;
+mod specified;
+pub(crate) mod subject;
+pub(crate) mod sweep;
+mod tables;
+mod vertex;
+pub mod viewpoint;
+
+pub use case::Case;
+pub use check::{PATIENCE, STRICT_TOLERANCE};
+pub use findings::{COVERAGES, Failed, Findings, Key, Tally};
+pub use outcome::{Check, End, Failure, Outcome};
+pub use scene::StressScene;
+pub use sweep::{SweepPlan, TOLERANCES, run_case, sweep};
+pub use tables::{rows, tables};
+pub use vertex::{Hold, Worst};

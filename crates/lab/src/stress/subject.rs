@@ -1,0 +1,44 @@
+//! What is put under stress: the machine, or in tests one with an error.
+
+use hwmodel::Trap;
+
+use shiftvox::frame::Frame;
+use shiftvox::graph::GraphView;
+use shiftvox::machine::{self, Cage, Machine, MachineOptions};
+use shiftvox::project::{EngineError, FrameSetup, Stats};
+
+/// A renderer whose pictures and vertices can be checked.
+pub(crate) trait Subject: Sync {
+    /// Draws a frame with at most so many records: `None` where that is not enough.
+    fn draw(
+        &self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        most_records: u64,
+    ) -> Result<Option<Stats>, EngineError>;
+
+    /// The cages of the voxels on a way down from the root, as
+    /// [`machine::cages_along`].
+    fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap>;
+}
+
+/// The machine as it is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Product;
+
+impl Subject for Product {
+    fn draw(
+        &self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+        most_records: u64,
+    ) -> Result<Option<Stats>, EngineError> {
+        Machine::new(MachineOptions::default()).render_within(graph, setup, frame, most_records)
+    }
+
+    fn cages_along(&self, setup: &FrameSetup, path: &[u8]) -> Result<Vec<Cage>, Trap> {
+        machine::cages_along(setup, path)
+    }
+}

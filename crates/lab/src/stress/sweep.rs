@@ -1,0 +1,306 @@
+//! The sweep: scenes x viewpoints x formats x rules, in parallel, the same in every run.
+
+use rayon::prelude::*;
+
+use super::case::Case;
+use super::check::{Oracle, PATIENCE, check};
+use super::findings::{COVERAGES, Findings, Key};
+use super::outcome::{Check, Outcome};
+use super::scene::StressScene;
+use super::shrink::Shrinker;
+use super::subject::{Product, Subject};
+use super::viewpoint::{Viewpoint, viewpoints};
+use shiftvox::graph::{Graph, Progress};
+use shiftvox::project::{CageKind, Coverage, SetupOptions};
+use shiftvox::split_mix::SplitMix;
+
+/// What is swept.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepPlan {
+    /// Scenes.
+    pub scenes: Vec<StressScene>,
+    /// Word widths, bits.
+    pub bits: Vec<u32>,
+    /// Pictures' sides, pixels.
+    pub pixels: Vec<u32>,
+    /// Viewpoints of each scene that the seed chooses, beyond the standard ones.
+    pub random_viewpoints: u32,
+    /// Rules drawn for each scene, viewpoint and format; all of them where there are fewer.
+    pub rules: usize,
+    /// What chooses viewpoints and rules.
+    pub seed: u64,
+    /// Most records of a frame.
+    pub most_records: u64,
+    /// Cases drawn to shrink a failure.
+    pub shrink_budget: u32,
+}
+
+/// Tolerances, samples, of `any` and `center`; `exact` has the first alone.
+pub const TOLERANCES: [f64; 6] = [
+    0.0,
+    1.0 / 256.0,
+    1.0 / 64.0,
+    1.0 / 16.0,
+    1.0 / 8.0,
+    f64::INFINITY,
+];
+
+/// Scenes of the standard sweep.
+const SCENES: [&str; 13] = [
+    "gen:sphere,depth=4",
+    "gen:shell,depth=5",
+    "plane:6,0,0,1",
+    "plane:6,0,1,1",
+    "plane:6,3,5,7",
+    "solid:5",
+    "gen:truss,depth=5",
+    "gen:wires,depth=5",
+    "gen:checker,depth=3",
+    "gen:random,depth=4",
+    "cyclic:6,1",
+    "cyclic:9,5",
+    "gen:sierpinski,depth=30",
+];
+/// More of them.
+const MORE_SCENES: [&str; 9] = [
+    "gen:sphere,depth=7",
+    "gen:shell,depth=8",
+    "plane:8,1,7,31",
+    "plane:8,1,1,1",
+    "solid:30",
+    "gen:menger,depth=4",
+    "gen:terrain,depth=7",
+    "gen:maze,depth=6",
+    "cyclic:30,9",
+];
+
+impl SweepPlan {
+    /// The standard sweep, about two minutes of two processors, or hours.
+    #[must_use]
+    pub fn new(seed: u64, thorough: bool) -> Self {
+        let more: &[&str] = if thorough { &MORE_SCENES } else { &[] };
+        let scenes = SCENES.iter().chain(more);
+        Self {
+            // The tests read them all.
+            scenes: scenes.filter_map(|text| text.parse().ok()).collect(),
+            bits: if thorough {
+                (16..=64).collect()
+            } else {
+                vec![16, 18, 20, 24, 28, 32, 40, 48, 56, 64]
+            },
+            pixels: if thorough { vec![48, 160] } else { vec![40] },
+            random_viewpoints: if thorough { 16 } else { 2 },
+            rules: if thorough { 40 } else { 2 },
+            seed,
+            most_records: if thorough { PATIENCE } else { 500_000 },
+            shrink_budget: if thorough { 20_000 } else { 1500 },
+        }
+    }
+
+    /// Fractions of a width: chosen by the set-up, few, and half.
+    fn fractions(bits: u32) -> [Option<u32>; 3] {
+        [None, Some(bits / 4), Some(bits / 2)]
+    }
+}
+
+/// Levels of detail, samples: `exact` must be the oracle's picture at all of
+/// them, and has as many rules here as it has in them.
+const EXACT_LODS: [f64; 4] = [0.0, 1.0, 0.3, 3.0];
+/// Rules under which the picture is defined at every sample: the first ones.
+const STRICT_RULES: usize = 2 * EXACT_LODS.len();
+
+/// All rules, those that promise most first.
+fn rules() -> Vec<SetupOptions> {
+    let mut rules = Vec::new();
+    for cage in [CageKind::Frame, CageKind::Corners] {
+        rules.extend(EXACT_LODS.map(|lod_px| SetupOptions {
+            cage,
+            lod_px,
+            ..SetupOptions::of(Coverage::Exact)
+        }));
+    }
+    for coverage in [Coverage::Center, Coverage::Any] {
+        for tolerance_px in TOLERANCES {
+            for cage in [CageKind::Frame, CageKind::Corners] {
+                for lod_px in [0.0, 1.0] {
+                    rules.push(SetupOptions {
+                        cage,
+                        tolerance_px,
+                        lod_px,
+                        ..SetupOptions::of(coverage)
+                    });
+                }
+            }
+        }
+    }
+    rules
+}
+
+/// A scene seen from a viewpoint.
+struct Job<'p> {
+    scene: usize,
+    graph: &'p Graph,
+    viewpoint: Viewpoint,
+    salt: u64,
+}
+
+/// Runs a plan on the machine.
+///
+/// # Errors
+/// In words, where a scene of the plan cannot be made.
+pub fn sweep(plan: &SweepPlan, progress: &dyn Progress) -> Result<Findings, String> {
+    sweep_of(&Product, plan, progress)
+}
+
+/// Runs a plan on any subject.
+pub(crate) fn sweep_of(
+    subject: &dyn Subject,
+    plan: &SweepPlan,
+    progress: &dyn Progress,
+) -> Result<Findings, String> {
+    let graphs: Vec<Graph> = plan
+        .scenes
+        .iter()
+        .map(|scene| scene.graph().map_err(|e| format!("{scene}: {e}")))
+        .collect::<Result<_, _>>()?;
+    let mut jobs = Vec::new();
+    for (scene, graph) in graphs.iter().enumerate() {
+        for &pixels in &plan.pixels {
+            let mut numbers = SplitMix::new(plan.seed ^ (scene as u64) << 32);
+            let views = viewpoints(graph.depth, pixels, plan.random_viewpoints, &mut numbers);
+            for viewpoint in views {
+                jobs.push(Job {
+                    scene,
+                    graph,
+                    viewpoint,
+                    salt: numbers.bits(),
+                });
+            }
+        }
+    }
+    progress.begin("stress", jobs.len() as u64);
+    let found: Vec<Findings> = jobs
+        .par_iter()
+        .map(|job| {
+            let found = run_job(subject, plan, job);
+            progress.advance(1);
+            found
+        })
+        .collect();
+    progress.end();
+    let mut findings = Findings::default();
+    for found in found {
+        findings.merge(found);
+    }
+    shrink_failures(subject, plan, &mut findings, progress);
+    Ok(findings)
+}
+
+fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
+    let mut findings = Findings::default();
+    let mut numbers = SplitMix::new(job.salt);
+    let all = rules();
+    let strict = STRICT_RULES;
+    let mut oracle = Oracle::default();
+    oracle.forget();
+    for &bits in &plan.bits {
+        for frac in SweepPlan::fractions(bits) {
+            let mut chosen: Vec<usize> = if plan.rules >= all.len() {
+                (0..all.len()).collect()
+            } else {
+                (0..plan.rules)
+                    .map(|i| numbers.below(if i == 0 { strict } else { all.len() } as u64) as usize)
+                    .collect()
+            };
+            chosen.sort_unstable();
+            chosen.dedup();
+            for rule in chosen {
+                let options = SetupOptions {
+                    bits,
+                    frac,
+                    ..all[rule]
+                };
+                let case = Case {
+                    scene: plan.scenes[job.scene].clone(),
+                    camera: job.viewpoint.camera,
+                    shift: job.viewpoint.shift,
+                    options,
+                };
+                let outcome = check(subject, &case, job.graph, plan.most_records, &mut oracle);
+                let key = Key {
+                    scene: job.scene,
+                    bits,
+                    coverage: place_of(&COVERAGES, &options.coverage),
+                    tolerance: place_of(&TOLERANCES, &options.tolerance_px),
+                };
+                findings.note(key, job.viewpoint.name, &case, &outcome);
+            }
+        }
+    }
+    findings
+}
+
+fn place_of<T: PartialEq>(all: &[T], one: &T) -> usize {
+    all.iter().position(|other| other == one).unwrap_or(0)
+}
+
+/// Shrinks the first failure of each check.
+fn shrink_failures(
+    subject: &dyn Subject,
+    plan: &SweepPlan,
+    findings: &mut Findings,
+    progress: &dyn Progress,
+) {
+    let checks: Vec<Check> = findings.failures.keys().copied().collect();
+    for kind in checks {
+        progress.begin("shrinking a failing case", 0);
+        let first = findings.failed.iter_mut().find(|f| f.check == kind);
+        if let Some(failed) = first
+            && let Ok(case) = failed.case.parse::<Case>()
+        {
+            let mut shrinker = Shrinker::new(subject, kind, plan.most_records, plan.shrink_budget);
+            let minimal = shrinker.shrink(&case);
+            if let Ok(graph) = minimal.scene.graph() {
+                let mut oracle = Oracle::default();
+                let again = check(subject, &minimal, &graph, plan.most_records, &mut oracle);
+                let failure = again.failures.into_iter().find(|f| f.check == kind);
+                failed.minimal_detail = failure.map(|f| f.detail);
+                failed.render = minimal.render_line(&graph);
+            }
+            failed.minimal = Some(minimal.to_string());
+        }
+        progress.end();
+    }
+    findings
+        .failed
+        .sort_by_key(|f| (f.minimal.is_none(), f.check));
+}
+
+/// Draws one case.
+///
+/// # Errors
+/// In words, where its scene cannot be made.
+pub fn run_case(case: &Case, most_records: u64) -> Result<Outcome, String> {
+    let graph = case.scene.graph()?;
+    Ok(check(
+        &Product,
+        case,
+        &graph,
+        most_records,
+        &mut Oracle::default(),
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_standard_scenes_can_be_read_and_made() {
+        let plan = SweepPlan::new(1, true);
+        assert_eq!(plan.scenes.len(), SCENES.len() + MORE_SCENES.len());
+        for scene in &SweepPlan::new(1, false).scenes {
+            assert!(!scene.graph().unwrap().is_empty(), "{scene}");
+        }
+    }
+}

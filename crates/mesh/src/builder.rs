@@ -1,0 +1,407 @@
+//! From loose vertices and triangles to a sound mesh.
+
+use glam::DVec3;
+
+use super::error::{MeshError, MeshFault, Place};
+use super::{Material, Mesh};
+use shiftvox::budget::{self, Shortage};
+
+/// Most positions and triangles of a mesh: both are numbered in 32 bits.
+const MOST: usize = u32::MAX as usize;
+
+/// A triangle names a position that does not exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BadIndex {
+    /// What it names.
+    pub index: u32,
+    /// Positions that there are.
+    pub positions: usize,
+}
+
+/// A triangle as it is given.
+#[derive(Debug, Clone, Copy)]
+struct Corners {
+    corners: [u32; 3],
+    normals: Option<[[f32; 3]; 3]>,
+    material: u32,
+    tint: Option<[f32; 3]>,
+}
+
+/// Collects positions and triangles and leaves out what cannot be drawn.
+///
+/// Left out, counted and reported as a warning: triangles with a coordinate that
+/// is infinite or not a number, triangles without area (two equal corners, or
+/// all three on a line), triangles whose material has opacity 0. Where that would be all that can be drawn, they are
+/// drawn opaque, with a warning: some programs write 0 for what is opaque.
+#[derive(Debug, Default)]
+pub struct MeshBuilder {
+    mesh: Mesh,
+    /// Whether any triangle came with normals; those before it got their plane's.
+    has_normals: bool,
+    not_finite: u64,
+    first_not_finite: u64,
+    degenerate: u64,
+    invisible: u64,
+    /// Triangles of opacity 0, while there are no others.
+    hidden: Vec<Corners>,
+    seen: u64,
+    too_many: bool,
+}
+
+impl MeshBuilder {
+    /// A builder without anything.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a material and returns its number.
+    pub fn material(&mut self, material: Material) -> u32 {
+        self.mesh.materials.push(material);
+        // More would not fit a file.
+        (self.mesh.materials.len() - 1) as u32
+    }
+
+    /// Adds a position and returns its number.
+    pub fn position<T: Into<f64>>(&mut self, position: [T; 3]) -> u32 {
+        let number = self.mesh.positions.len();
+        if number >= MOST {
+            self.too_many = true;
+            return 0;
+        }
+        self.mesh.positions.push(position.map(Into::into));
+        number as u32
+    }
+
+    /// Adds a position with a colour (sRGB). Positions before it that came
+    /// without are white.
+    pub fn colored_position<T: Into<f64>>(&mut self, position: [T; 3], color: [u8; 3]) -> u32 {
+        let number = self.position(position);
+        let colors = &mut self.mesh.vertex_colors;
+        colors.resize(number as usize, [255; 3]);
+        colors.push(color);
+        number
+    }
+
+    /// Makes room for so many positions and triangles more.
+    ///
+    /// # Errors
+    /// [`Shortage`] where there is less memory.
+    pub fn reserve(&mut self, positions: usize, triangles: usize) -> Result<(), Shortage> {
+        const WHAT: &str = "a mesh";
+        let mesh = &mut self.mesh;
+        let needed = positions * size_of::<[f64; 3]>() + triangles * size_of::<([u32; 3], u32)>();
+        let needed = needed as u64;
+        budget::check(WHAT, needed)?;
+        let had = mesh
+            .positions
+            .try_reserve_exact(positions)
+            .and_then(|()| mesh.triangles.try_reserve_exact(triangles))
+            .and_then(|()| mesh.material_of.try_reserve_exact(triangles));
+        had.map_err(|_| Shortage {
+            what: WHAT,
+            needed,
+            free: budget::available(),
+        })
+    }
+
+    /// Positions so far.
+    #[must_use]
+    pub fn positions(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
+    /// Tells the user something.
+    pub fn warn(&mut self, warning: impl Into<String>) {
+        self.mesh.warnings.push(warning.into());
+    }
+
+    /// Adds a triangle of positions that were added before, with the normals
+    /// of its corners where the file has them. A material that does not exist
+    /// is taken for the first.
+    ///
+    /// # Errors
+    /// [`BadIndex`] where a position does not exist; the triangle is not added.
+    pub fn triangle(
+        &mut self,
+        corners: [u32; 3],
+        normals: Option<[[f32; 3]; 3]>,
+        material: u32,
+    ) -> Result<(), BadIndex> {
+        self.textured_triangle(corners, normals, material, None)
+    }
+
+    /// [`triangle`](Self::triangle), with the mean colour of its texture, linear light, by which its colour is
+    /// multiplied.
+    ///
+    /// # Errors
+    /// As [`triangle`](Self::triangle).
+    pub fn textured_triangle(
+        &mut self,
+        corners: [u32; 3],
+        normals: Option<[[f32; 3]; 3]>,
+        material: u32,
+        tint: Option<[f32; 3]>,
+    ) -> Result<(), BadIndex> {
+        let positions = self.mesh.positions.len();
+        if let Some(&index) = corners.iter().find(|&&i| i as usize >= positions) {
+            return Err(BadIndex { index, positions });
+        }
+        self.seen += 1;
+        let [a, b, c] = corners.map(|i| point(self.mesh.positions[i as usize]));
+        if !(a.is_finite() && b.is_finite() && c.is_finite()) {
+            if self.not_finite == 0 {
+                self.first_not_finite = self.seen;
+            }
+            self.not_finite += 1;
+            return Ok(());
+        }
+        let across = (b - a).cross(c - a);
+        if across == DVec3::ZERO {
+            self.degenerate += 1;
+            return Ok(());
+        }
+        let materials = &self.mesh.materials;
+        if materials
+            .get(material as usize)
+            .is_some_and(|material| material.alpha == 0.0)
+        {
+            self.invisible += 1;
+            if self.mesh.triangles.is_empty() && self.hidden.len() < MOST {
+                self.hidden.push(Corners {
+                    corners,
+                    normals,
+                    material,
+                    tint,
+                });
+            }
+            return Ok(());
+        }
+        self.hidden = Vec::new();
+        if self.mesh.triangles.len() >= MOST {
+            self.too_many = true;
+            return Ok(());
+        }
+        if let Some(tint) = tint {
+            self.mesh.tints.resize(self.mesh.triangles.len(), [1.0; 3]);
+            self.mesh.tints.push(tint);
+        }
+        // No zero: `across` is not, though its length may round to it.
+        let plane = across.normalize_or(DVec3::Z).as_vec3().to_array();
+        if normals.is_some() && !self.has_normals {
+            self.has_normals = true;
+            self.fill_normals();
+        }
+        if self.has_normals {
+            let given = normals.unwrap_or([plane; 3]);
+            let sound = given.map(|normal| unit(normal).unwrap_or(plane));
+            self.mesh.corner_normals.push(sound);
+        }
+        self.mesh.triangles.push(corners);
+        self.mesh.material_of.push(material);
+        Ok(())
+    }
+
+    /// Gives the triangles so far their planes' normals.
+    fn fill_normals(&mut self) {
+        let mesh = &mut self.mesh;
+        let positions = &mesh.positions;
+        mesh.corner_normals = mesh
+            .triangles
+            .iter()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|i| point(positions[i as usize]));
+                let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+                [plane.as_vec3().to_array(); 3]
+            })
+            .collect();
+    }
+
+    /// Shows triangles of opacity 0 where there are no others.
+    fn show_hidden(&mut self) {
+        let hidden = std::mem::take(&mut self.hidden);
+        if hidden.is_empty() {
+            return;
+        }
+        for material in &mut self.mesh.materials {
+            if material.alpha == 0.0 {
+                material.alpha = 1.0;
+            }
+        }
+        self.warn(format!(
+            "all {} triangles are of materials with opacity 0, which some programs write for opaque ones: they are \
+             drawn opaque",
+            hidden.len()
+        ));
+        self.invisible = 0;
+        let seen = self.seen;
+        for triangle in hidden {
+            // In range: it was when it was given.
+            let _ = self.textured_triangle(
+                triangle.corners,
+                triangle.normals,
+                triangle.material,
+                triangle.tint,
+            );
+        }
+        self.seen = seen;
+    }
+
+    /// The mesh, of a file of that name.
+    ///
+    /// # Errors
+    /// When no triangle is left, or when there are more than 2^32 of anything.
+    pub fn finish(mut self, file: &str) -> Result<Mesh, MeshError> {
+        self.show_hidden();
+        let in_file = |error: MeshError| error.in_file(file);
+        if self.too_many {
+            let fault = MeshFault::new(
+                "mesh",
+                Place::Whole,
+                "fewer than 2^32 positions and triangles",
+                "more",
+                "split the mesh",
+            );
+            return Err(in_file(MeshError::Limit(fault)));
+        }
+        let complaints = [
+            (
+                self.not_finite,
+                format!(
+                    "with a coordinate that is infinite or not a number (the first: triangle {})",
+                    self.first_not_finite
+                ),
+            ),
+            (
+                self.degenerate,
+                "without area (corners equal, or on a line)".into(),
+            ),
+            (self.invisible, "of a material with opacity 0".into()),
+        ];
+        let mut told: Vec<String> = complaints
+            .iter()
+            .filter(|(count, _)| *count > 0)
+            .map(|(count, what)| format!("{count} of {} triangles {what}", self.seen))
+            .collect();
+        if self.mesh.triangles.is_empty() {
+            let found = if told.is_empty() {
+                "none".to_owned()
+            } else {
+                format!("none that can be drawn: {}", told.join(", "))
+            };
+            let fault = MeshFault::new(
+                "mesh",
+                Place::Whole,
+                "at least one triangle",
+                found,
+                "export the mesh again, with its faces",
+            );
+            return Err(in_file(fault.into()));
+        }
+        for complaint in &mut told {
+            complaint.push_str(" were left out");
+        }
+        let mut mesh = self.mesh;
+        mesh.warnings.append(&mut told);
+        if mesh.materials.is_empty() {
+            mesh.materials.push(Material::of_srgb("default", [200; 3]));
+        }
+        for material in &mut mesh.material_of {
+            if *material as usize >= mesh.materials.len() {
+                *material = 0;
+            }
+        }
+        if !mesh.tints.is_empty() {
+            mesh.tints.resize(mesh.triangles.len(), [1.0; 3]);
+        }
+        if !mesh.vertex_colors.is_empty() {
+            mesh.vertex_colors.resize(mesh.positions.len(), [255; 3]);
+        }
+        (mesh.low, mesh.high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for corner in mesh.triangles.iter().flatten() {
+            let position = point(mesh.positions[*corner as usize]);
+            mesh.low = mesh.low.min(position);
+            mesh.high = mesh.high.max(position);
+        }
+        mesh.positions.shrink_to_fit();
+        mesh.triangles.shrink_to_fit();
+        mesh.material_of.shrink_to_fit();
+        mesh.corner_normals.shrink_to_fit();
+        Ok(mesh)
+    }
+}
+
+fn point(position: [f64; 3]) -> DVec3 {
+    DVec3::from_array(position)
+}
+
+fn unit(normal: [f32; 3]) -> Option<[f32; 3]> {
+    DVec3::from_array(normal.map(f64::from))
+        .try_normalize()
+        .map(|unit| unit.as_vec3().to_array())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner(builder: &mut MeshBuilder) {
+        for position in [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]] {
+            builder.position(position);
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_left_out_and_told() {
+        let mut builder = MeshBuilder::new();
+        corner(&mut builder);
+        let nan = builder.position([f32::NAN, 0.0, 0.0]);
+        builder.triangle([0, 1, 2], None, 0).unwrap();
+        builder.triangle([0, 1, 1], None, 0).unwrap();
+        builder.triangle([0, 1, 3], None, 0).unwrap();
+        builder.triangle([0, 1, nan], None, 9).unwrap();
+        assert_eq!(
+            builder.triangle([0, 1, 5], None, 0),
+            Err(BadIndex {
+                index: 5,
+                positions: 5
+            })
+        );
+        let mesh = builder.finish("a.obj").unwrap();
+        assert_eq!(mesh.triangles(), [[0, 1, 2]]);
+        assert_eq!(mesh.warnings().len(), 2);
+        assert!(mesh.warnings()[0].starts_with("1 of 4 triangles with a coordinate"));
+        assert!(mesh.warnings()[1].starts_with("2 of 4 triangles without area"));
+        assert_eq!(mesh.bounds().1, DVec3::new(1.0, 1.0, 0.0));
+        assert_eq!(mesh.materials().len(), 1);
+    }
+
+    #[test]
+    fn nothing_is_an_error() {
+        let mut builder = MeshBuilder::new();
+        corner(&mut builder);
+        builder.triangle([0, 1, 3], None, 0).unwrap();
+        let error = builder.finish("a.obj").unwrap_err();
+        assert_eq!(
+            error.to_string(),
+            "a.obj: mesh: expected at least one triangle, found none that can be drawn: 1 of 1 \
+             triangles without area (corners equal, or on a line); export the mesh again, with its faces"
+        );
+    }
+
+    #[test]
+    fn normals_and_colours_may_come_late() {
+        let mut builder = MeshBuilder::new();
+        corner(&mut builder);
+        let last = builder.colored_position([5.0; 3], [1, 2, 3]);
+        builder.triangle([0, 1, 2], None, 0).unwrap();
+        let bad = [[0.0; 3], [f32::NAN; 3], [0.0, 3.0, 0.0]];
+        builder.triangle([0, 1, last], Some(bad), 0).unwrap();
+        let mesh = builder.finish("a").unwrap();
+        assert_eq!(mesh.vertex_colors()[3..], [[255; 3], [1, 2, 3]]);
+        assert_eq!(mesh.corner_normals()[0], [[0.0, 0.0, 1.0]; 3]);
+        let [a, b, c] = mesh.corner_normals()[1];
+        assert_eq!(a, b);
+        assert_eq!(c, [0.0, 1.0, 0.0]);
+    }
+}

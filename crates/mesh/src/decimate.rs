@@ -1,0 +1,423 @@
+//! Fewer triangles that look alike: edges are collapsed, those of the least quadric error first.
+//!
+//! The work is that of `meshoptimizer-rs`, whose results are those of meshoptimizer, bit by bit.
+//! Here is what it is given and what becomes of materials and normals: a corner of a triangle is a
+//! vertex of its position, material and colour, so that no collapse mixes materials; a corner's
+//! normal is the mean of those that the mesh has at its position and that face as the triangle does.
+//! Colours of textures, which triangles have, become those of vertices.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use meshoptimizer_rs::{
+    Attributes, Positions, SimplifyOptions, SimplifySettings, VertexFlags, Workspace,
+    simplify_with_attributes,
+};
+
+use super::surface::plane_normal;
+use super::{Mesh, Surface, linear_to_srgb, srgb_to_linear};
+use shiftvox::graph::PackedNormal;
+
+/// How far a mesh is decimated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Decimation {
+    /// Triangles that are enough; more stay where nothing more can be collapsed.
+    pub triangles: usize,
+    /// Greatest distance from the mesh, in its units; `None`: any.
+    pub error: Option<f64>,
+    /// Whether parts that are smaller than the error vanish.
+    pub prunes: bool,
+}
+
+/// Why a mesh was not decimated: it is too large for the library's limits of memory and work.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the mesh cannot be decimated: {0}")]
+pub struct DecimateError(String);
+
+/// What a change of a normal by its length weighs, in extents of the mesh, where triangles are
+/// counted: as much as moving the surface by a hundredth of it.
+const NORMAL_WEIGHT: f32 = 0.01;
+/// What the greatest change of a colour channel weighs.
+const COLOR_WEIGHT: f32 = 0.1;
+/// Least cosine between a normal and the plane of a triangle that takes it.
+const FACES_ALIKE: f64 = 0.5;
+/// Numbers of a vertex beside its position: a normal, a colour.
+const ATTRIBUTES: usize = 6;
+
+/// What makes two corners one vertex: position, material, colour.
+type Key = (Place, u32, [u8; 3]);
+
+/// The bits of a position.
+type Place = [u64; 3];
+
+/// Decimates a mesh; `None` where no triangle is left.
+///
+/// # Errors
+/// [`DecimateError`].
+pub fn decimate(mesh: &Mesh, how: &Decimation) -> Result<Option<Mesh>, DecimateError> {
+    decimate_between(mesh, how, |_| None)
+}
+
+/// Decimates a part of a mesh. Positions that it shares with other parts stay; `shared` gives the
+/// normals that all triangles have there, each as long as its triangle's area, and `None` for a
+/// position of this part alone.
+///
+/// # Errors
+/// [`DecimateError`].
+pub fn decimate_between<'n>(
+    mesh: &Mesh,
+    how: &Decimation,
+    shared: impl Fn([f64; 3]) -> Option<&'n [DVec3]>,
+) -> Result<Option<Mesh>, DecimateError> {
+    let mut vertices = Vertices::of(mesh);
+    let mut flags = Vec::with_capacity(vertices.positions.len());
+    for &position in &vertices.positions {
+        let normals = shared(position);
+        flags.push(match normals {
+            Some(_) => VertexFlags::LOCK,
+            None => VertexFlags::EMPTY,
+        });
+        if let Some(normals) = normals {
+            vertices
+                .normals
+                .insert(place_of(position), normals.to_vec());
+        }
+    }
+    let (low, high) = mesh.bounds();
+    // About the box, of which single precision tells the parts wherever it lies.
+    let near = |&position: &[f64; 3]| (point(position) - low).as_vec3().to_array();
+    let near: Vec<[f32; 3]> = vertices.positions.iter().map(near).collect();
+    let mut options = SimplifyOptions::ERROR_ABSOLUTE;
+    if how.prunes {
+        options |= SimplifyOptions::PRUNE;
+    }
+    let extent = (high - low).max_element();
+    let error = how.error.unwrap_or(10.0 * extent);
+    // Where a distance is given, a normal that turns by its length is as wrong.
+    let share = how
+        .error
+        .map_or(NORMAL_WEIGHT, |error| (error / extent) as f32);
+    let weights = [
+        share,
+        share,
+        share,
+        COLOR_WEIGHT,
+        COLOR_WEIGHT,
+        COLOR_WEIGHT,
+    ];
+    let failed = |error: meshoptimizer_rs::Error| DecimateError(error.to_string());
+    let count = vertices.positions.len();
+    let attributes = vertices.attributes.as_flattened();
+    let attributes = Attributes::from_interleaved(attributes, count, ATTRIBUTES, ATTRIBUTES, 0);
+    let simplified = simplify_with_attributes(
+        &vertices.indices,
+        Positions::from_packed(&near),
+        attributes.map_err(failed)?,
+        &weights,
+        Some(&flags),
+        SimplifySettings {
+            target_index_count: (3 * how.triangles).min(vertices.indices.len()),
+            target_error: error as f32,
+            options,
+        },
+        &mut Workspace::default(),
+    )
+    .map_err(failed)?;
+    Ok(vertices.mesh_of(mesh, &simplified.indices))
+}
+
+/// A mesh as the library takes it.
+struct Vertices {
+    positions: Vec<[f64; 3]>,
+    attributes: Vec<[f32; ATTRIBUTES]>,
+    keys: Vec<Key>,
+    indices: Vec<u32>,
+    /// Normals at each position, as long as the areas of their triangles.
+    normals: HashMap<Place, Vec<DVec3>>,
+}
+
+impl Vertices {
+    fn of(mesh: &Mesh) -> Self {
+        let mut numbers: HashMap<Key, u32> = HashMap::new();
+        let mut all = Self {
+            positions: Vec::new(),
+            attributes: Vec::new(),
+            keys: Vec::new(),
+            indices: Vec::new(),
+            normals: HashMap::new(),
+        };
+        let mut sums: Vec<DVec3> = Vec::new();
+        let tints = tints(mesh);
+        for (number, corners) in mesh.triangles.iter().enumerate() {
+            let triangle = mesh.triangle(number);
+            let [a, b, c] = triangle.corners;
+            let area = (b - a).cross(c - a).length();
+            for (k, &corner) in corners.iter().enumerate() {
+                // Zeros of both signs are one place.
+                let position = mesh.positions[corner as usize];
+                let place = place_of(position);
+                let material = mesh.material_of[number];
+                let color = mesh.vertex_colors.get(corner as usize);
+                let mut color = color.copied().unwrap_or([255; 3]);
+                if let Some(tint) = tints.get(&(place, material)) {
+                    let linear = color.map(|byte| f64::from(srgb_to_linear(byte)));
+                    color = (DVec3::from_array(linear) * *tint)
+                        .to_array()
+                        .map(linear_to_srgb);
+                }
+                let key = (place, material, color);
+                let vertex = *numbers.entry(key).or_insert_with(|| {
+                    all.positions.push(position);
+                    all.keys.push(key);
+                    sums.push(DVec3::ZERO);
+                    // Fewer than three for each of 2^32 triangles, of which a mesh has fewer.
+                    (all.keys.len() - 1) as u32
+                });
+                all.indices.push(vertex);
+                let normal = triangle.normals[k] * area;
+                sums[vertex as usize] += normal;
+                all.normals.entry(place).or_default().push(normal);
+            }
+        }
+        let attributes = sums.iter().zip(&all.keys).map(|(sum, (.., color))| {
+            let [x, y, z] = sum.normalize_or_zero().as_vec3().to_array();
+            let [r, g, b] = color.map(|byte| f32::from(byte) / 255.0);
+            [x, y, z, r, g, b]
+        });
+        all.attributes = attributes.collect();
+        all
+    }
+
+    /// The triangles that are left.
+    fn mesh_of(&self, mesh: &Mesh, indices: &[u32]) -> Option<Mesh> {
+        let mut left = Mesh {
+            materials: mesh.materials.clone(),
+            ..Mesh::default()
+        };
+        let mut numbers: HashMap<u32, u32> = HashMap::new();
+        for corners in indices.as_chunks::<3>().0 {
+            let points = corners.map(|c| point(self.positions[c as usize]));
+            if (points[1] - points[0]).cross(points[2] - points[0]) == DVec3::ZERO {
+                continue;
+            }
+            let plane = plane_normal(points);
+            let triangle = corners.map(|corner| {
+                *numbers.entry(corner).or_insert_with(|| {
+                    let (_, _, color) = self.keys[corner as usize];
+                    left.positions.push(self.positions[corner as usize]);
+                    if !mesh.vertex_colors.is_empty() || !mesh.tints.is_empty() {
+                        left.vertex_colors.push(color);
+                    }
+                    (left.positions.len() - 1) as u32
+                })
+            });
+            left.triangles.push(triangle);
+            left.material_of.push(self.keys[corners[0] as usize].1);
+            left.corner_normals.push(corners.map(|corner| {
+                let normals = &self.normals[&self.keys[corner as usize].0];
+                let alike = normals
+                    .iter()
+                    .filter(|normal| normal.dot(plane) >= FACES_ALIKE * normal.length());
+                let mean = alike.copied().sum::<DVec3>().normalize_or(plane);
+                mean.as_vec3().to_array()
+            }));
+        }
+        (!left.triangles.is_empty()).then(|| {
+            left.find_bounds();
+            left
+        })
+    }
+}
+
+fn point<T: Into<f64>>(position: [T; 3]) -> DVec3 {
+    DVec3::from_array(position.map(Into::into))
+}
+
+/// Zeros of both signs are one place.
+fn place_of(position: [f64; 3]) -> Place {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
+/// The mean colour of textures at each position of each material, linear light; nothing where there
+/// are none.
+fn tints(mesh: &Mesh) -> HashMap<(Place, u32), DVec3> {
+    let mut sums: HashMap<(Place, u32), (DVec3, f64)> = HashMap::new();
+    for (number, &tint) in mesh.tints.iter().enumerate() {
+        let [a, b, c] = Surface::corners(mesh, number);
+        let area = (b - a).cross(c - a).length();
+        for corner in mesh.triangles[number] {
+            let place = place_of(mesh.positions[corner as usize]);
+            let sum = sums.entry((place, mesh.material_of[number])).or_default();
+            *sum = (sum.0 + point(tint) * area, sum.1 + area);
+        }
+    }
+    let mean = |(key, (sum, area)): (_, (DVec3, f64))| {
+        let is_some = area > 0.0;
+        (key, if is_some { sum / area } else { DVec3::ONE })
+    };
+    sums.into_iter().map(mean).collect()
+}
+
+/// Steps of a coordinate over the box of a compact mesh.
+const STEPS: f64 = 65535.0;
+/// Bytes of a compact mesh beside its lists: the box and three counts.
+const HEADER: u64 = 6 * 4 + 3 * 4;
+
+/// A mesh as it would be stored for drawing, indexed: vertices of a position in 16 bits an axis of
+/// the box, a normal in 16 bits and, where the mesh has colours of vertices, 24 bits of colour;
+/// triangles of three numbers of vertices, each of 16 or 32 bits, and one of 8 or 16 bits of a
+/// material, if there are several, and 24 of its texture's colour, if there are textures; materials
+/// of 24 bits.
+///
+/// Gives the mesh with what was rounded, and its bytes.
+#[must_use]
+pub fn compact(mesh: &Mesh) -> (Mesh, u64) {
+    let mut rounded = mesh.clone();
+    let (low, high) = mesh.bounds();
+    let step = (high - low) / STEPS;
+    for position in &mut rounded.positions {
+        for k in 0..3 {
+            if step[k] > 0.0 {
+                let steps = libm::round((position[k] - low[k]) / step[k]);
+                position[k] = low[k] + steps * step[k];
+            }
+        }
+    }
+    if rounded.corner_normals.is_empty() {
+        let plane = |number| [plane_normal(Surface::corners(mesh, number)); 3];
+        let planes = (0..mesh.len()).map(plane);
+        let planes = planes.map(|normals| normals.map(|normal| normal.as_vec3().to_array()));
+        rounded.corner_normals = planes.collect();
+    }
+    let mut vertices = std::collections::HashSet::new();
+    let mut used = std::collections::HashSet::new();
+    for (number, corners) in rounded.triangles.iter().enumerate() {
+        used.insert(rounded.material_of[number]);
+        for (&corner, normal) in corners.iter().zip(&mut rounded.corner_normals[number]) {
+            let packed = PackedNormal::encode(point(*normal));
+            if let Some(unit) = packed.decode() {
+                *normal = unit.as_vec3().to_array();
+            }
+            let place = place_of(rounded.positions[corner as usize]);
+            let color = rounded.vertex_colors.get(corner as usize).copied();
+            vertices.insert((place, packed.0, color));
+        }
+    }
+    rounded.find_bounds();
+    let vertex = 6 + 2 + if mesh.vertex_colors.is_empty() { 0 } else { 3 };
+    let index = if vertices.len() <= 1 << 16 { 2 } else { 4 };
+    let material = match used.len() {
+        ..=1 => 0,
+        2..=256 => 1,
+        _ => 2,
+    };
+    let bytes = HEADER
+        + vertices.len() as u64 * vertex
+        + rounded.triangles.len() as u64 * (3 * index + material)
+        + used.len() as u64 * 3
+        + rounded.tints.len() as u64 * 3;
+    (rounded, bytes)
+}
+
+impl Mesh {
+    fn find_bounds(&mut self) {
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for &corner in self.triangles.iter().flatten() {
+            let at = point(self.positions[corner as usize]);
+            (low, high) = (low.min(at), high.max(at));
+        }
+        (self.low, self.high) = (low, high);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{Kind, generate};
+    use crate::{Material, MeshBuilder};
+
+    /// A square of two halves of different materials, each of 8 by 16 cells.
+    fn halves() -> Mesh {
+        let mut builder = MeshBuilder::new();
+        let colors = [[200, 0, 0], [0, 0, 200]];
+        let materials = colors.map(|color| builder.material(Material::of_srgb("m", color)));
+        for i in 0..17 {
+            for j in 0..17 {
+                builder.position([i as f32, j as f32, 0.0]);
+            }
+        }
+        for i in 0..16u32 {
+            for j in 0..16u32 {
+                let [a, b] = [17 * i + j, 17 * (i + 1) + j];
+                let material = materials[usize::from(i >= 8)];
+                for corners in [[a, b, b + 1], [a, b + 1, a + 1]] {
+                    builder.triangle(corners, None, material).unwrap();
+                }
+            }
+        }
+        builder.finish("halves").unwrap()
+    }
+
+    fn area_of(mesh: &Mesh, material: u32) -> f64 {
+        let own = (0..mesh.len()).filter(|&n| mesh.material_of[n] == material);
+        let areas = own.map(|n| {
+            let [a, b, c] = Surface::corners(mesh, n);
+            (b - a).cross(c - a).length() / 2.0
+        });
+        areas.sum()
+    }
+
+    #[test]
+    fn flat_parts_lose_triangles_and_keep_their_materials() {
+        let how = Decimation {
+            triangles: 0,
+            error: Some(0.01),
+            prunes: false,
+        };
+        let few = decimate(&halves(), &how).unwrap().unwrap();
+        assert!(few.triangles().len() <= 8, "{}", few.triangles().len());
+        for material in [0, 1] {
+            assert!((area_of(&few, material) - 128.0).abs() < 1e-3);
+        }
+        assert!(few.corner_normals().iter().flatten().all(|n| n[2] > 0.999));
+    }
+
+    #[test]
+    fn a_budget_is_kept_and_a_compact_mesh_is_near() {
+        let mesh = generate(Kind::Scan, 1);
+        let how = Decimation {
+            triangles: 500,
+            error: None,
+            prunes: true,
+        };
+        let few = decimate(&mesh, &how).unwrap().unwrap();
+        assert!((300..=500).contains(&few.triangles().len()));
+        let (rounded, bytes) = compact(&few);
+        let extent = (few.bounds().1 - few.bounds().0).max_element();
+        for (a, b) in few.positions().iter().zip(rounded.positions()) {
+            assert!((point(*a) - point(*b)).length() < extent / 30_000.0);
+        }
+        // At least two bytes an index and a vertex for two triangles; less than unindexed.
+        assert!(
+            (3000 + 250 * 8..500 * 52).contains(&(bytes as usize)),
+            "{bytes}"
+        );
+    }
+
+    #[test]
+    fn what_is_smaller_than_the_error_goes_if_asked() {
+        let how = |prunes| Decimation {
+            triangles: 0,
+            error: Some(100.0),
+            prunes,
+        };
+        let tree = generate(Kind::Tree, 1);
+        assert!(
+            decimate(&tree, &how(true))
+                .unwrap()
+                .is_none_or(|m| m.len() < 100)
+        );
+        let kept = decimate(&tree, &how(false)).unwrap().unwrap();
+        assert!(kept.len() > 1000);
+    }
+}

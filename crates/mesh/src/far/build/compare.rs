@@ -1,0 +1,250 @@
+//! Which of several ways to hold a node's triangles is the best for its bytes.
+//!
+//! Each is drawn alone, from four sides, with the largest pixels for which it is used, and compared
+//! with the triangles: light, and how much of each pixel is covered.
+
+use glam::{DVec3, DVec4};
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::{BuildError, BuildOptions};
+use crate::far::record::{LeafTriangle, Node};
+use crate::far::store::pack::pack;
+use crate::far::store::{encode, surface};
+use crate::far::view::{FarPicture, FarViewer, ViewOptions};
+use crate::far::{FarData, FarFile};
+use crate::raster::{Light, RasterCamera};
+use crate::srgb_to_linear;
+
+/// What bytes weigh beside the error: what takes 32 times the bytes has to have half of it.
+const BYTES_WEIGH: f64 = 0.2;
+/// Light that comes from everywhere, as the engines have it: 0 to 256.
+const AMBIENT: u32 = 64;
+/// How far off the cameras are, in extents of the node.
+const DISTANCE: f64 = 4.0;
+/// Directions from the node to cameras.
+const DIRECTIONS: [DVec3; 4] = [
+    DVec3::new(1.0, 0.4, 0.3),
+    DVec3::new(-0.5, 0.6, 1.0),
+    DVec3::new(-0.8, 0.2, -0.6),
+    DVec3::new(0.3, 1.0, -0.7),
+];
+/// Side of a pixel, in voxels of the node: from there on nodes of the next coarser voxels are drawn.
+const PIXEL: f64 = 2.0;
+/// Samples along each axis of a pixel: of the triangles, which are right, and of a candidate. Fewer
+/// of these would hide small errors behind their own; as many would not show that triangles which
+/// are smaller than pixels need samples, and voxels do not.
+const SAMPLES_ACROSS: [u32; 2] = [8, 4];
+
+/// One way to hold a node's triangles.
+pub(super) struct Candidate {
+    /// The node with what belongs to its voxels.
+    pub(super) node: Node,
+    pub(super) lists: [Vec<u8>; 6],
+    pub(super) triangles: Vec<LeafTriangle>,
+}
+
+/// Cameras, and what they see of a node's triangles.
+pub(super) struct Comparison<'o> {
+    options: &'o BuildOptions,
+    /// Coordinates are relative to it, so that single precision tells the node's parts.
+    middle: DVec3,
+    leaf: (Node, Vec<u8>),
+    views: Vec<(RasterCamera, Light, Vec<DVec4>)>,
+}
+
+impl<'o> Comparison<'o> {
+    /// Of an inner node with a grid, and all its triangles.
+    pub(super) fn of(
+        node: &Node,
+        triangles: &[LeafTriangle],
+        options: &'o BuildOptions,
+    ) -> Result<Self, BuildError> {
+        let [lowest, highest] = [node.low, node.high].map(|p| DVec3::from_array(p.map(f64::from)));
+        let middle = (lowest + highest) / 2.0;
+        let extent = (highest - lowest).max_element();
+        let Node { low, high, .. } = around(node, middle);
+        let mut leaf = Node {
+            low,
+            high,
+            is_leaf: 1,
+            level: 1,
+            triangles: triangles.len() as u32,
+            ..bytemuck::Zeroable::zeroed()
+        };
+        let moved = moved(triangles, middle);
+        let bytes = surface::lay_out(&mut leaf, &moved, |_| true);
+        let mut of = Self {
+            options,
+            middle,
+            leaf: (leaf, pack(&Default::default(), &bytes)),
+            views: Vec::new(),
+        };
+        let empty = Candidate {
+            node: *node,
+            lists: Default::default(),
+            triangles: Vec::new(),
+        };
+        let (truth, _) = of.file(&empty)?;
+        let pixel = PIXEL * f64::from(node.voxel);
+        // At most 255 pixels by the root of three.
+        let side = libm::ceil((highest - lowest).length() * 1.2 / pixel) as u32;
+        for direction in DIRECTIONS {
+            let towards = direction.normalize_or(DVec3::X);
+            let forward = -towards;
+            let right = forward.cross(DVec3::Y).normalize_or(DVec3::X);
+            let up = right.cross(forward);
+            let distance = DISTANCE * extent;
+            let view = RasterCamera {
+                eye: towards * distance,
+                right,
+                up,
+                forward,
+                focal_px: distance / pixel,
+                width: side,
+                height: side,
+                near: extent * 1e-3,
+            };
+            let light = Light {
+                towards: (towards + up * 0.7 + right * 0.4).normalize_or(up),
+                ambient: AMBIENT,
+            };
+            let right = draw(&truth, &view, light, SAMPLES_ACROSS[0], NO_VOXEL)?;
+            of.views.push((view, light, right));
+        }
+        Ok(of)
+    }
+
+    /// The candidate with the least error times a power of its bytes.
+    pub(super) fn best(&self, mut candidates: Vec<Candidate>) -> Result<Candidate, BuildError> {
+        let mut costs = Vec::new();
+        for candidate in &candidates {
+            let (file, bytes) = self.file(candidate)?;
+            let error = libm::sqrt(self.square_error(&file)?);
+            costs.push(error * libm::pow(bytes as f64, BYTES_WEIGH));
+        }
+        let least = (0..costs.len()).min_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+        Ok(candidates.swap_remove(least.unwrap_or(0)))
+    }
+
+    /// Mean over the cameras.
+    fn square_error(&self, file: &FarFile) -> Result<f64, BuildError> {
+        let mut sum = 0.0;
+        for (view, light, right) in &self.views {
+            sum += square_error(
+                &draw(file, view, *light, SAMPLES_ACROSS[1], ANY_VOXEL)?,
+                right,
+            );
+        }
+        Ok(sum / self.views.len() as f64)
+    }
+
+    /// A file of the candidate above all the triangles; and what the candidate takes of it.
+    fn file(&self, candidate: &Candidate) -> Result<(FarFile, u64), BuildError> {
+        let (mut leaf, of_leaf) = (self.leaf.0, &self.leaf.1);
+        let mut root = Node {
+            level: 0,
+            children: [1, 0],
+            first_triangle: 0,
+            triangles: leaf.triangles,
+            ..around(&candidate.node, self.middle)
+        };
+        let triangles = moved(&candidate.triangles, self.middle);
+        let bytes = surface::lay_out(&mut root, &triangles, |_| false);
+        let mut packed = pack(&candidate.lists, &bytes);
+        root.checksum = xxh3_64(&packed);
+        leaf.data_at = packed.len() as u64;
+        leaf.checksum = xxh3_64(of_leaf);
+        packed.extend(of_leaf);
+        let drawn = root.drawn_bytes();
+        let data = FarData {
+            centre: [0.0; 3],
+            distance_voxels: self.options.distance_voxels,
+            opacity_blend: self.options.opacity_blend,
+            shader_blend: self.options.shader_blend,
+            leaf_triangles: self.options.leaf_triangles,
+            grid: self.options.grid,
+            y_up: true,
+            bevels: [0; 8],
+            nodes: vec![root, leaf],
+            packed,
+        };
+        let encoded = encode(&data).map_err(failed)?;
+        let file = FarFile::from_bytes(&encoded).map_err(failed)?;
+        Ok((file, drawn))
+    }
+}
+
+fn failed(error: impl std::fmt::Display) -> BuildError {
+    BuildError::Surface(error.to_string())
+}
+
+/// A node about a point instead of the file's centre, without its surface.
+fn around(node: &Node, middle: DVec3) -> Node {
+    let moved = |p: [f32; 3]| {
+        (DVec3::from_array(p.map(f64::from)) - middle)
+            .as_vec3()
+            .to_array()
+    };
+    Node {
+        low: moved(node.low),
+        high: moved(node.high),
+        origin: moved(node.origin),
+        data_at: 0,
+        ..*node
+    }
+}
+
+fn moved(triangles: &[LeafTriangle], middle: DVec3) -> Vec<LeafTriangle> {
+    let moved = |p: [f32; 3]| {
+        (DVec3::from_array(p.map(f64::from)) - middle)
+            .as_vec3()
+            .to_array()
+    };
+    let triangle = |triangle: &LeafTriangle| LeafTriangle {
+        corners: triangle.corners.map(moved),
+        ..*triangle
+    };
+    triangles.iter().map(triangle).collect()
+}
+
+/// Most pixels of a voxel that is drawn: none are, but the leaf is; any are, the candidate's.
+const NO_VOXEL: f64 = f64::MIN_POSITIVE;
+const ANY_VOXEL: f64 = 1e150;
+
+/// Light and cover of each pixel.
+fn draw(
+    file: &FarFile,
+    view: &RasterCamera,
+    light: Light,
+    samples_across: u32,
+    voxel_px: f64,
+) -> Result<Vec<DVec4>, BuildError> {
+    let options = ViewOptions {
+        voxel_px,
+        samples_across,
+        light: Some(light),
+        background: Some([0; 3]),
+        ..ViewOptions::default()
+    };
+    let drawn = FarViewer::new(file).draw(view, &options);
+    drawn
+        .map(|(picture, _)| light_and_cover(&picture))
+        .map_err(failed)
+}
+
+/// Mean over the pixels.
+fn square_error(seen: &[DVec4], right: &[DVec4]) -> f64 {
+    let both = seen.iter().zip(right);
+    let sum: f64 = both.map(|(&a, &b)| (a - b).length_squared()).sum();
+    sum / right.len().max(1) as f64
+}
+
+/// Light before black, and how much of each pixel is covered, which light or dark grounds show.
+fn light_and_cover(picture: &FarPicture) -> Vec<DVec4> {
+    let pixels = picture.rgba.iter().zip(&picture.coverage);
+    let pixel = |(&[r, g, b, _], &cover): (&[u8; 4], &f32)| {
+        let [r, g, b] = [r, g, b].map(|byte| f64::from(srgb_to_linear(byte)));
+        DVec4::new(r, g, b, f64::from(cover))
+    };
+    pixels.map(pixel).collect()
+}

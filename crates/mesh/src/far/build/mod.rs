@@ -1,0 +1,664 @@
+//! Triangles into far voxels: hierarchy, rays, fitting.
+//!
+//! The same triangles and options give the same bytes on any number of
+//! threads: a node's rays depend on its number and on nothing else.
+
+mod chance;
+mod clusters;
+mod coarser;
+mod compare;
+mod count;
+mod grid;
+mod levels;
+mod parts;
+mod rays;
+mod room;
+mod sample;
+mod shader_fit;
+mod shot;
+mod split;
+mod spool;
+mod surface;
+mod touch;
+
+#[cfg(test)]
+mod known;
+
+use std::fs::File;
+use std::io::{self, Cursor, Read, Seek, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+pub use grid::Grid;
+pub use spool::part_of;
+
+use super::FarData;
+use super::blend::Blend;
+use super::record::{LeafTriangle, Node, Opacity};
+use super::store::pack::pack;
+use super::store::surface::lay_out;
+use super::store::write_parts;
+use shiftvox::graph::{PackedNormal, Progress, place};
+use crate::{Surface, barycentric, linear_to_srgb, mesh_box};
+use clusters::{CLUSTER, Occluders, Part};
+use count::{Seen, SurfaceSample};
+use rays::Around;
+use room::{Room, shares};
+use sample::{Rays, Triangles};
+use shader_fit::ShaderFit;
+use shot::{Own, Target};
+use split::{Branch, split};
+use spool::{Origin, Spool, open_part};
+use surface::{MOST_TRIANGLES, Surfaces};
+
+/// How far voxels are built.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BuildOptions {
+    /// Rays of all nodes together; `None`: as many as find what is visible, and
+    /// [`RAYS_PER_VOXEL`] for each voxel that is.
+    pub rays: Option<u64>,
+    /// Nodes with fewer triangles are leaves; 2 or more.
+    pub leaf_triangles: u32,
+    /// Voxels along the longest side of a node, 2 to 255.
+    pub grid: u32,
+    /// Least distance from which a node is used, in its voxels: where the eye
+    /// may be and what may hide the node follow from it.
+    pub distance_voxels: f64,
+    /// What opacities are stored for: of `Six`, those that differ; of `None`, none.
+    pub opacity: Opacity,
+    /// How opacities of main directions are blended.
+    pub opacity_blend: Blend,
+    /// How normals and materials of main directions are blended.
+    pub shader_blend: Blend,
+    /// Whether what is wider than a voxel stays a surface, decimated.
+    pub hybrid: bool,
+}
+
+/// Rays for each voxel that is kept, where no number of rays is given.
+pub const RAYS_PER_VOXEL: u32 = 24;
+/// Most rays of a node: what its memory is kept to.
+const MOST_RAYS: u32 = 1 << 22;
+/// Bytes a ray that a node takes while it is sampled, or less: 40 of its own, and 20 of each voxel that it crosses.
+const RAY_BYTES: u64 = 160;
+/// Rays at a touched voxel, where no number of rays is given, or less: few get all.
+const RAYS_AT_VOXEL: u64 = 32;
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            rays: None,
+            leaf_triangles: 1000,
+            grid: 64,
+            distance_voxels: 256.0,
+            opacity: Opacity::Six,
+            opacity_blend: Blend::Cosines,
+            shader_blend: Blend::Squares,
+            hybrid: false,
+        }
+    }
+}
+
+/// Why nothing was built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BuildError {
+    /// No triangles.
+    #[error("there are no triangles to build far voxels of")]
+    Empty,
+    /// More triangles or voxels than 32 bits number.
+    #[error("{0} are more than 32 bits can number")]
+    TooMany(String),
+    /// An option out of its range.
+    #[error("{0}")]
+    Option(&'static str),
+    /// The surface of a node.
+    #[error("the surface of a node could not be made: {0}")]
+    Surface(String),
+    /// Coordinates that single precision does not hold.
+    #[error("the mesh is too large or too small for numbers of single precision")]
+    Range,
+    /// So far from the origin that the parts of the mesh have the same coordinates.
+    #[error(
+        "the mesh spans {extent} units {distance} units from the origin: too little for its coordinates; \
+         move it to the origin"
+    )]
+    FarAway {
+        /// Its longest side, world units.
+        extent: f64,
+        /// Of its farthest coordinate.
+        distance: f64,
+    },
+    /// A budget that is too small.
+    #[error(
+        "the build takes {needed} bytes at the least beside what is loaded, and {given} are left"
+    )]
+    Memory {
+        /// Bytes that it takes.
+        needed: u64,
+        /// Bytes that it was given.
+        given: u64,
+    },
+    /// A temporary or unfinished file.
+    #[error("{}: {problem}", file.display())]
+    File {
+        /// It, or the folder that it is in.
+        file: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+/// Where a build keeps what is not in memory.
+#[derive(Debug, Clone, Copy)]
+pub struct Outside<'o> {
+    /// Bytes that it may take beside the surface; `None`: as many as make it fast.
+    pub memory: Option<u64>,
+    /// Folder of temporary files, which have no names where the system allows it.
+    pub folder: &'o Path,
+    /// The unfinished file: what is finished is kept in it, and what was finished before is taken
+    /// from it. `None`: a temporary one.
+    pub part: Option<&'o Path>,
+}
+
+/// Far voxels whose data is in a file.
+#[derive(Debug)]
+pub struct Spooled {
+    /// All but the data: `packed` is empty.
+    pub data: FarData,
+    spool: Spool<File>,
+}
+
+impl Spooled {
+    /// Writes a `.far` file.
+    ///
+    /// # Errors
+    /// As [`write_to`](super::store::write_to).
+    pub fn write_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        let bytes = self.spool.nodes().map(|done| done.bytes).sum();
+        write_parts(&self.data, bytes, out, |out| self.spool.copy_to(out))
+    }
+}
+
+/// Builds far voxels of a surface.
+///
+/// # Errors
+/// See [`BuildError`].
+pub fn build<S: Surface + ?Sized>(
+    surface: &S,
+    options: &BuildOptions,
+    progress: &dyn Progress,
+) -> Result<FarData, BuildError> {
+    check(surface, options)?;
+    let spool = Spool::new(Cursor::new(Vec::new()));
+    let none = |_: &mut Spool<_>, _| Ok(());
+    let (mut data, mut spool) = fill(surface, options, None, (spool, none), progress)?;
+    let bytes: u64 = spool.nodes().map(|done| done.bytes).sum();
+    data.packed.reserve_exact(bytes as usize);
+    let copied = spool.copy_to(&mut data.packed);
+    copied.map_err(|e| failed(Path::new("memory"), &e))?;
+    Ok(data)
+}
+
+/// Builds far voxels of a surface, the same as [`build()`], outside of memory.
+///
+/// # Errors
+/// See [`BuildError`].
+pub fn build_outside<S: Surface + ?Sized>(
+    surface: &S,
+    options: &BuildOptions,
+    outside: &Outside<'_>,
+    progress: &dyn Progress,
+) -> Result<Spooled, BuildError> {
+    check(surface, options)?;
+    let spool = match outside.part {
+        Some(part) => open_part(part, &Origin::of(surface, options))?,
+        None => {
+            let file = tempfile::tempfile_in(outside.folder);
+            Spool::new(file.map_err(|e| failed(outside.folder, &e))?)
+        }
+    };
+    let resume = |spool: &mut Spool<File>, nodes| match outside.part {
+        Some(part) => spool.resume(nodes).map_err(|e| failed(part, &e)),
+        None => Ok(()),
+    };
+    let (data, spool) = fill(surface, options, Some(outside), (spool, resume), progress)?;
+    Ok(Spooled { data, spool })
+}
+
+fn failed(file: &Path, problem: &io::Error) -> BuildError {
+    BuildError::File {
+        file: file.to_owned(),
+        problem: problem.to_string(),
+    }
+}
+
+/// Triangles in the order of the hierarchy, in coordinates in which all of them together have a
+/// size of about 1: single precision holds their squares and products, however small the mesh is.
+struct Ordered<'s, S: ?Sized> {
+    surface: &'s S,
+    order: &'s [u32],
+    centre: DVec3,
+    /// A power of two, so that nothing is rounded.
+    scale: f64,
+}
+
+impl<S: Surface + ?Sized> Ordered<'_, S> {
+    fn place(&self, point: DVec3) -> DVec3 {
+        (point - self.centre) * self.scale
+    }
+}
+
+impl<S: Surface + ?Sized> Triangles for Ordered<'_, S> {
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        let corners = self.surface.corners(self.order[number] as usize);
+        corners.map(|p| self.place(p))
+    }
+
+    fn plane(&self, number: usize) -> DVec3 {
+        let [a, b, c] = self.corners(number);
+        (b - a).cross(c - a).normalize_or(DVec3::Z)
+    }
+
+    fn sample(&self, number: usize, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
+        let mut triangle = self.surface.triangle(self.order[number] as usize);
+        triangle.corners = triangle.corners.map(|p| self.place(p));
+        surface_sample(&triangle, point, towards_eye)
+    }
+}
+
+/// Fills a spool with the nodes that are not in it yet.
+fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
+    surface: &S,
+    options: &BuildOptions,
+    outside: Option<&Outside<'_>>,
+    (mut spool, resume): (
+        Spool<F>,
+        impl FnOnce(&mut Spool<F>, usize) -> Result<(), BuildError>,
+    ),
+    progress: &dyn Progress,
+) -> Result<(FarData, Spool<F>), BuildError> {
+    let (centre, scale) = centre(surface)?;
+    let folder = outside.map_or(Path::new("memory"), |outside| outside.folder);
+    let memory = outside.and_then(|outside| outside.memory);
+    let shares = shares(surface.len(), options.hybrid, memory)?;
+    progress.begin("split triangles", 0);
+    let (mut branches, order) = split(surface, options.leaf_triangles as usize);
+    let coarser = coarser::put_above(&mut branches, options.grid, options.hybrid);
+    progress.end();
+    let mut has_voxels = match options.hybrid {
+        true => vec![true; branches.len()],
+        false => levels::with_voxels(&branches, coarser),
+    };
+    if u32::try_from(branches.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} nodes", branches.len())));
+    }
+    resume(&mut spool, branches.len())?;
+    spool.expect(branches.len());
+    let triangles = Ordered {
+        surface,
+        order: &order,
+        centre,
+        scale,
+    };
+    progress.begin("prepare rays", 0);
+    let within = match shares.clusters {
+        None => None,
+        Some(most) => {
+            let file = tempfile::tempfile_in(folder).map_err(|e| failed(folder, &e))?;
+            Some((file, most))
+        }
+    };
+    let corners = |own: std::ops::Range<usize>| own.map(|number| triangles.corners(number));
+    let parts = parts(&branches, |point| triangles.place(point));
+    let occluders = Occluders::new(&parts, corners, within).map_err(|e| failed(folder, &e))?;
+    progress.end();
+    let hybrid = options.hybrid;
+    let surfaces = hybrid.then(|| Surfaces::new(surface, &order, centre, options, &branches));
+    let grid = |number: usize, branch: &Branch| {
+        let (low, high) = (triangles.place(branch.low), triangles.place(branch.high));
+        Grid::around(low, high, coarser::grid_of(number, coarser, options.grid))
+    };
+    let target = |number: usize, branch: &Branch| Target {
+        occluders: &occluders,
+        grid: grid(number, branch),
+        own: Own::all(branch.triangles()),
+        distance: options.distance_voxels,
+        opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
+    };
+    progress.begin("find voxels", order.len() as u64);
+    let touched: Vec<Option<u32>> = branches
+        .par_iter()
+        .enumerate()
+        .map(|(number, branch)| {
+            if branch.children.is_none() {
+                progress.advance(branch.count as u64);
+                return None;
+            }
+            let grid = has_voxels[number].then(|| grid(number, branch))?;
+            let may_be_left = !options.hybrid && number > coarser;
+            let is_of_use =
+                options.rays.is_some() || may_be_left && levels::is_dense(grid.len(), branch.count);
+            is_of_use.then(|| touch::count(&grid, corners(branch.triangles())))
+        })
+        .collect();
+    if !options.hybrid {
+        levels::leave_out_dense(&mut has_voxels, &branches, &touched, coarser);
+    }
+    progress.end();
+    let rays = match options.rays {
+        None => vec![Rays::PerVoxel(RAYS_PER_VOXEL); branches.len()],
+        Some(rays) => {
+            let touched = touched.iter().zip(&has_voxels);
+            let touched = touched.map(|(n, has_voxels)| n.filter(|_| *has_voxels).unwrap_or(0));
+            share_rays(&touched.collect::<Vec<u32>>(), rays)
+        }
+    };
+    progress.begin("shoot rays", order.len() as u64);
+    let room = Room::new(shares.nodes);
+    let make = |number: usize, branch: &Branch| {
+        let mut node = outline(branch, centre);
+        if branch.children.is_none() {
+            let own = branch.triangles();
+            let data = match &surfaces {
+                Some(surfaces) => surfaces.leaf(&mut node, own),
+                None => {
+                    let triangles = leaf_triangles(surface, &order[own], centre);
+                    let bytes = lay_out(&mut node, &triangles, |_| true);
+                    pack(&Default::default(), &bytes)
+                }
+            };
+            return Ok((node, data));
+        }
+        if !has_voxels[number] {
+            return Ok((node, pack(&Default::default(), &[])));
+        }
+        let target = target(number, branch);
+        set_grid(&mut node, &target.grid, scale);
+        // Whatever is above the root.
+        let seed = (number as u64).wrapping_sub(coarser as u64);
+        let voxels = |node: &mut Node, target: &Target<'_>| {
+            let fitted = fit(target, rays[number], seed, &triangles, &room, options);
+            let fitted = fitted.map_err(|e| failed(folder, &e))?;
+            fitted.describe(node);
+            Ok(fitted.lists)
+        };
+        match &surfaces {
+            Some(surfaces) if branch.count <= MOST_TRIANGLES => {
+                let thin = |node: &mut Node, thin: &[bool]| voxels(node, &target.of(thin));
+                surfaces.inner(&node, branch.triangles(), thin)
+            }
+            _ => {
+                let lists = voxels(&mut node, &target)?;
+                Ok((node, pack(&lists, &[])))
+            }
+        }
+    };
+    let done: Vec<bool> = (0..branches.len()).map(|n| spool.is_done(n)).collect();
+    let spool = Mutex::new(spool);
+    branches
+        .par_iter()
+        .enumerate()
+        .try_for_each(|(number, branch)| {
+            let is_leaf = branch.children.is_none();
+            if !done[number] {
+                let (node, data) = make(number, branch)?;
+                // What was added before is sound, whoever panicked.
+                let mut spool = spool.lock().unwrap_or_else(PoisonError::into_inner);
+                let added = spool.add(number, node, &data);
+                added.map_err(|e| failed(outside.and_then(|o| o.part).unwrap_or(folder), &e))?;
+            }
+            // Every triangle is in one leaf: progress is counted by these.
+            progress.advance(if is_leaf { branch.count as u64 } else { 0 });
+            Ok(())
+        })?;
+    progress.end();
+    let spool = spool.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let mut data = assemble(&spool, centre, options)?;
+    data.bevels = mesh_box(surface, data.y_up).bevels;
+    Ok((data, spool))
+}
+
+/// The largest subtrees of no more triangles than a cluster may have.
+fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
+    let mut parts = Vec::new();
+    let mut waiting = vec![0];
+    while let Some(number) = waiting.pop() {
+        let branch: &Branch = &branches[number];
+        match branch.children {
+            // What is above the root has one child; none is the first of all.
+            Some([near, far]) if branch.count > CLUSTER => {
+                waiting.extend([far, near].into_iter().filter(|&child| child != 0));
+            }
+            _ => parts.push(Part {
+                triangles: branch.triangles(),
+                around: Around::of(place(branch.low), place(branch.high)),
+            }),
+        }
+    }
+    parts
+}
+
+fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(), BuildError> {
+    if surface.is_empty() {
+        return Err(BuildError::Empty);
+    }
+    if u32::try_from(surface.len()).is_err() {
+        return Err(BuildError::TooMany(format!("{} triangles", surface.len())));
+    }
+    if !(2..=255).contains(&options.grid) {
+        return Err(BuildError::Option("a grid has 2 to 255 voxels a side"));
+    }
+    if options.leaf_triangles < 2 {
+        return Err(BuildError::Option(
+            "leaves have fewer than 2 triangles or more",
+        ));
+    }
+    if !(options.distance_voxels >= 1.0 && options.distance_voxels <= 1e6) {
+        return Err(BuildError::Option(
+            "the least distance is 1 to 1,000,000 voxels",
+        ));
+    }
+    centre(surface).map(drop)
+}
+
+/// What coordinates are relative to, and what makes them about 1.
+fn centre<S: Surface + ?Sized>(surface: &S) -> Result<(DVec3, f64), BuildError> {
+    let (low, high) = surface.bounds();
+    let extent = (high - low).max_element();
+    let farthest = low.abs().max(high.abs()).max_element();
+    if !(farthest < 1e30 && extent > 1e-30) {
+        return Err(BuildError::Range);
+    }
+    // As the reader has it of the root's box, which is rounded outwards.
+    let finest = 0.99 * extent / place::MOST_PARTS;
+    if !place::can_be_seen(low.to_array(), high.to_array(), finest) {
+        let distance = farthest;
+        return Err(BuildError::FarAway { extent, distance });
+    }
+    let centre = place::centre(low.to_array(), high.to_array()).into();
+    let (_, power) = libm::frexp(extent);
+    Ok((centre, libm::ldexp(1.0, -power)))
+}
+
+/// Rays of each node, in proportion to the voxels that its triangles touch.
+fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
+    let all: u64 = touched.iter().map(|&n| u64::from(n)).sum();
+    touched
+        .iter()
+        .map(|&n| {
+            // No overflow: 64 bits by 32.
+            let share = u128::from(rays) * u128::from(n) / u128::from(all.max(1));
+            // A node with triangles gets a ray at least.
+            let share = share.clamp(u128::from(n > 0), u128::from(MOST_RAYS));
+            Rays::InAll(share as u32)
+        })
+        .collect()
+}
+
+/// Normal and colour of a triangle at a point, seen from a side.
+fn surface_sample(
+    triangle: &crate::Triangle,
+    point: DVec3,
+    towards_eye: DVec3,
+) -> SurfaceSample {
+    let [a, b, c] = triangle.corners;
+    let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
+    let shares = barycentric(&triangle.corners, point);
+    let blend = |of: &[DVec3; 3]| of[0] * shares[0] + of[1] * shares[1] + of[2] * shares[2];
+    let face = if plane.dot(towards_eye) >= 0.0 {
+        plane
+    } else {
+        -plane
+    };
+    let normal = blend(&triangle.normals).normalize_or(face);
+    SurfaceSample {
+        towards_eye,
+        normal: if normal.dot(face) < 0.0 {
+            -normal
+        } else {
+            normal
+        },
+        color: blend(&triangle.colors),
+    }
+}
+
+/// A node without voxels.
+fn outline(branch: &Branch, centre: DVec3) -> Node {
+    let single = |p: DVec3| (p - centre).as_vec3().to_array();
+    Node {
+        low: single(branch.low),
+        high: single(branch.high),
+        is_leaf: u8::from(branch.children.is_none()),
+        level: branch.level,
+        // Fewer than 2^32 triangles, and fewer nodes than twice that: see `assemble`.
+        children: branch.children.map_or([0; 2], |c| c.map(|c| c as u32)),
+        first_triangle: branch.first as u32,
+        triangles: branch.count as u32,
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// Describes a grid in a node, of coordinates of a scale: back by a power of two, as exact as it was.
+fn set_grid(node: &mut Node, grid: &Grid, scale: f64) {
+    node.origin = (grid.origin / scale).as_vec3().to_array();
+    node.voxel = (grid.voxel / scale) as f32;
+    node.cells = grid.cells;
+}
+
+/// The voxels of a node, fitted.
+struct Fitted {
+    sampled: sample::Sampled,
+    lists: [Vec<u8>; 6],
+    counts: [u32; 6],
+    crossings: u32,
+    square_error: f64,
+    samples: usize,
+}
+
+/// Shoots rays at a node and fits its voxels.
+fn fit(
+    target: &Target<'_>,
+    rays: Rays,
+    seed: u64,
+    triangles: &impl Triangles,
+    room: &Room,
+    options: &BuildOptions,
+) -> io::Result<Fitted> {
+    let mut lists: [Vec<u8>; 6] = Default::default();
+    let (mut counts, mut crossings) = ([0; 6], 0u32);
+    let (mut square_error, mut all_samples) = (0.0, 0);
+    let keep = |seen: &Seen, shown: &ShaderFit, samples: usize| {
+        let voxel = shader_fit::fit(seen, shown.shader, options.opacity);
+        let list = voxel.list();
+        voxel.write(&mut lists[list]);
+        counts[list] += 1;
+        square_error += shown.square_error;
+        all_samples += samples;
+        crossings = crossings.saturating_add(seen.crossings);
+    };
+    let admit = |touched: usize| {
+        let rays = match rays {
+            Rays::PerVoxel(_) => (touched as u64 * RAYS_AT_VOXEL).min(u64::from(MOST_RAYS)),
+            Rays::InAll(rays) => u64::from(rays),
+        };
+        room.take(rays * RAY_BYTES)
+    };
+    let sampled = target.sample(rays, MOST_RAYS, seed, triangles, admit, keep)?;
+    Ok(Fitted {
+        sampled,
+        lists,
+        counts,
+        crossings,
+        square_error,
+        samples: all_samples,
+    })
+}
+
+impl Fitted {
+    /// Describes them in a node, whose grid is described.
+    fn describe(&self, node: &mut Node) {
+        node.counts = self.counts;
+        node.crossings = self.crossings;
+        node.touched = self.sampled.touched;
+        node.untested = self.sampled.untested;
+        node.rays = self.sampled.rays;
+        node.hits = self.sampled.hits;
+        let mean = self.square_error / f64::from(self.samples.max(1) as u32);
+        node.error = libm::sqrt(mean) as f32;
+    }
+}
+
+fn leaf_triangles<S: Surface + ?Sized>(
+    surface: &S,
+    order: &[u32],
+    centre: DVec3,
+) -> Vec<LeafTriangle> {
+    order
+        .iter()
+        .map(|&number| {
+            let triangle = surface.triangle(number as usize);
+            LeafTriangle {
+                corners: triangle.corners.map(|p| (p - centre).as_vec3().to_array()),
+                normals: triangle.normals.map(|n| PackedNormal::encode(n).0),
+                colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+            }
+        })
+        .collect()
+}
+
+/// All but the data of what is finished.
+fn assemble<F: Read + Write + Seek>(
+    spool: &Spool<F>,
+    centre: DVec3,
+    options: &BuildOptions,
+) -> Result<FarData, BuildError> {
+    let items = |done: spool::Done| done.node.voxels() + u64::from(done.node.surface);
+    let numbered: u64 = spool.nodes().map(items).sum();
+    if numbered >= u64::from(u32::MAX) {
+        let what = format!("{numbered} voxels and triangles");
+        return Err(BuildError::TooMany(what));
+    }
+    let mut nodes = Vec::new();
+    let mut data_at = 0;
+    for done in spool.nodes() {
+        nodes.push(Node {
+            data_at,
+            ..done.node
+        });
+        data_at += done.bytes;
+    }
+    Ok(FarData {
+        centre: centre.to_array(),
+        distance_voxels: options.distance_voxels,
+        opacity_blend: options.opacity_blend,
+        shader_blend: options.shader_blend,
+        leaf_triangles: options.leaf_triangles,
+        grid: options.grid,
+        y_up: true,
+        bevels: [0; 8],
+        nodes,
+        packed: Vec::new(),
+    })
+}

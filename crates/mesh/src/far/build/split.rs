@@ -1,0 +1,321 @@
+//! The hierarchy: triangles split in two by the surface area heuristic, again and again.
+//!
+//! A plane across one axis sends each triangle to the side where the middle of
+//! its box lies: every triangle is in one leaf, and the triangles of a node
+//! are a range of their new order. The plane is the best of those between 32
+//! slices along each axis.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::Surface;
+
+/// Slices along an axis.
+const SLICES: usize = 32;
+/// Below this level triangles are halved by number, whatever the heuristic would choose.
+const MOST_LEVELS: u32 = 64;
+/// Triangles from which on two halves are split by two threads.
+const PARALLEL: usize = 4096;
+/// Triangles up to which their boxes are held in memory.
+const WITH_BOXES: usize = 1 << 16;
+
+/// A node of the hierarchy.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Branch {
+    pub(super) low: DVec3,
+    pub(super) high: DVec3,
+    pub(super) level: u32,
+    /// The first of its triangles, in the new order.
+    pub(super) first: usize,
+    /// How many.
+    pub(super) count: usize,
+    /// Their places in the list; `None`: a leaf.
+    pub(super) children: Option<[usize; 2]>,
+}
+
+/// A triangle's box and number.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    low: DVec3,
+    high: DVec3,
+    number: u32,
+}
+
+impl Item {
+    fn middle(&self) -> DVec3 {
+        (self.low + self.high) * 0.5
+    }
+}
+
+impl Branch {
+    /// Its triangles, in the new order.
+    pub(super) fn triangles(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+}
+
+struct Tree {
+    low: DVec3,
+    high: DVec3,
+    count: usize,
+    halves: Option<Box<[Tree; 2]>>,
+}
+
+/// Splits until a node has fewer triangles than `leaf_triangles` (or one).
+/// Gives the nodes, parents before children, and the triangles' numbers in
+/// their new order. The surface has triangles, and fewer than 2^32.
+pub(super) fn split<S: Surface + ?Sized>(
+    surface: &S,
+    leaf_triangles: usize,
+) -> (Vec<Branch>, Vec<u32>) {
+    let item_of = |&number: &u32| {
+        let [a, b, c] = surface.corners(number as usize);
+        Item {
+            low: a.min(b).min(c),
+            high: a.max(b).max(c),
+            number,
+        }
+    };
+    // Fewer than 2^32.
+    let mut numbers: Vec<u32> = (0..surface.len() as u32).collect();
+    let tree = tree_of_numbers(&mut numbers, &item_of, leaf_triangles, 0);
+    let mut branches = Vec::new();
+    flatten(&tree, 0, 0, &mut branches);
+    (branches, numbers)
+}
+
+/// As [`tree`], of triangles whose boxes are found again each time while there are many of them: so
+/// they take four bytes each.
+fn tree_of_numbers<F>(numbers: &mut [u32], item_of: &F, leaf_triangles: usize, level: u32) -> Tree
+where
+    F: Fn(&u32) -> Item + Sync,
+{
+    if numbers.len() > WITH_BOXES {
+        let below =
+            |numbers: &mut [u32], level| tree_of_numbers(numbers, item_of, leaf_triangles, level);
+        return tree(numbers, item_of, leaf_triangles, level, &below);
+    }
+    let mut items: Vec<Item> = numbers.iter().map(item_of).collect();
+    let tree = tree_of_items(&mut items, leaf_triangles, level);
+    for (number, item) in numbers.iter_mut().zip(items) {
+        *number = item.number;
+    }
+    tree
+}
+
+fn tree_of_items(items: &mut [Item], leaf_triangles: usize, level: u32) -> Tree {
+    let below = |items: &mut [Item], level| tree_of_items(items, leaf_triangles, level);
+    tree(items, &|item: &Item| *item, leaf_triangles, level, &below)
+}
+
+fn flatten(tree: &Tree, level: u32, first: usize, branches: &mut Vec<Branch>) -> usize {
+    let place = branches.len();
+    branches.push(Branch {
+        low: tree.low,
+        high: tree.high,
+        level,
+        first,
+        count: tree.count,
+        children: None,
+    });
+    if let Some(halves) = &tree.halves {
+        let near = flatten(&halves[0], level + 1, first, branches);
+        let far = flatten(&halves[1], level + 1, first + halves[0].count, branches);
+        branches[place].children = Some([near, far]);
+    }
+    place
+}
+
+fn bounds<T>(items: &[T], item_of: impl Fn(&T) -> Item) -> (DVec3, DVec3) {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    items.iter().map(item_of).fold(start, |(low, high), item| {
+        (low.min(item.low), high.max(item.high))
+    })
+}
+
+/// The tree of items of which boxes are known; `below` makes those of the halves.
+fn tree<T, F, B>(items: &mut [T], item_of: &F, leaf_triangles: usize, level: u32, below: &B) -> Tree
+where
+    T: Copy + Send,
+    F: Fn(&T) -> Item + Sync,
+    B: Fn(&mut [T], u32) -> Tree + Sync,
+{
+    let (low, high) = bounds(items, item_of);
+    let count = items.len();
+    let halves = (count >= leaf_triangles && count > 1).then(|| {
+        let middle = if level < MOST_LEVELS {
+            partition(items, item_of)
+        } else {
+            count / 2
+        };
+        let (near, far) = items.split_at_mut(middle);
+        let next = level + 1;
+        let (near, far) = if count >= PARALLEL {
+            rayon::join(|| below(near, next), || below(far, next))
+        } else {
+            (below(near, next), below(far, next))
+        };
+        Box::new([near, far])
+    });
+    Tree {
+        low,
+        high,
+        count,
+        halves,
+    }
+}
+
+fn half_area(low: DVec3, high: DVec3) -> f64 {
+    let side = (high - low).max(DVec3::ZERO);
+    side.x * side.y + side.y * side.z + side.z * side.x
+}
+
+#[derive(Clone, Copy)]
+struct Slice {
+    low: DVec3,
+    high: DVec3,
+    count: usize,
+}
+
+impl Slice {
+    const NONE: Self = Self {
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+        count: 0,
+    };
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            low: self.low.min(other.low),
+            high: self.high.max(other.high),
+            count: self.count + other.count,
+        }
+    }
+
+    fn cost(&self) -> f64 {
+        half_area(self.low, self.high) * self.count as f64
+    }
+}
+
+/// Sorts the items to the two sides of the best plane; how many are on the first, at least 1.
+fn partition<T: Copy>(items: &mut [T], item_of: &impl Fn(&T) -> Item) -> usize {
+    let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (low, high) = items.iter().map(item_of).fold(start, |(low, high), item| {
+        (low.min(item.middle()), high.max(item.middle()))
+    });
+    let mut all = [[Slice::NONE; SLICES]; 3];
+    for item in items.iter().map(item_of) {
+        for (axis, slices) in all.iter_mut().enumerate() {
+            let slice = &mut slices[slice_of(axis, low, high, &item)];
+            *slice = slice.with(Slice {
+                low: item.low,
+                high: item.high,
+                count: 1,
+            });
+        }
+    }
+    let mut best: Option<(f64, usize, usize)> = None;
+    for (axis, slices) in all.iter().enumerate() {
+        if high[axis] <= low[axis] {
+            continue;
+        }
+        let mut behind = [Slice::NONE; SLICES];
+        let mut sum = Slice::NONE;
+        for i in (1..SLICES).rev() {
+            sum = sum.with(slices[i]);
+            behind[i] = sum;
+        }
+        let mut before = Slice::NONE;
+        for plane in 1..SLICES {
+            before = before.with(slices[plane - 1]);
+            if before.count == 0 || behind[plane].count == 0 {
+                continue;
+            }
+            let cost = before.cost() + behind[plane].cost();
+            if best.is_none_or(|(least, _, _)| cost < least) {
+                best = Some((cost, axis, plane));
+            }
+        }
+    }
+    let Some((_, axis, plane)) = best else {
+        // All middles are one point.
+        return items.len() / 2;
+    };
+    // Stable, so that the order does not depend on how it is done.
+    let is_near = |item: &&T| slice_of(axis, low, high, &item_of(item)) < plane;
+    let (near, far): (Vec<T>, Vec<T>) = items.iter().partition(is_near);
+    items[..near.len()].copy_from_slice(&near);
+    items[near.len()..].copy_from_slice(&far);
+    near.len()
+}
+
+/// The slice of an axis in which the middle of a box lies, of middles in a box.
+fn slice_of(axis: usize, low: DVec3, high: DVec3, item: &Item) -> usize {
+    let scale = SLICES as f64 / (high[axis] - low[axis]);
+    // Not negative; what is not a number counts as 0.
+    let slice = ((item.middle()[axis] - low[axis]) * scale) as usize;
+    slice.min(SLICES - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Mesh, MeshBuilder};
+
+    fn row(count: u32) -> Mesh {
+        let mut builder = MeshBuilder::new();
+        for i in 0..count {
+            let x = i as f32;
+            let corners = [[x, 0.0, 0.0], [x + 0.5, 0.0, 0.0], [x, 0.5, 0.0]];
+            let corners = corners.map(|p| builder.position(p));
+            builder.triangle(corners, None, 0).unwrap();
+        }
+        builder.finish("row").unwrap()
+    }
+
+    #[test]
+    fn every_triangle_is_in_one_leaf_of_fewer_than_the_limit() {
+        let mesh = row(1000);
+        let (branches, order) = split(&mesh, 10);
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert!(sorted.iter().enumerate().all(|(i, &n)| i as u32 == n));
+        let mut next = 0;
+        for (i, branch) in branches.iter().enumerate() {
+            match branch.children {
+                None => {
+                    assert!(branch.count < 10 && branch.count > 0);
+                    assert_eq!(branch.first, next);
+                    next += branch.count;
+                }
+                Some(children) => {
+                    assert!(branch.count >= 10);
+                    assert!(children.iter().all(|&c| c > i));
+                    let sum: usize = children.iter().map(|&c| branches[c].count).sum();
+                    assert_eq!(sum, branch.count);
+                    for c in children {
+                        assert!(branches[c].low.cmpge(branch.low).all());
+                        assert!(branches[c].high.cmple(branch.high).all());
+                        assert_eq!(branches[c].level, branch.level + 1);
+                    }
+                }
+            }
+        }
+        assert_eq!(next, 1000);
+    }
+
+    #[test]
+    fn triangles_at_one_place_end_too() {
+        let mut builder = MeshBuilder::new();
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(|p| builder.position(p));
+        for _ in 0..100 {
+            builder.triangle(corners, None, 0).unwrap();
+        }
+        let (branches, _) = split(&builder.finish("pile").unwrap(), 2);
+        assert_eq!(
+            branches.iter().filter(|b| b.children.is_none()).count(),
+            100
+        );
+    }
+}

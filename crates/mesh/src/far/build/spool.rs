@@ -1,0 +1,231 @@
+//! Nodes as they are finished: in a file, in any order, so that they need no memory and a build that
+//! was stopped can go on.
+//!
+//! The file begins with what the nodes are made of, as hashes. Then follow the nodes, each with its
+//! number, its record and its data. One that was not written whole is known by its checksums.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use bytemuck::{Pod, Zeroable};
+use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+
+use super::{BuildError, BuildOptions};
+use crate::far::record::Node;
+use crate::Surface;
+
+/// How an unfinished file begins; the last byte is the version of the layout and of the build.
+const MAGIC: [u8; 8] = *b"\x89FARPRT\x01";
+
+/// What nodes are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct Origin {
+    magic: [u8; 8],
+    mesh: u64,
+    options: u64,
+}
+
+impl Origin {
+    /// That of a build.
+    pub(super) fn of<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Self {
+        let mut mesh = Xxh3::new();
+        for number in 0..surface.len() {
+            let triangle = surface.triangle(number);
+            for point in [triangle.corners, triangle.normals, triangle.colors].as_flattened() {
+                mesh.update(bytemuck::bytes_of(&point.to_array()));
+            }
+        }
+        let program = env!("CARGO_PKG_VERSION");
+        Self {
+            magic: MAGIC,
+            mesh: mesh.digest(),
+            options: xxh3_64(format!("{program} {options:?}").as_bytes()),
+        }
+    }
+}
+
+/// What precedes the data of a node.
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+#[repr(C)]
+struct Head {
+    number: u64,
+    /// Length of its data.
+    bytes: u64,
+    node: Node,
+    /// xxh3-64 of the above.
+    checksum: u64,
+}
+
+impl Head {
+    fn check(&self) -> u64 {
+        let bytes = bytemuck::bytes_of(self);
+        xxh3_64(&bytes[..bytes.len() - size_of::<u64>()])
+    }
+}
+
+/// A node that is finished.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Done {
+    pub(super) node: Node,
+    /// Length of its data.
+    pub(super) bytes: u64,
+    /// Where that is in the file.
+    at: u64,
+}
+
+/// Finished nodes, in a file or in memory.
+#[derive(Debug)]
+pub(super) struct Spool<F> {
+    file: F,
+    end: u64,
+    done: Vec<Option<Done>>,
+}
+
+impl<F: Read + Write + Seek> Spool<F> {
+    /// An empty one.
+    pub(super) fn new(file: F) -> Self {
+        Self {
+            file,
+            end: 0,
+            done: Vec::new(),
+        }
+    }
+
+    /// For so many nodes.
+    pub(super) fn expect(&mut self, nodes: usize) {
+        self.done.resize(nodes, None);
+    }
+
+    /// Whether a node is finished.
+    pub(super) fn is_done(&self, number: usize) -> bool {
+        self.done.get(number).is_some_and(Option::is_some)
+    }
+
+    /// Adds a node.
+    pub(super) fn add(&mut self, number: usize, mut node: Node, data: &[u8]) -> io::Result<()> {
+        node.checksum = xxh3_64(data);
+        let mut head = Head {
+            number: number as u64,
+            bytes: data.len() as u64,
+            node,
+            checksum: 0,
+        };
+        head.checksum = head.check();
+        self.file.seek(SeekFrom::Start(self.end))?;
+        self.file.write_all(bytemuck::bytes_of(&head))?;
+        self.file.write_all(data)?;
+        self.note(&head);
+        Ok(())
+    }
+
+    fn note(&mut self, head: &Head) {
+        let at = self.end + size_of::<Head>() as u64;
+        self.done[head.number as usize] = Some(Done {
+            node: head.node,
+            bytes: head.bytes,
+            at,
+        });
+        self.end = at + head.bytes;
+    }
+
+    /// The finished nodes, in order.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = Done> {
+        self.done.iter().flatten().copied()
+    }
+
+    /// Writes their data, in order.
+    pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<()> {
+        for done in self.done.iter().flatten() {
+            self.file.seek(SeekFrom::Start(done.at))?;
+            io::copy(&mut (&mut self.file).take(done.bytes), out)?;
+        }
+        Ok(())
+    }
+}
+
+/// An unfinished file, locked while it is open.
+pub(super) fn open_part(path: &Path, origin: &Origin) -> Result<Spool<File>, BuildError> {
+    let failed = |problem: String| BuildError::File {
+        file: path.to_owned(),
+        problem,
+    };
+    let refused = |e: io::Error| failed(e.to_string());
+    let mut options = File::options();
+    let mut file = options
+        .read(true)
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)
+        .map_err(refused)?;
+    if file.try_lock().is_err() {
+        return Err(failed("another build is writing it".to_owned()));
+    }
+    let mut bytes = [0; size_of::<Origin>()];
+    let whole = file.metadata().map_err(refused)?.len() >= bytes.len() as u64;
+    if whole {
+        file.read_exact(&mut bytes).map_err(refused)?;
+        let found: Origin = bytemuck::pod_read_unaligned(&bytes);
+        let differs = match found {
+            _ if found.magic != origin.magic => "by another program, or it is something else",
+            _ if found.mesh != origin.mesh => "of another mesh",
+            _ if found.options != origin.options => "with other options, or by another version",
+            _ => "",
+        };
+        if !differs.is_empty() {
+            let problem = format!(
+                "it was begun {differs}, so it cannot be resumed: remove it, or build as it was begun"
+            );
+            return Err(failed(problem));
+        }
+    } else {
+        file.set_len(0).map_err(refused)?;
+        file.write_all(bytemuck::bytes_of(origin))
+            .map_err(refused)?;
+    }
+    Ok(Spool {
+        file,
+        end: bytes.len() as u64,
+        done: Vec::new(),
+    })
+}
+
+impl Spool<File> {
+    /// Finds the nodes that were finished, of so many; what is behind them is cut off.
+    pub(super) fn resume(&mut self, nodes: usize) -> io::Result<()> {
+        self.expect(nodes);
+        let length = self.file.metadata()?.len();
+        let mut data = Vec::new();
+        loop {
+            let mut head = [0; size_of::<Head>()];
+            let left = length.saturating_sub(self.end + head.len() as u64);
+            self.file.seek(SeekFrom::Start(self.end))?;
+            if length < self.end + head.len() as u64 {
+                break;
+            }
+            self.file.read_exact(&mut head)?;
+            let head: Head = bytemuck::pod_read_unaligned(&head);
+            let is_sound = head.checksum == head.check() && head.number < nodes as u64;
+            if !is_sound || head.bytes > left {
+                break;
+            }
+            data.resize(head.bytes as usize, 0);
+            self.file.read_exact(&mut data)?;
+            if xxh3_64(&data) != head.node.checksum {
+                break;
+            }
+            self.note(&head);
+        }
+        self.file.set_len(self.end)
+    }
+}
+
+/// The name of the unfinished file of a build.
+#[must_use]
+pub fn part_of(output: &Path) -> PathBuf {
+    let mut name = output.as_os_str().to_owned();
+    name.push(".part");
+    name.into()
+}

@@ -1,0 +1,235 @@
+//! The hybrid: what is wider than a voxel stays a surface, decimated; what is thinner becomes
+//! voxels.
+//!
+//! For each inner node several candidates are made of its triangles, and compared
+//! (`compare.rs`). What nodes share stays where it is, so that any two nodes side by side join
+//! without a gap, whatever levels they are of.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::compare::{Candidate, Comparison};
+use super::parts::Parts;
+use super::split::Branch;
+use super::{BuildError, BuildOptions, leaf_triangles};
+use crate::far::record::{LeafTriangle, Node};
+use crate::far::store::pack::pack;
+use crate::far::store::surface;
+use shiftvox::graph::PackedNormal;
+use crate::decimate::{Decimation, decimate_between};
+use crate::{Mesh, Surface, srgb_to_linear};
+
+/// Parts narrower than so many voxels of a node are thin.
+const THIN: f64 = 2.0;
+/// How far triangles may be from the mesh, in voxels of the node.
+const ERROR: f64 = 0.3;
+/// Shares of this error to which finer candidates are decimated; thin parts to the last.
+const FINER: f64 = 1.0 / 3.0;
+const FINEST: f64 = 0.1;
+/// Bytes of the smallest voxel's record.
+const LEAST_VOXEL_BYTES: f64 = 12.0;
+/// A finer candidate takes at most so many times the least bytes that voxels of the same could.
+const MOST_BYTES: f64 = 4.0;
+/// Nodes of more triangles have voxels alone: what decimating takes of memory is kept to.
+pub(super) const MOST_TRIANGLES: usize = 1 << 21;
+
+/// What surfaces of nodes are made of.
+pub(super) struct Surfaces<'s, S: ?Sized> {
+    surface: &'s S,
+    order: &'s [u32],
+    centre: DVec3,
+    options: &'s BuildOptions,
+    parts: Parts,
+}
+
+impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
+    pub(super) fn new(
+        surface: &'s S,
+        order: &'s [u32],
+        centre: DVec3,
+        options: &'s BuildOptions,
+        branches: &[Branch],
+    ) -> Self {
+        let corners = |place: usize| {
+            let corners = surface.corners(order[place] as usize);
+            corners.map(|p| (p - centre).as_vec3().to_array())
+        };
+        let normals = |place: usize| surface.triangle(order[place] as usize).normals;
+        let leaves = branches.iter().filter(|branch| branch.children.is_none());
+        let leaves: Vec<usize> = leaves.map(|leaf| leaf.count).collect();
+        Self {
+            surface,
+            order,
+            centre,
+            options,
+            parts: Parts::of(&leaves, corners, normals),
+        }
+    }
+
+    /// Bytes of a leaf.
+    pub(super) fn leaf(&self, node: &mut Node, own: Range<usize>) -> Vec<u8> {
+        let triangles = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
+        let bytes = surface::lay_out(node, &triangles, |p| self.parts.shared(&own, p).is_some());
+        pack(&Default::default(), &bytes)
+    }
+
+    /// An inner node, whose grid is set, and its bytes. `voxels` makes those of some triangles: it
+    /// sets what the node says of them, and gives their records.
+    pub(super) fn inner(
+        &self,
+        node: &Node,
+        own: Range<usize>,
+        voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
+    ) -> Result<(Node, Vec<u8>), BuildError> {
+        let candidates = self.candidates(node, &own, voxels)?;
+        let chosen = match <[Candidate; 1]>::try_from(candidates) {
+            Ok([only]) => only,
+            Err(candidates) => {
+                let all = leaf_triangles(self.surface, &self.order[own.clone()], self.centre);
+                Comparison::of(node, &all, self.options)?.best(candidates)?
+            }
+        };
+        let mut node = chosen.node;
+        let is_shared = |p| self.parts.shared(&own, p).is_some();
+        let bytes = surface::lay_out(&mut node, &chosen.triangles, is_shared);
+        Ok((node, pack(&chosen.lists, &bytes)))
+    }
+
+    fn candidates(
+        &self,
+        node: &Node,
+        own: &Range<usize>,
+        voxels: impl Fn(&mut Node, &[bool]) -> Result<[Vec<u8>; 6], BuildError>,
+    ) -> Result<Vec<Candidate>, BuildError> {
+        let voxel = f64::from(node.voxel);
+        let is_thin = |place: usize| f64::from(self.parts.size(place).width) < THIN * voxel;
+        // Small parts are left out whole: what of them lies beyond the node does not matter.
+        let is_seen =
+            |place: usize, error: f64| f64::from(self.parts.size(place).radius) >= error * voxel;
+        let surface = |triangles| Candidate {
+            node: *node,
+            lists: Default::default(),
+            triangles,
+        };
+        let decimated = |is_taken: &dyn Fn(usize) -> bool, error: f64| {
+            let taken: Vec<usize> = own.clone().filter(|&place| is_taken(place)).collect();
+            self.decimated(own, &taken, error * voxel)
+        };
+        let bytes = |candidate: &Candidate| {
+            let mut counted = candidate.node;
+            let _ = surface::lay_out(&mut counted, &candidate.triangles, |_| false);
+            counted.drawn_bytes() as f64
+        };
+        // There is a voxel at the least for each square of a voxel's face.
+        let least_of = |is_taken: &dyn Fn(usize) -> bool| {
+            let taken = own.clone().filter(|&place| is_taken(place));
+            let area: f64 = taken.map(|place| self.area(place)).sum();
+            area / (voxel * voxel) * LEAST_VOXEL_BYTES
+        };
+        let mut candidates = Vec::new();
+        for error in [ERROR, ERROR * FINER, ERROR * FINEST] {
+            let all = decimated(&|place| is_seen(place, error), error)?;
+            let all = surface(all);
+            // What takes many times the bytes of voxels is not worth it, however near it is.
+            if candidates.is_empty() || bytes(&all) <= MOST_BYTES * least_of(&|_| true) {
+                candidates.push(all);
+            }
+        }
+        let thin: Vec<bool> = own.clone().map(is_thin).collect();
+        if thin.iter().all(|is_thin| !is_thin) {
+            return Ok(candidates);
+        }
+        let wide = decimated(&|place| !is_thin(place) && is_seen(place, ERROR), ERROR)?;
+        let lines = decimated(&is_thin, ERROR * FINEST)?;
+        let both = surface([&wide[..], &lines].concat());
+        if least_of(&is_thin) < bytes(&both) {
+            let mut node = *node;
+            let lists = voxels(&mut node, &thin)?;
+            candidates.push(Candidate {
+                node,
+                lists,
+                triangles: wide,
+            });
+        }
+        candidates.push(both);
+        Ok(candidates)
+    }
+
+    fn area(&self, place: usize) -> f64 {
+        let [a, b, c] = self.surface.corners(self.order[place] as usize);
+        (b - a).cross(c - a).length() / 2.0
+    }
+
+    /// Some of a node's triangles, decimated to within an error, world units.
+    fn decimated(
+        &self,
+        own: &Range<usize>,
+        taken: &[usize],
+        error: f64,
+    ) -> Result<Vec<LeafTriangle>, BuildError> {
+        if taken.is_empty() {
+            return Ok(Vec::new());
+        }
+        let numbers: Vec<u32> = taken.iter().map(|&place| self.order[place]).collect();
+        let tinted: Option<Vec<u32>> = numbers
+            .iter()
+            .map(|&number| self.surface.tinted_material(number as usize))
+            .collect();
+        let mesh = mesh_of(&leaf_triangles(self.surface, &numbers, self.centre), tinted);
+        let how = Decimation {
+            triangles: 0,
+            error: Some(error),
+            prunes: false,
+        };
+        let shared = |p: [f64; 3]| self.parts.shared(own, p.map(|c| c as f32));
+        let few = decimate_between(&mesh, &how, shared);
+        let few = few.map_err(|error| BuildError::Surface(error.to_string()))?;
+        Ok(few.map_or(Vec::new(), |mesh| triangles_of(&mesh)))
+    }
+}
+
+/// Triangles as a mesh, of colours at their corners; or, of triangles of textures, of one colour
+/// each, which are blended between those of one material.
+fn mesh_of(triangles: &[LeafTriangle], tinted: Option<Vec<u32>>) -> Mesh {
+    let is_tinted = tinted.is_some();
+    let mut mesh = Mesh {
+        material_of: tinted.unwrap_or_else(|| vec![0; triangles.len()]),
+        ..Mesh::default()
+    };
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for (number, triangle) in (0u32..).zip(triangles) {
+        mesh.triangles.push([0, 1, 2].map(|k| 3 * number + k));
+        for k in 0..3 {
+            let position = triangle.corners[k].map(f64::from);
+            (low, high) = (low.min(position.into()), high.max(position.into()));
+            mesh.positions.push(position);
+            if !is_tinted {
+                mesh.vertex_colors.push(triangle.colors[k]);
+            }
+        }
+        if is_tinted {
+            let color = triangle.colors[0].map(srgb_to_linear);
+            mesh.tints.push(color);
+        }
+        mesh.corner_normals.push(triangle.normals.map(|normal| {
+            let normal = PackedNormal(normal).decode().unwrap_or(DVec3::Z);
+            normal.as_vec3().to_array()
+        }));
+    }
+    (mesh.low, mesh.high) = (low, high);
+    mesh
+}
+
+fn triangles_of(mesh: &Mesh) -> Vec<LeafTriangle> {
+    let triangle = |number: usize| {
+        let corners = mesh.triangles()[number].map(|vertex| vertex as usize);
+        LeafTriangle {
+            corners: corners.map(|vertex| mesh.positions()[vertex].map(|c| c as f32)),
+            normals: mesh.corner_normals()[number]
+                .map(|n| PackedNormal::encode(DVec3::from_array(n.map(f64::from))).0),
+            colors: corners.map(|vertex| mesh.vertex_colors()[vertex]),
+        }
+    };
+    (0..mesh.triangles().len()).map(triangle).collect()
+}

@@ -1,0 +1,584 @@
+//! What is stored of a voxel, a triangle and a node. Plain bytes, little-endian.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use super::blend::{Blend, DIRECTIONS};
+use shiftvox::graph::PackedNormal;
+use crate::{linear_to_srgb, srgb_to_linear};
+
+/// Which shader a voxel has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ShaderKind {
+    /// One normal, two materials: one for each side.
+    Flat,
+    /// Six normals and six materials.
+    Complex,
+}
+
+/// How a voxel's opacity is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum OpacityKind {
+    /// It hides what is behind it, from everywhere.
+    Opaque,
+    /// One number for each side of its surface.
+    Scalar,
+    /// One number for each main direction.
+    Six,
+}
+
+/// What opacities are used for: when a file is built, or when it is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Opacity {
+    /// Every voxel is opaque: without anti-aliasing.
+    None,
+    /// One number for each side of a voxel's surface: hits over rays, of all directions.
+    ///
+    /// Rays that hit, over rays that hit or pass.
+    Scalar,
+    /// A number for each main direction.
+    ///
+    /// Only where they differ.
+    #[default]
+    Six,
+}
+
+/// The six lists of a node, in the order in which they are stored.
+pub const LISTS: [(ShaderKind, OpacityKind); 6] = [
+    (ShaderKind::Flat, OpacityKind::Opaque),
+    (ShaderKind::Flat, OpacityKind::Scalar),
+    (ShaderKind::Flat, OpacityKind::Six),
+    (ShaderKind::Complex, OpacityKind::Opaque),
+    (ShaderKind::Complex, OpacityKind::Scalar),
+    (ShaderKind::Complex, OpacityKind::Six),
+];
+
+/// Bytes of a voxel in each list: place 3; a flat one 8, a complex one 30; opacity 0, 2 or 5.
+pub const RECORD_BYTES: [usize; 6] = [11, 13, 16, 33, 35, 38];
+
+/// Bytes of the opacities in a voxel of each list: one number for each side, and six of four bits.
+pub const OPACITY_BYTES: [usize; 6] = [0, 2, 5, 0, 2, 5];
+
+/// Area of a unit cube's outline, mean over all directions.
+const MEAN_OUTLINE: f64 = 1.5;
+
+/// Steps of an opacity of a main direction: four bits, finer than tens of rays can measure.
+const SIX_STEPS: f64 = 15.0;
+
+/// How steeply one looks upon a surface: four equal ranges of the cosine to its normal.
+pub const STEEPNESSES: usize = 4;
+
+/// The range of a cosine, 0 to 1: 0 to 3, steeper and steeper.
+#[must_use]
+pub fn steepness(cosine: f64) -> usize {
+    // 0 to 4.
+    ((cosine * STEEPNESSES as f64) as usize).min(STEEPNESSES - 1)
+}
+
+/// A voxel's colours and normals.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "lives on the stack for one voxel at a time"
+)]
+pub enum Shader {
+    /// One normal; colours (linear light) seen from its side and from the other.
+    Flat {
+        /// Unit normal.
+        normal: DVec3,
+        /// In front, behind.
+        colors: [DVec3; 2],
+    },
+    /// A normal and a colour (linear light) for each main direction.
+    Complex {
+        /// Unit normals.
+        normals: [DVec3; DIRECTIONS],
+        /// Colours.
+        colors: [DVec3; DIRECTIONS],
+    },
+}
+
+impl Shader {
+    /// How steeply one looks upon it from a direction: the cosine to its normal, negative from
+    /// behind a flat one.
+    #[must_use]
+    pub fn cosine(&self, towards_eye: DVec3, blend: Blend) -> f64 {
+        match self {
+            Self::Flat { normal, .. } => normal.dot(towards_eye),
+            Self::Complex { .. } => self.seen_from(towards_eye, blend).0.dot(towards_eye),
+        }
+    }
+
+    /// Unit normal on the eye's side, and colour in linear light, as seen from a direction.
+    #[must_use]
+    pub fn seen_from(&self, towards_eye: DVec3, blend: Blend) -> (DVec3, DVec3) {
+        match self {
+            Self::Flat { normal, colors } => {
+                if normal.dot(towards_eye) >= 0.0 {
+                    (*normal, colors[0])
+                } else {
+                    (-*normal, colors[1])
+                }
+            }
+            Self::Complex { normals, colors } => {
+                let (mut normal, mut color) = (DVec3::ZERO, DVec3::ZERO);
+                for (k, share) in blend.shares(towards_eye) {
+                    normal += normals[k] * share;
+                    color += colors[k] * share;
+                }
+                (normal.normalize_or(towards_eye), color)
+            }
+        }
+    }
+}
+
+/// The opacity of a voxel seen from one side of its surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SideOpacity {
+    /// Over all directions, 0 to 1.
+    pub scalar: f64,
+    /// The steepness from which on it is opaque, whatever its opacities are: it is part of a large
+    /// object. [`STEEPNESSES`]: none; 0: it is opaque from everywhere.
+    pub solid_from: u8,
+}
+
+impl SideOpacity {
+    /// It hides what is behind it.
+    pub const OPAQUE: Self = Self {
+        scalar: 1.0,
+        solid_from: 0,
+    };
+
+    /// A byte: opacity, and in the two high bits from which steepness on it is 1.
+    fn byte(self) -> u8 {
+        let solid = match self.solid_from {
+            0 => return u8::MAX,
+            solid => solid.min(STEEPNESSES as u8),
+        };
+        // 0 to 63, and of what is solid from 1 on at most 62: that byte is another's.
+        let steps = (self.scalar.clamp(0.0, 1.0) * SCALAR_STEPS + 0.5) as u8;
+        ((STEEPNESSES as u8 - solid) << 6 | steps).min(u8::MAX - 1)
+    }
+
+    fn of(byte: u8) -> Self {
+        if byte == u8::MAX {
+            return Self::OPAQUE;
+        }
+        Self {
+            scalar: f64::from(byte & 63) / SCALAR_STEPS,
+            solid_from: STEEPNESSES as u8 - (byte >> 6),
+        }
+    }
+}
+
+/// A voxel, decoded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Voxel {
+    /// Place in the node's grid.
+    pub place: [u8; 3],
+    /// Its colours and normals.
+    pub shader: Shader,
+    /// Opacity seen from each main direction, 0 to 1; 1 where it is not stored.
+    pub opacity: [f64; DIRECTIONS],
+    /// Opacity over all directions from before its surface, and from behind it.
+    pub sides: [SideOpacity; 2],
+    /// How they are stored.
+    pub opacity_kind: OpacityKind,
+}
+
+fn color_bytes(color: DVec3) -> [u8; 3] {
+    color.to_array().map(linear_to_srgb)
+}
+
+fn color_of(bytes: &[u8]) -> DVec3 {
+    DVec3::new(
+        f64::from(srgb_to_linear(bytes[0])),
+        f64::from(srgb_to_linear(bytes[1])),
+        f64::from(srgb_to_linear(bytes[2])),
+    )
+}
+
+fn normal_bytes(normal: DVec3) -> [u8; 2] {
+    PackedNormal::encode(normal).0.to_le_bytes()
+}
+
+fn normal_of(bytes: &[u8]) -> DVec3 {
+    let packed = PackedNormal(u16::from_le_bytes([bytes[0], bytes[1]]));
+    packed.decode().unwrap_or(DVec3::Z)
+}
+
+/// Steps of an opacity over all directions: six bits.
+const SCALAR_STEPS: f64 = 63.0;
+
+/// Six opacities in four bits each, lowest first, rounded up or down by lot, so
+/// that the mean over many voxels is kept: thin things do not vanish. The lot
+/// is drawn from the voxel's place.
+fn six_bytes(opacity: &[f64; DIRECTIONS], place: [u8; 3]) -> [u8; 3] {
+    let [x, y, z] = place.map(u64::from);
+    let mut bits = 0u32;
+    for (k, a) in opacity.iter().enumerate() {
+        let seed = (x << 24 | y << 16 | z << 8 | k as u64) + 1;
+        let lot = (seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40) as f64 / (1u64 << 24) as f64;
+        // 0 to 15.
+        let steps = (a.clamp(0.0, 1.0) * SIX_STEPS + lot).min(SIX_STEPS) as u32;
+        bits |= steps << (4 * k);
+    }
+    let [a, b, c, _] = bits.to_le_bytes();
+    [a, b, c]
+}
+
+impl Voxel {
+    /// The list that it belongs to.
+    #[must_use]
+    pub fn list(&self) -> usize {
+        let shader = match self.shader {
+            Shader::Flat { .. } => 0,
+            Shader::Complex { .. } => 3,
+        };
+        shader
+            + match self.opacity_kind {
+                OpacityKind::Opaque => 0,
+                OpacityKind::Scalar => 1,
+                OpacityKind::Six => 2,
+            }
+    }
+
+    /// Appends its record, [`RECORD_BYTES`] of its list.
+    pub fn write(&self, out: &mut Vec<u8>) {
+        out.extend(self.place);
+        match &self.shader {
+            Shader::Flat { normal, colors } => {
+                out.extend(normal_bytes(*normal));
+                out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
+            }
+            Shader::Complex { normals, colors } => {
+                out.extend(normals.iter().flat_map(|&n| normal_bytes(n)));
+                out.extend(colors.iter().flat_map(|&c| color_bytes(c)));
+            }
+        }
+        match self.opacity_kind {
+            OpacityKind::Opaque => {}
+            OpacityKind::Scalar => out.extend(self.sides.map(SideOpacity::byte)),
+            OpacityKind::Six => {
+                out.extend(self.sides.map(SideOpacity::byte));
+                out.extend(six_bytes(&self.opacity, self.place));
+            }
+        }
+    }
+
+    /// Decodes a record of [`RECORD_BYTES`] of a list. Any bytes are accepted.
+    #[must_use]
+    pub fn read(list: usize, bytes: &[u8]) -> Self {
+        let (kind, opacity_kind) = LISTS[list];
+        let (shader, end) = match kind {
+            ShaderKind::Flat => {
+                let shader = Shader::Flat {
+                    normal: normal_of(&bytes[3..5]),
+                    colors: [color_of(&bytes[5..8]), color_of(&bytes[8..11])],
+                };
+                (shader, 11)
+            }
+            ShaderKind::Complex => {
+                let shader = Shader::Complex {
+                    normals: std::array::from_fn(|k| normal_of(&bytes[3 + 2 * k..])),
+                    colors: std::array::from_fn(|k| color_of(&bytes[15 + 3 * k..])),
+                };
+                (shader, 33)
+            }
+        };
+        let (sides, opacity) = opacity_of(opacity_kind, &bytes[end..]);
+        Self {
+            place: [bytes[0], bytes[1], bytes[2]],
+            shader,
+            opacity,
+            sides,
+            opacity_kind,
+        }
+    }
+
+    /// Its opacity as seen from a direction, as it is stored or as one number.
+    #[must_use]
+    pub fn opacity_from(&self, towards_eye: DVec3, blends: [Blend; 2], mode: Opacity) -> f64 {
+        if mode == Opacity::None || self.opacity_kind == OpacityKind::Opaque {
+            return 1.0;
+        }
+        let cosine = self.shader.cosine(towards_eye, blends[1]);
+        let side = self.sides[usize::from(cosine < 0.0)];
+        if steepness(cosine.abs()) >= usize::from(side.solid_from) {
+            return 1.0;
+        }
+        if mode == Opacity::Scalar || self.opacity_kind == OpacityKind::Scalar {
+            // As of a mist in its cube: through its greater outlines one sees through less of it.
+            let outline = towards_eye.abs().element_sum();
+            return 1.0 - libm::pow(1.0 - side.scalar, MEAN_OUTLINE / outline);
+        }
+        let shares = blends[0].shares(towards_eye).into_iter();
+        shares.map(|(k, share)| self.opacity[k] * share).sum()
+    }
+
+    /// Whether a record of a list is of a voxel that is opaque from some directions and not from
+    /// all.
+    #[must_use]
+    pub fn is_partly_solid(list: usize, bytes: &[u8]) -> bool {
+        let end = RECORD_BYTES[list] - OPACITY_BYTES[list];
+        let is_solid = |&byte: &u8| usize::from(SideOpacity::of(byte).solid_from) < STEEPNESSES;
+        OPACITY_BYTES[list] > 0 && bytes[end..end + 2].iter().any(is_solid)
+    }
+}
+
+/// The opacities at the end of a record: over all directions, and of each.
+fn opacity_of(kind: OpacityKind, bytes: &[u8]) -> ([SideOpacity; 2], [f64; DIRECTIONS]) {
+    let sides = || [0, 1].map(|side| SideOpacity::of(bytes[side]));
+    match kind {
+        OpacityKind::Opaque => ([SideOpacity::OPAQUE; 2], [1.0; DIRECTIONS]),
+        OpacityKind::Scalar => (sides(), [1.0; DIRECTIONS]),
+        OpacityKind::Six => {
+            let steps = |k: usize| bytes[2 + k / 2] >> (4 * (k % 2)) & 15;
+            let six = std::array::from_fn(|k| f64::from(steps(k)) / SIX_STEPS);
+            (sides(), six)
+        }
+    }
+}
+
+/// A triangle of a node, in memory.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LeafTriangle {
+    /// Corners, relative to the file's centre.
+    pub corners: [[f32; 3]; 3],
+    /// Normals of the corners, packed.
+    pub normals: [u16; 3],
+    /// Colours of the corners, sRGB.
+    pub colors: [[u8; 3]; 3],
+}
+
+/// Bytes of a [`LeafTriangle`] in memory.
+pub const TRIANGLE_BYTES: usize = size_of::<LeafTriangle>();
+
+/// A node of the hierarchy.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Node {
+    /// Lowest corner of its triangles, relative to the file's centre.
+    pub low: [f32; 3],
+    /// Highest corner of its triangles.
+    pub high: [f32; 3],
+    /// Lowest corner of its grid; zero in a leaf.
+    pub origin: [f32; 3],
+    /// Side of a voxel, world units; zero in a leaf.
+    pub voxel: f32,
+    /// Voxels of the grid along each axis; zero in a leaf.
+    pub cells: [u8; 3],
+    /// 1 for a leaf, 0 for an inner node.
+    pub is_leaf: u8,
+    /// Levels below the root.
+    pub level: u32,
+    /// Numbers of the children: two, or one and zero; zeros in a leaf. [`Node::below`] has those
+    /// that there are.
+    pub children: [u32; 2],
+    /// The first of its triangles.
+    pub first_triangle: u32,
+    /// How many it has: those of all leaves below.
+    pub triangles: u32,
+    /// Where its data begins in its section, bytes; it ends where that of the next node begins.
+    pub data_at: u64,
+    /// Voxels of each of the six lists; zero in a leaf.
+    pub counts: [u32; 6],
+    /// Voxels that triangles touch: those kept and those dropped.
+    pub touched: u32,
+    /// Voxels of those kept that too few rays were aimed at to tell whether they are hidden.
+    pub untested: u32,
+    /// Rays that were shot for it.
+    pub rays: u32,
+    /// Those that hit one of its triangles.
+    pub hits: u32,
+    /// Rays through the voxels that are kept, summed over these.
+    pub crossings: u32,
+    /// Root mean square error of the fitted shaders: 0 to about 1.
+    pub error: f32,
+    /// xxh3-64 of its data as it is stored.
+    pub checksum: u64,
+    /// Corners of its surface that no other node has, and those that others share.
+    pub vertices: [u32; 2],
+    /// Triangles of its surface: of a leaf all that it has, of an inner node decimated ones, if any.
+    pub surface: u32,
+    /// Colours of its surface, of which vertices have the numbers; 0: each vertex has its own.
+    pub colors: u16,
+    /// Whether normals are those of the triangles' planes, 1 or 0.
+    pub is_flat: u8,
+    /// Zero.
+    pub spare: u8,
+}
+
+/// Bytes of the position of a vertex of one node: 16 bits an axis of the node's box.
+pub const OWN_BYTES: usize = 6;
+/// Bytes of the position of a vertex that nodes share: single precision.
+pub const SHARED_BYTES: usize = 12;
+/// Most colours of which vertices have the numbers.
+pub const MOST_COLORS: usize = 256;
+
+/// Bytes of what a surface's vertices and corners have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::far) struct SurfaceColumns {
+    /// Of a vertex's normal.
+    pub(in crate::far) normal: usize,
+    /// Of a vertex's colour, or of its number.
+    pub(in crate::far) color: usize,
+    /// Of the number of a corner's vertex.
+    pub(in crate::far) index: usize,
+}
+
+impl SurfaceColumns {
+    pub(in crate::far) fn of(node: &Node) -> Self {
+        let [own, shared] = node.vertices.map(u64::from);
+        Self {
+            normal: if node.is_flat == 0 { 2 } else { 0 },
+            color: match node.colors {
+                0 => 3,
+                1 => 0,
+                _ => 1,
+            },
+            // Twice the number, and which list it is of.
+            index: if own.max(shared) < 1 << 15 { 2 } else { 4 },
+        }
+    }
+}
+
+/// Bytes of a [`Node`].
+pub const NODE_BYTES: usize = size_of::<Node>();
+
+impl Node {
+    /// Whether it has triangles and no voxels.
+    #[must_use]
+    pub fn is_leaf(&self) -> bool {
+        self.is_leaf != 0
+    }
+
+    /// Whether it has a grid. Without one it stands for its children: it is never drawn itself.
+    #[must_use]
+    pub fn has_grid(&self) -> bool {
+        self.voxel > 0.0
+    }
+
+    /// Numbers of its children: two, or a coarser node's one, or a leaf's none.
+    pub fn below(&self) -> impl Iterator<Item = usize> + use<> {
+        let children = self.children.into_iter();
+        // The first node is nobody's child.
+        children
+            .filter(|&child| child > 0)
+            .map(|child| child as usize)
+    }
+
+    /// Bytes of its surface, unpacked.
+    #[must_use]
+    pub fn surface_bytes(&self) -> u64 {
+        let columns = SurfaceColumns::of(self);
+        let [own, shared] = self.vertices.map(u64::from);
+        let vertex = (columns.normal + columns.color) as u64;
+        u64::from(self.colors) * 3
+            + own * OWN_BYTES as u64
+            + shared * SHARED_BYTES as u64
+            + (own + shared) * vertex
+            + u64::from(self.surface) * 3 * columns.index as u64
+    }
+
+    /// Bytes of what is drawn of it, unpacked.
+    #[must_use]
+    pub fn drawn_bytes(&self) -> u64 {
+        self.voxel_bytes() + self.surface_bytes()
+    }
+
+    /// Voxels that it keeps.
+    #[must_use]
+    pub fn voxels(&self) -> u64 {
+        self.counts.iter().map(|&n| u64::from(n)).sum()
+    }
+
+    /// Bytes of its voxels, unpacked.
+    #[must_use]
+    pub fn voxel_bytes(&self) -> u64 {
+        let lists = self.counts.iter().zip(RECORD_BYTES);
+        lists.map(|(&n, bytes)| u64::from(n) * bytes as u64).sum()
+    }
+
+    /// Lowest and highest corner of its grid, or of its triangles where it has none, relative to the
+    /// file's centre.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let point = |p: [f32; 3]| DVec3::from_array(p.map(f64::from));
+        if !self.has_grid() {
+            return (point(self.low), point(self.high));
+        }
+        let cells = DVec3::from_array(self.cells.map(f64::from));
+        let origin = point(self.origin);
+        (origin, origin + cells * f64::from(self.voxel))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn records_have_their_sizes_and_come_back() {
+        assert_eq!((NODE_BYTES, TRIANGLE_BYTES), (144, 52));
+        let white = DVec3::ONE;
+        let axes = [
+            DVec3::X,
+            DVec3::NEG_X,
+            DVec3::Y,
+            DVec3::NEG_Y,
+            DVec3::Z,
+            DVec3::NEG_Z,
+        ];
+        let shaders = [
+            Shader::Flat {
+                normal: DVec3::Y,
+                colors: [white, DVec3::ZERO],
+            },
+            Shader::Complex {
+                normals: axes,
+                colors: [white, white, DVec3::ZERO, white, DVec3::ZERO, white],
+            },
+        ];
+        let opacities = [
+            (OpacityKind::Opaque, [0, 0], [1.0; 6]),
+            (OpacityKind::Scalar, [3, 0], [1.0; 6]),
+            (OpacityKind::Six, [4, 1], [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]),
+        ];
+        for shader in shaders {
+            for (opacity_kind, solid, opacity) in opacities {
+                let sides = solid.map(|solid_from| SideOpacity {
+                    scalar: if solid_from == 0 { 1.0 } else { 1.0 / 3.0 },
+                    solid_from,
+                });
+                let voxel = Voxel {
+                    place: [1, 2, 255],
+                    shader,
+                    opacity,
+                    sides,
+                    opacity_kind,
+                };
+                let mut bytes = Vec::new();
+                voxel.write(&mut bytes);
+                assert_eq!(bytes.len(), RECORD_BYTES[voxel.list()]);
+                assert_eq!(Voxel::read(voxel.list(), &bytes), voxel);
+            }
+        }
+    }
+
+    #[test]
+    fn rounded_opacities_keep_their_mean() {
+        for opacity in [0.01, 0.3, 0.5, 0.97] {
+            let mut sum = 0.0;
+            for place in 0..4096u32 {
+                let place = [place % 16, place / 16 % 16, place / 256].map(|c| c as u8);
+                let [a, b, c] = six_bytes(&[opacity; DIRECTIONS], place);
+                let (_, six) = opacity_of(OpacityKind::Six, &[0, 0, a, b, c]);
+                assert!(six.iter().all(|a| (a - opacity).abs() < 1.0 / SIX_STEPS));
+                sum += six.iter().sum::<f64>() / DIRECTIONS as f64;
+            }
+            assert!((sum / 4096.0 - opacity).abs() < 2e-3, "{opacity}: {sum}");
+        }
+    }
+}

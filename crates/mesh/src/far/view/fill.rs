@@ -1,0 +1,107 @@
+//! What is drawn so far, as a pyramid: the greatest depth of each square of pixels.
+
+use super::cut::Outline;
+use crate::raster::RasterCamera;
+
+/// Squares along a side that a query looks at, at most.
+const SQUARES: usize = 4;
+/// Depths are rounded to single precision: what is nearer by less counts as visible.
+const MARGIN: f64 = 1e-5;
+
+struct Level {
+    width: usize,
+    height: usize,
+    depth: Vec<f32>,
+}
+
+/// The greatest depth of pixels, of 2 by 2 of them, of 4 by 4, and so on.
+/// Infinite where anything is empty.
+pub(super) struct Fill {
+    levels: Vec<Level>,
+}
+
+impl Fill {
+    pub(super) fn of(depth: &[f32], view: &RasterCamera) -> Self {
+        let mut levels = vec![Level {
+            width: view.width as usize,
+            height: view.height as usize,
+            depth: depth.to_vec(),
+        }];
+        while let Some(last) = levels.last()
+            && last.width.max(last.height) > 1
+        {
+            let (width, height) = (last.width.div_ceil(2), last.height.div_ceil(2));
+            let mut depth = vec![0.0f32; width * height];
+            for y in 0..last.height {
+                let row = &last.depth[y * last.width..(y + 1) * last.width];
+                let above = &mut depth[y / 2 * width..(y / 2 + 1) * width];
+                for (x, &below) in row.iter().enumerate() {
+                    above[x / 2] = above[x / 2].max(below);
+                }
+            }
+            levels.push(Level {
+                width,
+                height,
+                depth,
+            });
+        }
+        Self { levels }
+    }
+
+    /// Whether everything in an outline is behind what is drawn. False where that is not certain.
+    pub(super) fn hides(&self, view: &RasterCamera, outline: &Outline) -> bool {
+        let Some([low, high]) = outline.pixels else {
+            return false;
+        };
+        let clamp = |c: f64, side: u32| c.clamp(0.0, f64::from(side) - 1.0) as usize;
+        let (x0, x1) = (clamp(low[0], view.width), clamp(high[0], view.width));
+        let (y0, y1) = (clamp(low[1], view.height), clamp(high[1], view.height));
+        let nearest = outline.depth * (1.0 - MARGIN);
+        let mut level = 0;
+        while level + 1 < self.levels.len() && (x1 >> level) - (x0 >> level) + 1 > SQUARES
+            || level + 1 < self.levels.len() && (y1 >> level) - (y0 >> level) + 1 > SQUARES
+        {
+            level += 1;
+        }
+        let squares = &self.levels[level];
+        (y0 >> level..=y1 >> level).all(|y| {
+            (x0 >> level..=x1 >> level)
+                .all(|x| f64::from(squares.depth[y * squares.width + x]) < nearest)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn only_what_is_behind_everything_is_hidden() {
+        let view = RasterCamera {
+            eye: DVec3::ZERO,
+            right: DVec3::X,
+            up: DVec3::Y,
+            forward: DVec3::Z,
+            focal_px: 20.0,
+            width: 37,
+            height: 21,
+            near: 0.1,
+        };
+        let mut depth = vec![5.0f32; 37 * 21];
+        depth[10 * 37 + 30] = f32::INFINITY;
+        let fill = Fill::of(&depth, &view);
+        let outline = |x: f64, y: f64, side: f64, depth: f64| Outline {
+            pixels: Some([[x, y], [x + side, y + side]]),
+            depth,
+            ..Outline::anywhere()
+        };
+        assert!(fill.hides(&view, &outline(3.0, 3.0, 9.0, 6.0)));
+        assert!(!fill.hides(&view, &outline(3.0, 3.0, 9.0, 4.0)));
+        assert!(!fill.hides(&view, &outline(3.0, 3.0, 9.0, 5.0)));
+        assert!(!fill.hides(&view, &outline(28.0, 8.0, 4.0, 6.0)));
+        assert!(fill.hides(&view, &outline(31.0, 10.0, 0.0, 6.0)));
+        assert!(!fill.hides(&view, &outline(0.0, 0.0, 40.0, 6.0)));
+        assert!(!fill.hides(&view, &Outline::anywhere()));
+    }
+}

@@ -1,0 +1,299 @@
+//! Far voxels to a picture.
+//!
+//! 1. `cut`: the nodes whose voxels are small enough, leaves where none are.
+//! 2. Opaque voxels and triangles, front to back, into one word a pixel: depth
+//!    above, number below, the least counts. That does not depend on the order
+//!    of drawing, hence neither on threads nor on what was found hidden.
+//! 3. `visible`, with `fill`, what is drawn so far as a pyramid: branches of the
+//!    hierarchy that are behind it are left out, with all below.
+//! 4. The winners' colours, then transparent voxels over them, back to front.
+//! 5. With more than one sample a pixel all that is done at samples; `samples` averages them.
+
+mod cut;
+mod fill;
+mod opaque;
+mod samples;
+mod splat;
+mod transparent;
+mod visible;
+
+use glam::DVec3;
+
+use super::record::Node;
+pub use super::record::Opacity;
+use super::store::{FarError, FarFile};
+use crate::raster::{Light, RasterCamera, RasterError};
+use crate::{linear_to_srgb, srgb_to_linear};
+use cut::{Chosen, Cut};
+use fill::Fill;
+use opaque::Opaque;
+use visible::{VisibilityHistory, VisibleNodes};
+
+/// How far voxels are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewOptions {
+    /// Largest projected side of a voxel, pixels, above 0.
+    pub voxel_px: f64,
+    /// Samples of a pixel along each axis, 1 to 16: the picture is drawn so many
+    /// times as large, with the same nodes, and averaged.
+    pub samples_across: u32,
+    /// What opacities are used for.
+    pub opacity: Opacity,
+    /// The light; `None`: colours as they are.
+    pub light: Option<Light>,
+    /// What is behind, sRGB; `None`: transparent.
+    pub background: Option<[u8; 3]>,
+    /// Whether hidden nodes are left out. Never changes the picture.
+    pub culling: bool,
+    /// Batches of nodes that are drawn before the answer to a query arrives. Never changes the
+    /// picture.
+    pub late: usize,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self {
+            voxel_px: 1.0,
+            samples_across: 1,
+            opacity: Opacity::Six,
+            light: None,
+            background: None,
+            culling: true,
+            late: 1,
+        }
+    }
+}
+
+/// Most samples of a pixel along each axis.
+pub const MOST_SAMPLES_ACROSS: u32 = 16;
+
+/// Why nothing was drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// The file's data is damaged.
+    #[error(transparent)]
+    File(#[from] FarError),
+    /// The camera or the picture's size.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// The size of voxels.
+    #[error("voxels are drawn at a size above 0 pixels, not {0}")]
+    VoxelSize(f64),
+    /// The number of samples.
+    #[error("a pixel has 1 to {MOST_SAMPLES_ACROSS} samples along each axis, not {0}")]
+    Samples(u32),
+}
+
+/// A finished picture, row by row from the top left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FarPicture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Colour, sRGB, and coverage, not premultiplied.
+    pub rgba: Vec<[u8; 4]>,
+    /// Share of each pixel that is covered.
+    pub coverage: Vec<f32>,
+    /// View-axis depth of what is opaque, world units, at the sample right of and
+    /// below the pixel's middle (with one sample: at the middle); infinite where nothing is.
+    pub depth: Vec<f32>,
+    /// Node of what is opaque at that sample; -1 where nothing is.
+    pub node: Vec<i32>,
+}
+
+/// What a frame took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FarCounts {
+    /// Nodes that were visited.
+    pub visited: u64,
+    /// Nodes of those beside or behind the picture.
+    pub outside: u64,
+    /// Inner nodes drawn.
+    pub voxel_nodes: u64,
+    /// Leaves drawn.
+    pub leaves: u64,
+    /// Nodes and branches that were found hidden; nothing below them was visited.
+    pub hidden: u64,
+    /// Queries whether a node or branch is hidden.
+    pub queries: u64,
+    /// Opaque voxels drawn.
+    pub opaque_voxels: u64,
+    /// Transparent voxels drawn.
+    pub transparent_voxels: u64,
+    /// Triangles given to the rasteriser.
+    pub triangles: u64,
+    /// Whether two triangles of different batches were equally deep somewhere
+    /// and the frame was drawn again in one.
+    pub drawn_twice: u64,
+    /// Bytes of what the drawn nodes have in the file, before it is deflated.
+    pub bytes: u64,
+}
+
+/// Draws one file, frame after frame, and remembers what was visible.
+#[derive(Debug)]
+pub struct FarViewer<'f> {
+    file: &'f FarFile,
+    memory: VisibilityHistory,
+}
+
+impl<'f> FarViewer<'f> {
+    /// Nothing was drawn yet.
+    #[must_use]
+    pub fn new(file: &'f FarFile) -> Self {
+        Self {
+            file,
+            memory: VisibilityHistory::new(file.nodes().len()),
+        }
+    }
+
+    /// Takes these nodes for those that were visible in the last frame, by
+    /// their numbers; others were hidden. May be wrong: the picture is the same.
+    pub fn remember(&mut self, is_visible: impl Fn(usize) -> bool) {
+        self.memory.set(is_visible);
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn draw(
+        &mut self,
+        view: &RasterCamera,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
+        self.draw_with_cut_of(view, view, options)
+    }
+
+    /// Draws a frame with the nodes that would be drawn from elsewhere: what of
+    /// a change between frames is the hierarchy's.
+    ///
+    /// # Errors
+    /// See [`ViewError`].
+    pub fn draw_with_cut_of(
+        &mut self,
+        view: &RasterCamera,
+        cut_of: &RasterCamera,
+        options: &ViewOptions,
+    ) -> Result<(FarPicture, FarCounts), ViewError> {
+        if !(options.voxel_px > 0.0 && options.voxel_px.is_finite()) {
+            return Err(ViewError::VoxelSize(options.voxel_px));
+        }
+        let across = options.samples_across;
+        if !(1..=MOST_SAMPLES_ACROSS).contains(&across) {
+            return Err(ViewError::Samples(across));
+        }
+        let (pixels, view) = (view, &samples::finer(view, across));
+        let mut counts = FarCounts::default();
+        let cut = Cut {
+            file: self.file,
+            view: *view,
+            cut_of: samples::finer(cut_of, across),
+            // From here on a pixel is a sample.
+            voxel_px: options.voxel_px * f64::from(across),
+        };
+        let mut opaque = Opaque::new(self.file, view, options)?;
+        let walked = if options.culling {
+            visible::walk(&cut, &self.memory, options.late, &mut opaque, &mut counts)?
+        } else {
+            let drawn = cut.all(&mut counts);
+            opaque.draw(&drawn, &mut counts)?;
+            VisibleNodes {
+                drawn,
+                branches: Vec::new(),
+            }
+        };
+        if opaque.has_tie() {
+            // Rasterised in one go, whose rule for equal depths has more digits.
+            counts.drawn_twice = 1;
+            counts.opaque_voxels = 0;
+            counts.triangles = 0;
+            opaque = Opaque::new(self.file, view, options)?;
+            opaque.draw(&walked.drawn, &mut counts)?;
+        }
+        let is_leaf = |node: &&Chosen| self.file.nodes()[node.number].is_leaf();
+        counts.leaves = walked.drawn.iter().filter(is_leaf).count() as u64;
+        counts.voxel_nodes = walked.drawn.len() as u64 - counts.leaves;
+        let drawn = walked
+            .drawn
+            .iter()
+            .map(|node| &self.file.nodes()[node.number]);
+        counts.bytes = drawn.map(Node::drawn_bytes).sum();
+        let mut transparent: Vec<&Chosen> = walked.drawn.iter().collect();
+        if options.culling {
+            let fill = Fill::of(&opaque.depths(), view);
+            transparent.retain(|node| !fill.hides(view, &node.outline));
+            let visible = transparent.iter().map(|node| node.number);
+            self.memory.end_frame(visible, &walked.branches, &cut);
+        }
+        let mut drawn = opaque.resolve();
+        if options.opacity != Opacity::None {
+            let splats = transparent::draw(self.file, view, options, &transparent, &mut drawn)?;
+            counts.transparent_voxels = splats;
+        }
+        let size = [pixels.width, pixels.height].map(|side| side as usize);
+        let drawn = samples::averaged(drawn, size, across as usize);
+        Ok((
+            FarPicture {
+                width: pixels.width,
+                height: pixels.height,
+                rgba: drawn.iter().map(|p| p.encode(options.background)).collect(),
+                coverage: drawn.iter().map(|p| p.coverage).collect(),
+                node: samples::middles(opaque.nodes(), size, across as usize),
+                depth: samples::middles(opaque.depths(), size, across as usize),
+            },
+            counts,
+        ))
+    }
+}
+
+/// Linear light, premultiplied, and coverage.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Pixel {
+    light: [f32; 3],
+    coverage: f32,
+    /// Depth of what is opaque; infinite where nothing is.
+    depth: f32,
+}
+
+impl Pixel {
+    fn encode(&self, background: Option<[u8; 3]>) -> [u8; 4] {
+        if self.coverage <= 0.0 {
+            return background.map_or([0; 4], |[r, g, b]| [r, g, b, 255]);
+        }
+        let light = self.light.map(f64::from);
+        let coverage = f64::from(self.coverage);
+        let bytes = |light: [f64; 3]| light.map(linear_to_srgb);
+        match background {
+            Some(color) => {
+                let mixed =
+                    |k: usize| light[k] + (1.0 - coverage) * f64::from(srgb_to_linear(color[k]));
+                let [r, g, b] = bytes([0, 1, 2].map(mixed));
+                [r, g, b, 255]
+            }
+            None => {
+                let [r, g, b] = bytes(light.map(|l| l / coverage));
+                // 0 to 255.
+                [r, g, b, (coverage * 255.0 + 0.5) as u8]
+            }
+        }
+    }
+}
+
+/// Right, up and depth of a point.
+fn in_view(view: &RasterCamera, point: DVec3) -> DVec3 {
+    let offset = point - view.eye;
+    DVec3::new(
+        offset.dot(view.right),
+        offset.dot(view.up),
+        offset.dot(view.forward),
+    )
+}
+
+/// Where a point of a view is in the picture, pixels from the top left corner.
+fn on_picture(view: &RasterCamera, seen: DVec3) -> [f64; 2] {
+    [
+        f64::from(view.width) / 2.0 + seen.x / seen.z * view.focal_px,
+        f64::from(view.height) / 2.0 - seen.y / seen.z * view.focal_px,
+    ]
+}

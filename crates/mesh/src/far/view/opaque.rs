@@ -1,0 +1,373 @@
+//! Opaque voxels and triangles, with a depth buffer.
+
+use std::borrow::Borrow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::cut::Chosen;
+use super::splat::{Places, Square};
+use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
+use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
+use crate::far::store::{FarFile, NodeData};
+use shiftvox::graph::{PackedNormal, Silent};
+use crate::raster::{
+    self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
+};
+use crate::{Surface, Triangle, srgb_to_linear};
+
+/// Nothing: as deep as can be, and no number.
+const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;
+
+/// Pixels that a thread resolves at a time.
+const RESOLVED: usize = 1 << 12;
+
+/// The buffer: for each pixel depth (bits of a positive `f32`, which order as
+/// numbers do) and number of the nearest voxel or triangle.
+pub(super) struct Opaque<'f> {
+    file: &'f FarFile,
+    view: RasterCamera,
+    options: ViewOptions,
+    words: Vec<AtomicU64>,
+    /// Pictures of the batches' triangles, with the numbers of these.
+    pictures: Vec<(RasterPicture, Vec<u32>)>,
+    has_tie: bool,
+}
+
+impl<'f> Opaque<'f> {
+    pub(super) fn new(
+        file: &'f FarFile,
+        view: &RasterCamera,
+        options: &ViewOptions,
+    ) -> Result<Self, ViewError> {
+        let side = 1..=raster::MAX_SIDE;
+        if !side.contains(&view.width) || !side.contains(&view.height) {
+            return Err(RasterError::Size(view.width, view.height).into());
+        }
+        let numbers = [view.eye, view.right, view.up, view.forward];
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let is_sound = numbers.iter().all(|v| v.is_finite());
+        if !(is_sound && positive(view.near) && positive(view.focal_px)) {
+            return Err(RasterError::Camera.into());
+        }
+        let pixels = view.width as usize * view.height as usize;
+        Ok(Self {
+            file,
+            view: *view,
+            options: *options,
+            words: (0..pixels).map(|_| AtomicU64::new(EMPTY)).collect(),
+            pictures: Vec::new(),
+            has_tie: false,
+        })
+    }
+
+    /// Draws what is opaque of some nodes. In any order and any batches the result is the same,
+    /// unless [`Opaque::has_tie`].
+    pub(super) fn draw<N: Borrow<Chosen> + Sync>(
+        &mut self,
+        nodes: impl IntoIterator<Item = N>,
+        counts: &mut FarCounts,
+    ) -> Result<(), ViewError> {
+        let nodes: Vec<Chosen> = nodes.into_iter().map(|node| *node.borrow()).collect();
+        let drawn = nodes
+            .par_iter()
+            .map(|node| self.voxels(node.number))
+            .collect::<Result<Vec<u64>, ViewError>>()?;
+        counts.opaque_voxels += drawn.iter().sum::<u64>();
+        // The file's order, whatever is nearer.
+        let with_surface = nodes.iter().map(|node| node.number);
+        let has_surface = |&number: &usize| self.file.nodes()[number].surface > 0;
+        let mut with_surface: Vec<usize> = with_surface.filter(has_surface).collect();
+        with_surface.sort_unstable();
+        if !with_surface.is_empty() {
+            counts.triangles += self.surfaces(&with_surface)?;
+        }
+        Ok(())
+    }
+
+    fn voxels(&self, number: usize) -> Result<u64, ViewError> {
+        let places = Places::of(&self.file.nodes()[number], self.file.centre());
+        let mut id = self.file.first_voxel(number);
+        let mut drawn = 0;
+        let width = self.view.width as usize;
+        let data = self.file.data(number)?;
+        for (list, records) in data.lists().into_iter().enumerate() {
+            let is_opaque =
+                LISTS[list].1 == OpacityKind::Opaque || self.options.opacity == Opacity::None;
+            for record in records.chunks_exact(RECORD_BYTES[list]) {
+                let number = id;
+                id += 1;
+                if !is_opaque && !Voxel::is_partly_solid(list, record) {
+                    continue;
+                }
+                let Some(square) = places.square(&self.view, record) else {
+                    continue;
+                };
+                if !is_opaque && !is_opaque_from(list, record, &square, self.file, &self.options) {
+                    continue;
+                }
+                drawn += 1;
+                let depth = (square.depth as f32).to_bits();
+                let word = u64::from(depth) << 32 | u64::from(number);
+                let hexagon = places.hexagon(&self.view, &square);
+                let [[x0, y0], [x1, y1]] = hexagon.pixels(&self.view);
+                for y in y0..y1 {
+                    for x in x0..x1 {
+                        if hexagon.holds(x, y) {
+                            self.put(y * width + x, word);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(drawn)
+    }
+
+    fn put(&self, pixel: usize, word: u64) {
+        // Mostly hidden: reading alone does not take the line from other threads.
+        if self.words[pixel].load(Ordering::Relaxed) > word {
+            self.words[pixel].fetch_min(word, Ordering::Relaxed);
+        }
+    }
+
+    fn surfaces(&mut self, nodes: &[usize]) -> Result<u64, ViewError> {
+        let surface = Surfaces::of(self.file, nodes)?;
+        let numbers: Vec<u32> = (0..surface.len()).map(|at| surface.number(at)).collect();
+        let options = RasterOptions {
+            samples: Samples::new(1, Pattern::Regular).map_err(|_| RasterError::Camera)?,
+            light: self.options.light,
+            background: None,
+        };
+        let picture = raster::draw(&surface, &self.view, &options, &Silent)?;
+        let voxels = self.file.voxels();
+        for (pixel, (&depth, &at)) in picture.depth.iter().zip(&picture.triangle).enumerate() {
+            if at == NO_TRIANGLE {
+                continue;
+            }
+            let id = voxels + numbers[at as usize];
+            let word = u64::from(depth.to_bits()) << 32 | u64::from(id);
+            let there = self.words[pixel].load(Ordering::Relaxed);
+            let is_triangle = there as u32 >= voxels && there != EMPTY;
+            self.has_tie |= is_triangle && there >> 32 == word >> 32 && there != word;
+            self.put(pixel, word);
+        }
+        let drawn = numbers.len() as u64;
+        self.pictures.push((picture, numbers));
+        Ok(drawn)
+    }
+
+    /// Whether triangles of two batches are equally deep in single precision,
+    /// so that which one shows depends on the batches.
+    pub(super) fn has_tie(&self) -> bool {
+        self.has_tie
+    }
+
+    /// Depth of each pixel.
+    pub(super) fn depths(&self) -> Vec<f32> {
+        let depth = |word: &AtomicU64| f32::from_bits((word.load(Ordering::Relaxed) >> 32) as u32);
+        self.words.iter().map(depth).collect()
+    }
+
+    /// Node of each pixel; -1 where there is none.
+    pub(super) fn nodes(&self) -> Vec<i32> {
+        let voxels = self.file.voxels();
+        self.words
+            .iter()
+            .map(|word| {
+                let word = word.load(Ordering::Relaxed);
+                let id = word as u32;
+                let node = if word == EMPTY {
+                    return -1;
+                } else if id < voxels {
+                    self.node_of(id)
+                } else {
+                    let first = |node| self.file.first_triangle(node);
+                    self.last_from(id - voxels, first)
+                };
+                i32::try_from(node).unwrap_or(i32::MAX)
+            })
+            .collect()
+    }
+
+    /// The node of a voxel.
+    fn node_of(&self, voxel: u32) -> usize {
+        self.last_from(voxel, |node| self.file.first_voxel(node))
+    }
+
+    /// The last node whose first item is not above; nodes without items stand before the one that
+    /// has it.
+    fn last_from(&self, item: u32, first: impl Fn(usize) -> u32) -> usize {
+        let (mut low, mut high) = (0, self.file.nodes().len());
+        while high - low > 1 {
+            let middle = low.midpoint(high);
+            if first(middle) <= item {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
+    }
+
+    /// Colours of what is seen.
+    pub(super) fn resolve(&self) -> Vec<Pixel> {
+        let mut pixels = vec![Pixel::default(); self.words.len()];
+        pixels
+            .par_chunks_mut(RESOLVED)
+            .enumerate()
+            .for_each(|(chunk, pixels)| {
+                let mut last = None;
+                for (at, pixel) in pixels.iter_mut().enumerate() {
+                    *pixel = self.pixel(chunk * RESOLVED + at, &mut last);
+                }
+            });
+        pixels
+    }
+
+    /// `last`: the node whose data was needed last, which neighbours need again.
+    fn pixel(&self, pixel: usize, last: &mut Option<(usize, Arc<NodeData>)>) -> Pixel {
+        let word = self.words[pixel].load(Ordering::Relaxed);
+        if word == EMPTY {
+            return Pixel {
+                depth: f32::INFINITY,
+                ..Pixel::default()
+            };
+        }
+        let (id, voxels) = (word as u32, self.file.voxels());
+        let light = if id < voxels {
+            self.voxel_light(id, last)
+        } else {
+            self.triangle_light(pixel, id - voxels)
+        };
+        Pixel {
+            light,
+            coverage: 1.0,
+            depth: f32::from_bits((word >> 32) as u32),
+        }
+    }
+
+    fn voxel_light(&self, id: u32, last: &mut Option<(usize, Arc<NodeData>)>) -> [f32; 3] {
+        let number = self.node_of(id);
+        if last.as_ref().is_none_or(|(node, _)| *node != number) {
+            // Was drawn, hence is sound.
+            *last = self.file.data(number).ok().map(|data| (number, data));
+        }
+        let Some((_, data)) = last else {
+            return [0.0; 3];
+        };
+        let mut rest = (id - self.file.first_voxel(number)) as usize;
+        for (list, records) in data.lists().into_iter().enumerate() {
+            let count = records.len() / RECORD_BYTES[list];
+            if rest < count {
+                let voxel = Voxel::read(list, &records[rest * RECORD_BYTES[list]..]);
+                let places = Places::of(&self.file.nodes()[number], self.file.centre());
+                let towards_eye = places.towards_eye(&self.view, &voxel.place);
+                return light_of(&voxel, towards_eye, self.file, &self.options);
+            }
+            rest -= count;
+        }
+        [0.0; 3]
+    }
+
+    fn triangle_light(&self, pixel: usize, number: u32) -> [f32; 3] {
+        for (picture, numbers) in &self.pictures {
+            let at = picture.triangle[pixel];
+            if at != NO_TRIANGLE && numbers[at as usize] == number {
+                let [r, g, b, _] = picture.rgba[pixel];
+                return [r, g, b].map(srgb_to_linear);
+            }
+        }
+        [0.0; 3]
+    }
+}
+
+/// Whether a voxel of a list with opacities is opaque as it is seen.
+pub(super) fn is_opaque_from(
+    list: usize,
+    record: &[u8],
+    square: &Square,
+    file: &FarFile,
+    options: &ViewOptions,
+) -> bool {
+    let voxel = Voxel::read(list, record);
+    let blends = [file.opacity_blend(), file.shader_blend()];
+    voxel.opacity_from(square.towards_eye, blends, options.opacity) >= 1.0
+}
+
+/// Linear light of a voxel as seen from a direction.
+pub(super) fn light_of(
+    voxel: &Voxel,
+    towards_eye: DVec3,
+    file: &FarFile,
+    options: &ViewOptions,
+) -> [f32; 3] {
+    let (normal, color) = voxel.shader.seen_from(towards_eye, file.shader_blend());
+    let share = options.light.as_ref().map_or(1.0, |light| light.on(normal));
+    (color * share).as_vec3().to_array()
+}
+
+/// Triangles of some nodes.
+struct Surfaces<'f> {
+    file: &'f FarFile,
+    data: Vec<Arc<NodeData>>,
+    /// Of each triangle its node among these, its place in it, and its number in the file.
+    places: Vec<(u32, u32, u32)>,
+}
+
+impl<'f> Surfaces<'f> {
+    fn of(file: &'f FarFile, nodes: &[usize]) -> Result<Self, ViewError> {
+        let mut surface = Self {
+            file,
+            data: Vec::with_capacity(nodes.len()),
+            places: Vec::new(),
+        };
+        for &node in nodes {
+            let first = file.first_triangle(node);
+            let number = surface.data.len() as u32;
+            let places = (0..file.nodes()[node].surface).map(|at| (number, at, first + at));
+            surface.places.extend(places);
+            surface.data.push(file.data(node)?);
+        }
+        Ok(surface)
+    }
+
+    /// Number in the file.
+    fn number(&self, at: usize) -> u32 {
+        self.places[at].2
+    }
+
+    fn triangle_at(&self, at: usize) -> &LeafTriangle {
+        let (node, place, _) = self.places[at];
+        &self.data[node as usize].triangles()[place as usize]
+    }
+}
+
+impl Surface for Surfaces<'_> {
+    fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        let centre = self.file.centre();
+        let corners = self.triangle_at(number).corners;
+        corners.map(|p| DVec3::from_array(p.map(f64::from)) + centre)
+    }
+
+    fn triangle(&self, number: usize) -> Triangle {
+        let stored = self.triangle_at(number);
+        let normal = |n: u16| PackedNormal(n).decode().unwrap_or(DVec3::Z);
+        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
+        Triangle {
+            corners: Surface::corners(self, number),
+            normals: stored.normals.map(normal),
+            colors: stored.colors.map(color),
+            alpha: 1.0,
+        }
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        self.file.bounds()
+    }
+}

@@ -1,0 +1,76 @@
+//! More than one sample a pixel: the view of a picture of samples, and pixels from it.
+
+use super::Pixel;
+use crate::raster::RasterCamera;
+
+/// The same view, with so many samples along each axis of a pixel for pixels.
+pub(super) fn finer(view: &RasterCamera, across: u32) -> RasterCamera {
+    RasterCamera {
+        focal_px: view.focal_px * f64::from(across),
+        width: view.width.saturating_mul(across),
+        height: view.height.saturating_mul(across),
+        ..*view
+    }
+}
+
+/// Pixels from samples: their means, in linear light, as they are premultiplied.
+/// The depth of a pixel is not kept.
+pub(super) fn averaged(samples: Vec<Pixel>, size: [usize; 2], across: usize) -> Vec<Pixel> {
+    if across == 1 {
+        return samples;
+    }
+    let [width, height] = size;
+    let share = 1.0 / (across * across) as f32;
+    let pixel = |number: usize| {
+        let mut mean = Pixel::default();
+        for row in 0..across {
+            let first = (number / width * across + row) * width * across + number % width * across;
+            for sample in &samples[first..first + across] {
+                for (mean, light) in mean.light.iter_mut().zip(sample.light) {
+                    *mean += light * share;
+                }
+                mean.coverage += sample.coverage * share;
+            }
+        }
+        mean
+    };
+    (0..width * height).map(pixel).collect()
+}
+
+/// Of each pixel the sample right of and below its middle; with one sample that.
+pub(super) fn middles<T: Copy>(samples: Vec<T>, size: [usize; 2], across: usize) -> Vec<T> {
+    if across == 1 {
+        return samples;
+    }
+    let [width, height] = size;
+    let middle = |number: usize| {
+        let (x, y) = (number % width * across, number / width * across);
+        samples[(y + across / 2) * width * across + x + across / 2]
+    };
+    (0..width * height).map(middle).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_are_made_of_their_own_samples() {
+        // Two pixels across and one down, of two by two samples.
+        let sample = |light: f32, coverage: f32| Pixel {
+            light: [light, 0.0, 2.0 * light],
+            coverage,
+            depth: 1.0,
+        };
+        let rows = [[1.0, 3.0, 0.0, 8.0], [2.0, 2.0, 0.0, 0.0]];
+        let samples: Vec<Pixel> = rows.iter().flatten().map(|&l| sample(l, l / 8.0)).collect();
+        let pixels = averaged(samples.clone(), [2, 1], 2);
+        let light: Vec<[f32; 3]> = pixels.iter().map(|p| p.light).collect();
+        assert_eq!(light, [[2.0, 0.0, 4.0], [2.0, 0.0, 4.0]]);
+        assert!(pixels.iter().all(|p| p.coverage == 0.25));
+        assert_eq!(averaged(samples.clone(), [4, 2], 1), samples);
+        let numbers: Vec<i32> = (0..8).collect();
+        assert_eq!(middles(numbers.clone(), [2, 1], 2), [5, 7]);
+        assert_eq!(middles(numbers.clone(), [4, 2], 1), numbers);
+    }
+}

@@ -1,0 +1,172 @@
+//! Transparent voxels before what is opaque: nodes front to back, within a node
+//! against the file's order, tested against depth and not written to it.
+//!
+//! A pixel has 4 x 4 parts, each with the share of light that comes through so far. A voxel is in
+//! the parts whose middles its square covers: squares side by side cover each part once, and
+//! a square that is alone covers its own area and no more.
+
+use rayon::prelude::*;
+
+use super::cut::Chosen;
+use super::opaque::light_of;
+use super::splat::{PARTS, Places, Square};
+use super::{Pixel, ViewError, ViewOptions};
+use crate::far::record::{LISTS, OpacityKind, RECORD_BYTES, Voxel};
+use crate::far::store::FarFile;
+use crate::raster::RasterCamera;
+
+/// Rows that a thread draws at a time.
+const BAND: usize = 16;
+
+/// A transparent voxel in the picture.
+struct Splat {
+    square: Square,
+    color: [f32; 3],
+    /// Share of light that it lets through.
+    through: f32,
+    rows: [usize; 2],
+}
+
+/// What transparent voxels let through and add, of a pixel.
+#[derive(Clone, Copy)]
+struct Veil {
+    through: [[f32; PARTS]; PARTS],
+    light: [f32; 3],
+}
+
+/// Draws; returns how many voxels. `nodes` in any order.
+pub(super) fn draw(
+    file: &FarFile,
+    view: &RasterCamera,
+    options: &ViewOptions,
+    nodes: &[&Chosen],
+    pixels: &mut [Pixel],
+) -> Result<u64, ViewError> {
+    let mut nodes: Vec<&Chosen> = nodes.to_vec();
+    nodes.sort_by(|a, b| a.middle.total_cmp(&b.middle).then(b.number.cmp(&a.number)));
+    let splats = nodes
+        .par_iter()
+        .map(|node| splats(file, view, options, node.number))
+        .collect::<Result<Vec<Vec<Splat>>, ViewError>>()?;
+    let width = view.width as usize;
+    pixels
+        .par_chunks_mut(width * BAND)
+        .enumerate()
+        .for_each(|(band, pixels)| {
+            let rows = [band * BAND, band * BAND + pixels.len() / width];
+            let mut veils: Vec<Option<Box<Veil>>> = vec![None; pixels.len()];
+            for splat in splats.iter().flat_map(|node| node.iter().rev()) {
+                if splat.rows[0] < rows[1] && splat.rows[1] > rows[0] {
+                    blend(splat, view, rows, pixels, &mut veils);
+                }
+            }
+            for (pixel, veil) in pixels.iter_mut().zip(&veils) {
+                if let Some(veil) = veil {
+                    pixel.lay(veil);
+                }
+            }
+        });
+    Ok(splats.iter().map(|node| node.len() as u64).sum())
+}
+
+fn splats(
+    file: &FarFile,
+    view: &RasterCamera,
+    options: &ViewOptions,
+    number: usize,
+) -> Result<Vec<Splat>, ViewError> {
+    let node = &file.nodes()[number];
+    let places = Places::of(node, file.centre());
+    let blends = [file.opacity_blend(), file.shader_blend()];
+    let mut splats = Vec::new();
+    let data = file.data(number)?;
+    for (list, records) in data.lists().into_iter().enumerate() {
+        if LISTS[list].1 == OpacityKind::Opaque {
+            continue;
+        }
+        for record in records.chunks_exact(RECORD_BYTES[list]) {
+            let Some(square) = places.square(view, record) else {
+                continue;
+            };
+            let [[x0, y0], [x1, y1]] = square.touched(view);
+            if x0 >= x1 || y0 >= y1 {
+                continue;
+            }
+            let voxel = Voxel::read(list, record);
+            let opacity = voxel.opacity_from(square.towards_eye, blends, options.opacity);
+            // What is opaque as it is seen was drawn with what always is.
+            if opacity < 1.0 {
+                splats.push(Splat {
+                    through: (1.0 - opacity) as f32,
+                    color: light_of(&voxel, square.towards_eye, file, options),
+                    rows: [y0, y1],
+                    square,
+                });
+            }
+        }
+    }
+    Ok(splats)
+}
+
+fn blend(
+    splat: &Splat,
+    view: &RasterCamera,
+    [top, bottom]: [usize; 2],
+    pixels: &[Pixel],
+    veils: &mut [Option<Box<Veil>>],
+) {
+    let width = view.width as usize;
+    let [[x0, y0], [x1, y1]] = splat.square.touched(view);
+    let depth = splat.square.depth as f32;
+    for y in y0.max(top)..y1.min(bottom) {
+        let down = splat.square.parts(1, y);
+        for x in x0..x1 {
+            let across = splat.square.parts(0, x);
+            let at = (y - top) * width + x;
+            if down == 0 || across == 0 || depth > pixels[at].depth {
+                continue;
+            }
+            let clear = || {
+                Box::new(Veil {
+                    through: [[1.0; PARTS]; PARTS],
+                    light: [0.0; 3],
+                })
+            };
+            let veil = veils[at].get_or_insert_with(clear);
+            let factors: [f32; PARTS] = std::array::from_fn(|part| {
+                if across >> part & 1 == 1 {
+                    splat.through
+                } else {
+                    1.0
+                }
+            });
+            let mut taken = 0.0;
+            for (part, row) in veil.through.iter_mut().enumerate() {
+                if down >> part & 1 == 0 {
+                    continue;
+                }
+                for (through, factor) in row.iter_mut().zip(factors) {
+                    let less = *through * factor;
+                    taken += *through - less;
+                    *through = less;
+                }
+            }
+            taken /= (PARTS * PARTS) as f32;
+            for (light, color) in veil.light.iter_mut().zip(splat.color) {
+                *light += color * taken;
+            }
+        }
+    }
+}
+
+impl Pixel {
+    /// Lays transparent voxels over it.
+    fn lay(&mut self, veil: &Veil) {
+        let sum: f32 = veil.through.iter().flatten().sum();
+        let through = sum / (PARTS * PARTS) as f32;
+        for (light, before) in self.light.iter_mut().zip(veil.light) {
+            *light = before + *light * through;
+        }
+        self.coverage = 1.0 - (1.0 - self.coverage) * through;
+    }
+}

@@ -1,0 +1,162 @@
+//! Small meshes of many kinds, made from a seed, on which the methods of meshes are compared.
+//!
+//! +Y is up. The same seed gives the same mesh on every computer: sines are those of `libm`.
+
+mod kinds;
+mod maker;
+
+use super::{Mesh, Surface, linear_to_srgb};
+use maker::Maker;
+
+/// A kind of mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A closed uneven surface, coloured by vertices, as scanners make them.
+    Scan,
+    /// Plates, blocks and tubes, as designers of machines make them.
+    Machine,
+    /// A wheel with spokes.
+    Wheel,
+    /// A tree whose leaves are two triangles each.
+    Tree,
+    /// Tiers of seats: many parts in few planes.
+    Stadium,
+    /// Houses in rows.
+    Village,
+    /// A house with trees and a fence: surfaces and thin parts.
+    Garden,
+}
+
+impl Kind {
+    /// All kinds with their names.
+    pub const ALL: [(&'static str, Self); 7] = [
+        ("scan", Self::Scan),
+        ("machine", Self::Machine),
+        ("wheel", Self::Wheel),
+        ("tree", Self::Tree),
+        ("stadium", Self::Stadium),
+        ("village", Self::Village),
+        ("garden", Self::Garden),
+    ];
+}
+
+/// What every spec of a mesh begins with.
+pub const PREFIX: &str = "mesh:";
+
+/// Reads `mesh:KIND` or `mesh:KIND,seed=N`.
+///
+/// # Errors
+/// With a sentence that says what there is.
+pub fn parse(spec: &str) -> Result<(Kind, u64), String> {
+    let body = spec.strip_prefix(PREFIX).unwrap_or(spec);
+    let (name, seed) = match body.split_once(',') {
+        None => (body, Some(1)),
+        Some((name, setting)) => {
+            let seed = setting.trim().strip_prefix("seed=");
+            (name, seed.and_then(|seed| seed.parse().ok()))
+        }
+    };
+    let names = Kind::ALL.map(|(name, _)| name).join(", ");
+    let kind = Kind::ALL.iter().find(|(of, _)| *of == name.trim());
+    match (kind, seed) {
+        (Some(&(_, kind)), Some(seed)) => Ok((kind, seed)),
+        (None, _) => Err(format!(
+            "there is no kind of mesh `{name}`; there are {names}"
+        )),
+        (_, None) => Err(format!("`{spec}` is not of the form mesh:KIND,seed=N")),
+    }
+}
+
+/// Makes a mesh.
+#[must_use]
+pub fn generate(kind: Kind, seed: u64) -> Mesh {
+    let mut maker = Maker::new(seed);
+    match kind {
+        Kind::Scan => kinds::scan(&mut maker),
+        Kind::Machine => kinds::machine(&mut maker),
+        Kind::Wheel => kinds::wheel(&mut maker),
+        Kind::Tree => kinds::tree(&mut maker, [0.0; 2], 6.0, 4),
+        Kind::Stadium => kinds::stadium(&mut maker),
+        Kind::Village => kinds::village(&mut maker),
+        Kind::Garden => kinds::garden(&mut maker),
+    }
+    maker.finish()
+}
+
+/// A mesh as a PLY file: binary, little endian, three vertices a triangle with normals and colours.
+#[must_use]
+pub fn ply(mesh: &Mesh) -> Vec<u8> {
+    let count = mesh.len();
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float \
+         y\nproperty float z\nproperty float nx\nproperty float ny\nproperty float nz\nproperty \
+         uchar red\nproperty uchar green\nproperty uchar blue\nelement face {count}\nproperty list \
+         uchar uint vertex_indices\nend_header\n",
+        3 * count
+    )
+    .into_bytes();
+    for number in 0..count {
+        let triangle = mesh.triangle(number);
+        for k in 0..3 {
+            for vector in [triangle.corners[k], triangle.normals[k]] {
+                let numbers = vector.as_vec3().to_array();
+                bytes.extend(numbers.iter().flat_map(|x| x.to_le_bytes()));
+            }
+            bytes.extend(triangle.colors[k].to_array().map(linear_to_srgb));
+        }
+    }
+    // Fewer than 2^32 corners: these meshes are small.
+    for first in (0..3 * count as u32).step_by(3) {
+        bytes.push(3);
+        bytes.extend(
+            [first, first + 1, first + 2]
+                .iter()
+                .flat_map(|i| i.to_le_bytes()),
+        );
+    }
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shiftvox::graph::Silent;
+    use crate::{LoadOptions, MeshFormat, Nothing, read};
+
+    #[test]
+    fn every_kind_is_small_follows_its_seed_and_survives_its_file() {
+        for (name, kind) in Kind::ALL {
+            let mesh = generate(kind, 1);
+            assert!(
+                (1_000..60_000).contains(&mesh.len()),
+                "{name}: {}",
+                mesh.len()
+            );
+            assert!(mesh.warnings().is_empty(), "{name}: {:?}", mesh.warnings());
+            assert_eq!(mesh, generate(kind, 1), "{name}");
+            assert_ne!(mesh.positions(), generate(kind, 2).positions(), "{name}");
+            let options = LoadOptions::default();
+            let bytes = ply(&mesh);
+            let again = read(&bytes, MeshFormat::Ply, name, &Nothing, &options, &Silent).unwrap();
+            assert_eq!(again.len(), mesh.len(), "{name}");
+            for number in (0..mesh.len()).step_by(97) {
+                let (a, b) = (mesh.triangle(number), again.triangle(number));
+                assert_eq!(a.corners, b.corners, "{name}");
+                assert!((a.colors[0] - b.colors[0]).length() < 0.01, "{name}");
+                assert!((a.normals[2] - b.normals[2]).length() < 1e-6, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn specs_are_read() {
+        assert_eq!(parse("mesh:tree"), Ok((Kind::Tree, 1)));
+        assert_eq!(parse("mesh:scan,seed=7"), Ok((Kind::Scan, 7)));
+        assert!(
+            parse("mesh:bush")
+                .unwrap_err()
+                .contains("there are scan, machine")
+        );
+        assert!(parse("mesh:tree,sed=7").unwrap_err().contains("seed=N"));
+    }
+}

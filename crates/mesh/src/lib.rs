@@ -1,0 +1,116 @@
+//! Meshes: read from files, drawn as triangles, turned into voxels.
+//!
+//! A [`Mesh`] is triangles with materials. [`read`] makes one of an OBJ, PLY,
+//! STL or glTF file; [`raster`] draws it with a depth buffer at 1 to 256
+//! samples a pixel, the reference picture of a mesh; [`voxelize`] finds every
+//! voxel that a triangle touches, so that the engines draw it too. Rules:
+//! `spec/mesh.md`.
+
+mod builder;
+pub mod decimate;
+pub mod drawing;
+mod error;
+pub mod far;
+pub mod generate;
+mod load;
+mod material;
+pub mod open;
+pub mod raster;
+mod scene_options;
+mod surface;
+pub mod textured;
+pub mod voxelize;
+
+use glam::DVec3;
+
+pub use builder::{BadIndex, MeshBuilder};
+pub use error::{MeshError, MeshFault, Place};
+pub use load::{Beside, LoadOptions, MeshFormat, Nothing, SameFolder, read};
+pub use material::{ColorSpace, Material, linear_to_srgb, srgb_to_linear};
+pub use scene_options::SceneOptions;
+pub use surface::{Instances, Surface, Triangle, barycentric, mesh_box};
+
+/// Triangles with materials, in the file's own coordinates.
+///
+/// Made by a [`MeshBuilder`], which sees to it that every index is in range,
+/// every coordinate finite and every triangle of an area above zero.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Mesh {
+    pub(crate) positions: Vec<[f64; 3]>,
+    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(crate) material_of: Vec<u32>,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) corner_normals: Vec<[[f32; 3]; 3]>,
+    pub(crate) vertex_colors: Vec<[u8; 3]>,
+    /// Mean colour of each triangle's texture, linear light, or nothing where there are none.
+    pub(crate) tints: Vec<[f32; 3]>,
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Mesh {
+    /// Vertex positions, finite.
+    #[must_use]
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.positions
+    }
+
+    /// Three positions a triangle, counter-clockwise where seen from outside.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The material of each triangle: an index of [`Mesh::materials`].
+    #[must_use]
+    pub fn material_of(&self) -> &[u32] {
+        &self.material_of
+    }
+
+    /// The materials; at least one.
+    #[must_use]
+    pub fn materials(&self) -> &[Material] {
+        &self.materials
+    }
+
+    /// Unit normals of each triangle's corners, or nothing where the file has
+    /// none: then a triangle has its plane's.
+    #[must_use]
+    pub fn corner_normals(&self) -> &[[[f32; 3]; 3]] {
+        &self.corner_normals
+    }
+
+    /// sRGB colour of each position, which multiplies the material's, or
+    /// nothing where the file has none.
+    #[must_use]
+    pub fn vertex_colors(&self) -> &[[u8; 3]] {
+        &self.vertex_colors
+    }
+
+    /// Lowest and highest corner of the box around all triangles.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        (self.low, self.high)
+    }
+
+    /// Warnings about a file that could be read, one sentence each.
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Bytes that the mesh takes.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let sizes = [
+            size_of_val(&self.positions[..]),
+            size_of_val(&self.triangles[..]),
+            size_of_val(&self.material_of[..]),
+            size_of_val(&self.corner_normals[..]),
+            size_of_val(&self.vertex_colors[..]),
+            size_of_val(&self.tints[..]),
+        ];
+        sizes.iter().map(|&size| size as u64).sum()
+    }
+}

@@ -1,0 +1,161 @@
+//! Numbers out of a glTF document's buffers, every place checked.
+
+use super::document::Document;
+use super::{BROKEN, Buffers, fault_of};
+use crate::error::MeshError;
+
+/// An accessor whose numbers are known to be there.
+#[derive(Debug)]
+pub(super) struct Numbers<'b> {
+    bytes: &'b [u8],
+    stride: usize,
+    /// Elements.
+    pub(super) count: usize,
+    /// Numbers of an element.
+    pub(super) width: usize,
+    component: u32,
+    normalized: bool,
+}
+
+impl<'b> Numbers<'b> {
+    /// Finds the numbers of an accessor.
+    pub(super) fn find(
+        document: &Document,
+        buffers: &'b Buffers,
+        number: usize,
+    ) -> Result<Self, MeshError> {
+        let wrong = |expected: &str, found: &str| -> MeshError {
+            fault_of("accessor", number, expected, found, BROKEN)
+        };
+        let accessor = document
+            .accessors
+            .get(number)
+            .ok_or_else(|| wrong("an accessor of this number", "none"))?;
+        if accessor.sparse.is_some() {
+            return Err(fault_of(
+                "accessor",
+                number,
+                "plain numbers",
+                "a sparse accessor, which is not read",
+                "export without sparse accessors or morph targets",
+            ));
+        }
+        let width = match accessor.shape.as_str() {
+            "SCALAR" => 1,
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            other => return Err(wrong("SCALAR, VEC2, VEC3 or VEC4", other)),
+        };
+        let size = match accessor.component_type {
+            5120 | 5121 => 1,
+            5122 | 5123 => 2,
+            5125 | 5126 => 4,
+            other => {
+                return Err(wrong(
+                    "a component type from 5120 to 5126",
+                    &other.to_string(),
+                ));
+            }
+        };
+        let view = accessor
+            .buffer_view
+            .and_then(|view| document.buffer_views.get(view));
+        let view = view.ok_or_else(|| wrong("a buffer view", "none"))?;
+        let buffer = buffers.get(view.buffer);
+        let buffer = buffer.ok_or_else(|| wrong("a buffer", "none"))?;
+        let slice = slice(buffer, view.byte_offset, view.byte_length);
+        let slice =
+            slice.ok_or_else(|| wrong("a buffer view within its buffer", "one beyond it"))?;
+        let element = (width * size) as u64;
+        let stride = view.byte_stride.unwrap_or(element);
+        if stride < element {
+            return Err(wrong(
+                "a stride of at least an element",
+                &stride.to_string(),
+            ));
+        }
+        let needed = match accessor.count {
+            0 => Some(0),
+            count => (count - 1)
+                .checked_mul(stride)
+                .and_then(|n| n.checked_add(element)),
+        };
+        let bytes = needed.and_then(|needed| self::slice(slice, accessor.byte_offset, needed));
+        let bytes = bytes.ok_or_else(|| {
+            wrong(
+                &format!(
+                    "{} elements of {element} bytes within the buffer view",
+                    accessor.count
+                ),
+                &format!("{} bytes", slice.len()),
+            )
+        })?;
+        Ok(Self {
+            bytes,
+            stride: stride as usize,
+            count: accessor.count as usize,
+            width,
+            component: accessor.component_type,
+            normalized: accessor.normalized,
+        })
+    }
+
+    /// Number `k` of an element as it is meant; 0 outside.
+    pub(super) fn real(&self, element: usize, k: usize) -> f32 {
+        let Some(raw) = self.raw(element, k) else {
+            return 0.0;
+        };
+        let (value, full) = match self.component {
+            5120 => (f32::from(raw as u8 as i8), 127.0),
+            5121 => (f32::from(raw as u8), 255.0),
+            5122 => (f32::from(raw as u16 as i16), 32767.0),
+            5123 => (f32::from(raw as u16), 65535.0),
+            5125 => (raw as f32, 4_294_967_295.0),
+            _ => return f32::from_bits(raw),
+        };
+        if self.normalized {
+            (value / full).max(-1.0)
+        } else {
+            value
+        }
+    }
+
+    /// The first three numbers of an element.
+    pub(super) fn triple(&self, element: usize) -> [f32; 3] {
+        std::array::from_fn(|k| self.real(element, k))
+    }
+
+    /// An index, where the numbers are whole and not negative.
+    pub(super) fn index(&self, element: usize) -> Option<u32> {
+        match self.component {
+            5121 | 5123 | 5125 if self.width == 1 => self.raw(element, 0),
+            _ => None,
+        }
+    }
+
+    /// The bits of a number.
+    fn raw(&self, element: usize, k: usize) -> Option<u32> {
+        if element >= self.count || k >= self.width {
+            return None;
+        }
+        let size = match self.component {
+            5120 | 5121 => 1,
+            5122 | 5123 => 2,
+            _ => 4,
+        };
+        let at = element * self.stride + k * size;
+        Some(match *self.bytes.get(at..at + size)? {
+            [a] => u32::from(a),
+            [a, b] => u32::from(u16::from_le_bytes([a, b])),
+            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
+            _ => return None,
+        })
+    }
+}
+
+fn slice(bytes: &[u8], offset: u64, length: u64) -> Option<&[u8]> {
+    let begin = usize::try_from(offset).ok()?;
+    let end = begin.checked_add(usize::try_from(length).ok()?)?;
+    bytes.get(begin..end)
+}

@@ -1,0 +1,78 @@
+//! The pictures of base colours.
+
+use std::io;
+use std::rc::Rc;
+
+use super::accessor::Numbers;
+use super::document::{Document, TextureTransform};
+use super::{Beside, Buffers, decoded, unescaped};
+use crate::load::texture::{Texture, Textures};
+
+/// A texture and where corners are on it.
+pub(super) struct Painted<'d> {
+    pub(super) texture: Rc<Texture>,
+    pub(super) uvs: Numbers<'d>,
+    pub(super) transform: Option<&'d TextureTransform>,
+}
+
+impl Painted<'_> {
+    /// The mean colour of a triangle.
+    pub(super) fn mean(&self, corners: [u32; 3]) -> Option<[f32; 3]> {
+        let place = |corner: u32| {
+            let uv = [0, 1].map(|k| f64::from(self.uvs.real(corner as usize, k)));
+            self.transform.map_or(uv, |transform| moved(uv, transform))
+        };
+        self.texture.mean(corners.map(place))
+    }
+}
+
+/// Scaled, turned and moved, in this order: `KHR_texture_transform`.
+fn moved([u, v]: [f64; 2], transform: &TextureTransform) -> [f64; 2] {
+    let scale = transform.scale.unwrap_or([1.0; 2]);
+    let offset = transform.offset.unwrap_or_default();
+    let (u, v) = (u * scale[0], v * scale[1]);
+    let (sin, cos) = (libm::sin(transform.rotation), libm::cos(transform.rotation));
+    [cos * u + sin * v + offset[0], cos * v - sin * u + offset[1]]
+}
+
+/// The texture of a number, read where it was not read before.
+pub(super) fn find(
+    document: &Document,
+    buffers: &Buffers,
+    beside: &dyn Beside,
+    texture: usize,
+    textures: &mut Textures,
+) -> Option<Rc<Texture>> {
+    let source = document
+        .textures
+        .get(texture)
+        .and_then(|texture| texture.source);
+    let missing = |what: &str| io::Error::new(io::ErrorKind::NotFound, what.to_owned());
+    let Some(image) = source.and_then(|source| document.images.get(source)) else {
+        return textures.get(&format!("number {texture}"), || {
+            Err(missing("it has no PNG or JPEG picture"))
+        });
+    };
+    if let Some(uri) = &image.uri {
+        if let Some(data) = uri.strip_prefix("data:") {
+            let read = || decoded(data).ok_or_else(|| missing("its data is not in base64"));
+            return textures.get(&format!("number {texture}"), read);
+        }
+        let name = unescaped(uri);
+        return textures.get(&name, || beside.read(&name));
+    }
+    let read = || {
+        let view = image
+            .buffer_view
+            .and_then(|view| document.buffer_views.get(view));
+        let bytes = view.and_then(|view| {
+            let begin = usize::try_from(view.byte_offset).ok()?;
+            let end = begin.checked_add(usize::try_from(view.byte_length).ok()?)?;
+            buffers.get(view.buffer)?.get(begin..end)
+        });
+        bytes
+            .map(<[u8]>::to_vec)
+            .ok_or_else(|| missing("it is not in its buffer"))
+    };
+    textures.get(&format!("number {texture}"), read)
+}

@@ -1,0 +1,162 @@
+//! Files to meshes. The caller finds the format, by content.
+
+mod gltf;
+mod mtl;
+mod obj;
+mod ply;
+mod stl;
+mod text;
+mod texture;
+
+use std::fmt;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use super::error::{MeshFault, Place};
+use super::{ColorSpace, Mesh, MeshBuilder, MeshError};
+use shiftvox::bounded;
+use shiftvox::graph::Progress;
+
+/// The formats that meshes are read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum MeshFormat {
+    /// Wavefront, with its material library.
+    Obj,
+    /// Stanford polygons, ASCII or binary.
+    Ply,
+    /// Stereolithography, ASCII or binary.
+    Stl,
+    /// glTF 2.0, JSON.
+    Gltf,
+    /// glTF 2.0, binary.
+    Glb,
+}
+
+impl fmt::Display for MeshFormat {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Obj => ".obj",
+            Self::Ply => ".ply",
+            Self::Stl => ".stl",
+            Self::Gltf => ".gltf",
+            Self::Glb => ".glb",
+        })
+    }
+}
+
+/// How a mesh is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LoadOptions {
+    /// sRGB colour of triangles without material.
+    pub default_color: [u8; 3],
+    /// How an MTL's colours are meant; the format does not say. glTF has
+    /// linear colours, vertex colours of PLY and OBJ are sRGB.
+    pub mtl_colors: ColorSpace,
+}
+
+impl Default for LoadOptions {
+    fn default() -> Self {
+        Self {
+            default_color: [200; 3],
+            mtl_colors: ColorSpace::Srgb,
+        }
+    }
+}
+
+/// Reads the files that a mesh names: its material library, its buffers.
+pub trait Beside {
+    /// The bytes of a file by the name that the mesh has for it.
+    ///
+    /// # Errors
+    /// When there is no such file or it cannot be read.
+    fn read(&self, name: &str) -> io::Result<Vec<u8>>;
+}
+
+/// Files in the folder of the mesh, or below it. Other folders are not
+/// entered: of a name that leads there, only the last part counts.
+#[derive(Debug, Clone)]
+pub struct SameFolder(PathBuf);
+
+impl SameFolder {
+    /// Files in this folder.
+    #[must_use]
+    pub fn new(folder: &Path) -> Self {
+        Self(folder.to_owned())
+    }
+}
+
+impl Beside for SameFolder {
+    fn read(&self, name: &str) -> io::Result<Vec<u8>> {
+        let name = name.replace('\\', "/");
+        let path = Path::new(&name);
+        let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
+        if path.components().all(inside) {
+            let found = bounded::read_whole(&self.0.join(path));
+            // What is there and cannot be read is what the mesh means.
+            if !matches!(&found, Err(error) if error.kind() == io::ErrorKind::NotFound) {
+                return found;
+            }
+        }
+        let last = path
+            .file_name()
+            .ok_or_else(|| io::Error::new(io::ErrorKind::NotFound, "not a file's name"))?;
+        bounded::read_whole(&self.0.join(last))
+    }
+}
+
+/// No other files.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Nothing;
+
+impl Beside for Nothing {
+    fn read(&self, _name: &str) -> io::Result<Vec<u8>> {
+        Err(io::Error::new(
+            io::ErrorKind::NotFound,
+            "there are no other files",
+        ))
+    }
+}
+
+/// Most corners of a face. It is cut into a fan of triangles, and of a long fan each crosses the whole face.
+const MOST_CORNERS: usize = 1 << 16;
+
+/// Refuses a face of more corners than may be.
+fn check_corners(corners: usize, place: Place) -> Result<(), MeshError> {
+    if corners <= MOST_CORNERS {
+        return Ok(());
+    }
+    Err(MeshError::Limit(MeshFault::new(
+        "face",
+        place,
+        format!("at most {MOST_CORNERS} corners"),
+        corners.to_string(),
+        "cut the face into triangles where the mesh is made: a fan of so many would be slivers",
+    )))
+}
+
+/// Reads a mesh that is in memory; `name` is what errors call it.
+///
+/// # Errors
+/// [`MeshError`] where the content breaks its format's rules, names a position
+/// that does not exist, or holds no triangle that can be drawn.
+pub fn read(
+    bytes: &[u8],
+    format: MeshFormat,
+    name: &str,
+    beside: &dyn Beside,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh, MeshError> {
+    progress.begin(&format!("reading {name}"), 0);
+    let mut builder = MeshBuilder::new();
+    let result = match format {
+        MeshFormat::Obj => obj::read(bytes, beside, options, &mut builder),
+        MeshFormat::Ply => ply::read(bytes, options, &mut builder),
+        MeshFormat::Stl => stl::read(bytes, options, &mut builder),
+        MeshFormat::Gltf => gltf::read_json(bytes, beside, options, &mut builder),
+        MeshFormat::Glb => gltf::read_binary(bytes, beside, options, &mut builder),
+    };
+    progress.end();
+    result.map_err(|error| error.in_file(name))?;
+    builder.finish(name)
+}

@@ -1,0 +1,174 @@
+//! Material libraries of Wavefront files: names, diffuse colours, opacities.
+//!
+//! Read: `newmtl`, `Kd r g b` (of one number, all three are it), `map_Kd`, `d`, `Tr`.
+//! All else is passed over.
+
+use super::{LoadOptions, text};
+use crate::Material;
+
+/// What a library holds.
+#[derive(Debug, Default)]
+pub(super) struct Library {
+    /// Materials in the order of the file; of two of one name the last counts.
+    pub(super) materials: Vec<Material>,
+    /// By material, the name of the picture that its colour is multiplied by.
+    pub(super) textures: Vec<Option<String>>,
+    /// First line that could not be understood.
+    pub(super) odd_line: Option<usize>,
+}
+
+/// Reads a library. What cannot be understood is passed over.
+pub(super) fn read(bytes: &[u8], options: &LoadOptions) -> Library {
+    let text = text::decoded(bytes);
+    let mut library = Library::default();
+    let mut current: Option<Open> = None;
+    for (number, line) in text.lines().enumerate() {
+        let line = line.trim();
+        let (key, rest) = line
+            .split_once(char::is_whitespace)
+            .map_or((line, ""), |(key, rest)| (key, rest.trim()));
+        if key == "newmtl" {
+            if let Some(open) = current.replace(Open::new(rest)) {
+                library.close(open, options);
+            }
+            continue;
+        }
+        let Some(open) = &mut current else { continue };
+        let understood = match key {
+            "Kd" => open.colored(rest),
+            "d" => open.alpha_from(rest, |d| d),
+            "Tr" => open.alpha_from(rest, |tr| 1.0 - tr),
+            "map_Kd" => {
+                open.texture = file_name(rest);
+                open.texture.is_some()
+            }
+            _ => true,
+        };
+        if !understood {
+            library.odd_line.get_or_insert(number + 1);
+        }
+    }
+    if let Some(open) = current {
+        library.close(open, options);
+    }
+    library
+}
+
+impl Library {
+    fn close(&mut self, open: Open, options: &LoadOptions) {
+        // Black times a picture is black: programs that write so mean the picture alone. So do those that write none.
+        let color = match (&open.texture, open.color) {
+            (Some(_), None | Some([0.0, 0.0, 0.0])) => Some([1.0; 3]),
+            (_, color) => color,
+        };
+        self.textures.push(open.texture);
+        let material = match color {
+            Some(color) => Material::of_numbers(open.name, color, options.mtl_colors, open.alpha),
+            None => Material {
+                alpha: open.alpha.clamp(0.0, 1.0),
+                ..Material::of_srgb(open.name, options.default_color)
+            },
+        };
+        self.materials.push(material);
+    }
+}
+
+/// The name in a `map_Kd`, after its options: `-s 1 1 1 -clamp on wood grain.png`.
+fn file_name(rest: &str) -> Option<String> {
+    let mut rest = rest.trim();
+    while rest.starts_with('-') {
+        let (option, after) = rest.split_once(char::is_whitespace)?;
+        rest = after.trim_start();
+        // Up to three numbers, or exactly so many words.
+        let (most, any) = match option {
+            "-s" | "-o" | "-t" => (3, false),
+            "-mm" => (2, true),
+            _ => (1, true),
+        };
+        for _ in 0..most {
+            let (word, after) = rest.split_once(char::is_whitespace)?;
+            if !any && word.parse::<f64>().is_err() {
+                break;
+            }
+            rest = after.trim_start();
+        }
+    }
+    (!rest.is_empty()).then(|| rest.to_owned())
+}
+
+/// A material of which more lines may follow.
+struct Open {
+    name: String,
+    color: Option<[f32; 3]>,
+    alpha: f32,
+    texture: Option<String>,
+}
+
+impl Open {
+    fn new(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            color: None,
+            alpha: 1.0,
+            texture: None,
+        }
+    }
+
+    fn colored(&mut self, rest: &str) -> bool {
+        let numbers: Option<Vec<f32>> = rest
+            .split_whitespace()
+            .take(3)
+            .map(|word| word.parse().ok())
+            .collect();
+        self.color = match numbers.as_deref() {
+            Some(&[r, g, b]) => Some([r, g, b]),
+            Some(&[r]) => Some([r; 3]),
+            _ => return false,
+        };
+        true
+    }
+
+    fn alpha_from(&mut self, rest: &str, opacity: impl Fn(f32) -> f32) -> bool {
+        // `d -halo 0.5` is opacity too.
+        let last = rest.split_whitespace().last();
+        match last.and_then(|word| word.parse::<f32>().ok()) {
+            Some(value) if value.is_finite() => {
+                self.alpha = opacity(value);
+                true
+            }
+            _ => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_have_names_after_their_options() {
+        let name = |line| file_name(line);
+        assert_eq!(name("a b.png").as_deref(), Some("a b.png"));
+        let options = "-s 2 2 -o 0.5 0 0 -clamp on -mm 0 1 sub/a b.png";
+        assert_eq!(name(options).as_deref(), Some("sub/a b.png"));
+        assert_eq!(name("-clamp on"), None);
+        assert_eq!(name(""), None);
+    }
+
+    #[test]
+    fn materials_with_what_is_odd_about_them() {
+        let text =
+            b"# c\nKd 1 1 1\nnewmtl a b\n Kd 1 0 0.5\nTr 0.25\nnewmtl c\nKd 0.5\nd -halo 0.5\n\
+            map_Kd wood.png\nnewmtl d\nKd spectral x.rfl\nnewmtl \xfc\n";
+        let library = read(text, &LoadOptions::default());
+        let names: Vec<&str> = library.materials.iter().map(|m| m.name.as_str()).collect();
+        assert_eq!(names, ["a b", "c", "d", "\u{fffd}"]);
+        assert_eq!(library.materials[0].diffuse[..2], [1.0, 0.0]);
+        assert_eq!(library.materials[0].alpha, 0.75);
+        assert_eq!(library.materials[1].alpha, 0.5);
+        assert_eq!(library.materials[2].diffuse, library.materials[3].diffuse);
+        assert_eq!(library.odd_line, Some(11));
+        let wood = Some("wood.png".to_owned());
+        assert_eq!(library.textures, [None, wood, None, None]);
+    }
+}

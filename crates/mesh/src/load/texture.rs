@@ -1,0 +1,177 @@
+//! Textures, as far as they count here: the mean colour of a triangle's part of one.
+
+use std::collections::HashMap;
+use std::io::{self, Cursor};
+use std::rc::Rc;
+
+use image::{ImageReader, Limits};
+
+use crate::MeshBuilder;
+use shiftvox::srgb::to_linear;
+
+/// Most texels of a side.
+const MOST_ACROSS: u32 = 16_384;
+/// Most bytes of all textures of a mesh once they are decoded.
+const MOST_BYTES: u64 = 1 << 30;
+/// Most samples along a side of a triangle.
+const MOST_SAMPLES: u32 = 48;
+
+/// A decoded picture, repeated in all directions.
+#[derive(Debug)]
+pub(super) struct Texture {
+    width: u32,
+    height: u32,
+    /// sRGB and opacity, row by row from the top.
+    texels: Vec<u8>,
+}
+
+impl Texture {
+    /// Decodes a PNG or JPEG file.
+    fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
+        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
+        let mut reader = reader.map_err(|error| error.to_string())?;
+        let mut limits = Limits::default();
+        limits.max_image_width = Some(MOST_ACROSS);
+        limits.max_image_height = Some(MOST_ACROSS);
+        limits.max_alloc = Some(most_bytes);
+        reader.limits(limits);
+        let picture = reader.decode().map_err(|error| error.to_string())?;
+        let picture = picture.into_rgba8();
+        let (width, height) = picture.dimensions();
+        if width == 0 || height == 0 {
+            return Err("it is empty".to_owned());
+        }
+        Ok(Self {
+            width,
+            height,
+            texels: picture.into_raw(),
+        })
+    }
+
+    /// The mean colour, linear light, of a triangle with these corners: across from the left and down from the top, in
+    /// sizes of the picture. What is transparent counts less. Nothing where a corner is no number, or all is
+    /// transparent.
+    pub(super) fn mean(&self, corners: [[f64; 2]; 3]) -> Option<[f32; 3]> {
+        if !corners.as_flattened().iter().all(|c| c.is_finite()) {
+            return None;
+        }
+        let size = [f64::from(self.width), f64::from(self.height)];
+        let points = corners.map(|corner| [0, 1].map(|k| corner[k] * size[k]));
+        let longest =
+            (0..3).flat_map(|i| [0, 1].map(|k| (points[i][k] - points[(i + 1) % 3][k]).abs()));
+        let steps = (longest.fold(1.0, f64::max).ceil() as u32).min(MOST_SAMPLES);
+        let (mut sum, mut weight) = ([0.0; 3], 0.0);
+        // The middles of equal small triangles: `steps * steps` of them, half of which stand on their heads.
+        for i in 0..steps {
+            for j in 0..steps - i {
+                for third in 1..=2 {
+                    if third == 2 && i + j + 1 == steps {
+                        continue;
+                    }
+                    let part = |n: u32| (f64::from(n) + f64::from(third) / 3.0) / f64::from(steps);
+                    let (b, c) = (part(i), part(j));
+                    let shares = [1.0 - b - c, b, c];
+                    let at = [0, 1].map(|k| (0..3).map(|n| shares[n] * points[n][k]).sum::<f64>());
+                    let [r, g, b, alpha] = self.texel(at);
+                    let opacity = f64::from(alpha) / 255.0;
+                    for (sum, byte) in sum.iter_mut().zip([r, g, b]) {
+                        *sum += to_linear(f64::from(byte) / 255.0) * opacity;
+                    }
+                    weight += opacity;
+                }
+            }
+        }
+        (weight > 0.0).then(|| sum.map(|sum| (sum / weight) as f32))
+    }
+
+    fn texel(&self, [across, down]: [f64; 2]) -> [u8; 4] {
+        let place = |at: f64, size: u32| {
+            (at.floor().rem_euclid(f64::from(size)) as usize).min(size as usize - 1)
+        };
+        let (x, y) = (place(across, self.width), place(down, self.height));
+        self.texels.as_chunks::<4>().0[y * self.width as usize + x]
+    }
+}
+
+/// The textures of a mesh, each read once.
+#[derive(Debug, Default)]
+pub(super) struct Textures {
+    known: HashMap<String, Option<Rc<Texture>>>,
+    bytes: u64,
+    /// Those that could not be read, and why.
+    failed: Vec<(String, String)>,
+}
+
+impl Textures {
+    /// The texture of a name, whose file `read` reads where it was not read before. What cannot be read is noted.
+    pub(super) fn get(
+        &mut self,
+        name: &str,
+        read: impl FnOnce() -> io::Result<Vec<u8>>,
+    ) -> Option<Rc<Texture>> {
+        if let Some(known) = self.known.get(name) {
+            return known.clone();
+        }
+        let left = MOST_BYTES.saturating_sub(self.bytes);
+        let file = read().map_err(|error| error.to_string());
+        let texture = match file.and_then(|bytes| Texture::decode(&bytes, left)) {
+            Ok(texture) => {
+                self.bytes += texture.texels.len() as u64;
+                Some(Rc::new(texture))
+            }
+            Err(reason) => {
+                self.failed.push((name.to_owned(), reason));
+                None
+            }
+        };
+        self.known.insert(name.to_owned(), texture.clone());
+        texture
+    }
+
+    /// Warns of those that could not be read.
+    pub(super) fn tell(&self, builder: &mut MeshBuilder) {
+        for (name, reason) in &self.failed {
+            builder.warn(format!(
+                "the texture {name} cannot be read ({reason}); what has it keeps its plain colour"
+            ));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Left half black, right half white; the lower right quarter is transparent.
+    fn halves() -> Texture {
+        let texel = |i: u32| match (i % 8 < 4, i / 8 < 4) {
+            (true, _) => [0, 0, 0, 255],
+            (false, true) => [255; 4],
+            (false, false) => [255, 255, 255, 0],
+        };
+        Texture {
+            width: 8,
+            height: 8,
+            texels: (0..64).flat_map(texel).collect(),
+        }
+    }
+
+    #[test]
+    fn means_are_of_light_and_by_area_and_opacity() {
+        let mean = |corners| {
+            halves()
+                .mean(corners)
+                .map(|[r, ..]| (r * 1000.0).round() / 1000.0)
+        };
+        // The upper left of the picture, cut from corner to corner: three quarters of it black.
+        let upper = mean([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]).unwrap();
+        assert!((upper - 0.25).abs() < 0.02, "{upper}");
+        assert_eq!(mean([[0.6, 0.1], [0.9, 0.1], [0.6, 0.4]]), Some(1.0));
+        assert_eq!(mean([[0.1, 0.1], [0.4, 0.1], [0.1, 0.4]]), Some(0.0));
+        // It repeats, also to the left.
+        assert_eq!(mean([[-3.4, 5.1], [-3.1, 5.1], [-3.4, 5.4]]), Some(1.0));
+        // Nothing but transparent.
+        assert_eq!(mean([[0.6, 0.6], [0.9, 0.6], [0.6, 0.9]]), None);
+        assert_eq!(mean([[f64::NAN, 0.6], [0.9, 0.6], [0.6, 0.9]]), None);
+    }
+}

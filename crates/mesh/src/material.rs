@@ -1,0 +1,155 @@
+//! Materials, and colours in linear light.
+
+use std::sync::LazyLock;
+
+use shiftvox::srgb::to_linear;
+
+/// How the numbers of a colour in a file are meant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum ColorSpace {
+    /// As shown on a screen.
+    #[default]
+    Srgb,
+    /// In proportion to light, as Blender writes them.
+    Linear,
+}
+
+/// The surface of a triangle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// Its name in the file.
+    pub name: String,
+    /// Diffuse colour, linear light, 0 to 1.
+    pub diffuse: [f32; 3],
+    /// Opacity, 0 to 1. Triangles of opacity 0 are not there; all others are
+    /// drawn opaque, and count by their opacity where colours are averaged.
+    pub alpha: f32,
+}
+
+impl Material {
+    /// An opaque material of an sRGB colour.
+    #[must_use]
+    pub fn of_srgb(name: impl Into<String>, color: [u8; 3]) -> Self {
+        Self {
+            name: name.into(),
+            diffuse: color.map(srgb_to_linear),
+            alpha: 1.0,
+        }
+    }
+
+    /// A material from three numbers of a file; what is not a number from 0 to 1 is made one.
+    #[must_use]
+    pub fn of_numbers(
+        name: impl Into<String>,
+        color: [f32; 3],
+        space: ColorSpace,
+        alpha: f32,
+    ) -> Self {
+        let unit = |value: f32| if value >= 0.0 { value.min(1.0) } else { 0.0 };
+        Self {
+            name: name.into(),
+            diffuse: color.map(|value| match space {
+                ColorSpace::Linear => unit(value),
+                ColorSpace::Srgb => to_linear(f64::from(unit(value))) as f32,
+            }),
+            alpha: if alpha.is_nan() { 1.0 } else { unit(alpha) },
+        }
+    }
+}
+
+/// Linear light of each sRGB byte.
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|byte| to_linear(byte as f64 / 255.0) as f32));
+
+/// Linear light of an sRGB byte.
+#[must_use]
+pub fn srgb_to_linear(byte: u8) -> f32 {
+    LINEAR[usize::from(byte)]
+}
+
+/// Steps of [`FIRST`]: bytes are no nearer to each other than this, but near black.
+const SLOTS: usize = 4096;
+
+/// For each slot of linear light the first byte whose light is not below the slot's.
+static FIRST: LazyLock<[u8; SLOTS]> = LazyLock::new(|| {
+    std::array::from_fn(|slot| {
+        let light = slot as f64 / SLOTS as f64;
+        // At most 255: the last entry is 1, which no slot exceeds.
+        LINEAR.partition_point(|&entry| f64::from(entry) < light) as u8
+    })
+});
+
+/// The sRGB byte whose linear light is nearest; of two the brighter.
+#[must_use]
+pub fn linear_to_srgb(light: f64) -> u8 {
+    let table: &[f32; 256] = &LINEAR;
+    // Never below 0; what is not a number becomes 0, which is what a search would find.
+    let slot = ((light * SLOTS as f64) as usize).min(SLOTS - 1);
+    let mut above = usize::from(FIRST[slot]);
+    if light.is_nan() {
+        above = 0;
+    }
+    while above < 256 && f64::from(table[above]) < light {
+        above += 1;
+    }
+    match above {
+        0 => 0,
+        256 => 255,
+        _ => {
+            let to_above = f64::from(table[above]) - light;
+            let to_below = light - f64::from(table[above - 1]);
+            // `above` is 1 to 255 here.
+            (if to_above <= to_below {
+                above
+            } else {
+                above - 1
+            }) as u8
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_byte_is_found() {
+        let slow = |light: f64| {
+            let distance = |byte: &u8| (f64::from(srgb_to_linear(*byte)) - light).abs();
+            let nearest = (0..=255u8)
+                .rev()
+                .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            nearest.unwrap()
+        };
+        for step in -100..20_300 {
+            let light = f64::from(step) / 20_000.0;
+            assert_eq!(linear_to_srgb(light), slow(light), "{light}");
+        }
+        for byte in 0..=255 {
+            assert_eq!(linear_to_srgb(f64::from(srgb_to_linear(byte))), byte);
+        }
+        assert_eq!(linear_to_srgb(f64::NAN), 0);
+    }
+
+    #[test]
+    fn every_byte_survives_linear_light() {
+        for byte in 0..=255 {
+            assert_eq!(linear_to_srgb(f64::from(srgb_to_linear(byte))), byte);
+        }
+        assert_eq!(linear_to_srgb(-1.0), 0);
+        assert_eq!(linear_to_srgb(2.0), 255);
+        assert_eq!(linear_to_srgb(0.5), 188);
+    }
+
+    #[test]
+    fn numbers_of_files_are_made_colours() {
+        let srgb = Material::of_numbers("a", [0.5, -1.0, f32::NAN], ColorSpace::Srgb, 2.0);
+        assert!((srgb.diffuse[0] - 0.2140).abs() < 1e-4);
+        assert_eq!(srgb.diffuse[1..], [0.0, 0.0]);
+        assert_eq!(srgb.alpha, 1.0);
+        let linear = Material::of_numbers("b", [0.5, 7.0, 0.0], ColorSpace::Linear, -0.5);
+        assert_eq!(linear.diffuse, [0.5, 1.0, 0.0]);
+        assert_eq!(linear.alpha, 0.0);
+    }
+}

@@ -1,0 +1,276 @@
+//! Opening scenes of any kind: voxel files by the renderer's own readers, meshes read and voxelised here.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use shiftvox::graph::{Graph, MeshBox, Progress, Voxel};
+use shiftvox::scene::{
+    self, FileKind, MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels,
+    OpenError, Opened, SceneFile, SceneInfo,
+};
+
+use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
+use crate::{Beside, LoadOptions, Mesh, MeshError, MeshFormat, Nothing, SameFolder, mesh_box};
+
+/// Levels at which the voxels of many more levels are estimated.
+const COUNTED_DEPTH: u32 = 8;
+
+/// How a mesh becomes a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeshOptions {
+    /// Levels below the root: at most `2^depth` voxels a side.
+    pub depth: u32,
+    /// How the file is read.
+    pub load: LoadOptions,
+    /// Whether the voxels get opacities (`spec/mesh.md`, "Opacities"); only a
+    /// scene that is built in memory has room for them.
+    pub opacities: bool,
+    /// Whether +Y is up, or else +Z, where the custom of the format is not meant: Y for all but STL.
+    pub y_up: Option<bool>,
+}
+
+impl Default for MeshOptions {
+    fn default() -> Self {
+        Self {
+            depth: DEFAULT_DEPTH,
+            load: LoadOptions::default(),
+            opacities: false,
+            y_up: None,
+        }
+    }
+}
+
+impl MeshReader for MeshOptions {
+    fn read(
+        &self,
+        file: MeshFile,
+        progress: &dyn Progress,
+    ) -> Result<Box<dyn MeshVoxels>, OpenError> {
+        Ok(Box::new(Ready::read(&file, self, progress)?))
+    }
+}
+
+/// How a scene of any kind is opened.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct OpenOptions {
+    /// How voxel files are read, and which graph files are verified.
+    pub voxels: scene::OpenOptions,
+    /// How meshes are read and voxelised.
+    pub mesh: MeshOptions,
+}
+
+/// Opens a file of any kind, or makes the scene of a `gen:` specification: [`scene::open`] with meshes.
+///
+/// # Errors
+/// See [`OpenError`].
+pub fn open(
+    source: &str,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    scene::open(source, &options.voxels, &options.mesh, progress)
+}
+
+/// Opens a file that is held in memory; a mesh finds no other files. [`scene::open_bytes`] with meshes.
+///
+/// # Errors
+/// See [`OpenError`].
+pub fn open_bytes(
+    bytes: &[u8],
+    name: &str,
+    options: &OpenOptions,
+    progress: &dyn Progress,
+) -> Result<Opened, OpenError> {
+    scene::open_bytes(bytes, name, &options.voxels, &options.mesh, progress)
+}
+
+fn failure(is_limit: bool, is_io: bool, error: impl std::error::Error + Send + Sync + 'static) -> OpenError {
+    OpenError::Mesh(MeshFailure {
+        is_limit,
+        is_io,
+        error: Box::new(error),
+    })
+}
+
+fn unreadable(error: MeshError) -> OpenError {
+    let is_io = matches!(error, MeshError::Io { .. });
+    failure(error.is_limit(), is_io, error)
+}
+
+/// Why a mesh cannot be voxelised.
+#[derive(Debug, thiserror::Error)]
+#[error("{source_name}: {error}")]
+pub struct NotVoxelized {
+    /// The scene, as the user named it.
+    pub source_name: String,
+    /// The reason: its extent, or the number of levels.
+    pub error: GridError,
+}
+
+/// Reads a mesh file, for its triangles; also returns whether +Y is up in it.
+///
+/// # Errors
+/// Where it cannot be read, is no mesh, breaks its format's rules or holds
+/// nothing to draw.
+pub fn read_mesh(
+    path: &Path,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<(Mesh, bool), OpenError> {
+    let file = SceneFile::open(path)?.mesh_file(folder_of(path))?;
+    let mesh = read(&file, options, progress)?;
+    Ok((mesh, is_y_up(file.kind)))
+}
+
+fn folder_of(path: &Path) -> Option<PathBuf> {
+    path.parent().map(Path::to_owned)
+}
+
+/// Whether +Y is up, by the custom of the format.
+fn is_y_up(kind: FileKind) -> bool {
+    kind != FileKind::Stl
+}
+
+/// Reads a mesh, and the files in its folder that it names.
+fn read(
+    file: &MeshFile,
+    options: &LoadOptions,
+    progress: &dyn Progress,
+) -> Result<Mesh, OpenError> {
+    let format = match file.kind {
+        FileKind::Stl => MeshFormat::Stl,
+        FileKind::Gltf => MeshFormat::Gltf,
+        FileKind::Glb => MeshFormat::Glb,
+        FileKind::Obj => MeshFormat::Obj,
+        _ => MeshFormat::Ply,
+    };
+    let folder = file.folder.as_deref().map(SameFolder::new);
+    let beside: &dyn Beside = match &folder {
+        Some(folder) => folder,
+        None => &Nothing,
+    };
+    crate::read(&file.bytes, format, &file.name, beside, options, progress).map_err(unreadable)
+}
+
+/// A mesh that is ready to be voxelised.
+struct Ready {
+    kind: FileKind,
+    mesh: Mesh,
+    y_up: bool,
+    opacities: bool,
+    grid: Grid,
+    load_ms: f64,
+}
+
+impl Ready {
+    /// Reads a mesh and lays the grid around it.
+    fn read(
+        file: &MeshFile,
+        options: &MeshOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, OpenError> {
+        let started = Instant::now();
+        let mesh = read(file, &options.load, progress)?;
+        let load_ms = started.elapsed().as_secs_f64() * 1e3;
+        let refused = |error: GridError| {
+            let is_limit = matches!(error, GridError::TooMany(_) | GridError::TooMuch { .. });
+            let source_name = file.name.clone();
+            failure(is_limit, false, NotVoxelized { source_name, error })
+        };
+        let grid = Grid::around(&mesh, options.depth).map_err(refused)?;
+        let (depth, least) = (options.depth, voxelize::least_looked_at(&mesh, &grid));
+        if least > voxelize::MOST_LOOKED_AT {
+            return Err(refused(GridError::TooMuch { depth, least }));
+        }
+        Ok(Self {
+            y_up: options.y_up.unwrap_or(is_y_up(file.kind)),
+            kind: file.kind,
+            opacities: options.opacities,
+            mesh,
+            grid,
+            load_ms,
+        })
+    }
+}
+
+impl MeshVoxels for Ready {
+    fn bytes(&self) -> u64 {
+        self.mesh.bytes()
+    }
+
+    /// About how many voxels there are going to be, rather fewer than more; none of so few levels that it is as
+    /// quick to find them. A surface has four times as many at each further level, what is thin fewer at first.
+    fn expected_voxels(&self, progress: &dyn Progress) -> Option<u64> {
+        let further = self
+            .grid
+            .depth()
+            .checked_sub(COUNTED_DEPTH)
+            .filter(|&levels| levels > 3)?;
+        let count = |depth| {
+            let grid = Grid::around(&self.mesh, depth).ok()?;
+            Some(voxelize::voxelize(&self.mesh, &grid, &mut |_| (), progress).voxels)
+        };
+        let (coarse, fine) = (count(COUNTED_DEPTH - 1)?, count(COUNTED_DEPTH)?);
+        let growth = (fine as f64 / coarse as f64).min(4.0);
+        Some((fine as f64 * libm::pow(growth, f64::from(further))) as u64)
+    }
+
+    fn placement(&self) -> ([f64; 3], f64) {
+        self.grid.placement()
+    }
+
+    fn mesh_box(&self) -> MeshBox {
+        mesh_box(&self.mesh, self.y_up)
+    }
+
+    fn finish(&self, graph: &mut Graph, progress: &dyn Progress) {
+        if !self.opacities {
+            return;
+        }
+        let opacities = voxelize::opacities(&self.mesh, &self.grid, graph, progress);
+        graph.opacity = opacities.into();
+    }
+
+    fn voxels(
+        &self,
+        sink: &mut dyn FnMut(Voxel),
+        progress: &dyn Progress,
+    ) -> (SceneInfo, MeshSummary) {
+        let started = Instant::now();
+        let (mut low, mut high) = ([i32::MAX; 3], [i32::MIN; 3]);
+        let report = voxelize::voxelize(
+            &self.mesh,
+            &self.grid,
+            &mut |voxel| {
+                for k in 0..3 {
+                    low[k] = low[k].min(voxel.index[k]);
+                    high[k] = high[k].max(voxel.index[k]);
+                }
+                sink(voxel);
+            },
+            progress,
+        );
+        let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
+        let mut info = SceneInfo::new(self.kind);
+        info.voxels = report.voxels;
+        info.stored_voxels = 0;
+        info.bounds = (report.voxels > 0).then_some((low, high));
+        info.models = 1;
+        info.instances = 1;
+        info.has_colors = true;
+        info.has_normals = true;
+        info.warnings = self.mesh.warnings().to_vec();
+        let summary = MeshSummary {
+            triangles: self.mesh.triangles().len() as u64,
+            positions: self.mesh.positions().len() as u64,
+            materials: self.mesh.materials().len() as u64,
+            bounds: self.mesh.bounds(),
+            bytes: self.mesh.bytes(),
+            depth: self.grid.depth(),
+            touches: report.touches,
+            load_ms: self.load_ms,
+            voxelize_ms,
+        };
+        (info, summary)
+    }
+}

@@ -1,0 +1,80 @@
+//! Bins: squares of 32 x 32 pixels, and which triangles may show in each.
+
+use rayon::prelude::*;
+
+use super::RasterCamera;
+use super::clip::Outline;
+use crate::Surface;
+
+/// Pixels along a bin's side.
+pub(super) const BIN: u32 = 32;
+/// Triangles that are sorted at a time.
+const CHUNK: usize = 1 << 16;
+
+/// The triangles of each bin, in their order.
+pub(super) struct Bins {
+    columns: u32,
+    rows: u32,
+    /// One after the other; each a list for each bin.
+    chunks: Vec<Vec<Vec<u32>>>,
+}
+
+impl Bins {
+    pub(super) fn fill<S: Surface + ?Sized>(surface: &S, view: &RasterCamera) -> Self {
+        let columns = view.width.div_ceil(BIN);
+        let rows = view.height.div_ceil(BIN);
+        let count = surface.len();
+        let chunks = (0..count.div_ceil(CHUNK))
+            .into_par_iter()
+            .map(|chunk| {
+                let mut lists = vec![Vec::new(); (columns * rows) as usize];
+                let begin = chunk * CHUNK;
+                for number in begin..count.min(begin + CHUNK) {
+                    let Some(outline) = Outline::of(view, &surface.corners(number)) else {
+                        continue;
+                    };
+                    let [low, high] = outline
+                        .pixels()
+                        .map(|p| p.map(|c| c.div_euclid(i64::from(BIN))));
+                    let clamp = |c: i64, most: u32| c.clamp(0, i64::from(most) - 1) as u32;
+                    let misses = high[0] < 0
+                        || high[1] < 0
+                        || low[0] >= i64::from(columns)
+                        || low[1] >= i64::from(rows);
+                    if misses {
+                        continue;
+                    }
+                    for row in clamp(low[1], rows)..=clamp(high[1], rows) {
+                        for column in clamp(low[0], columns)..=clamp(high[0], columns) {
+                            lists[(row * columns + column) as usize].push(number as u32);
+                        }
+                    }
+                }
+                lists
+            })
+            .collect();
+        Self {
+            columns,
+            rows,
+            chunks,
+        }
+    }
+
+    /// Number of bins.
+    pub(super) fn len(&self) -> usize {
+        (self.columns * self.rows) as usize
+    }
+
+    /// The first pixel of a bin.
+    pub(super) fn corner(&self, bin: usize) -> [u32; 2] {
+        let bin = bin as u32;
+        [bin % self.columns * BIN, bin / self.columns * BIN]
+    }
+
+    /// The triangles of a bin, in their order.
+    pub(super) fn triangles(&self, bin: usize) -> impl Iterator<Item = u32> + '_ {
+        self.chunks
+            .iter()
+            .flat_map(move |lists| lists[bin].iter().copied())
+    }
+}

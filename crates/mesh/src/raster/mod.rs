@@ -1,0 +1,146 @@
+//! Triangles to pixels, with a depth buffer: the reference picture of a mesh.
+//!
+//! Corners are projected in `f64` and rounded to 1/4096 pixel; from there on
+//! what a triangle covers is decided exactly, in integers, with the top-left
+//! rule: two triangles that share an edge leave no sample between them and
+//! share none. Depth is the plane's at the sample, not interpolated between
+//! rounded corners. The picture is cut into bins that threads draw on their
+//! own, each with its triangles in order, so that any number of threads gives
+//! the same picture. Rules: `spec/mesh.md`.
+
+mod bin;
+mod bins;
+mod clip;
+mod edges;
+mod samples;
+mod shade;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+pub(crate) use edges::Edges;
+pub use samples::{Pattern, Samples, SamplesError};
+pub use shade::Light;
+
+use super::Surface;
+use shiftvox::graph::Progress;
+use bin::Bin;
+use bins::Bins;
+
+/// `triangle` where nothing is seen.
+pub const NO_TRIANGLE: u32 = u32::MAX;
+/// Most pixels a side: what the bits of an edge function have room for.
+pub const MAX_SIDE: u32 = 1 << 15;
+
+/// A pinhole camera: what the rasteriser, far voxels and textured voxels draw from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RasterCamera {
+    /// Position of the eye, world units.
+    pub eye: DVec3,
+    /// Unit vector towards growing pixel x.
+    pub right: DVec3,
+    /// Unit vector towards falling pixel y.
+    pub up: DVec3,
+    /// Unit vector along the view axis.
+    pub forward: DVec3,
+    /// Pixels per unit of slope.
+    pub focal_px: f64,
+    /// Pixels across, 1 to [`MAX_SIDE`].
+    pub width: u32,
+    /// Pixels down, 1 to [`MAX_SIDE`].
+    pub height: u32,
+    /// Depth below which nothing is drawn, world units, above 0.
+    pub near: f64,
+}
+
+/// How a surface is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RasterOptions {
+    /// How many samples a pixel has, and where.
+    pub samples: Samples,
+    /// The light; `None`: colours as they are.
+    pub light: Option<Light>,
+    /// What is behind, sRGB; `None`: transparent.
+    pub background: Option<[u8; 3]>,
+}
+
+/// Why nothing was drawn.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum RasterError {
+    /// The picture has no pixels or too many.
+    #[error("a picture has 1 to {MAX_SIDE} pixels a side, not {0} x {1}")]
+    Size(u32, u32),
+    /// The camera has a number that is not finite, or a near depth or focal length not above 0.
+    #[error("the camera's numbers must be finite, its near depth and focal length above 0")]
+    Camera,
+    /// More triangles than 32 bits number.
+    #[error("{0} triangles are more than 32 bits can number")]
+    TooMany(usize),
+}
+
+/// A finished picture, row by row from the top left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RasterPicture {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Colour, sRGB, and coverage, not premultiplied; averaged in linear light.
+    pub rgba: Vec<[u8; 4]>,
+    /// Share of the pixel's samples that see a triangle.
+    pub coverage: Vec<f32>,
+    /// View-axis depth, world units, at the sample right of and below the
+    /// pixel's middle (with one sample: at the middle); infinite where that sees nothing.
+    pub depth: Vec<f32>,
+    /// The triangle that this sample sees, or [`NO_TRIANGLE`].
+    pub triangle: Vec<u32>,
+}
+
+/// Draws a surface. Both sides of a triangle are drawn; of triangles at the
+/// same depth the first counts.
+///
+/// # Errors
+/// See [`RasterError`].
+pub fn draw<S: Surface + ?Sized>(
+    surface: &S,
+    view: &RasterCamera,
+    options: &RasterOptions,
+    progress: &dyn Progress,
+) -> Result<RasterPicture, RasterError> {
+    let (width, height) = (view.width, view.height);
+    if !(1..=MAX_SIDE).contains(&width) || !(1..=MAX_SIDE).contains(&height) {
+        return Err(RasterError::Size(width, height));
+    }
+    let axes = [view.eye, view.right, view.up, view.forward];
+    let positive = |x: f64| x > 0.0 && x.is_finite();
+    if !(axes.iter().all(|v| v.is_finite()) && positive(view.near) && positive(view.focal_px)) {
+        return Err(RasterError::Camera);
+    }
+    if u32::try_from(surface.len()).map_or(true, |count| count == NO_TRIANGLE) {
+        return Err(RasterError::TooMany(surface.len()));
+    }
+    let bins = Bins::fill(surface, view);
+    progress.begin("draw triangles", bins.len() as u64);
+    let bins: Vec<Bin> = (0..bins.len())
+        .into_par_iter()
+        .map(|number| {
+            let bin = Bin::draw(surface, view, options, &bins, number);
+            progress.advance(1);
+            bin
+        })
+        .collect();
+    progress.end();
+    let pixels = width as usize * height as usize;
+    let mut picture = RasterPicture {
+        width,
+        height,
+        rgba: vec![[0; 4]; pixels],
+        coverage: vec![0.0; pixels],
+        depth: vec![f32::INFINITY; pixels],
+        triangle: vec![NO_TRIANGLE; pixels],
+    };
+    for bin in &bins {
+        bin.store(&mut picture);
+    }
+    Ok(picture)
+}

@@ -1,0 +1,150 @@
+//! Where in a pixel the samples lie.
+
+use std::fmt;
+
+use shiftvox::split_mix::mix;
+
+/// Steps of the sub-pixel lattice in a pixel, as a power of two.
+pub(super) const SUBPIXEL_BITS: u32 = 12;
+/// Steps of the sub-pixel lattice in a pixel.
+pub(super) const SUBPIXELS: i64 = 1 << SUBPIXEL_BITS;
+
+/// How samples are spread.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub enum Pattern {
+    /// In the middles of equal squares.
+    #[default]
+    Regular,
+    /// At random within equal squares, in each pixel anew; the same seed gives the same places.
+    Stratified {
+        /// What chance depends on.
+        seed: u64,
+    },
+}
+
+/// How many samples a pixel has, and where.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Samples {
+    side: u32,
+    pattern: Pattern,
+}
+
+/// A number of samples that there is not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SamplesError(pub u32);
+
+impl fmt::Display for SamplesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a pixel has 1, 4, 16 or 256 samples, not {}", self.0)
+    }
+}
+
+impl std::error::Error for SamplesError {}
+
+impl Samples {
+    /// So many samples a pixel: 1, 4, 16 or 256.
+    ///
+    /// # Errors
+    /// When it is another number.
+    pub fn new(per_pixel: u32, pattern: Pattern) -> Result<Self, SamplesError> {
+        let side = match per_pixel {
+            1 => 1,
+            4 => 2,
+            16 => 4,
+            256 => 16,
+            other => return Err(SamplesError(other)),
+        };
+        Ok(Self { side, pattern })
+    }
+
+    /// Samples of a pixel.
+    #[must_use]
+    pub fn per_pixel(&self) -> usize {
+        (self.side * self.side) as usize
+    }
+
+    /// The sample that stands for the pixel: right of and below its middle.
+    #[must_use]
+    pub fn middle(&self) -> usize {
+        (self.side / 2 * self.side + self.side / 2) as usize
+    }
+
+    /// Where sample `number` of a pixel lies in it, right and down, in 1/4096 pixel.
+    #[must_use]
+    pub fn place(&self, pixel: [u32; 2], number: usize) -> [i64; 2] {
+        let square = SUBPIXELS / i64::from(self.side);
+        let number = number as u32;
+        let corner = [number % self.side, number / self.side].map(|i| i64::from(i) * square);
+        let within = match self.pattern {
+            Pattern::Regular => [square / 2; 2],
+            Pattern::Stratified { seed } => {
+                let place = u64::from(pixel[0]) << 40 | u64::from(pixel[1]) << 16;
+                let random = mix(seed ^ mix(place | u64::from(number)));
+                let low = square as u64 - 1;
+                [(random & low) as i64, (random >> 32 & low) as i64]
+            }
+        };
+        [corner[0] + within[0], corner[1] + within[1]]
+    }
+}
+
+/// Where the samples of a rectangle of pixels lie.
+pub(super) struct Places {
+    per_pixel: usize,
+    /// Of each pixel, or once where all pixels have the same.
+    table: Vec<[i32; 2]>,
+}
+
+impl Places {
+    /// Of `columns` by `rows` pixels from a corner, row by row.
+    pub(super) fn new(samples: &Samples, corner: [u32; 2], columns: u32, rows: u32) -> Self {
+        let pixels = match samples.pattern {
+            Pattern::Regular => 1,
+            Pattern::Stratified { .. } => columns * rows,
+        };
+        let per_pixel = samples.per_pixel();
+        let table = (0..pixels)
+            .flat_map(|i| {
+                let pixel = [corner[0] + i % columns, corner[1] + i / columns];
+                // Below 4096.
+                (0..per_pixel).map(move |number| samples.place(pixel, number).map(|c| c as i32))
+            })
+            .collect();
+        Self { per_pixel, table }
+    }
+
+    /// Those of a pixel.
+    #[inline]
+    pub(super) fn of(&self, pixel: usize) -> &[[i32; 2]] {
+        let at = if self.table.len() == self.per_pixel {
+            0
+        } else {
+            pixel * self.per_pixel
+        };
+        &self.table[at..at + self.per_pixel]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_square_has_one_sample() {
+        for per_pixel in [1, 4, 16, 256] {
+            for pattern in [Pattern::Regular, Pattern::Stratified { seed: 7 }] {
+                let samples = Samples::new(per_pixel, pattern).unwrap();
+                let square = SUBPIXELS / i64::from(samples.side);
+                let mut seen = vec![false; per_pixel as usize];
+                for number in 0..samples.per_pixel() {
+                    let [x, y] = samples.place([3, 900], number);
+                    let at = y / square * i64::from(samples.side) + x / square;
+                    assert!(!std::mem::replace(&mut seen[at as usize], true));
+                }
+            }
+        }
+        assert!(Samples::new(2, Pattern::Regular).is_err());
+        let one = Samples::new(1, Pattern::Regular).unwrap();
+        assert_eq!(one.place([0, 0], 0), [SUBPIXELS / 2; 2]);
+    }
+}

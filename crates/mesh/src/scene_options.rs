@@ -1,0 +1,87 @@
+//! How scenes are opened, where the defaults are not meant.
+
+use std::path::Path;
+
+use shiftvox::graph::Silent;
+use shiftvox::scene::{self, OpenError, Opened, SceneFile, Source};
+use shiftvox::{Error, Scene, Up};
+
+use crate::open::{OpenOptions, open_bytes};
+
+/// Opens scenes with other settings than the defaults.
+///
+/// ```
+/// use shiftvox::{Camera, Coverage, Renderer};
+/// use shiftvox_mesh::SceneOptions;
+///
+/// // 2^6 voxels along the longest side, with opacities for pictures that blend.
+/// let scene = SceneOptions::new().mesh_depth(6).opacities(true).open("assets/wires.obj")?;
+/// assert_eq!(scene.depth(), 6);
+/// let renderer = Renderer::new().coverage(Coverage::Alpha);
+/// let picture = renderer.render(&scene, &Camera::fit(&scene), 64, 64)?;
+/// # assert!(picture.rgba().iter().any(|pixel| pixel[3] != 0));
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct SceneOptions {
+    options: OpenOptions,
+    up: Option<Up>,
+}
+
+impl SceneOptions {
+    /// The defaults, which are those of [`Scene::open`].
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Levels at which meshes are voxelised: at most `2^depth` voxels along the longest side, 1 to 20; 9 by default.
+    #[must_use]
+    pub fn mesh_depth(mut self, depth: u32) -> Self {
+        self.options.mesh.depth = depth;
+        self
+    }
+
+    /// Whether the voxels of meshes get opacities, which [`Coverage::Alpha`](shiftvox::Coverage::Alpha) blends; no by
+    /// default.
+    #[must_use]
+    pub fn opacities(mut self, opacities: bool) -> Self {
+        self.options.mesh.opacities = opacities;
+        self
+    }
+
+    /// Which axis is up, whatever the file's format has by custom.
+    #[must_use]
+    pub fn up(mut self, up: Up) -> Self {
+        self.up = Some(up);
+        self
+    }
+
+    /// Opens a file: [`Scene::open`].
+    ///
+    /// # Errors
+    /// As [`Scene::open`], and where a setting is out of its range.
+    pub fn open(&self, path: impl AsRef<Path>) -> Result<Scene, Error> {
+        let OpenOptions { voxels, mesh } = &self.options;
+        let opened = SceneFile::open(path.as_ref())
+            .map_err(OpenError::from)
+            .and_then(|file| scene::open_source(Source::File(file), voxels, mesh, &Silent));
+        self.placed(opened)
+    }
+
+    /// Opens a file that is held in memory: [`Scene::from_bytes`].
+    ///
+    /// # Errors
+    /// As [`SceneOptions::open`].
+    pub fn from_bytes(&self, bytes: &[u8], name: &str) -> Result<Scene, Error> {
+        self.placed(open_bytes(bytes, name, &self.options, &Silent))
+    }
+
+    fn placed(&self, opened: Result<Opened, OpenError>) -> Result<Scene, Error> {
+        let scene = Scene::from(opened.map_err(|e| Error::Open(e.into()))?);
+        Ok(match self.up {
+            Some(up) => scene.with_up(up),
+            None => scene,
+        })
+    }
+}

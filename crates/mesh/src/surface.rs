@@ -1,0 +1,242 @@
+//! What is drawn and voxelised: one mesh, or one many times.
+
+use glam::{DAffine3, DVec3};
+
+use super::material::srgb_to_linear;
+use super::{Material, Mesh};
+use shiftvox::graph::MeshBox;
+
+/// One triangle, ready to be drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Triangle {
+    /// Positions of its corners.
+    pub corners: [DVec3; 3],
+    /// Unit normals of its corners.
+    pub normals: [DVec3; 3],
+    /// Colours of its corners, linear light.
+    pub colors: [DVec3; 3],
+    /// Opacity, above 0.
+    pub alpha: f64,
+}
+
+/// Triangles, accessed by number.
+pub trait Surface: Sync {
+    /// Number of triangles.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Positions of the corners of triangle `number`, which is below [`Surface::len`].
+    fn corners(&self, number: usize) -> [DVec3; 3];
+
+    /// All attributes of triangle `number`, which is below [`Surface::len`].
+    fn triangle(&self, number: usize) -> Triangle;
+
+    /// Lowest and highest corner of the box around all triangles.
+    fn bounds(&self) -> (DVec3, DVec3);
+
+    /// The material of triangle `number`, if its colour is the mean of its texture there: between
+    /// triangles of one material it changes without an edge.
+    fn tinted_material(&self, _number: usize) -> Option<u32> {
+        None
+    }
+
+    /// Whether triangle `number` is textured: then the rasteriser calls
+    /// [`Surface::texture`] at each point of it. No triangle of a mesh is.
+    fn is_textured(&self, _number: usize) -> bool {
+        false
+    }
+
+    /// Colour (linear light) and unit normal of a textured triangle at a point
+    /// of it; `None` where it is transparent.
+    fn texture(&self, _number: usize, _point: DVec3) -> Option<(DVec3, DVec3)> {
+        None
+    }
+}
+
+/// What fitted cameras look at, whatever is made of a surface.
+#[must_use]
+pub fn mesh_box<S: Surface + ?Sized>(surface: &S, y_up: bool) -> MeshBox {
+    let (low, high) = surface.bounds();
+    let span = (low.to_array(), high.to_array());
+    let corners = (0..surface.len()).flat_map(|number| surface.corners(number));
+    MeshBox::around(span, corners.map(|corner| corner.to_array()), y_up)
+}
+
+impl Surface for Mesh {
+    fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        self.triangles[number].map(|i| DVec3::from_array(self.positions[i as usize]))
+    }
+
+    fn triangle(&self, number: usize) -> Triangle {
+        let corners = Surface::corners(self, number);
+        let normals = match self.corner_normals.get(number) {
+            Some(normals) => normals.map(|n| DVec3::from_array(n.map(f64::from))),
+            None => [plane_normal(corners); 3],
+        };
+        let material: Option<&Material> = self.materials.get(self.material_of[number] as usize);
+        let (diffuse, alpha) = material.map_or(([1.0; 3], 1.0), |m| (m.diffuse, m.alpha));
+        let tint = self.tints.get(number).copied().unwrap_or([1.0; 3]);
+        let linear = |color: [f32; 3]| DVec3::from_array(color.map(f64::from));
+        let diffuse = linear(diffuse) * linear(tint);
+        let colors = if self.vertex_colors.is_empty() {
+            [diffuse; 3]
+        } else {
+            self.triangles[number].map(|i| {
+                let color = self.vertex_colors[i as usize];
+                diffuse * DVec3::from_array(color.map(|byte| f64::from(srgb_to_linear(byte))))
+            })
+        };
+        Triangle {
+            corners,
+            normals,
+            colors,
+            alpha: f64::from(alpha),
+        }
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        Self::bounds(self)
+    }
+
+    fn tinted_material(&self, number: usize) -> Option<u32> {
+        self.tints.get(number).map(|_| self.material_of[number])
+    }
+}
+
+/// One mesh at many places. Costs 96 bytes a place and no triangles.
+#[derive(Debug, Clone)]
+pub struct Instances {
+    mesh: Mesh,
+    places: Vec<DAffine3>,
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Instances {
+    /// A mesh at places. A place must have an inverse; those that have none,
+    /// or are not finite, are left out.
+    #[must_use]
+    pub fn new(mesh: Mesh, places: Vec<DAffine3>) -> Self {
+        let places: Vec<DAffine3> = places
+            .into_iter()
+            .filter(|place| place.is_finite() && place.matrix3.determinant() != 0.0)
+            .collect();
+        let mut is_used = vec![false; mesh.positions.len()];
+        for &corner in mesh.triangles.iter().flatten() {
+            is_used[corner as usize] = true;
+        }
+        let used = mesh
+            .positions
+            .iter()
+            .zip(&is_used)
+            .filter(|(_, used)| **used);
+        let used: Vec<DVec3> = used
+            .map(|(position, _)| DVec3::from_array(*position))
+            .collect();
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for place in &places {
+            // Of the points and not of their box, whose corners may end up farther out.
+            for &position in &used {
+                let point = place.transform_point3(position);
+                low = low.min(point);
+                high = high.max(point);
+            }
+        }
+        Self {
+            mesh,
+            places,
+            low,
+            high,
+        }
+    }
+
+    /// The mesh.
+    #[must_use]
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Where it stands.
+    #[must_use]
+    pub fn places(&self) -> &[DAffine3] {
+        &self.places
+    }
+}
+
+impl Surface for Instances {
+    fn len(&self) -> usize {
+        self.mesh.triangles.len().saturating_mul(self.places.len())
+    }
+
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        let each = self.mesh.triangles.len();
+        let place = &self.places[number / each];
+        Surface::corners(&self.mesh, number % each).map(|p| place.transform_point3(p))
+    }
+
+    fn triangle(&self, number: usize) -> Triangle {
+        let each = self.mesh.triangles.len();
+        let place = &self.places[number / each];
+        let mut triangle = self.mesh.triangle(number % each);
+        triangle.corners = triangle.corners.map(|p| place.transform_point3(p));
+        // Normals turn with the inverse transposed; a mirror image keeps outside outside.
+        let turn = place.matrix3.inverse().transpose();
+        triangle.normals = triangle.normals.map(|n| (turn * n).normalize_or(n));
+        triangle
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        (self.low, self.high)
+    }
+
+    fn tinted_material(&self, number: usize) -> Option<u32> {
+        Surface::tinted_material(&self.mesh, number % self.mesh.triangles.len())
+    }
+}
+
+/// The unit normal of a triangle's plane, on the side from which its corners
+/// are counter-clockwise; +Z where they are on a line.
+pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or(DVec3::Z)
+}
+
+/// The shares of the corners in a point of the triangle, each 0 to 1; thirds where it has no area.
+#[must_use]
+pub fn barycentric([a, b, c]: &[DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (*b - *a).cross(*c - *a);
+    let square = normal.length_squared();
+    if square == 0.0 {
+        return [1.0 / 3.0; 3];
+    }
+    let of_b = (point - *a).cross(*c - *a).dot(normal) / square;
+    let of_c = (*b - *a).cross(point - *a).dot(normal) / square;
+    let (of_b, of_c) = (of_b.clamp(0.0, 1.0), of_c.clamp(0.0, 1.0));
+    let excess = (of_b + of_c).max(1.0);
+    let (of_b, of_c) = (of_b / excess, of_c / excess);
+    [1.0 - of_b - of_c, of_b, of_c]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_of_corners() {
+        let triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+        assert_eq!(barycentric(&triangle, DVec3::X), [0.0, 1.0, 0.0]);
+        assert_eq!(
+            barycentric(&triangle, DVec3::new(0.25, 0.25, 5.0)),
+            [0.5, 0.25, 0.25]
+        );
+        assert_eq!(barycentric(&triangle, DVec3::splat(9.0))[0], 0.0);
+        assert_eq!(barycentric(&[DVec3::ZERO; 3], DVec3::X), [1.0 / 3.0; 3]);
+    }
+}

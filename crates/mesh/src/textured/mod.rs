@@ -1,0 +1,78 @@
+//! Textured voxels: a mesh as an approximate core of textured voxels, and true
+//! geometry around it.
+//!
+//! [`build()`] makes one of triangles: voxels with the primitives inside them,
+//! their erosion depths, and the six half-scene textures, computed slice by
+//! slice from the inside out. [`store`] is the `.tvx` file; [`levels`] computes
+//! what a level of detail shows; [`view`] draws it. Rules, and where Tellier and Baroud 2003
+//! leaves a choice: `spec/textured.md`. Real numbers are allowed here; what a
+//! texel sees is decided in integers.
+
+pub mod build;
+pub mod cell_grid;
+pub mod levels;
+pub mod record;
+pub mod store;
+pub mod view;
+
+pub use build::{BuildError, BuildOptions, build};
+pub use cell_grid::CellGrid;
+pub use store::{TexturedError, TexturedFile};
+
+use glam::DVec3;
+
+use record::{Primitive, Texel, VoxelRecord};
+
+/// Which voxels an erosion takes away.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
+pub enum Element {
+    /// Those with an empty cell among the 26 around them: 3 x 3 x 3.
+    ///
+    /// The structuring element of the text of Tellier and Baroud 2003.
+    Cube,
+    /// Those with an empty cell at one of their six sides.
+    ///
+    /// the text of Tellier and Baroud 2003 has this one too, and its table must have been made with it
+    /// (`spec/textured.md`).
+    #[default]
+    Sides,
+}
+
+/// Textured voxels in memory, as [`build()`] makes them and [`store::write_to`] writes them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TexturedData {
+    /// Lowest corner of the box around all primitives, world units.
+    pub low: DVec3,
+    /// Highest corner of that box.
+    pub high: DVec3,
+    /// Whether +Y is up, for fitted cameras; else +Z.
+    pub y_up: bool,
+    /// For fitted cameras too: [`MeshBox::bevels`](shiftvox::graph::MeshBox::bevels).
+    pub bevels: [u8; 8],
+    /// The primitives, in the mesh's order.
+    pub primitives: Vec<Primitive>,
+    /// The grids, coarse before fine, each of another number of cells.
+    pub grids: Vec<GridData>,
+}
+
+/// One grid of voxels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridData {
+    /// Cells along each axis: even.
+    pub cells: u32,
+    /// Texels along the side of a voxel's face.
+    pub texels: u32,
+    /// What an erosion takes away.
+    pub element: Element,
+    /// Voxels that are not empty, by erosion depth and then by cell.
+    pub voxels: Vec<VoxelRecord>,
+    /// The primitives of each voxel in rising order, voxel after voxel.
+    pub lists: Vec<u32>,
+    /// Sub-textures, each `texels * texels`, row after row.
+    pub textures: Vec<Texel>,
+    /// Texels that primitives were projected on, once along each axis.
+    pub projected: u64,
+    /// Texels that they would have been projected on, had each volume been projected afresh.
+    pub projected_afresh: u64,
+}

@@ -1,0 +1,130 @@
+//! What is stored of a primitive, a voxel and a texel. Plain bytes, little-endian.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use shiftvox::graph::PackedNormal;
+use crate::{Triangle, linear_to_srgb, srgb_to_linear};
+
+/// A triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Primitive {
+    /// Corners, world units.
+    pub corners: [[f32; 3]; 3],
+    /// Normals of the corners, packed; 0 where it is the plane's.
+    pub normals: [u16; 3],
+    /// Colours of the corners, sRGB.
+    pub colors: [[u8; 3]; 3],
+    /// Zero.
+    pub spare: u8,
+}
+
+/// Bytes of a [`Primitive`].
+pub const PRIMITIVE_BYTES: usize = size_of::<Primitive>();
+
+impl Primitive {
+    /// What a triangle is stored as.
+    #[must_use]
+    pub fn of(triangle: &Triangle) -> Self {
+        let plane = plane_normal(triangle.corners);
+        let normal = |n: DVec3| {
+            // Normals of a file are in single precision.
+            let is_plane = n.distance_squared(plane) < 1e-12;
+            if is_plane {
+                PackedNormal::NONE.0
+            } else {
+                PackedNormal::encode(n).0
+            }
+        };
+        Self {
+            corners: triangle.corners.map(|p| p.as_vec3().to_array()),
+            normals: triangle.normals.map(normal),
+            colors: triangle.colors.map(|c| c.to_array().map(linear_to_srgb)),
+            spare: 0,
+        }
+    }
+
+    /// Positions of the corners.
+    #[must_use]
+    pub fn positions(&self) -> [DVec3; 3] {
+        self.corners.map(|p| DVec3::from_array(p.map(f64::from)))
+    }
+
+    /// The triangle, ready to be drawn.
+    #[must_use]
+    pub fn triangle(&self) -> Triangle {
+        let corners = self.positions();
+        let plane = plane_normal(corners);
+        let color = |c: [u8; 3]| DVec3::from_array(c.map(|b| f64::from(srgb_to_linear(b))));
+        Triangle {
+            corners,
+            normals: self
+                .normals
+                .map(|n| PackedNormal(n).decode().unwrap_or(plane)),
+            colors: self.colors.map(color),
+            alpha: 1.0,
+        }
+    }
+}
+
+/// A voxel that is not empty.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub struct VoxelRecord {
+    /// Its cell, along x, y, z.
+    pub cell: [u16; 3],
+    /// Erosions that it survives.
+    pub depth: u16,
+    /// The first entry of its list; the list ends where the next voxel's begins.
+    pub first: u32,
+    /// For the face on the outer side along each axis: the number of its
+    /// sub-texture, [`CLEAR`] or [`NEVER`].
+    pub textures: [u32; 3],
+}
+
+/// Bytes of a [`VoxelRecord`].
+pub const VOXEL_BYTES: usize = size_of::<VoxelRecord>();
+
+/// A face that is a surfel at some level, but nothing is projected on any of its texels.
+pub const CLEAR: u32 = u32::MAX - 1;
+/// A face that no level shows.
+pub const NEVER: u32 = u32::MAX;
+
+/// A texel; all zeros where nothing projects on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Texel {
+    /// Colour, sRGB, without light.
+    pub color: [u8; 3],
+    /// 255 where something projects on it, else 0.
+    pub opacity: u8,
+    /// Normal, packed, on the outer side.
+    pub normal: u16,
+}
+
+/// Bytes of a [`Texel`].
+pub const TEXEL_BYTES: usize = size_of::<Texel>();
+
+impl Texel {
+    /// Whether nothing projects on it.
+    #[must_use]
+    pub fn is_clear(&self) -> bool {
+        self.opacity == 0
+    }
+
+    /// Whether its fields agree with each other.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        match self.opacity {
+            0 => *self == Self::default(),
+            255 => self.normal != PackedNormal::NONE.0,
+            _ => false,
+        }
+    }
+}
+
+/// The unit normal of a triangle's plane; +Z where its corners are on a line.
+pub(super) fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).normalize_or(DVec3::Z)
+}

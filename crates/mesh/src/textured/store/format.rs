@@ -1,0 +1,117 @@
+//! The layout of a `.tvx` file: `spec/textured.md`.
+//!
+//! A header of 128 bytes, an entry for each grid, primitives; then for each grid
+//! its voxels, lists and sub-textures. Sections are aligned to 64 bytes with
+//! zeros between. All numbers are little-endian.
+
+use bytemuck::{Pod, Zeroable};
+
+use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
+use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
+
+/// How files begin.
+pub(super) const FORMAT: Format = Format {
+    ending: ".tvx",
+    // As in PNG, they show a transfer that changes line ends or bit 7.
+    magic: *b"\x89TVX\r\n\x1a\n",
+    versions: VERSION_WITHOUT_BEVELS..=2,
+    signature: "the signature of a .tvx file",
+    not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
+};
+
+/// The version of the layout without bevels.
+pub(super) const VERSION_WITHOUT_BEVELS: u32 = 1;
+
+/// Where things are in the header, beside what every header has.
+pub(super) mod at {
+    pub(in super::super) const PRIMITIVES: usize = 24;
+    pub(in super::super) const LOW: usize = 32;
+    pub(in super::super) const HIGH: usize = 56;
+    pub(in super::super) const GRIDS: usize = 80;
+    pub(in super::super) const Y_UP: usize = 84;
+    pub(in super::super) const SPARE: std::ops::Range<usize> = 85..96;
+    pub(in super::super) const BEVELS: usize = 96;
+    pub(in super::super) const PRIMITIVES_CHECKSUM: usize = 104;
+    pub(in super::super) const GRIDS_CHECKSUM: usize = 112;
+}
+
+/// A grid's entry in the file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
+#[repr(C)]
+pub(super) struct GridEntry {
+    pub(super) cells: u32,
+    pub(super) texels: u32,
+    /// 0: cube, 1: sides.
+    pub(super) element: u32,
+    pub(super) spare: u32,
+    pub(super) voxels: u64,
+    pub(super) listed: u64,
+    /// Sub-textures.
+    pub(super) textures: u64,
+    pub(super) projected: u64,
+    pub(super) projected_afresh: u64,
+    pub(super) voxels_checksum: u64,
+    pub(super) lists_checksum: u64,
+    pub(super) textures_checksum: u64,
+}
+
+/// Bytes of a [`GridEntry`].
+pub(super) const ENTRY_BYTES: usize = size_of::<GridEntry>();
+
+/// Where a grid's sections lie: begin and end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct GridPlaces {
+    pub(super) voxels: [u64; 2],
+    pub(super) lists: [u64; 2],
+    pub(super) textures: [u64; 2],
+}
+
+/// Where the sections lie.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub(super) entries: [u64; 2],
+    pub(super) primitives: [u64; 2],
+    pub(super) grids: Vec<GridPlaces>,
+}
+
+impl Layout {
+    /// There is only one. Saturates.
+    pub(super) fn of(primitives: u64, grids: &[GridEntry]) -> Self {
+        let entries = section_after(HEADER_BYTES as u64, grids.len() as u64, ENTRY_BYTES);
+        let primitives = section_after(entries[1], primitives, PRIMITIVE_BYTES);
+        let mut end = primitives[1];
+        let places = grids.iter().map(|grid| {
+            let voxels = section_after(end, grid.voxels, VOXEL_BYTES);
+            let lists = section_after(voxels[1], grid.listed, size_of::<u32>());
+            let face = u64::from(grid.texels).saturating_mul(u64::from(grid.texels));
+            let textures = section_after(lists[1], grid.textures.saturating_mul(face), TEXEL_BYTES);
+            end = textures[1];
+            GridPlaces {
+                voxels,
+                lists,
+                textures,
+            }
+        });
+        Self {
+            entries,
+            primitives,
+            grids: places.collect(),
+        }
+    }
+
+    /// Bytes of the file.
+    pub(super) fn end(&self) -> u64 {
+        self.grids
+            .last()
+            .map_or(self.primitives[1], |g| g.textures[1])
+    }
+
+    /// All sections, in order.
+    pub(super) fn sections(&self) -> impl Iterator<Item = [u64; 2]> + '_ {
+        let of_grids = self
+            .grids
+            .iter()
+            .flat_map(|g| [g.voxels, g.lists, g.textures]);
+        [self.entries, self.primitives].into_iter().chain(of_grids)
+    }
+}

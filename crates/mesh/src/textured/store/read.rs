@@ -1,0 +1,427 @@
+//! Reading a `.tvx` file: mapped, or held in memory.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+use glam::DVec3;
+use xxhash_rust::xxh3::xxh3_64;
+
+use super::TexturedError;
+use super::check::{Part, check, check_entry, check_primitives};
+use super::format::{
+    ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, VERSION_WITHOUT_BEVELS, at,
+};
+use shiftvox::graph::MeshBox;
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
+use crate::textured::build::{MOST_GRIDS, depths_of};
+use crate::textured::levels::Levels;
+use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
+use crate::textured::{CellGrid, Element};
+
+/// An open `.tvx` file.
+#[derive(Debug)]
+pub struct TexturedFile {
+    path: PathBuf,
+    bytes: Bytes,
+    layout: Layout,
+    low: DVec3,
+    high: DVec3,
+    y_up: bool,
+    bevels: Option<[u8; 8]>,
+    entries: Vec<GridEntry>,
+    levels: Vec<Levels>,
+    /// Grids whose texels were found sound.
+    is_checked: Vec<AtomicBool>,
+    levels_made: AtomicU64,
+}
+
+impl TexturedFile {
+    /// Opens a file: maps it and checks all but the texels.
+    ///
+    /// # Errors
+    /// When it cannot be read, is something else, is truncated, or a field is not as it should be.
+    pub fn open(path: &Path) -> Result<Self, TexturedError> {
+        let refused = |refused| TexturedError::refused(path, refused);
+        let opened = file::open(path, HEADER_BYTES).map_err(refused)?;
+        Header::read(&opened.beginning, opened.bytes, path)?;
+        Self::of(Bytes::Mapped(opened.map().map_err(refused)?), path)
+    }
+
+    /// A file that is held in memory; it is named `(memory)` in errors.
+    ///
+    /// # Errors
+    /// As [`TexturedFile::open`].
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, TexturedError> {
+        Self::of(Bytes::held(bytes), Path::new("(memory)"))
+    }
+
+    fn of(bytes: Bytes, path: &Path) -> Result<Self, TexturedError> {
+        FORMAT.check_byte_order(path)?;
+        let all = bytes.get();
+        let header = Header::read(all, all.len() as u64, path)?;
+        let entries = header.entries(all, path)?;
+        let layout = Layout::of(header.primitives, &entries);
+        if layout.end() != all.len() as u64 {
+            let expected = format!("sections that end with the file at byte {}", all.len());
+            let offset = layout.entries[0];
+            return Err(TexturedError::damaged(path, "grids", offset, expected));
+        }
+        check_padding(all, layout.sections(), path)?;
+        let mut file = Self {
+            path: path.to_owned(),
+            is_checked: entries.iter().map(|_| AtomicBool::new(false)).collect(),
+            bytes,
+            layout,
+            low: header.low,
+            high: header.high,
+            y_up: header.y_up,
+            bevels: header.bevels,
+            entries,
+            levels: Vec::new(),
+            levels_made: AtomicU64::new(0),
+        };
+        file.check_primitives(header.primitives_checksum)?;
+        for number in 0..file.entries.len() {
+            file.check_grid(number)?;
+            let grid = &file.entries[number];
+            let (voxels, lists) = (file.voxels(number), file.lists(number));
+            let levels = Levels::of(voxels, lists, file.primitives().len(), grid.cells);
+            file.levels.push(levels);
+            file.levels_made.fetch_add(1, Ordering::Relaxed);
+        }
+        Ok(file)
+    }
+
+    fn check_primitives(&self, checksum: u64) -> Result<(), TexturedError> {
+        let place = self.layout.primitives;
+        if xxh3_64(&self.bytes.get()[range(place)]) != checksum {
+            let expected = format!("checksum {checksum:016x}");
+            return Err(self.damaged("primitives", place[0], expected));
+        }
+        check_primitives(self.primitives(), self.low, self.high).map_err(|(number, expected)| {
+            let offset = place[0] + (number * PRIMITIVE_BYTES) as u64;
+            self.damaged("primitives", offset, expected)
+        })
+    }
+
+    fn check_grid(&self, number: usize) -> Result<(), TexturedError> {
+        let (entry, places) = (&self.entries[number], &self.layout.grids[number]);
+        for (section, place, checksum) in [
+            ("voxels", places.voxels, entry.voxels_checksum),
+            ("lists", places.lists, entry.lists_checksum),
+        ] {
+            if xxh3_64(&self.bytes.get()[range(place)]) != checksum {
+                let expected = format!("checksum {checksum:016x} of grid {number}");
+                return Err(self.damaged(section, place[0], expected));
+            }
+        }
+        let (voxels, lists) = (self.voxels(number), self.lists(number));
+        check(entry, voxels, lists, self.primitives().len()).map_err(|fault| {
+            let (section, begin, bytes) = match fault.part {
+                Part::Voxels => ("voxels", places.voxels[0], VOXEL_BYTES),
+                Part::Lists => ("lists", places.lists[0], size_of::<u32>()),
+            };
+            let offset = begin + (fault.record * bytes) as u64;
+            self.damaged(
+                section,
+                offset,
+                format!("{} in grid {number}", fault.expected),
+            )
+        })
+    }
+
+    fn damaged(
+        &self,
+        section: &'static str,
+        offset: u64,
+        expected: impl Into<String>,
+    ) -> TexturedError {
+        TexturedError::damaged(&self.path, section, offset, expected)
+    }
+
+    /// Lowest and highest corner of the box around all primitives, world units.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        (self.low, self.high)
+    }
+
+    /// Whether +Y is up, for fitted cameras; else +Z.
+    #[must_use]
+    pub fn y_up(&self) -> bool {
+        self.y_up
+    }
+
+    /// What fitted cameras look at; none in a file of an earlier program.
+    #[must_use]
+    pub fn mesh_box(&self) -> Option<MeshBox> {
+        let span = (self.low.to_array(), self.high.to_array());
+        self.bevels
+            .map(|bevels| MeshBox::new(span, bevels, self.y_up))
+    }
+
+    /// The primitives, in the mesh's order.
+    #[must_use]
+    pub fn primitives(&self) -> &[Primitive] {
+        bytemuck::cast_slice(&self.bytes.get()[range(self.layout.primitives)])
+    }
+
+    /// Bytes of the file.
+    #[must_use]
+    pub fn len(&self) -> u64 {
+        self.layout.end()
+    }
+
+    /// Never: a file has a header.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        false
+    }
+
+    /// Number of grids, at least one.
+    #[must_use]
+    pub fn grids(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// A grid, coarse before fine; `number` is below [`TexturedFile::grids`].
+    #[must_use]
+    pub fn grid(&self, number: usize) -> Grid<'_> {
+        Grid { file: self, number }
+    }
+
+    /// How often tables of levels were made: once for each grid, on opening.
+    #[must_use]
+    pub fn levels_made(&self) -> u64 {
+        self.levels_made.load(Ordering::Relaxed)
+    }
+
+    /// Checks everything, also texels and erosion depths.
+    ///
+    /// # Errors
+    /// At the first that is not as it should be.
+    pub fn verify(&self) -> Result<(), TexturedError> {
+        for number in 0..self.grids() {
+            self.grid(number).ensure()?;
+            let (entry, voxels) = (&self.entries[number], self.voxels(number));
+            let element = self.grid(number).element();
+            let depths = depths_of(voxels, entry.cells, element);
+            let wrong = voxels
+                .iter()
+                .zip(depths)
+                .position(|(v, depth)| v.depth != depth);
+            if let Some(voxel) = wrong {
+                let offset = self.layout.grids[number].voxels[0] + (voxel * VOXEL_BYTES) as u64;
+                let expected = format!("the erosion depth of voxel {voxel} of grid {number}");
+                return Err(self.damaged("voxels", offset, expected));
+            }
+        }
+        Ok(())
+    }
+
+    fn places(&self, number: usize) -> &GridPlaces {
+        &self.layout.grids[number]
+    }
+
+    fn voxels(&self, number: usize) -> &[VoxelRecord] {
+        bytemuck::cast_slice(&self.bytes.get()[range(self.places(number).voxels)])
+    }
+
+    fn lists(&self, number: usize) -> &[u32] {
+        bytemuck::cast_slice(&self.bytes.get()[range(self.places(number).lists)])
+    }
+}
+
+/// One grid of a file.
+#[derive(Debug, Clone, Copy)]
+pub struct Grid<'f> {
+    file: &'f TexturedFile,
+    number: usize,
+}
+
+impl<'f> Grid<'f> {
+    /// Where its cells and texels lie.
+    #[must_use]
+    pub fn cell_grid(&self) -> CellGrid {
+        let entry = &self.file.entries[self.number];
+        CellGrid::around(self.file.low, self.file.high, entry.cells, entry.texels)
+    }
+
+    /// What an erosion takes away.
+    #[must_use]
+    pub fn element(&self) -> Element {
+        match self.file.entries[self.number].element {
+            0 => Element::Cube,
+            _ => Element::Sides,
+        }
+    }
+
+    /// The voxels, by erosion depth and then by cell.
+    #[must_use]
+    pub fn voxels(&self) -> &'f [VoxelRecord] {
+        self.file.voxels(self.number)
+    }
+
+    /// The primitives of a voxel, rising.
+    #[must_use]
+    pub fn list(&self, voxel: usize) -> &'f [u32] {
+        let (voxels, lists) = (self.voxels(), self.file.lists(self.number));
+        let end = voxels
+            .get(voxel + 1)
+            .map_or(lists.len(), |v| v.first as usize);
+        &lists[voxels[voxel].first as usize..end]
+    }
+
+    /// Entries of all lists.
+    #[must_use]
+    pub fn listed(&self) -> u64 {
+        self.file.entries[self.number].listed
+    }
+
+    /// What its levels show.
+    #[must_use]
+    pub fn levels(&self) -> &'f Levels {
+        &self.file.levels[self.number]
+    }
+
+    /// Number of sub-textures.
+    #[must_use]
+    pub fn textures(&self) -> u64 {
+        self.file.entries[self.number].textures
+    }
+
+    /// Texels that primitives were projected on; and how many it would have
+    /// been, had each volume been projected afresh.
+    #[must_use]
+    pub fn projected(&self) -> [u64; 2] {
+        let entry = &self.file.entries[self.number];
+        [entry.projected, entry.projected_afresh]
+    }
+
+    /// Bytes of its voxels, lists and texels.
+    #[must_use]
+    pub fn bytes(&self) -> [u64; 3] {
+        let places = self.file.places(self.number);
+        [places.voxels, places.lists, places.textures].map(|[begin, end]| end - begin)
+    }
+
+    /// A sub-texture, row after row; `number` is below [`Grid::textures`].
+    /// Texels are as they are in the file: [`Grid::ensure`] checks them.
+    #[must_use]
+    pub fn texture(&self, number: u32) -> &'f [Texel] {
+        let side = self.file.entries[self.number].texels as usize;
+        let texels = self.texels();
+        &texels[number as usize * side * side..][..side * side]
+    }
+
+    fn texels(&self) -> &'f [Texel] {
+        let place = self.file.places(self.number).textures;
+        bytemuck::cast_slice(&self.file.bytes.get()[range(place)])
+    }
+
+    /// Checks the texels, the first time.
+    ///
+    /// # Errors
+    /// When they are not as they were written.
+    pub fn ensure(&self) -> Result<(), TexturedError> {
+        let is_checked = &self.file.is_checked[self.number];
+        if is_checked.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let place = self.file.places(self.number).textures;
+        let checksum = self.file.entries[self.number].textures_checksum;
+        let texels = self.texels();
+        let is_sound =
+            xxh3_64(bytemuck::cast_slice(texels)) == checksum && texels.iter().all(Texel::is_sound);
+        if !is_sound {
+            let expected = format!("sound texels with checksum {checksum:016x}");
+            return Err(self.file.damaged("textures", place[0], expected));
+        }
+        is_checked.store(true, Ordering::Relaxed);
+        Ok(())
+    }
+}
+
+/// The header, decoded and checked.
+struct Header {
+    primitives: u64,
+    grids: usize,
+    low: DVec3,
+    high: DVec3,
+    y_up: bool,
+    bevels: Option<[u8; 8]>,
+    primitives_checksum: u64,
+    grids_checksum: u64,
+}
+
+impl Header {
+    /// Reads a header from the beginning of a file of `file_bytes`.
+    fn read(beginning: &[u8], file_bytes: u64, path: &Path) -> Result<Self, TexturedError> {
+        let header = FORMAT.read(beginning, file_bytes, path)?;
+        header.ensure(header.is_zero(at::SPARE), at::SPARE.start, || "zeros")?;
+        let grids = header.u32_at(at::GRIDS) as usize;
+        header.ensure((1..=MOST_GRIDS).contains(&grids), at::GRIDS, || {
+            format!("1 to {MOST_GRIDS} grids, not {grids}")
+        })?;
+        let primitives = header.u64_at(at::PRIMITIVES);
+        let is_numbered = (1..u64::from(u32::MAX)).contains(&primitives);
+        header.ensure(is_numbered, at::PRIMITIVES, || "1 to 2^32 primitives")?;
+        let [low, high] = [at::LOW, at::HIGH].map(|at| DVec3::from_array(header.f64s_at(at)));
+        let is_box = low.is_finite() && high.is_finite() && (high - low).max_element() > 0.0;
+        header.ensure(is_box, at::LOW, || "a box of finite numbers")?;
+        let finest = (high - low).max_element() / MOST_PARTS;
+        let is_seen = can_be_seen(low.to_array(), high.to_array(), finest);
+        header.ensure(is_seen, at::LOW, || "a box whose parts can be told apart")?;
+        header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
+        let bevels = header.bytes_at(at::BEVELS);
+        let says_bevels = header.version() > VERSION_WITHOUT_BEVELS;
+        header.ensure(says_bevels || bevels == [0; 8], at::BEVELS, || "zeros")?;
+        Ok(Self {
+            primitives,
+            grids,
+            low,
+            high,
+            y_up: header.byte_at(at::Y_UP) == 1,
+            bevels: says_bevels.then_some(bevels),
+            primitives_checksum: header.u64_at(at::PRIMITIVES_CHECKSUM),
+            grids_checksum: header.u64_at(at::GRIDS_CHECKSUM),
+        })
+    }
+
+    /// The entries of the grids, which follow the header.
+    fn entries(&self, all: &[u8], path: &Path) -> Result<Vec<GridEntry>, TexturedError> {
+        let [begin, end] = [HEADER_BYTES, HEADER_BYTES + self.grids * ENTRY_BYTES];
+        let Some(bytes) = all.get(begin..end) else {
+            let expected = format!("{} grids", self.grids);
+            return Err(TexturedError::damaged(
+                path,
+                "grids",
+                begin as u64,
+                expected,
+            ));
+        };
+        if xxh3_64(bytes) != self.grids_checksum {
+            let expected = format!("checksum {:016x}", self.grids_checksum);
+            return Err(TexturedError::damaged(
+                path,
+                "grids",
+                begin as u64,
+                expected,
+            ));
+        }
+        let entries: Vec<GridEntry> = bytemuck::pod_collect_to_vec(bytes);
+        for (number, entry) in entries.iter().enumerate() {
+            let is_finer = number == 0 || entries[number - 1].cells < entry.cells;
+            let sound = check_entry(entry).and(if is_finer {
+                Ok(())
+            } else {
+                Err("grids from coarse to fine")
+            });
+            sound.map_err(|expected| {
+                let offset = (begin + number * ENTRY_BYTES) as u64;
+                TexturedError::damaged(path, "grids", offset, expected)
+            })?;
+        }
+        Ok(entries)
+    }
+}

@@ -1,0 +1,114 @@
+//! Textured voxels to a picture.
+//!
+//! The primitives of eroded voxels and the surfels of those that are left go
+//! to the rasteriser as triangles: one depth buffer, any camera. A surfel is
+//! two textured triangles; where a texel is transparent, what is behind shows.
+
+mod choose;
+mod scene;
+
+use shiftvox::graph::Silent;
+use crate::raster::{
+    self, Light, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
+};
+
+pub use choose::{Choice, choose, choose_grid};
+
+use super::store::{TexturedError, TexturedFile};
+use scene::Shown;
+
+/// Which grid and level are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Detail {
+    /// The level of fewest faces, of all grids, whose texels are at most so many pixels.
+    Auto {
+        /// Pixels, above 0.
+        texel_px: f64,
+    },
+    /// This one.
+    Level {
+        /// Number of the grid.
+        grid: usize,
+        /// Erosions; from the last level on primitives alone.
+        level: u32,
+    },
+}
+
+/// How textured voxels are drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ViewOptions {
+    /// Which grid and level.
+    pub detail: Detail,
+    /// How many samples a pixel has, and where.
+    pub samples: Samples,
+    /// The light; `None`: colours as they are.
+    pub light: Option<Light>,
+    /// What is behind, sRGB; `None`: transparent.
+    pub background: Option<[u8; 3]>,
+}
+
+/// Why nothing was drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// The file's data is damaged.
+    #[error(transparent)]
+    File(#[from] TexturedError),
+    /// The camera or the picture's size.
+    #[error(transparent)]
+    Raster(#[from] RasterError),
+    /// There is no such grid.
+    #[error("there is no grid {0}: the file has {1}")]
+    Grid(usize, usize),
+    /// The size of texels.
+    #[error("texels are wanted at a size above 0 pixels, not {0}")]
+    TexelSize(f64),
+}
+
+/// What a frame took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TexturedCounts {
+    /// The grid and level that are drawn, and the size of its texels.
+    pub choice: Choice,
+    /// Primitives given to the rasteriser.
+    pub primitives: u64,
+    /// Surfels given to the rasteriser.
+    pub surfels: u64,
+    /// Voxels that are left.
+    pub voxels: u64,
+}
+
+/// Draws a frame.
+///
+/// # Errors
+/// See [`ViewError`].
+pub fn draw(
+    file: &TexturedFile,
+    view: &RasterCamera,
+    options: &ViewOptions,
+) -> Result<(RasterPicture, TexturedCounts), ViewError> {
+    let choice = match options.detail {
+        Detail::Auto { texel_px } if texel_px > 0.0 => choose(file, view, texel_px),
+        Detail::Auto { texel_px } => return Err(ViewError::TexelSize(texel_px)),
+        Detail::Level { grid, .. } if grid >= file.grids() => {
+            return Err(ViewError::Grid(grid, file.grids()));
+        }
+        Detail::Level { grid, level } => Choice::of(file, view, grid, level),
+    };
+    let grid = file.grid(choice.grid);
+    grid.ensure()?;
+    let levels = grid.levels();
+    let shown = Shown::new(file, grid, choice.level);
+    let raster_options = RasterOptions {
+        samples: options.samples,
+        light: options.light,
+        background: options.background,
+    };
+    let picture = raster::draw(&shown, view, &raster_options, &Silent)?;
+    let counts = TexturedCounts {
+        choice,
+        primitives: shown.primitives() as u64,
+        surfels: shown.surfels() as u64,
+        voxels: (grid.voxels().len() - levels.eroded(choice.level)) as u64,
+    };
+    Ok((picture, counts))
+}

@@ -1,0 +1,131 @@
+//! A level as a surface: primitives as they are, surfels as two textured triangles each.
+
+use glam::DVec3;
+
+use shiftvox::graph::PackedNormal;
+use crate::{Surface, Triangle, srgb_to_linear};
+use crate::textured::cell_grid::ACROSS;
+use crate::textured::levels::Surfel;
+use crate::textured::record::{Primitive, Texel};
+use crate::textured::store::{Grid, TexturedFile};
+
+/// A surfel with what is needed to draw it.
+struct Face<'f> {
+    axis: usize,
+    /// Unit vector to the outer side.
+    outwards: DVec3,
+    /// The corner from which texels are counted.
+    corner: DVec3,
+    /// Sides of the cell.
+    size: DVec3,
+    texels: &'f [Texel],
+}
+
+/// What a level shows.
+pub(super) struct Shown<'f> {
+    file: &'f TexturedFile,
+    stored: &'f [Primitive],
+    primitives: &'f [u32],
+    faces: Vec<Face<'f>>,
+    /// Texels along the side of a face.
+    side: usize,
+}
+
+impl<'f> Shown<'f> {
+    pub(super) fn new(file: &'f TexturedFile, grid: Grid<'f>, level: u32) -> Self {
+        let lattice = grid.cell_grid();
+        let size = lattice.cell_size();
+        let voxels = grid.voxels();
+        let face = |surfel: &Surfel| {
+            let axis = usize::from(surfel.axis);
+            let voxel = &voxels[surfel.voxel as usize];
+            let cell = voxel.cell.map(u32::from);
+            let mut corner = cell;
+            corner[axis] += u32::from(surfel.is_positive);
+            Face {
+                axis,
+                outwards: DVec3::AXES[axis] * if surfel.is_positive { 1.0 } else { -1.0 },
+                corner: lattice.corner(corner),
+                size,
+                texels: grid.texture(voxel.textures[axis]),
+            }
+        };
+        let levels = grid.levels();
+        Self {
+            file,
+            stored: file.primitives(),
+            primitives: levels.primitives(level),
+            faces: levels.surfels(level).map(face).collect(),
+            side: lattice.texels() as usize,
+        }
+    }
+
+    /// Number of primitives.
+    pub(super) fn primitives(&self) -> usize {
+        self.primitives.len()
+    }
+
+    /// Number of surfels.
+    pub(super) fn surfels(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The surfel of a textured triangle.
+    fn face(&self, number: usize) -> &Face<'f> {
+        &self.faces[(number - self.primitives.len()) / 2]
+    }
+}
+
+impl Surface for Shown<'_> {
+    fn len(&self) -> usize {
+        self.primitives.len() + 2 * self.faces.len()
+    }
+
+    fn corners(&self, number: usize) -> [DVec3; 3] {
+        if let Some(&primitive) = self.primitives.get(number) {
+            return self.stored[primitive as usize].positions();
+        }
+        let face = self.face(number);
+        let [across, down] = ACROSS[face.axis];
+        let right = DVec3::AXES[across] * face.size[across];
+        let below = DVec3::AXES[down] * face.size[down];
+        let is_second = (number - self.primitives.len()) % 2 == 1;
+        let middle = face.corner + if is_second { below } else { right };
+        [face.corner, middle, face.corner + right + below]
+    }
+
+    fn triangle(&self, number: usize) -> Triangle {
+        if let Some(&primitive) = self.primitives.get(number) {
+            return self.stored[primitive as usize].triangle();
+        }
+        let face = self.face(number);
+        Triangle {
+            corners: self.corners(number),
+            normals: [face.outwards; 3],
+            colors: [DVec3::ONE; 3],
+            alpha: 1.0,
+        }
+    }
+
+    fn bounds(&self) -> (DVec3, DVec3) {
+        self.file.bounds()
+    }
+
+    fn is_textured(&self, number: usize) -> bool {
+        number >= self.primitives.len()
+    }
+
+    fn texture(&self, number: usize, point: DVec3) -> Option<(DVec3, DVec3)> {
+        let face = self.face(number);
+        let place = (point - face.corner) / face.size * self.side as f64;
+        // A negative number becomes 0: points on an edge may lie beyond it by rounding.
+        let [across, down] = ACROSS[face.axis].map(|k| (place[k] as usize).min(self.side - 1));
+        let texel = &face.texels[down * self.side + across];
+        if texel.is_clear() {
+            return None;
+        }
+        let color = texel.color.map(|byte| f64::from(srgb_to_linear(byte)));
+        let normal = PackedNormal(texel.normal).decode();
+        Some((DVec3::from_array(color), normal.unwrap_or(face.outwards)))
+    }
+}

@@ -1,0 +1,241 @@
+//! The points of a voxel's faces that a mesh covers, and the opacities that they come to.
+//!
+//! A voxel's face is sampled at 64 points; a point is covered where a triangle within the voxel meets the line through
+//! it. What is covered is kept, not only counted, so that what lies before and behind is put together as it lies: two
+//! halves of a slanted wall, one in the front voxel and one in the back, are a whole wall and not three quarters of
+//! one. A coarser voxel's face has the points of four columns of two voxels, of which four become one; what is lost of
+//! one is handed on to the next, so that a thin wire stays as wide as it was, at every level.
+//!
+//! Triangles have two sides, so what the mesh covers along an axis it covers from both ends of it.
+
+use std::sync::atomic::{AtomicU8, AtomicU64};
+
+use super::touch::{OTHERS, Prepared};
+
+/// Points along a side of a face.
+const POINTS: usize = 8;
+/// The points of a face that are covered, by axis: bit `v * 8 + u`, with `u`
+/// and `v` the axes after it.
+pub(super) type Masks = [u64; 3];
+
+/// What a node covers, once that is found.
+#[derive(Debug, Default)]
+pub(super) struct Covered {
+    /// The points of its faces.
+    pub(super) masks: [AtomicU64; 3],
+    /// The coarsest level at which a large object is in it.
+    pub(super) large_from: AtomicU8,
+}
+
+/// A pseudo-random number that follows from what a node covers.
+pub(super) fn dither(masks: &Masks) -> u32 {
+    let mixed = masks.iter().fold(0u64, |hash, &mask| {
+        (hash ^ mask)
+            .wrapping_mul(0x9e37_79b9_7f4a_7c15)
+            .rotate_left(29)
+    });
+    (mixed.wrapping_mul(0xd6e8_feb8_6659_fd93) >> 32) as u32
+}
+
+/// The opacity of a face of which so many of the 64 points are covered: in
+/// sixteenths, rounded up or down as the dither has it, all and nothing apart.
+pub(super) fn opacity_of(points: u32, dither: u32) -> u8 {
+    let sixteenths = ((points * 16 + (dither & 63)) / 64) as u8;
+    match sixteenths {
+        // Eight sixteenths are between two opacities.
+        8 => 7 + (dither >> 6 & 1) as u8,
+        0..8 => sixteenths,
+        _ => sixteenths - 1,
+    }
+}
+
+/// Where in the eighths of a cell point (u, v) lies: over a row, or a column,
+/// every eighth once, so that a line along an axis is measured to a 64th.
+fn offsets(u: usize, v: usize) -> [i64; 2] {
+    const SPREAD: [i64; POINTS] = [0, 4, 2, 6, 1, 5, 3, 7];
+    [SPREAD[(v + 3 * u) & 7], SPREAD[(u + 5 * v) & 7]]
+}
+
+/// Adds the points that a triangle covers within a voxel.
+///
+/// Bits: corners and points stay below 2^31, so an edge times a distance is
+/// below 2^62; the normal is below 2^61, and its products are `i128`.
+pub(super) fn cover(triangle: &Prepared, corner: [i64; 3], side: i64, masks: &mut Masks) {
+    let cell = side / POINTS as i64;
+    for (k, [u, v]) in OTHERS.into_iter().enumerate() {
+        let normal = triangle.normal;
+        if normal[k] == 0 || masks[k] == u64::MAX {
+            continue;
+        }
+        let turn = normal[k].signum();
+        let flat = triangle
+            .corners
+            .map(|p| [p[u] - corner[u], p[v] - corner[v]]);
+        let cells = |axis: usize| {
+            let low = flat.iter().map(|p| p[axis]).min().unwrap_or(0);
+            let high = flat.iter().map(|p| p[axis]).max().unwrap_or(0);
+            low.max(0) / cell..=high.min(side - 1) / cell
+        };
+        // By corner, the normal's other parts times the way from there, and
+        // what the voxel's two ends along the axis come to.
+        let [first, ..] = flat;
+        let at = i128::from(triangle.corners[0][k] - corner[k]);
+        let along = i128::from(normal[k]) * i128::from(turn);
+        let (low, high) = (-along * at, along * (i128::from(side) - at));
+        for j in cells(1) {
+            for i in cells(0) {
+                let bit = 1u64 << (j * POINTS as i64 + i);
+                if masks[k] & bit != 0 {
+                    continue;
+                }
+                let [du, dv] = offsets(i as usize, j as usize);
+                let point = [
+                    i * cell + (2 * du + 1) * cell / 16,
+                    j * cell + (2 * dv + 1) * cell / 16,
+                ];
+                let inside = (0..3).all(|e| {
+                    let (a, b) = (flat[e], flat[(e + 1) % 3]);
+                    let turned =
+                        (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+                    turned * turn >= 0
+                });
+                if !inside {
+                    continue;
+                }
+                let slope = i128::from(normal[u]) * i128::from(point[0] - first[0])
+                    + i128::from(normal[v]) * i128::from(point[1] - first[1]);
+                let depth = -slope * i128::from(turn);
+                if (low..=high).contains(&depth) {
+                    masks[k] |= bit;
+                }
+            }
+        }
+    }
+}
+
+/// What a node's eight children cover together, by octant.
+///
+/// Of four points one is left. What a block of four has more or less than all
+/// is handed on to the next block of which something is covered, so that a
+/// face covers as many points as it should, to one of 64.
+pub(super) fn joined(children: &[Masks]) -> Masks {
+    let mut masks = Masks::default();
+    for (k, [u, v]) in OTHERS.into_iter().enumerate() {
+        let columns: [u64; 4] = std::array::from_fn(|column| {
+            let octant = (column & 1) << (2 - u) | (column >> 1) << (2 - v);
+            children[octant][k] | children[octant | 1 << (2 - k)][k]
+        });
+        // What is rounded up or down in the end: by chance, from the contents.
+        let mut points = dither(&[columns[0] ^ columns[3], columns[1], columns[2]]) & 3;
+        for (column, covered) in columns.into_iter().enumerate() {
+            let (cu, cv) = (column & 1, column >> 1);
+            for block in 0..16usize {
+                let (i, j) = (block & 3, block >> 2);
+                let bits = covered >> (16 * j + 2 * i);
+                let block = (bits & 0b11 | bits >> 6 & 0b1100).count_ones();
+                points += block;
+                if block > 0 && points >= 4 {
+                    points -= 4;
+                    masks[k] |= 1 << ((4 * cv + j) * POINTS + 4 * cu + i);
+                }
+            }
+        }
+    }
+    masks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::touch::child;
+    use super::*;
+
+    /// Lattice units of a voxel's side in these tests.
+    const SIDE: i64 = 1 << 10;
+
+    fn covered(triangles: &[[[i64; 3]; 3]], corner: [i64; 3]) -> [u32; 3] {
+        let mut masks = Masks::default();
+        for &triangle in triangles {
+            cover(&Prepared::new(triangle), corner, SIDE, &mut masks);
+        }
+        masks.map(u64::count_ones)
+    }
+
+    #[test]
+    fn a_wall_covers_its_face_and_no_other() {
+        let wall = |low: i64, high: i64| {
+            [
+                [[500, low, -100], [500, high, -100], [500, high, 3000]],
+                [[500, low, -100], [500, high, 3000], [500, low, 3000]],
+            ]
+        };
+        assert_eq!(covered(&wall(-9, 3000), [0; 3]), [64, 0, 0]);
+        assert_eq!(covered(&wall(-9, 512), [0; 3]), [32, 0, 0]);
+        // A strip of an eighth of the side, anywhere: an eighth of the points, to a 64th of the side.
+        for low in (0..896).step_by(37) {
+            let [points, ..] = covered(&wall(low, low + 128), [0; 3]);
+            assert!((7..=9).contains(&points), "{low}: {points}");
+        }
+        // Not in this voxel, but in the next.
+        assert_eq!(covered(&wall(-9, 3000), [-SIDE, 0, 0]), [0; 3]);
+    }
+
+    #[test]
+    fn two_halves_of_a_slanted_wall_make_a_whole_one() {
+        // The plane x + y = 1.3 sides, in the voxel (0, 0) and the next along x.
+        let (far, reach) = (4000, 1331);
+        let slant = [
+            [
+                [-far, reach + far, -far],
+                [far, reach - far, -far],
+                [far, reach - far, far],
+            ],
+            [
+                [-far, reach + far, -far],
+                [far, reach - far, far],
+                [-far, reach + far, far],
+            ],
+        ];
+        let near = covered(&slant, [0; 3])[0];
+        let mut masks = [Masks::default(); 8];
+        for octant in 0..8u8 {
+            for triangle in slant {
+                let at = child([0; 3], SIDE, octant);
+                cover(
+                    &Prepared::new(triangle),
+                    at,
+                    SIDE,
+                    &mut masks[octant as usize],
+                );
+            }
+        }
+        assert!((40..=50).contains(&near), "{near}");
+        // One voxel alone has seven tenths; both, one before the other, are whole.
+        let lower_half = 0x0f0f_0f0f_0f0f_0f0f;
+        assert_eq!(joined(&masks)[0] & lower_half, lower_half);
+    }
+
+    #[test]
+    fn opacities_are_shares_without_bias() {
+        for points in 0..=64u32 {
+            let opacity = |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
+            let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
+            assert!(
+                (mean - f64::from(points) / 4.0).abs() < 0.13,
+                "{points}: {mean}"
+            );
+        }
+        assert!((0..256).all(|dither| opacity_of(64, dither) == 15));
+        assert!((0..256).all(|dither| opacity_of(0, dither) == 0));
+    }
+
+    #[test]
+    fn four_points_become_one_without_bias() {
+        for covered in 0..=4u32 {
+            let points = (1u64 << covered) - 1;
+            let block = points & 3 | (points >> 2) << 8;
+            let all = (0..16).fold(0u64, |all, at| all | block << (at / 4 * 16 + at % 4 * 2));
+            let joined = joined(&[[all, all, all]; 8]);
+            assert_eq!(joined[0].count_ones(), 16 * covered, "{covered}");
+        }
+    }
+}

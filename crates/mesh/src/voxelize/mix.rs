@@ -1,0 +1,184 @@
+//! Colour and normal of a voxel, from the parts of the triangles within it.
+//!
+//! Each triangle counts by the area of its part within the cube, in faces of
+//! the cube, times its opacity; plus 2^-20 of a face, so that what only
+//! touches the cube, or has no area, counts where nothing else does.
+
+use glam::DVec3;
+
+use super::distinct::Repeated;
+use super::touch::Prepared;
+use shiftvox::graph::PackedNormal;
+use crate::Triangle;
+use crate::material::linear_to_srgb;
+use crate::surface::barycentric;
+
+/// Weight of a touch alone, in faces of the voxel.
+const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;
+/// Share of the weight below which opposite normals have cancelled.
+const CANCELLED: f64 = 0.25;
+/// A triangle cut by six planes has at most nine corners.
+const MOST_CORNERS: usize = 9;
+
+/// A triangle on the lattice with its colour and normal.
+#[derive(Debug)]
+pub(super) struct Painted {
+    pub(super) prepared: Prepared,
+    colors: [DVec3; 3],
+    normals: [DVec3; 3],
+    alpha: f64,
+    /// How many triangles it stands for.
+    pub(super) times: u32,
+}
+
+impl Painted {
+    pub(super) fn new(
+        prepared: Prepared,
+        triangle: &Triangle,
+        repeated: Option<&Repeated>,
+    ) -> Self {
+        Self {
+            prepared,
+            colors: repeated.map_or(triangle.colors, |all| all.colors),
+            normals: triangle.normals,
+            alpha: repeated.map_or(triangle.alpha, |all| all.alpha),
+            times: repeated.map_or(1, |all| all.times),
+        }
+    }
+}
+
+/// Colours and normals of a voxel, added up.
+#[derive(Debug, Default)]
+pub(super) struct Mix {
+    weight: f64,
+    light: DVec3,
+    normal: DVec3,
+    /// The normals once more, each turned to the side of the first.
+    turned: DVec3,
+    normal_weight: f64,
+}
+
+impl Mix {
+    /// Adds the part of a triangle that lies in the cube. The order of adding
+    /// counts, in the last bit; callers add in the order of the triangles.
+    pub(super) fn add(&mut self, painted: &Painted, corner: [i64; 3], side: i64) {
+        // Exact: differences on the lattice are below 2^31, the side a power of two.
+        let scale = 1.0 / side as f64;
+        let points = painted
+            .prepared
+            .corners
+            .map(|p| DVec3::from_array(std::array::from_fn(|k| (p[k] - corner[k]) as f64 * scale)));
+        let (area, centre) = if painted.prepared.is_inside(corner, side) {
+            (area_of(&points), (points[0] + points[1] + points[2]) / 3.0)
+        } else {
+            part_in_unit_cube(&points)
+        };
+        let weight = (area + TOUCH) * painted.alpha;
+        let share = barycentric(&points, centre);
+        let blend = |of: &[DVec3; 3]| of[0] * share[0] + of[1] * share[1] + of[2] * share[2];
+        let light = blend(&painted.colors) * weight;
+        let normal = blend(&painted.normals).normalize_or(painted.normals[0]) * weight;
+        self.weight += weight;
+        self.light += light;
+        let is_turned = self.turned.dot(normal) < 0.0;
+        self.normal += normal;
+        self.turned += if is_turned { -normal } else { normal };
+        self.normal_weight += weight;
+    }
+
+    /// The voxel's colour (sRGB) and normal.
+    ///
+    /// The normal is the average unless normals cancel; where normals
+    /// cancel, as in a thin wall with both its sides, it is that of one side,
+    /// the first triangle's.
+    pub(super) fn finish(&self) -> ([u8; 3], Option<PackedNormal>) {
+        let light = self.light / self.weight.max(f64::MIN_POSITIVE);
+        let color = light.to_array().map(linear_to_srgb);
+        let said = self.normal.length() >= CANCELLED * self.normal_weight;
+        let normal = if said { self.normal } else { self.turned };
+        let packed = PackedNormal::encode(normal);
+        (color, (!packed.is_none()).then_some(packed))
+    }
+}
+
+fn area_of(corners: &[DVec3]) -> f64 {
+    area_vector(corners).length() / 2.0
+}
+
+/// Twice the area of a plane polygon, as a vector along its normal.
+fn area_vector(corners: &[DVec3]) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    for pair in corners.windows(2).skip(1) {
+        sum += (pair[0] - corners[0]).cross(pair[1] - corners[0]);
+    }
+    sum
+}
+
+/// Area of the part of a triangle in the unit cube, and the mean of its
+/// corners; where they only touch, 0 and a point of the cube nearby.
+fn part_in_unit_cube(triangle: &[DVec3; 3]) -> (f64, DVec3) {
+    let mut corners = [DVec3::ZERO; MOST_CORNERS + 1];
+    corners[..3].copy_from_slice(triangle);
+    let mut count = 3;
+    for plane in 0..6 {
+        let (axis, far) = (plane / 2, plane % 2 == 1);
+        // Not negative on the inner side.
+        let inside = |p: DVec3| if far { 1.0 - p[axis] } else { p[axis] };
+        let mut cut = [DVec3::ZERO; MOST_CORNERS + 1];
+        let mut kept = 0;
+        for i in 0..count {
+            let (here, next) = (corners[i], corners[(i + 1) % count]);
+            let (a, b) = (inside(here), inside(next));
+            if a >= 0.0 && kept < cut.len() {
+                cut[kept] = here;
+                kept += 1;
+            }
+            if (a >= 0.0) != (b >= 0.0) && kept < cut.len() {
+                cut[kept] = here + (next - here) * (a / (a - b));
+                kept += 1;
+            }
+        }
+        (corners, count) = (cut, kept);
+        if count == 0 {
+            break;
+        }
+    }
+    if count == 0 {
+        let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+        return (0.0, middle.clamp(DVec3::ZERO, DVec3::ONE));
+    }
+    let polygon = &corners[..count];
+    let mean = polygon.iter().copied().sum::<DVec3>() / count as f64;
+    (area_of(polygon), mean)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_within_a_cube() {
+        // A plane through the middle, far larger than the cube.
+        let (area, mean) = part_in_unit_cube(&[
+            DVec3::new(-9.0, -9.0, 0.5),
+            DVec3::new(20.0, -9.0, 0.5),
+            DVec3::new(-9.0, 20.0, 0.5),
+        ]);
+        assert!((area - 1.0).abs() < 1e-12);
+        assert!((mean - DVec3::splat(0.5)).length() < 1e-12);
+        // The regular hexagon across the diagonal: side sqrt(1/2).
+        let (area, _) = part_in_unit_cube(&[
+            DVec3::new(4.5, -1.5, -1.5),
+            DVec3::new(-1.5, 4.5, -1.5),
+            DVec3::new(-1.5, -1.5, 4.5),
+        ]);
+        assert!((area - 0.75 * 3f64.sqrt()).abs() < 1e-12, "{area}");
+        // It touches in a corner.
+        let (area, mean) = part_in_unit_cube(&[
+            DVec3::new(1.0, 1.0, 1.0),
+            DVec3::new(2.0, 1.0, 1.0),
+            DVec3::new(1.0, 2.0, 1.0),
+        ]);
+        assert_eq!((area, mean), (0.0, DVec3::ONE));
+    }
+}

@@ -1,0 +1,138 @@
+//! A mesh in which much is hidden: blocks on a ground, a wall, thin masts, a ball.
+
+use glam::DVec3;
+use shiftvox_mesh::far::{BuildOptions, FarData, build};
+use shiftvox::graph::Silent;
+use shiftvox_mesh::raster::{Light, RasterCamera};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder};
+
+fn cuboid(builder: &mut MeshBuilder, low: [f32; 3], high: [f32; 3], material: u32) {
+    let corners: Vec<u32> = (0..8)
+        .map(|i| {
+            let pick = |k: usize| if i >> k & 1 == 1 { high[k] } else { low[k] };
+            builder.position([pick(0), pick(1), pick(2)])
+        })
+        .collect();
+    let faces = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    for [a, b, c, d] in faces {
+        for triangle in [[a, b, c], [a, c, d]] {
+            let triangle = triangle.map(|i: usize| corners[i]);
+            builder.triangle(triangle, None, material).unwrap();
+        }
+    }
+}
+
+/// About 4000 triangles, 40 units wide.
+pub(crate) fn city() -> Mesh {
+    blocks(false, false)
+}
+
+/// The city, on a ground or not, behind a high wall or not.
+fn blocks(has_ground: bool, has_wall: bool) -> Mesh {
+    let mut builder = MeshBuilder::new();
+    let colors = [[200, 60, 50], [60, 160, 70], [70, 80, 200], [220, 210, 90]];
+    for (i, color) in colors.into_iter().enumerate() {
+        builder.material(Material::of_srgb(format!("m{i}"), color));
+    }
+    for x in 0..16u32 {
+        for z in 0..16u32 {
+            let height = 1.0 + ((x * 7 + z * 13) % 11) as f32 * 0.4;
+            let (left, front) = (x as f32 * 2.5, z as f32 * 2.5);
+            let high = [left + 1.6, height, front + 1.7];
+            cuboid(&mut builder, [left, 0.0, front], high, (x + z) % 4);
+            if (x + z) % 3 == 0 {
+                let low = [left + 0.8, height, front + 0.8];
+                let high = [left + 0.9, height + 3.0, front + 0.9];
+                cuboid(&mut builder, low, high, 3);
+            }
+        }
+    }
+    // A wall in many small squares, which hides much from +z.
+    for x in 0..20u32 {
+        for y in 0..4u32 {
+            let low = [x as f32 * 2.0, y as f32 * 1.5, 42.0];
+            let high = [low[0] + 2.0, low[1] + 1.5, 42.1];
+            cuboid(&mut builder, low, high, (x + y) % 4);
+        }
+    }
+    // The ground, behind everything that is seen from above.
+    for i in 0..if has_ground { 196 } else { 0 } {
+        let (x, z) = ((i % 14) as f32 * 3.0, (i / 14) as f32 * 3.0);
+        let corners = [[x, z], [x, z + 3.0], [x + 3.0, z + 3.0], [x + 3.0, z]];
+        let corners = corners.map(|[x, z]| builder.position([x, -0.2, z]));
+        for [a, b, c] in [[0, 1, 2], [0, 2, 3]] {
+            let triangle = [corners[a], corners[b], corners[c]];
+            builder.triangle(triangle, None, 1).unwrap();
+        }
+    }
+    for i in 0..if has_wall { 400 } else { 0 } {
+        let (x, y) = ((i % 20) as f32 * 4.0 - 20.0, (i / 20) as f32 * 2.0 - 10.0);
+        cuboid(&mut builder, [x, y, 70.0], [x + 4.0, y + 2.0, 70.5], 2);
+    }
+    builder.finish("city").unwrap()
+}
+
+/// Small nodes, used from near.
+pub(crate) fn options() -> BuildOptions {
+    BuildOptions {
+        rays: Some(150_000),
+        leaf_triangles: 60,
+        grid: 24,
+        distance_voxels: 40.0,
+        ..BuildOptions::default()
+    }
+}
+
+/// The city as far voxels.
+pub(crate) fn far(options: &BuildOptions) -> FarData {
+    build(&city(), options, &Silent).unwrap()
+}
+
+/// The city on its ground as far voxels.
+pub(crate) fn far_on_ground(options: &BuildOptions) -> FarData {
+    build(&blocks(true, false), options, &Silent).unwrap()
+}
+
+/// The city behind a high wall as far voxels.
+pub(crate) fn far_behind_wall(options: &BuildOptions) -> FarData {
+    build(&blocks(true, true), options, &Silent).unwrap()
+}
+
+/// A view of the city from an angle around it and a distance.
+pub(crate) fn view(degrees: f64, height: f64, distance: f64, size: u32) -> RasterCamera {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let target = DVec3::new(20.0, 2.0, 21.0);
+    let eye = target + DVec3::new(sin, height, cos).normalize() * distance;
+    let forward = (target - eye).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    RasterCamera {
+        eye,
+        right,
+        up: right.cross(forward),
+        forward,
+        focal_px: f64::from(size),
+        width: size,
+        height: size,
+        near: 1e-3,
+    }
+}
+
+/// From above, behind the eye.
+pub(crate) fn light(view: &RasterCamera) -> Option<Light> {
+    let towards = (view.up + view.right * 0.5 - view.forward).normalize();
+    let ambient = 90;
+    Some(Light { towards, ambient })
+}
+
+/// Work on so many threads.
+pub(crate) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().unwrap().install(work)
+}

@@ -1,0 +1,10 @@
+//! Far voxels: build, file, view.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+mod build;
+mod city;
+mod file;
+mod hybrid;
+mod samples;
+mod solid;
+mod view;

@@ -1,0 +1,274 @@
+//! The view: culling, late answers, threads and batches never change a picture.
+
+use shiftvox_mesh::far::store::encode;
+use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
+use shiftvox_mesh::far::{BuildOptions, FarFile};
+use shiftvox::graph::Silent;
+use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
+
+use super::city::{city, far, far_behind_wall, far_on_ground, light, on_threads, options, view};
+
+fn file() -> FarFile {
+    FarFile::from_bytes(&encode(&far(&options())).unwrap()).unwrap()
+}
+
+#[test]
+fn culling_and_late_answers_never_change_the_picture() {
+    let data = far_on_ground(&options());
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    let mut hidden = 0;
+    for opacity in [Opacity::None, Opacity::Scalar, Opacity::Six] {
+        let mut viewers: Vec<FarViewer<'_>> = (0..3).map(|_| FarViewer::new(&file)).collect();
+        for step in 0..8 {
+            // Before the wall twice, behind it, from above.
+            let (turn, height, voxel_px) = [
+                (0.0, 0.02, 1.0),
+                (0.0, 0.02, 2.0),
+                (180.0, 0.15, 1.0),
+                (0.0, 3.0, 0.1),
+            ][step % 4];
+            let step = step as f64;
+            let view = view(step * 4.0 - 12.0 + turn, height, 45.0 + 8.0 * step, 160);
+            let options = ViewOptions {
+                voxel_px,
+                opacity,
+                light: light(&view),
+                culling: false,
+                ..ViewOptions::default()
+            };
+            let (expected, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
+            // Viewers that remember, with answers sooner and later.
+            for (late, viewer) in [0, 1, 4].into_iter().zip(&mut viewers) {
+                let culled = ViewOptions {
+                    culling: true,
+                    late,
+                    ..options
+                };
+                let (picture, counts) = viewer.draw(&view, &culled).unwrap();
+                assert!(picture == expected, "{opacity:?}, step {step}, late {late}");
+                hidden += counts.hidden;
+                // Wrong memories: any third, and the ground alone.
+                let any = |node: usize| node % 3 == step as usize % 3;
+                let low = |node: usize| file.nodes()[node].high[1] < 0.0;
+                for is_low in [false, true] {
+                    let mut wrong = FarViewer::new(&file);
+                    wrong.remember(|node| if is_low { low(node) } else { any(node) });
+                    let (picture, _) = wrong.draw(&view, &culled).unwrap();
+                    assert!(
+                        picture == expected,
+                        "{opacity:?}, step {step}, wrong {is_low}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(hidden > 20, "{hidden} nodes were hidden");
+}
+
+#[test]
+fn hidden_branches_cost_no_work() {
+    let data = far_behind_wall(&options());
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    // Before the wall: it hides the city.
+    let view = view(0.0, 0.02, 80.0, 160);
+    let draw = |viewer: &mut FarViewer<'_>, culling| {
+        let options = ViewOptions {
+            culling,
+            voxel_px: 0.1,
+            ..ViewOptions::default()
+        };
+        viewer.draw(&view, &options).unwrap()
+    };
+    let mut viewer = FarViewer::new(&file);
+    let (picture, all) = draw(&mut viewer, false);
+    let (first, _) = draw(&mut viewer, true);
+    let (second, culled) = draw(&mut viewer, true);
+    assert!(picture == first && picture == second);
+    assert!(culled.hidden > 0);
+    let drawn = |counts: &FarCounts| counts.voxel_nodes + counts.leaves;
+    // A branch is tested once, and nothing below it is visited.
+    assert!(
+        culled.hidden + drawn(&culled) < drawn(&all),
+        "{culled:?} {all:?}"
+    );
+    assert!(culled.visited < all.visited, "{culled:?} {all:?}");
+    assert!(
+        culled.triangles * 4 < all.triangles * 3,
+        "{culled:?} {all:?}"
+    );
+    // Of a hidden node not even the data is read: its damage does not matter.
+    let seen: std::collections::HashSet<i32> = picture.node.iter().copied().collect();
+    let unseen = (0..data.nodes.len()).rev().find(|&n| {
+        let node = &data.nodes[n];
+        let is_inside = node.high[2] < 30.0;
+        !seen.contains(&(n as i32)) && node.is_leaf() && is_inside
+    });
+    let mut bytes = encode(&data).unwrap();
+    let data_at = bytes.len() - data.packed.len();
+    bytes[data_at + data.nodes[unseen.unwrap()].data_at as usize] ^= 1;
+    let damaged = FarFile::from_bytes(&bytes).unwrap();
+    assert!(damaged.verify().is_err());
+    let (same, _) = draw(&mut FarViewer::new(&damaged), true);
+    assert!(same == picture);
+}
+
+#[test]
+fn a_budget_below_the_files_size_changes_nothing_but_time() {
+    let data = far_on_ground(&options());
+    let bytes = encode(&data).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("city.far");
+    std::fs::write(&path, &bytes).unwrap();
+    let whole = FarFile::open(&path).unwrap();
+    let budget = bytes.len() as u64 / 3;
+    let Ok(within) = FarFile::open_within(&path, budget) else {
+        eprintln!("skipped: this system does not let go of mapped pages");
+        return;
+    };
+    let mut viewers = (FarViewer::new(&whole), FarViewer::new(&within));
+    let mut mapped = [0; 2];
+    for step in 0..6 {
+        let view = view(
+            f64::from(step) * 60.0,
+            0.4,
+            60.0 + 20.0 * f64::from(step),
+            128,
+        );
+        let options = ViewOptions::default();
+        let (expected, _) = viewers.0.draw(&view, &options).unwrap();
+        let (picture, _) = viewers.1.draw(&view, &options).unwrap();
+        assert!(picture == expected, "step {step}");
+        let resident = within.resident().unwrap();
+        assert!(resident.most_bytes <= budget, "{resident:?} {budget}");
+        if let Some([more, less]) = mapped_bytes(&path) {
+            mapped = [mapped[0] + more, mapped[1] + less];
+        }
+    }
+    // The system maps pages about one that is touched as it likes, also such as were let go: so
+    // all that is certain is that some are gone.
+    assert!(mapped == [0; 2] || mapped[1] < mapped[0], "{mapped:?}");
+    let resident = within.resident().unwrap();
+    assert!(resident.released > 10, "{resident:?}");
+    within.verify().unwrap();
+    assert!(within.resident().unwrap().most_bytes <= budget);
+    assert_eq!(whole.resident(), None);
+}
+
+/// Bytes of the maps of a file that are in memory, the fullest first; Linux reports it.
+fn mapped_bytes(path: &std::path::Path) -> Option<[u64; 2]> {
+    let maps = std::fs::read_to_string("/proc/self/smaps").ok()?;
+    let name = path.canonicalize().ok()?.display().to_string();
+    let mut found = Vec::new();
+    let mut is_ours = false;
+    for line in maps.lines() {
+        if line.contains(" r")
+            && line.contains('-')
+            && line.contains(':')
+            && !line.starts_with("Rss")
+        {
+            is_ours = line.ends_with(&name);
+        } else if is_ours && line.starts_with("Rss:") {
+            let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+            found.push(kilobytes * 1024);
+        }
+    }
+    found.sort_unstable_by(|a, b| b.cmp(a));
+    found.try_into().ok()
+}
+
+#[test]
+fn threads_never_change_the_picture() {
+    let file = file();
+    let view = view(35.0, 0.4, 90.0, 200);
+    let draw = |threads| {
+        on_threads(threads, || {
+            FarViewer::new(&file)
+                .draw(&view, &ViewOptions::default())
+                .unwrap()
+        })
+    };
+    assert!(draw(1) == draw(2));
+}
+
+#[test]
+fn near_enough_it_is_the_triangles() {
+    let file = file();
+    let view = view(20.0, 0.3, 60.0, 200);
+    let options = ViewOptions {
+        voxel_px: 1e-6,
+        background: Some([10, 20, 30]),
+        ..ViewOptions::default()
+    };
+    let (picture, counts) = FarViewer::new(&file).draw(&view, &options).unwrap();
+    assert_eq!((counts.voxel_nodes, counts.opaque_voxels), (0, 0));
+    let expected = raster::draw(
+        &city(),
+        &view,
+        &RasterOptions {
+            samples: Samples::new(1, Pattern::Regular).unwrap(),
+            light: None,
+            background: options.background,
+        },
+        &Silent,
+    )
+    .unwrap();
+    // Colours are stored as bytes, and where two faces meet the order decides.
+    let differing = picture
+        .rgba
+        .iter()
+        .zip(&expected.rgba)
+        .filter(|(a, b)| a != b);
+    assert!(differing.count() < 40);
+    assert_eq!(picture.depth, expected.depth);
+}
+
+#[test]
+fn opacities_make_thin_parts_thin() {
+    let data = far(&BuildOptions {
+        rays: Some(500_000),
+        ..options()
+    });
+    let file = FarFile::from_bytes(&encode(&data).unwrap()).unwrap();
+    let view = view(30.0, 0.5, 200.0, 200);
+    let reference = raster::draw(
+        &city(),
+        &view,
+        &RasterOptions {
+            samples: Samples::new(256, Pattern::Regular).unwrap(),
+            light: None,
+            background: None,
+        },
+        &Silent,
+    )
+    .unwrap();
+    let sum = |coverage: &[f32]| coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
+    let bias = |opacity| {
+        let options = ViewOptions {
+            voxel_px: 3.0,
+            opacity,
+            ..ViewOptions::default()
+        };
+        let (picture, _) = FarViewer::new(&file).draw(&view, &options).unwrap();
+        sum(&picture.coverage) / sum(&reference.coverage) - 1.0
+    };
+    let (none, six) = (bias(Opacity::None), bias(Opacity::Six));
+    assert!(none > 0.1, "opaque voxels are bloated: {none}");
+    assert!(six.abs() < none / 2.0, "{six} {none}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let file = file();
+    let view = view(30.0, 0.5, 200.0, 64);
+    for voxel_px in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let options = ViewOptions {
+            voxel_px,
+            ..ViewOptions::default()
+        };
+        let refused = FarViewer::new(&file).draw(&view, &options);
+        assert!(matches!(refused, Err(ViewError::VoxelSize(_))));
+    }
+    let empty = raster::RasterCamera { width: 0, ..view };
+    let refused = FarViewer::new(&file).draw(&empty, &ViewOptions::default());
+    assert!(matches!(refused, Err(ViewError::Raster(_))));
+}

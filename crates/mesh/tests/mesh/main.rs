@@ -1,0 +1,18 @@
+//! Meshes: files to triangles, triangles to pixels, triangles to voxels.
+#![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
+
+mod bad_files;
+mod files;
+mod gltf_bytes;
+mod gltf_document;
+mod gltf_scenes;
+mod models;
+mod opacities;
+mod raster;
+mod scale;
+mod shapes;
+mod solids;
+mod textures;
+mod voxels;
+mod watertight;
+mod work;

@@ -1,0 +1,430 @@
+//! Triangles to pixels: known answers, no cracks, ray casting, more samples.
+
+use std::time::Duration;
+
+use glam::{DVec2, DVec3, Vec3A};
+use obvhs::BvhBuildParams;
+use obvhs::bvh2::builder::build_bvh2_from_tris;
+use obvhs::ray::{Ray, RayHit};
+use proptest::prelude::*;
+use shiftvox::graph::Silent;
+use shiftvox_mesh::raster::{
+    self, Light, NO_TRIANGLE, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
+};
+use shiftvox_mesh::{LoadOptions, Mesh, MeshBuilder, Surface};
+use shiftvox::scene;
+
+use super::shapes::{ball, cuboid, mesh_of, model, point, soup};
+
+fn view(eye: DVec3, target: DVec3, size: [u32; 2]) -> RasterCamera {
+    let forward = (target - eye).normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    RasterCamera {
+        eye,
+        right,
+        up: right.cross(forward),
+        forward,
+        focal_px: f64::from(size[1]),
+        width: size[0],
+        height: size[1],
+        near: 1e-3,
+    }
+}
+
+fn plain(per_pixel: u32) -> RasterOptions {
+    RasterOptions {
+        samples: Samples::new(per_pixel, Pattern::Regular).unwrap(),
+        light: None,
+        background: None,
+    }
+}
+
+fn draw<S: Surface>(surface: &S, view: &RasterCamera, options: &RasterOptions) -> RasterPicture {
+    raster::draw(surface, view, options, &Silent).unwrap()
+}
+
+/// One unit of the plane z = 0 is `64` pixels, and the origin is the middle of the picture.
+fn facing() -> RasterCamera {
+    view(DVec3::Z, DVec3::ZERO, [64, 64])
+}
+
+#[test]
+fn coverage_of_halves_and_quarters() {
+    // The left half of pixel (32, 31), and its lower half beyond that.
+    let px = 1.0 / 64.0;
+    let half = mesh_of(
+        &[
+            [-1.0, -1.0, 0.0],
+            [0.5 * px, -1.0, 0.0],
+            [0.5 * px, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
+        &[[0, 1, 2], [0, 2, 3]],
+    );
+    for (per_pixel, expected) in [(1, 0.0), (4, 0.5), (16, 0.5), (256, 0.5)] {
+        let picture = draw(&half, &facing(), &plain(per_pixel));
+        let at = |x: usize, y: usize| picture.coverage[y * 64 + x];
+        assert_eq!(at(31, 31), 1.0);
+        assert_eq!(at(33, 31), 0.0);
+        // One sample lies on the right edge, which is not the triangle's.
+        assert_eq!(at(32, 31), expected, "{per_pixel}");
+        assert_eq!(picture.depth[31 * 64 + 31], 1.0);
+        assert_eq!(picture.depth[31 * 64 + 33], f32::INFINITY);
+        assert_eq!(picture.rgba[31 * 64 + 31], [90, 120, 150, 255]);
+    }
+}
+
+#[test]
+fn light_is_that_of_voxels() {
+    let square = mesh_of(
+        &[
+            [-1.0, -1.0, 0.0],
+            [1.0, -1.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ],
+        &[[0, 1, 2], [0, 2, 3]],
+    );
+    let mut options = plain(1);
+    // From the front in full; from behind, the other side is seen: full too.
+    for eye in [DVec3::Z, DVec3::NEG_Z] {
+        options.light = Some(Light {
+            towards: eye,
+            ambient: 64,
+        });
+        let picture = draw(&square, &view(eye, DVec3::ZERO, [8, 8]), &options);
+        assert_eq!(picture.rgba[0], [90, 120, 150, 255]);
+    }
+    // At a right angle only the ambient quarter is left: 150 is 0.305 of the light.
+    options.light = Some(Light {
+        towards: DVec3::X,
+        ambient: 64,
+    });
+    let picture = draw(&square, &view(DVec3::Z, DVec3::ZERO, [8, 8]), &options);
+    assert_eq!(picture.rgba[0][2], 78);
+}
+
+#[test]
+fn inside_a_room_there_is_no_gap() {
+    // Corners behind the eye, at the near plane, far outside the guard band.
+    let room = cuboid([-3.0, -1.0, -2.0], [4.0, 2.5, 5.0]);
+    for (eye, target) in [
+        (DVec3::new(0.1, 0.2, 0.3), DVec3::new(5.0, 0.3, -2.0)),
+        (DVec3::new(-2.9995, 0.0, 0.0), DVec3::new(-2.9, 1.0, 4.0)),
+        (DVec3::new(3.0, 2.0, -1.0), DVec3::new(3.0, -4.0, -1.1)),
+    ] {
+        for per_pixel in [1, 16] {
+            // The wall is half a thousandth away.
+            let view = RasterCamera {
+                near: 1e-5,
+                ..view(eye, target, [90, 70])
+            };
+            let picture = draw(&room, &view, &plain(per_pixel));
+            assert!(picture.coverage.iter().all(|&c| c == 1.0), "{eye}");
+            // Each pixel's depth is the room's wall along its ray.
+            for (i, &depth) in picture.depth.iter().enumerate().filter(|_| per_pixel == 1) {
+                let ray = ray_of(&view, i as f64 % 90.0 + 0.5, f64::from(i as u32 / 90) + 0.5);
+                let (low, high) = Surface::bounds(&room);
+                let exit = (0..3)
+                    .map(|k| ((if ray[k] > 0.0 { high[k] } else { low[k] }) - eye[k]) / ray[k])
+                    .fold(f64::INFINITY, f64::min);
+                assert!(
+                    (f64::from(depth) - exit).abs() < 1e-5 * exit + 1e-7,
+                    "{i}: {depth} {exit}"
+                );
+            }
+        }
+    }
+}
+
+/// The ray through a place of the picture, one unit deep.
+fn ray_of(view: &RasterCamera, x: f64, y: f64) -> DVec3 {
+    view.forward
+        + view.right * ((x - f64::from(view.width) / 2.0) / view.focal_px)
+        + view.up * ((f64::from(view.height) / 2.0 - y) / view.focal_px)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    /// A bent and torn net of triangles, seen from near and far, drawn as a
+    /// whole and triangle by triangle: each sample belongs to one triangle.
+    #[test]
+    fn neighbours_leave_no_crack_and_share_no_sample(
+        bends in prop::collection::vec((-0.4f32..0.4, -0.4f32..0.4, -0.3f32..0.3), 36),
+        eye in (-1.5f64..1.5, -1.5f64..1.5, 0.6f64..9.0),
+    ) {
+        let inner = |i: usize| (1..5).contains(&i);
+        let mut positions = Vec::new();
+        for row in 0..6usize {
+            for column in 0..6usize {
+                let (dx, dy, dz) = bends[row * 6 + column];
+                let (dx, dy) = if inner(row) && inner(column) { (dx, dy) } else { (0.0, 0.0) };
+                positions.push([column as f32 - 2.5 + dx, row as f32 - 2.5 + dy, dz]);
+            }
+        }
+        let mut triangles = Vec::new();
+        for row in 0..5u32 {
+            for column in 0..5u32 {
+                let a = row * 6 + column;
+                triangles.extend([[a, a + 1, a + 7], [a, a + 7, a + 6]]);
+            }
+        }
+        let net = mesh_of(&positions, &triangles);
+        let view = view(DVec3::new(eye.0, eye.1, eye.2), DVec3::new(0.0, 0.1, 0.0), [40, 40]);
+        let options = plain(16);
+        let whole = draw(&net, &view, &options);
+        let mut sum = vec![0.0f32; 1600];
+        for &triangle in &triangles {
+            let single = mesh_of(&positions, &[triangle]);
+            let part = draw(&single, &view, &options);
+            for (sum, coverage) in sum.iter_mut().zip(&part.coverage) {
+                *sum += coverage;
+            }
+        }
+        // The net is one over the plane, seen from above, unless it folds on the picture.
+        let folds = soup(&net).iter().any(|t| {
+            let [a, b, c] = t.map(point);
+            (b - a).cross(c - a).dot(view.eye - a) <= 0.0
+        });
+        for (i, (&whole, &sum)) in whole.coverage.iter().zip(&sum).enumerate() {
+            if folds {
+                prop_assert!(whole <= sum);
+            } else {
+                prop_assert_eq!(whole, sum, "pixel {}", i);
+            }
+        }
+        // Rays through the middle of the net meet it: no hole there.
+        if !folds {
+            let outline = [[-2.5, -2.5], [2.5, -2.5], [2.5, 2.5], [-2.5, 2.5]];
+            let flat = mesh_of(&outline.map(|[x, y]| [x, y, 0.0]), &[[0, 1, 2], [0, 2, 3]]);
+            let inner = draw(&flat, &view, &options);
+            // A sample well within the outline: all of the neighbouring pixels' are too.
+            for y in 12..28usize {
+                for x in 12..28usize {
+                    let around = (y - 12..=y + 12).flat_map(|y| (x - 12..=x + 12).map(move |x| (x, y)));
+                    let deep = around.clone().all(|(x, y)| x < 40 && y < 40 && inner.coverage[y * 40 + x] == 1.0);
+                    if deep {
+                        prop_assert_eq!(whole.coverage[y * 40 + x], 1.0);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Pixels that rasteriser and ray caster see differently although no edge of
+/// what either sees is within `near_px` of the sample, and of these those
+/// whose depths differ too; and all that differ.
+fn against_rays(mesh: &Mesh, view: &RasterCamera, near_px: f64) -> (usize, usize) {
+    let picture = draw(mesh, view, &plain(1));
+    let soup = soup(mesh);
+    let triangles: Vec<obvhs::triangle::Triangle> = soup
+        .iter()
+        .map(|t| {
+            let [v0, v1, v2] = t.map(|p| (point(p) - view.eye).as_vec3a());
+            obvhs::triangle::Triangle { v0, v1, v2 }
+        })
+        .collect();
+    let bvh = build_bvh2_from_tris(
+        &triangles,
+        BvhBuildParams::medium_build(),
+        &mut Duration::default(),
+    );
+    let (mut unexplained, mut differing) = (0, 0);
+    for y in 0..view.height {
+        for x in 0..view.width {
+            let sample = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+            let direction = ray_of(view, sample.x, sample.y);
+            let ray = Ray::new(
+                Vec3A::ZERO,
+                direction.as_vec3a(),
+                view.near as f32,
+                f32::INFINITY,
+            );
+            let mut hit = RayHit::none();
+            bvh.ray_traverse(ray, &mut hit, |ray, id| {
+                triangles[bvh.primitive_indices[id] as usize].intersect(ray)
+            });
+            let cast = if hit.t.is_finite() && hit.primitive_id != u32::MAX {
+                bvh.primitive_indices[hit.primitive_id as usize]
+            } else {
+                NO_TRIANGLE
+            };
+            let at = (y * view.width + x) as usize;
+            let drawn = picture.triangle[at];
+            if cast == drawn {
+                continue;
+            }
+            differing += 1;
+            let near_edge = [cast, drawn]
+                .iter()
+                .filter(|&&t| t != NO_TRIANGLE)
+                .any(|&t| distance_to_edges(view, soup[t as usize].map(point), sample) < near_px);
+            // The ray's direction is one unit deep: its length is the depth.
+            let depths = (f64::from(hit.t), f64::from(picture.depth[at]));
+            let same_depth = (depths.0 - depths.1).abs() < 2e-5 * depths.1;
+            if !near_edge && !same_depth {
+                unexplained += 1;
+            }
+        }
+    }
+    (unexplained, differing)
+}
+
+/// Pixels from a sample to the nearest edge of a triangle in the picture.
+fn distance_to_edges(view: &RasterCamera, corners: [DVec3; 3], sample: DVec2) -> f64 {
+    let seen = corners.map(|corner| {
+        let offset = corner - view.eye;
+        let depth = offset.dot(view.forward);
+        DVec2::new(
+            f64::from(view.width) / 2.0 + offset.dot(view.right) / depth * view.focal_px,
+            f64::from(view.height) / 2.0 - offset.dot(view.up) / depth * view.focal_px,
+        )
+    });
+    (0..3)
+        .map(|i| {
+            let (a, b) = (seen[i], seen[(i + 1) % 3]);
+            let along = b - a;
+            let t = ((sample - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            sample.distance(a + along * t)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Pixels from an edge within which a ray caster in 32 bits may see another
+/// triangle: the raster's lattice has 1/4096 pixel, the rest is `f32`.
+const NEAR_PX: f64 = 0.005;
+
+#[test]
+fn the_picture_is_that_of_ray_casting() {
+    let mesh = ball(20);
+    let mut differing = 0;
+    for i in 0..6 {
+        let angle = f64::from(i);
+        let eye = DVec3::new(angle.sin(), 0.4 * (angle * 3.0).cos(), angle.cos()) * (2.0 + angle);
+        let found = against_rays(&mesh, &view(eye, DVec3::ZERO, [160, 120]), NEAR_PX);
+        assert_eq!(found.0, 0, "{eye}");
+        differing += found.1;
+    }
+    // Random triangles through each other.
+    let mut state = 3u64;
+    let mut random = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as f32 / (1u64 << 23) as f32 - 1.0
+    };
+    let mut builder = MeshBuilder::new();
+    for _ in 0..400 {
+        let at = [random(), random(), random()];
+        let corners =
+            [0, 1, 2].map(|_| builder.position([0, 1, 2].map(|k| at[k] + 0.3 * random())));
+        builder.triangle(corners, None, 0).unwrap();
+    }
+    let mesh = builder.finish("random").unwrap();
+    let found = against_rays(
+        &mesh,
+        &view(DVec3::new(0.5, 1.0, 4.0), DVec3::ZERO, [200, 200]),
+        NEAR_PX,
+    );
+    assert_eq!(found.0, 0);
+    eprintln!(
+        "{} samples on edges or at equal depth differ, none elsewhere",
+        differing + found.1
+    );
+}
+
+#[test]
+fn pictures_of_models_are_those_of_ray_casting() {
+    for name in [
+        "platform.obj",
+        "tree_Oak_Large.obj",
+        "kitchen.obj",
+        "CG-57.obj",
+    ] {
+        let Some(path) = model(name) else { continue };
+        let (mesh, _) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+        let (low, high) = mesh.bounds();
+        let centre = (low + high) / 2.0;
+        let away = (high - low).length();
+        let view = view(
+            centre + DVec3::new(0.5, 0.4, 0.8) * away,
+            centre,
+            [240, 240],
+        );
+        let (unexplained, differing) = against_rays(&mesh, &view, NEAR_PX);
+        eprintln!(
+            "{name}: {differing} of 57600 samples differ, {unexplained} of them away from edges"
+        );
+        assert_eq!(unexplained, 0, "{name}");
+    }
+}
+
+#[test]
+fn more_samples_agree_with_each_other() {
+    let mesh = ball(20);
+    let view = view(DVec3::new(1.0, 0.7, 3.0), DVec3::ZERO, [120, 120]);
+    let finest = draw(&mesh, &view, &plain(256));
+    let area =
+        |picture: &RasterPicture| picture.coverage.iter().map(|&c| f64::from(c)).sum::<f64>();
+    let mut last = f64::INFINITY;
+    for per_pixel in [1, 4, 16] {
+        let picture = draw(&mesh, &view, &plain(per_pixel));
+        let pairs = picture.coverage.iter().zip(&finest.coverage);
+        let error = pairs.map(|(a, b)| f64::from((a - b).abs())).sum::<f64>() / area(&finest);
+        assert!(error < last / 2.0, "{per_pixel}: {error} after {last}");
+        assert!(
+            (area(&picture) / area(&finest) - 1.0).abs() < 0.002,
+            "{per_pixel}"
+        );
+        last = error;
+    }
+    assert!(last < 0.002, "{last}");
+    // Samples at random: the same to within chance, other for another seed, the same for the same.
+    let stratified = |seed| RasterOptions {
+        samples: Samples::new(16, Pattern::Stratified { seed }).unwrap(),
+        ..plain(16)
+    };
+    let [a, b, again] = [1, 2, 1].map(|seed| draw(&mesh, &view, &stratified(seed)));
+    assert_eq!(a, again);
+    assert_ne!(a.coverage, b.coverage);
+    for picture in [&a, &b] {
+        assert!((area(picture) / area(&finest) - 1.0).abs() < 0.001);
+        for (i, (x, y)) in picture.coverage.iter().zip(&finest.coverage).enumerate() {
+            assert!((x - y).abs() < 0.3, "pixel {i}: {x} {y}");
+        }
+    }
+}
+
+#[test]
+fn threads_change_nothing_and_wrong_views_are_refused() {
+    let mesh = ball(16);
+    let view = view(DVec3::new(1.0, 0.7, 2.0), DVec3::ZERO, [100, 75]);
+    let pool = |threads| {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap()
+    };
+    let one = pool(1).install(|| draw(&mesh, &view, &plain(4)));
+    assert_eq!(one, pool(3).install(|| draw(&mesh, &view, &plain(4))));
+    for wrong in [
+        RasterCamera { width: 0, ..view },
+        RasterCamera {
+            height: 32769,
+            ..view
+        },
+        RasterCamera { near: 0.0, ..view },
+        RasterCamera {
+            focal_px: f64::NAN,
+            ..view
+        },
+        RasterCamera {
+            eye: DVec3::NAN,
+            ..view
+        },
+    ] {
+        assert!(raster::draw(&mesh, &wrong, &plain(1), &Silent).is_err());
+    }
+}

@@ -1,7 +1,0 @@
-//! The `shiftvox` command.
-
-use std::process::ExitCode;
-
-fn main() -> ExitCode {
-    shiftvox::cli::main()
-}
