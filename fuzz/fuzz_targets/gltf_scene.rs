@@ -2,7 +2,9 @@
 //! refused.
 #![no_main]
 
-#[path = "../../tests/mesh/gltf_document.rs"]
+#[path = "../../crates/mesh/tests/mesh/gltf_bytes.rs"]
+mod gltf_bytes;
+#[path = "../../crates/mesh/tests/mesh/gltf_document.rs"]
 mod gltf_document;
 
 use libfuzzer_sys::fuzz_target;

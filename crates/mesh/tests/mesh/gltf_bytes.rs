@@ -2,7 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::Choose;
+/// Number below `end`, which is 1 or more.
+pub type Choose<'c> = dyn FnMut(u32) -> u32 + 'c;
 
 /// Changes, removes or repeats something anywhere in a document.
 pub fn damage(value: &mut Value, choose: &mut Choose<'_>) {

@@ -13,8 +13,7 @@ use serde_json::{Map, Value, json};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::{Beside, LoadOptions, Mesh, MeshFormat, read};
 
-use super::gltf_bytes::damage;
-use super::gltf_bytes::{data_uri, glb};
+use super::gltf_bytes::{Choose, damage, data_uri, glb};
 
 /// A document and what belongs to it.
 pub struct Document {
@@ -62,8 +61,6 @@ impl Document {
     }
 }
 
-/// Number below `end`, which is 1 or more.
-pub type Choose<'c> = dyn FnMut(u32) -> u32 + 'c;
 /// Rows of a matrix whose last is (0, 0, 0, 1).
 type Affine = [[f64; 4]; 3];
 

@@ -2,7 +2,6 @@
 
 use shiftvox::graph::Silent;
 use shiftvox_mesh::LoadOptions;
-use shiftvox::scene;
 use shiftvox_mesh::textured::levels::LevelRow;
 use shiftvox_mesh::textured::{BuildOptions, Element, build};
 
