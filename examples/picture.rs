@@ -11,12 +11,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let output = arguments.next().unwrap_or_else(|| "picture.png".to_owned());
     let picture = Renderer::new()
         .samples(2)
+        .hashed(true)
         .render(&scene, &Camera::fit(&scene), 512, 512)?;
     picture.save_png(&output)?;
     println!(
         "{output}: {} voxels, hash {}",
         scene.voxels(),
-        picture.hash()
+        picture.hash()?
     );
     Ok(())
 }

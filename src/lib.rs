@@ -6,14 +6,14 @@
 //! platform, instruction set and number of threads.
 //!
 //! ```
-//! use shiftvox::{Camera, Renderer, Scene, Voxel};
+//! use shiftvox::{Buffer, Camera, Renderer, Scene, Voxel};
 //!
 //! // A red voxel in front of a blue one, seen from the front.
 //! let voxel = |y, color| Voxel { index: [0, y, 0], color, normal: None };
 //! let scene = Scene::from_voxels([voxel(0, [255, 0, 0]), voxel(1, [0, 0, 255])])?;
 //! let camera = Camera::fit(&scene).azimuth(0.0).elevation(0.0);
-//! let picture = Renderer::new().render(&scene, &camera, 32, 32)?;
-//! assert_eq!(picture.voxel_at(16, 16), Some(([0, 0, 0], 1))); // index, and level in the graph
+//! let picture = Renderer::new().buffers([Buffer::Voxel]).render(&scene, &camera, 32, 32)?;
+//! assert_eq!(picture.voxel_at(16, 16)?, Some(([0, 0, 0], 1))); // index, and level in the graph
 //! let [red, _, blue, _] = picture.rgba()[16 * 32 + 16];
 //! assert!(red > 100 && blue == 0);
 //! # #[cfg(feature = "png")]
@@ -53,7 +53,7 @@
 
 mod api;
 
-pub use api::{Camera, EngineKind, Error, Picture, Renderer, Scene, Up};
+pub use api::{Camera, EngineKind, Error, FittedCamera, Picture, Renderer, Scene, Up, View};
 
 pub use fast::{Declined, Fast, FastOptions, Instructions, Switches};
 pub use frame::Frame;

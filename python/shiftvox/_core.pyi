@@ -117,8 +117,9 @@ class Picture:
     """int32 (height, width): the node of the graph seen; -1 where nothing is."""
     counters: dict[str, int]
     """What the engine counted, by name."""
-    hash: str
-    """Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer."""
+    hash: str | None
+    """Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer. None unless all buffers
+    were requested."""
     @property
     def width(self) -> int:
         """Pixels across."""
@@ -146,6 +147,7 @@ def render(
     background: Sequence[int] | None = None,
     transparent: bool = False,
     threads: int = 0,
+    buffers: Sequence[Literal["depth", "normals", "voxels", "nodes"]] | None = None,
 ) -> Picture:
     """Draw a scene, by default with a fitted camera, 512 x 512. Other Python threads run meanwhile.
 
@@ -155,7 +157,8 @@ def render(
     coverages center and any. cage: "frame" (the default) or "corners". bits, frac: width of a word, 16 to 64, and
     its fraction. paper: the rules of the image-order paper, which set coverage, tolerance and cage. background:
     three numbers, 0 to 255 in sRGB; or transparent, not both. threads: up to 1024, 0 for all; never changes the
-    picture.
+    picture. buffers: those to compute besides the colours, of "depth", "normals", "voxels" and "nodes"; all unless
+    given. A picture has None for the others.
 
     Raises `Error` for settings that are out of range or exclude each other, and where a word overflows.
     """

@@ -22,7 +22,7 @@ const COVERAGES: [(&str, Coverage); 4] = [
 const CAGES: [(&str, CageKind); 2] = [("frame", CageKind::Frame), ("corners", CageKind::Corners)];
 const AXES: [(&str, Up); 2] = [("y", Up::Y), ("z", Up::Z)];
 
-fn one_of<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
+pub(crate) fn one_of<T: Copy>(what: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
     let found = known.iter().find(|(name, _)| *name == word);
     found.map(|&(_, value)| value).ok_or_else(|| {
         let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();

@@ -7,7 +7,14 @@ use crate::scene::Scene;
 /// Where a scene is seen from. Cannot be pickled: make it where it is used.
 #[pyclass(frozen, module = "shiftvox")]
 pub(crate) struct Camera {
-    pub(crate) camera: shiftvox::Camera,
+    pub(crate) camera: Kind,
+}
+
+/// The library's two kinds of cameras.
+#[derive(Clone)]
+pub(crate) enum Kind {
+    Fitted(shiftvox::FittedCamera),
+    Placed(shiftvox::Camera),
 }
 
 #[pymethods]
@@ -35,7 +42,9 @@ impl Camera {
         if let Some(degrees) = fov {
             camera = camera.field_of_view(degrees);
         }
-        Self { camera }
+        Self {
+            camera: Kind::Fitted(camera),
+        }
     }
 
     /// A camera at `eye` that has `target` in the middle; three numbers each, world units. up: a direction, (0, 0, 1)
@@ -52,6 +61,8 @@ impl Camera {
         if let Some(degrees) = fov {
             camera = camera.field_of_view(degrees);
         }
-        Self { camera }
+        Self {
+            camera: Kind::Placed(camera),
+        }
     }
 }

@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use numpy::{Element, IntoPyArray, PyArray2, PyArray3, PyArrayMethods, PyReadonlyArray};
+use numpy::{Element, IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
-use shiftvox::{Background, Renderer, Shading};
+use shiftvox::picture::npy::Values;
+use shiftvox::{Background, Buffer, Renderer, Shading};
 
 use crate::arguments::{self, color, count, whole};
-use crate::camera::Camera;
+use crate::camera::{Camera, Kind};
 use crate::pool::on_all_threads;
 use crate::scene::Scene;
 use crate::{Error, refused};
@@ -19,33 +20,58 @@ use crate::{Error, refused};
 #[pyclass(frozen, get_all, module = "shiftvox")]
 pub(crate) struct Picture {
     /// uint8 (height, width, 4): red, green, blue in sRGB, and alpha, not premultiplied.
-    rgba: Py<PyArray3<u8>>,
+    rgba: Py<PyAny>,
     /// float32 (height, width): along the view axis, world units; infinity where nothing is seen.
-    depth: Py<PyArray2<f32>>,
+    depth: Py<PyAny>,
     /// float32 (height, width, 3): unit length, world directions; zero where nothing is seen.
-    normals: Py<PyArray3<f32>>,
+    normals: Py<PyAny>,
     /// int32 (height, width, 4): index of the voxel seen, and its level (0 the root); (0, 0, 0, -1) where nothing is.
-    voxels: Py<PyArray3<i32>>,
+    voxels: Py<PyAny>,
     /// int32 (height, width): the node of the graph seen; -1 where nothing is.
-    nodes: Py<PyArray2<i32>>,
+    nodes: Py<PyAny>,
     /// What the engine counted, by name.
     counters: BTreeMap<&'static str, u64>,
-    /// Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer.
-    hash: String,
+    /// Of all buffers as they were drawn: 32 hexadecimal digits, the same on every computer. None unless all buffers were
+    /// requested.
+    hash: Option<String>,
     /// Pixels across.
     width: u32,
     /// Pixels down.
     height: u32,
 }
 
-/// Pixels and their entries as an array that owns them.
-fn grid<T: Element, const N: usize>(
+/// The buffers that can be requested, by the names of a picture's attributes.
+const BUFFERS: [(&str, Buffer); 4] = [
+    ("depth", Buffer::Depth),
+    ("normals", Buffer::Normal),
+    ("voxels", Buffer::Voxel),
+    ("nodes", Buffer::Node),
+];
+
+/// A buffer as an array that owns it, of `entries` numbers per pixel.
+fn array(
     py: Python<'_>,
-    pixels: Vec<[T; N]>,
+    values: Values,
     [height, width]: [usize; 2],
-) -> PyResult<Py<PyArray3<T>>> {
-    let flat = pixels.into_flattened().into_pyarray(py);
-    Ok(flat.reshape([height, width, N])?.unbind())
+    entries: usize,
+) -> PyResult<Py<PyAny>> {
+    fn shaped<T: Element>(
+        py: Python<'_>,
+        flat: Vec<T>,
+        [height, width, entries]: [usize; 3],
+    ) -> PyResult<Py<PyAny>> {
+        let flat = flat.into_pyarray(py);
+        Ok(match entries {
+            1 => flat.reshape([height, width])?.into_any().unbind(),
+            _ => flat.reshape([height, width, entries])?.into_any().unbind(),
+        })
+    }
+    let shape = [height, width, entries];
+    match values {
+        Values::U8(values) => shaped(py, values, shape),
+        Values::I32(values) => shaped(py, values, shape),
+        Values::F32(values) => shaped(py, values, shape),
+    }
 }
 
 #[pymethods]
@@ -53,7 +79,7 @@ impl Picture {
     /// Write the colours as a PNG, replacing what is there. Raises `Error` where the system refuses.
     fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let rgba: PyReadonlyArray<'_, u8, _> =
-            self.rgba.bind(py).try_readonly().map_err(refused)?;
+            self.rgba.bind(py).cast::<PyArray3<u8>>()?.try_readonly().map_err(refused)?;
         let pixels = rgba.as_slice().map_err(refused)?;
         let pixels = pixels.as_chunks::<4>().0.to_vec();
         if pixels.len() != self.width as usize * self.height as usize {
@@ -82,12 +108,13 @@ impl Picture {
 /// coverages center and any. cage: "frame" (the default) or "corners". bits, frac: width of a word, 16 to 64, and its
 /// fraction. paper: the rules of the image-order paper, which set coverage, tolerance and cage. background: three
 /// numbers, 0 to 255 in sRGB; or transparent, not both. threads: up to 1024, 0 for all; never changes the picture.
+/// buffers: those to compute besides the colours, of "depth", "normals", "voxels" and "nodes"; all unless given.
 ///
 /// Raises `Error` for settings that are out of range or exclude each other, and where a word overflows.
 #[pyfunction]
 #[pyo3(signature = (scene, camera=None, size=None, *, samples=1, engine="fast", coverage=None, lod=None,
     tolerance=None, cage=None, bits=64, frac=None, paper=false, shaded=true, background=None, transparent=false,
-    threads=0))]
+    threads=0, buffers=None))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub(crate) fn render(
     py: Python<'_>,
@@ -107,6 +134,7 @@ pub(crate) fn render(
     background: Option<&Bound<'_, PyAny>>,
     transparent: bool,
     #[pyo3(from_py_with = whole)] threads: i64,
+    buffers: Option<Vec<String>>,
 ) -> PyResult<Picture> {
     let [width, height] = size.map_or(Ok([512, 512]), arguments::size)?;
     let frac = frac.map(whole).transpose()?;
@@ -152,25 +180,45 @@ pub(crate) fn render(
             return Err(Error::new_err(told));
         }
     };
-    let camera = camera.map_or_else(|| shiftvox::Camera::fit(&scene.scene), |c| c.camera.clone());
-    let drawn = on_all_threads(py, || {
-        let picture = renderer.render(&scene.scene, &camera, width, height)?;
-        Ok::<_, shiftvox::Error>((picture.hash(), picture))
-    })?;
-    let (hash, picture) = drawn.map_err(refused)?;
-    let counters = picture.counters().iter().copied().collect();
-    let buffers = picture.into_buffers();
-    let (width, height) = (buffers.width, buffers.height);
+    let renderer = match &buffers {
+        None => renderer.buffers(BUFFERS.map(|(_, buffer)| buffer)).hashed(true),
+        Some(names) => {
+            let wanted = names.iter().map(|name| arguments::one_of("buffers", name, &BUFFERS));
+            renderer.buffers(wanted.collect::<PyResult<Vec<_>>>()?)
+        }
+    };
+    let scene = &scene.scene;
+    let camera = camera.map_or_else(
+        || Kind::Fitted(shiftvox::Camera::fit(scene)),
+        |camera| camera.camera.clone(),
+    );
+    let picture = on_all_threads(py, || match &camera {
+        Kind::Fitted(camera) => renderer.render(scene, camera, width, height),
+        Kind::Placed(camera) => renderer.render(scene, camera, width, height),
+    })?
+    .map_err(refused)?;
     let shape = [height as usize, width as usize];
-    Ok(Picture {
-        rgba: grid(py, buffers.rgba, shape)?,
-        depth: buffers.depth.into_pyarray(py).reshape(shape)?.unbind(),
-        normals: grid(py, buffers.normal, shape)?,
-        voxels: grid(py, buffers.voxel, shape)?,
-        nodes: buffers.node.into_pyarray(py).reshape(shape)?.unbind(),
-        counters,
-        hash,
+    let mut made = Picture {
+        rgba: py.None(),
+        depth: py.None(),
+        normals: py.None(),
+        voxels: py.None(),
+        nodes: py.None(),
+        counters: picture.counters().iter().copied().collect(),
+        hash: picture.hash().ok().map(str::to_owned),
         width,
         height,
-    })
+    };
+    let (rgba, buffers) = picture.into_buffers();
+    made.rgba = array(py, Values::U8(rgba.into_flattened()), shape, 4)?;
+    for (buffer, values) in buffers {
+        let array = array(py, values, shape, buffer.entries())?;
+        match buffer {
+            Buffer::Depth => made.depth = array,
+            Buffer::Normal => made.normals = array,
+            Buffer::Voxel => made.voxels = array,
+            _ => made.nodes = array,
+        }
+    }
+    Ok(made)
 }

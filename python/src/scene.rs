@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
-use shiftvox::{SceneOptions, Up, Voxel};
+use shiftvox::{Up, Voxel};
+use shiftvox_mesh::SceneOptions;
 
 use crate::arguments::{count, rows_of_three, up, whole};
 use crate::ply::ply;

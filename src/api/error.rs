@@ -1,5 +1,7 @@
 //! Why a scene cannot be opened, drawn or saved.
 
+use crate::budget::Shortage;
+use crate::drawing::DrawError;
 use crate::project::{EngineError, SetupError};
 
 /// What went wrong, for people: a message, and what it came from.
@@ -18,10 +20,14 @@ pub enum Error {
     /// Camera and settings make no frame.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// A setting that the camera or the engine does not have, samples of a pixel along an axis other than 1, 2 and 4,
-    /// a picture of more than 2^27 samples, more than 1024 threads, or a zoom that is not above 0.
+    /// A setting that the engine does not have, samples of a pixel along an axis other than 1, 2 and 4, a picture of
+    /// more than 2^27 samples, more than 1024 threads, a zoom that is not above 0, or a buffer that a picture does not
+    /// have because it was not requested.
     #[error("{0}")]
     Setting(String),
+    /// The picture does not fit in memory.
+    #[error(transparent)]
+    Memory(Shortage),
     /// The system gives no threads.
     #[error(transparent)]
     Threads(Reason),
@@ -37,4 +43,18 @@ pub enum Error {
     /// A file cannot be written. What stood there before still does.
     #[error(transparent)]
     Write(Reason),
+}
+
+impl From<DrawError> for Error {
+    fn from(error: DrawError) -> Self {
+        match error {
+            DrawError::TooLarge(error) => Self::Setting(error.to_string()),
+            DrawError::Memory(short) => Self::Memory(short),
+            DrawError::Camera(error) => Self::Setup(error.into()),
+            DrawError::Setup(error) => Self::Setup(error),
+            DrawError::Engine(error) => Self::Engine(error),
+            DrawError::Resolve(error) => Self::Resolve(error.into()),
+            DrawError::Method(error) => Self::Resolve(error),
+        }
+    }
 }

@@ -2,11 +2,12 @@
 
 mod camera;
 mod error;
+mod kept;
 mod picture;
 mod renderer;
 mod scene;
 
-pub use camera::Camera;
+pub use camera::{Camera, FittedCamera, View};
 pub use error::Error;
 pub use picture::Picture;
 pub use renderer::{EngineKind, Renderer};

@@ -1,31 +1,46 @@
-//! What was drawn.
+//! A finished picture.
 
 use std::path::Path;
 
 use hwmodel::count::Counter;
 
 use super::Error;
-use crate::picture::{self, Buffer, Rows, npy};
+use crate::picture::npy::{self, Values};
+use crate::picture::Buffer;
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: buffers of `width() * height()` entries, row by row from the top left, and what the engine
-/// counted. Colours average all samples of a pixel. Depth, normal, voxel and node are those of one sample: the
-/// pixel's only one, or of several the one right of and below its middle.
+/// A finished picture: colours, the [buffers](crate::Renderer::buffers) that were requested, and what the engine counted.
+/// All have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
+/// normal, voxel and node are those of one sample: the pixel's only one, or of several the one right of and below its
+/// middle.
 #[derive(Debug)]
 pub struct Picture {
-    buffers: picture::Picture,
+    width: u32,
+    height: u32,
+    buffers: Buffers,
     counters: Stats,
     operations: Option<Counter>,
 }
 
+/// What a picture is made of.
+#[derive(Debug)]
+pub(super) struct Buffers {
+    pub(super) rgba: Vec<[u8; 4]>,
+    pub(super) others: Vec<(Buffer, Values)>,
+    pub(super) hash: Option<String>,
+}
+
 impl Picture {
     pub(super) fn new(
-        buffers: picture::Picture,
+        (width, height): (u32, u32),
+        buffers: Buffers,
         counters: Stats,
         operations: Option<Counter>,
     ) -> Self {
         Self {
+            width,
+            height,
             buffers,
             counters,
             operations,
@@ -35,13 +50,13 @@ impl Picture {
     /// Pixels across.
     #[must_use]
     pub fn width(&self) -> u32 {
-        self.buffers.width
+        self.width
     }
 
     /// Pixels down.
     #[must_use]
     pub fn height(&self) -> u32 {
-        self.buffers.height
+        self.height
     }
 
     /// Red, green, blue (sRGB) and alpha, not premultiplied. Alpha is 255 everywhere unless the background is
@@ -51,30 +66,60 @@ impl Picture {
         &self.buffers.rgba
     }
 
+    /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
+        self.buffers.rgba.get(self.at(x, y)?).copied()
+    }
+
     /// Depth along the view axis, world units, at which the sample's ray enters the voxel; infinity where nothing is
     /// seen.
-    #[must_use]
-    pub fn depth(&self) -> &[f32] {
-        &self.buffers.depth
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if the buffer was not requested.
+    pub fn depth(&self) -> Result<&[f32], Error> {
+        self.floats(Buffer::Depth)
     }
 
     /// Unit normals in world directions; zero where nothing is seen.
-    #[must_use]
-    pub fn normals(&self) -> &[[f32; 3]] {
-        &self.buffers.normal
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if the buffer was not requested.
+    pub fn normals(&self) -> Result<&[[f32; 3]], Error> {
+        Ok(self.floats(Buffer::Normal)?.as_chunks().0)
     }
 
-    /// Lowest corner of the voxel that is seen, in units of the finest voxels, and its level (0: the
-    /// whole object); `[0, 0, 0, -1]` where nothing is seen.
-    #[must_use]
-    pub fn voxels(&self) -> &[[i32; 4]] {
-        &self.buffers.voxel
+    /// Lowest corner of the voxel that is seen, in units of the finest voxels, and its level (0: the whole object);
+    /// `[0, 0, 0, -1]` where nothing is seen.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if the buffer was not requested.
+    pub fn voxels(&self) -> Result<&[[i32; 4]], Error> {
+        Ok(self.integers(Buffer::Voxel)?.as_chunks().0)
     }
 
     /// Graph node that is seen; -1 where nothing is.
-    #[must_use]
-    pub fn nodes(&self) -> &[i32] {
-        &self.buffers.node
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if the buffer was not requested.
+    pub fn nodes(&self) -> Result<&[i32], Error> {
+        self.integers(Buffer::Node)
+    }
+
+    /// The voxel that a pixel shows: its index, in units of the finest voxels, and its level. `None` where nothing is
+    /// seen, and outside the picture.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] if [`Buffer::Voxel`] was not requested.
+    pub fn voxel_at(&self, x: u32, y: u32) -> Result<Option<([i32; 3], u32)>, Error> {
+        let voxels = self.voxels()?;
+        let voxel = self.at(x, y).and_then(|at| voxels.get(at));
+        Ok(voxel.and_then(|&[i, j, k, level]| Some(([i, j, k], u32::try_from(level).ok()?))))
+    }
+
+    fn at(&self, x: u32, y: u32) -> Option<usize> {
+        let is_inside = x < self.width && y < self.height;
+        is_inside.then(|| y as usize * self.width as usize + x as usize)
     }
 
     /// What the engine counted, by name. Names differ by engine; all have `samples_drawn`. The fast engine has
@@ -86,25 +131,6 @@ impl Picture {
         &self.counters
     }
 
-    /// The voxel that a pixel shows: its index, finest voxels of the file, and its level. `None` where nothing is seen,
-    /// and outside the picture.
-    #[must_use]
-    pub fn voxel_at(&self, x: u32, y: u32) -> Option<([i32; 3], u32)> {
-        let &[i, j, k, level] = self.buffers.voxel.get(self.at(x, y)?)?;
-        Some(([i, j, k], u32::try_from(level).ok()?))
-    }
-
-    /// A pixel's colour, as in [`Picture::rgba`]; `None` outside the picture.
-    #[must_use]
-    pub fn pixel(&self, x: u32, y: u32) -> Option<[u8; 4]> {
-        self.buffers.rgba.get(self.at(x, y)?).copied()
-    }
-
-    fn at(&self, x: u32, y: u32) -> Option<usize> {
-        let is_inside = x < self.width() && y < self.height();
-        is_inside.then(|| y as usize * self.width() as usize + x as usize)
-    }
-
     /// A counter by its name.
     #[must_use]
     pub fn counter(&self, name: &str) -> Option<u64> {
@@ -112,34 +138,29 @@ impl Picture {
         counters.find(|(n, _)| *n == name).map(|&(_, count)| count)
     }
 
-    /// The machine's operations by class, width, stage and level, and its memory accesses, where
-    /// [`Renderer::count_operations`](super::Renderer::count_operations) was asked for.
+    /// The machine's operations by class, width, stage and level, and its memory accesses, if
+    /// [`Renderer::count_operations`](super::Renderer::count_operations) requested them.
     #[must_use]
     pub fn operations(&self) -> Option<&Counter> {
         self.operations.as_ref()
     }
 
-    /// The buffers themselves, for bindings to other languages.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn into_buffers(self) -> picture::Picture {
-        self.buffers
-    }
-
     /// A hash of all buffers, 32 hexadecimal digits: the same on every platform.
-    #[must_use]
-    pub fn hash(&self) -> String {
-        picture::hash(&self.buffers)
-    }
-
-    /// Writes the colours as a PNG. Replaces what is there; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Write`] where the system refuses.
+    /// [`Error::Setting`] if [`Renderer::hashed`](super::Renderer::hashed) did not request it.
+    pub fn hash(&self) -> Result<&str, Error> {
+        let missing = || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
+        self.buffers.hash.as_deref().ok_or_else(missing)
+    }
+
+    /// Writes the colours as a PNG. Replaces an existing file; the file appears whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::Write`] if the system refuses.
     #[cfg(feature = "png")]
     pub fn save_png(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        let picture::Picture { width, height, .. } = self.buffers;
-        let pixels = picture::png::Pixels::new(width, height, self.buffers.rgba.clone());
+        let pixels = crate::picture::Pixels::new(self.width, self.height, self.rgba().to_vec());
         whole::write_with(path.as_ref(), true, |file| {
             pixels.write(file).map_err(std::io::Error::other)
         })
@@ -147,16 +168,52 @@ impl Picture {
     }
 
     /// Writes a buffer as an array of NumPy: `height x width`, times the entries of a pixel where it has several.
+    /// Replaces an existing file; the file appears whole or not at all.
     ///
     /// # Errors
-    /// [`Error::Write`] where the system refuses.
+    /// [`Error::Write`] if the system refuses, [`Error::Setting`] if the buffer was not requested.
     pub fn save_npy(&self, buffer: Buffer, path: impl AsRef<Path>) -> Result<(), Error> {
-        let Ok(values) = self.buffers.rows(buffer, 0..self.height());
-        let mut shape = vec![self.height() as usize, self.width() as usize];
+        let values = match buffer {
+            Buffer::Color => Values::U8(self.rgba().as_flattened().to_vec()),
+            other => self.values(other)?.clone(),
+        };
+        let mut shape = vec![self.height as usize, self.width as usize];
         if buffer.entries() > 1 {
             shape.push(buffer.entries());
         }
         let bytes = npy::encode(&npy::Array { shape, values });
         whole::write(path.as_ref(), &bytes, true).map_err(|e| Error::Write(e.into()))
+    }
+
+    /// The colours and the requested buffers, for bindings to other languages.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn into_buffers(self) -> (Vec<[u8; 4]>, Vec<(Buffer, Values)>) {
+        (self.buffers.rgba, self.buffers.others)
+    }
+
+    pub(super) fn values(&self, buffer: Buffer) -> Result<&Values, Error> {
+        let mut others = self.buffers.others.iter();
+        let found = others.find(|(other, _)| *other == buffer);
+        found.map(|(_, values)| values).ok_or_else(|| {
+            let name = buffer.name();
+            Error::Setting(format!(
+                "the picture has no {name} buffer: Renderer::buffers requests it"
+            ))
+        })
+    }
+
+    fn floats(&self, buffer: Buffer) -> Result<&[f32], Error> {
+        match self.values(buffer)? {
+            Values::F32(values) => Ok(values),
+            Values::I32(_) | Values::U8(_) => Ok(&[]),
+        }
+    }
+
+    fn integers(&self, buffer: Buffer) -> Result<&[i32], Error> {
+        match self.values(buffer)? {
+            Values::I32(values) => Ok(values),
+            Values::F32(_) | Values::U8(_) => Ok(&[]),
+        }
     }
 }

@@ -1,21 +1,25 @@
 //! How a picture is drawn.
 
+use std::sync::{Arc, Mutex, PoisonError};
+
 use hwmodel::Overflow;
 use hwmodel::count::Counter;
 use hwmodel::cycles::{Hardware, NoObserver};
-use rayon::ThreadPoolBuilder;
 
-use super::{Camera, Error, Picture, Scene};
+use super::camera::View;
+use super::kept::{Kept, Key};
+use super::picture::Buffers;
+use super::{Error, Picture, Scene};
+use crate::drawing::{Canvas, DrawError, DrawnFrame, GraphDrawing, GraphStyle, check_samples};
 use crate::fast::{Fast, FastOptions};
-use crate::frame::{Frame, count_samples};
+use crate::frame::Frame;
 use crate::graph::GraphView;
 use crate::machine::{Machine, MachineOptions, Simulated};
-use crate::picture::{Background, Shading, lights, resolve};
-use crate::project::{CageKind, Coverage, Engine, FrameSetup, SetupOptions};
+use crate::picture::{Background, Buffer, ResolveError, Rows, Shading, hash_rows, lights};
+use crate::project::{
+    self, CageKind, Coverage, Engine, EngineError, FrameSetup, SetupOptions, Stats,
+};
 use crate::rays::Rays;
-
-/// Most threads that a picture may ask for, as on the command line.
-const MOST_THREADS: usize = 1024;
 
 /// Which engine draws. Under [`Coverage::Exact`] all of them draw the same picture, bit for bit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -26,8 +30,8 @@ pub enum EngineKind {
     Fast,
     /// The image-order paper's loop, in counted words that cannot multiply: the reference of the hardware.
     Machine,
-    /// One exact ray a sample, in wide integers: the oracle, which shares no code with the others. Always draws the
-    /// exact picture, whatever cage and tolerance say; it refuses [`Coverage::Alpha`], since it blends nothing.
+    /// One exact ray per sample, in wide integers: the oracle, which shares no code with the others. It draws
+    /// [`Coverage::Exact`] only, and has no cage, tolerance or overflow.
     Rays,
 }
 
@@ -40,24 +44,27 @@ pub enum EngineKind {
 /// let camera = Camera::fit(&scene);
 /// let fast = Renderer::new().render(&scene, &camera, 64, 64)?;
 /// let oracle = Renderer::new().engine(EngineKind::Rays).render(&scene, &camera, 64, 64)?;
-/// assert_eq!(fast.hash(), oracle.hash());
+/// assert_eq!(fast.rgba(), oracle.rgba());
 /// # Ok::<(), shiftvox::Error>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct Renderer {
-    engine: EngineKind,
+    engine: Option<EngineKind>,
     coverage: Coverage,
     level_of_detail: Option<f64>,
     tolerance: Option<f64>,
-    cage: CageKind,
+    cage: Option<CageKind>,
     samples: u32,
     bits: u32,
     frac: Option<u32>,
-    overflow: Overflow,
+    overflow: Option<Overflow>,
     shading: Shading,
     background: Background,
     threads: usize,
     counts_operations: bool,
+    buffers: Vec<Buffer>,
+    is_hashed: bool,
+    kept: Kept,
 }
 
 impl Default for Renderer {
@@ -67,36 +74,39 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// The fast engine, exact coverage, one sample a pixel, shaded, on all threads.
+    /// The fast engine, exact coverage, one sample per pixel, shaded, on all threads.
     #[must_use]
     pub fn new() -> Self {
         let options = SetupOptions::default();
         Self {
-            engine: EngineKind::default(),
+            engine: None,
             coverage: options.coverage,
             level_of_detail: None,
             tolerance: None,
-            cage: options.cage,
+            cage: None,
             samples: 1,
             bits: options.bits,
             frac: options.frac,
-            overflow: Overflow::Trap,
+            overflow: None,
             shading: Shading::default(),
             background: Background::default(),
             threads: 0,
             counts_operations: false,
+            buffers: Vec::new(),
+            is_hashed: false,
+            kept: Kept::default(),
         }
     }
 
     /// Which engine draws.
     #[must_use]
     pub fn engine(mut self, engine: EngineKind) -> Self {
-        self.engine = engine;
+        self.engine = Some(engine);
         self
     }
 
     /// Which samples a voxel covers. [`Coverage::Alpha`] is for voxels with opacities: those of meshes
-    /// opened with [`SceneOptions::opacities`](crate::SceneOptions), and of `.vxg` files made of such meshes.
+    /// opened with opacities by the crate `shiftvox-mesh`, and of `.vxg` files made of such meshes.
     #[must_use]
     pub fn coverage(mut self, coverage: Coverage) -> Self {
         self.coverage = coverage;
@@ -129,7 +139,7 @@ impl Renderer {
     /// How a record holds its vertices. Changes what is counted, never the picture.
     #[must_use]
     pub fn cage(mut self, cage: CageKind) -> Self {
-        self.cage = cage;
+        self.cage = Some(cage);
         self
     }
 
@@ -145,7 +155,7 @@ impl Renderer {
     /// What a result becomes that does not fit its word.
     #[must_use]
     pub fn overflow(mut self, overflow: Overflow) -> Self {
-        self.overflow = overflow;
+        self.overflow = Some(overflow);
         self
     }
 
@@ -183,131 +193,249 @@ impl Renderer {
     /// engine, given later, counts none and is refused.
     #[must_use]
     pub fn count_operations(mut self) -> Self {
-        self.engine = EngineKind::Machine;
+        self.engine = Some(EngineKind::Machine);
         self.counts_operations = true;
+        self
+    }
+
+    /// Buffers that pictures have besides their colours; none by default. They cost time and memory: 4 bytes per pixel
+    /// for [`Buffer::Depth`], [`Buffer::Node`] and [`Buffer::Records`], 12 for [`Buffer::Normal`], 16 for
+    /// [`Buffer::Voxel`].
+    ///
+    /// ```
+    /// # use shiftvox::{Buffer, Camera, Renderer, Scene};
+    /// # let scene = Scene::generate("menger,depth=2")?;
+    /// let renderer = Renderer::new().buffers([Buffer::Depth]);
+    /// let picture = renderer.render(&scene, &Camera::fit(&scene), 64, 64)?;
+    /// assert!(picture.depth()?.iter().any(|depth| depth.is_finite()));
+    /// assert!(picture.normals().is_err()); // not requested
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    #[must_use]
+    pub fn buffers(mut self, buffers: impl IntoIterator<Item = Buffer>) -> Self {
+        self.buffers = buffers.into_iter().collect();
+        self
+    }
+
+    /// Whether pictures have a [hash](Picture::hash); no by default. It covers all buffers, so each is computed once,
+    /// some rows at a time.
+    #[must_use]
+    pub fn hashed(mut self, is_hashed: bool) -> Self {
+        self.is_hashed = is_hashed;
         self
     }
 
     /// Draws a picture of `width` x `height` pixels.
     ///
+    /// Threads, engine and frame are kept in the renderer for the next picture. Several threads may draw with one
+    /// renderer at the same time.
+    ///
     /// # Errors
     /// [`Error::Setup`] where camera and settings make no frame (such as a side of 0, or of more than 32,768 pixels),
     /// [`Error::Setting`] for samples other than 1, 2 and 4, for more than 2^27 samples in all, for a zoom of 0 or
-    /// less, for more than 1024 threads and for what camera or engine do not have, [`Error::Engine`] where a word
-    /// overflows, [`Error::Threads`] where the system gives no threads.
+    /// less, for more than 1024 threads and for settings that the engine does not have, [`Error::Memory`] where the
+    /// picture does not fit in memory, [`Error::Engine`] where a word overflows, [`Error::Threads`] where the system
+    /// gives no threads.
     pub fn render(
         &self,
         scene: &Scene,
-        camera: &Camera,
+        camera: &impl View,
         width: u32,
         height: u32,
     ) -> Result<Picture, Error> {
-        let draw = || self.render_here(scene, camera, width, height);
-        match self.threads {
-            0 => draw(),
-            // Refused before any is made.
-            threads if threads > MOST_THREADS => Err(Error::Setting(format!(
-                "threads: 0 to {MOST_THREADS}, not {threads}"
-            ))),
-            threads => {
-                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-                pool.map_err(|e| Error::Threads(e.into()))?.install(draw)
-            }
+        let operations = self.counts_operations.then(Arc::default);
+        let buffer_bytes = |buffer: &Buffer| 4 * buffer.entries() as u64;
+        let bytes = 4 + self.buffers.iter().map(buffer_bytes).sum::<u64>();
+        let camera = camera.of_size(width, height)?;
+        let finish = |drawing: &mut GraphDrawing<'_>, drawn: &mut DrawnFrame| {
+            drawing.resolve(drawn, |resolver| {
+                let all = 0..resolver.size().1;
+                let buffers = self.buffers.iter();
+                let buffers = buffers.map(|&buffer| Ok((buffer, resolver.rows(buffer, all.clone())?)));
+                Ok(Buffers {
+                    rgba: resolver.colors(all.clone())?,
+                    others: buffers.collect::<Result<_, ResolveError>>()?,
+                    hash: self.is_hashed.then(|| hash_rows(resolver)).transpose()?,
+                })
+            })
+        };
+        let (drawn, buffers) = self.draw(scene, &camera, bytes, operations.as_ref(), finish)?;
+        let counters = drawn.stats;
+        let operations = operations.map(|operations| operations.lock().map(|mut o| std::mem::take(&mut *o)).unwrap_or_default());
+        Ok(Picture::new((width, height), buffers, counters, operations))
+    }
+
+    /// Draws a picture into the caller's pixels, row by row from the top left: red, green, blue (sRGB) and alpha, as in
+    /// [`Picture::rgba`]. Returns what the engine counted, as [`Picture::counters`] does.
+    ///
+    /// ```
+    /// # use shiftvox::{Camera, Renderer, Scene};
+    /// # let scene = Scene::generate("menger,depth=2")?;
+    /// let mut pixels = vec![[0; 4]; 64 * 48];
+    /// Renderer::new().render_into(&scene, &Camera::fit(&scene), 64, 48, &mut pixels)?;
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Renderer::render`], and [`Error::Setting`] if there are not `width * height` pixels, or if buffers, a hash
+    /// or operations were requested, which only a [`Picture`] has.
+    pub fn render_into(
+        &self,
+        scene: &Scene,
+        camera: &impl View,
+        width: u32,
+        height: u32,
+        pixels: &mut [[u8; 4]],
+    ) -> Result<Stats, Error> {
+        let wanted = u64::from(width) * u64::from(height);
+        if pixels.len() as u64 != wanted {
+            let reason = format!("{} pixels are no picture of {width} x {height}", pixels.len());
+            return Err(Error::Setting(reason));
+        }
+        if !self.buffers.is_empty() || self.is_hashed || self.counts_operations {
+            let reason = "buffers, hashes and operations are of `render`, not of `render_into`";
+            return Err(Error::Setting(reason.to_owned()));
+        }
+        let camera = camera.of_size(width, height)?;
+        let finish = |drawing: &mut GraphDrawing<'_>, drawn: &mut DrawnFrame| {
+            drawing.resolve(drawn, |resolver| {
+                resolver.write_colors(0..height, pixels)
+            })
+        };
+        let (drawn, ()) = self.draw(scene, &camera, 0, None, finish)?;
+        Ok(drawn.stats)
+    }
+
+    /// Draws a frame on an idle job, and makes something from it. `pixel_bytes`: memory that `finish` takes per pixel.
+    fn draw<T: Send>(
+        &self,
+        scene: &Scene,
+        camera: &project::Camera,
+        pixel_bytes: u64,
+        operations: Option<&Arc<Mutex<Counter>>>,
+        finish: impl FnOnce(&mut GraphDrawing<'_>, &mut DrawnFrame) -> Result<T, DrawError> + Send,
+    ) -> Result<(DrawnFrame, T), Error> {
+        self.check_engine()?;
+        let style = GraphStyle {
+            options: self.options()?,
+            shading: self.shading,
+            background: self.background,
+            buffers: self.buffers.clone(),
+            is_hashed: self.is_hashed,
+        };
+        let mut job = self.kept.take(self.key())?;
+        let kept = job.canvas.take();
+        let draw = || {
+            let engine = || self.make_engine(operations);
+            // An engine that counts operations is new for each picture.
+            let canvas = kept.filter(|_| operations.is_none());
+            let canvas = canvas.unwrap_or_else(|| Canvas::new(engine()));
+            let mut drawing = GraphDrawing::on(canvas, scene.graph(), scene.up(), style, engine);
+            drawing.expect_pixel_bytes(pixel_bytes);
+            let made = drawing.draw_frame(camera).and_then(|mut drawn| {
+                let made = finish(&mut drawing, &mut drawn)?;
+                Ok((drawn, made))
+            });
+            (made, drawing.into_canvas())
+        };
+        let (made, canvas) = match &job.pool {
+            Some(pool) => pool.install(draw),
+            None => draw(),
+        };
+        job.canvas = Some(canvas);
+        self.kept.put(job);
+        Ok(made?)
+    }
+
+    fn kind(&self) -> EngineKind {
+        self.engine.unwrap_or_default()
+    }
+
+    fn key(&self) -> Key {
+        Key {
+            engine: self.kind(),
+            overflow: self.overflow.unwrap_or_default(),
+            threads: self.threads,
         }
     }
 
-    /// [`Renderer::render`] on the threads of the current pool.
-    fn render_here(
-        &self,
-        scene: &Scene,
-        camera: &Camera,
-        width: u32,
-        height: u32,
-    ) -> Result<Picture, Error> {
-        self.check_engine()?;
-        let setup = self.set_up(scene, camera, width, height)?;
-        let light = lights(scene.graph(), &setup, self.shading);
-        let view = lit(scene, &light);
-        let mut frame = Frame::new(setup.width, setup.height, false);
-        let mut operations = None;
-        let counters = match self.engine {
-            EngineKind::Machine if self.counts_operations => {
-                let (stats, counter) =
-                    self.machine()
-                        .render_probed(&view, &setup, &mut frame, Counter::new())?;
-                operations = Some(counter);
-                stats
-            }
-            EngineKind::Machine => self.machine().render(&view, &setup, &mut frame)?,
-            EngineKind::Rays => Rays.render(&view, &setup, &mut frame)?,
-            EngineKind::Fast => {
+    fn make_engine(&self, operations: Option<&Arc<Mutex<Counter>>>) -> Box<dyn Engine + Send> {
+        match (self.kind(), operations) {
+            (EngineKind::Machine, Some(operations)) => Box::new(Counting {
+                machine: self.machine(),
+                operations: Arc::clone(operations),
+            }),
+            (EngineKind::Machine, None) => Box::new(self.machine()),
+            (EngineKind::Rays, _) => Box::new(Rays),
+            (EngineKind::Fast, _) => {
                 let options = FastOptions {
                     threads: self.threads,
                     ..FastOptions::default()
                 };
-                Fast::new(options, Box::new(self.machine())).render(&view, &setup, &mut frame)?
+                Box::new(Fast::new(options, Box::new(self.machine())))
             }
-        };
-        let buffers = resolve(&frame, scene.graph(), &setup, self.shading, self.background);
-        let buffers = buffers.map_err(|e| Error::Resolve(e.into()))?;
-        Ok(Picture::new(buffers, counters, operations))
+        }
     }
 
-    /// Whether the engine can do what is asked of it.
+    fn machine(&self) -> Machine {
+        Machine::new(MachineOptions {
+            overflow: self.overflow.unwrap_or_default(),
+            ..MachineOptions::default()
+        })
+    }
+
+    /// Rejects settings that the engine does not have.
     fn check_engine(&self) -> Result<(), Error> {
-        let reason = match self.engine {
-            EngineKind::Rays if self.coverage == Coverage::Alpha => {
-                "the rays blend nothing: they draw no alpha coverage"
+        let of_machine = self.cage.is_some() || self.overflow.is_some() || self.tolerance.is_some();
+        let reason = match self.kind() {
+            EngineKind::Rays if self.coverage != Coverage::Exact => {
+                "the rays draw exact coverage only"
+            }
+            EngineKind::Rays if of_machine => {
+                "the rays have no cage, no overflow and no tolerance: leave these settings out"
             }
             EngineKind::Fast | EngineKind::Rays if self.counts_operations => {
-                "the machine alone counts operations, not the engine that was given"
+                "only the machine counts operations, not the engine that was given"
             }
             _ => return Ok(()),
         };
         Err(Error::Setting(reason.to_owned()))
     }
 
-    /// Draws on a simulated hardware: its cycles, what they were spent on, and the machine's counters. Always the
-    /// machine, whatever [`Renderer::engine`] says.
+    /// Draws on a simulated hardware: its cycles, what they were spent on, and the machine's counters.
     ///
     /// # Errors
-    /// As [`Renderer::render`], and [`Error::Simulate`] where the hardware's description is not sound or its
-    /// stack overflows.
+    /// As [`Renderer::render`], [`Error::Setting`] for an engine other than the machine, and [`Error::Simulate`] where
+    /// the hardware's description is not sound or its stack overflows.
     pub fn simulate(
         &self,
         scene: &Scene,
-        camera: &Camera,
+        camera: &impl View,
         width: u32,
         height: u32,
         hardware: &Hardware,
     ) -> Result<Simulated, Error> {
-        let setup = self.set_up(scene, camera, width, height)?;
-        let light = lights(scene.graph(), &setup, self.shading);
+        if !matches!(self.engine, None | Some(EngineKind::Machine)) {
+            let reason = "the machine is simulated, not the engine that was given";
+            return Err(Error::Setting(reason.to_owned()));
+        }
+        let graph = scene.graph();
+        let options = self.options()?;
+        let camera = camera.of_size(width, height)?;
+        check_samples(&camera, options.aa_log2, FRAME_BYTES, 0)?;
+        let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
+        let light = lights(graph, &setup, self.shading);
+        let view = GraphView {
+            light: &light,
+            ..graph.view()
+        };
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let (mut machine, view) = (self.machine(), lit(scene, &light));
-        machine
+        self.machine()
             .simulate(&view, &setup, &mut frame, hardware, &mut NoObserver)
             .map_err(|e| Error::Simulate(e.into()))
     }
 
-    fn machine(&self) -> Machine {
-        Machine::new(MachineOptions {
-            overflow: self.overflow,
-            ..MachineOptions::default()
-        })
-    }
-
-    /// The integers of a frame: what [`Engine`] draws from, for programs that draw frame after frame.
-    ///
-    /// # Errors
-    /// [`Error::Setup`] and [`Error::Setting`], as [`Renderer::render`].
-    pub fn set_up(
-        &self,
-        scene: &Scene,
-        camera: &Camera,
-        width: u32,
-        height: u32,
-    ) -> Result<FrameSetup, Error> {
+    fn options(&self) -> Result<SetupOptions, Error> {
         let aa_log2 = match self.samples {
             1 => 0,
             2 => 1,
@@ -318,90 +446,163 @@ impl Renderer {
                 )));
             }
         };
-        camera.check()?;
-        count_samples(width, height, aa_log2).map_err(|e| Error::Setting(e.to_string()))?;
         let defaults = SetupOptions::of(self.coverage);
-        let options = SetupOptions {
+        Ok(SetupOptions {
             bits: self.bits,
             frac: self.frac,
-            cage: self.cage,
+            cage: self.cage.unwrap_or(defaults.cage),
             tolerance_px: self.tolerance.unwrap_or(defaults.tolerance_px),
             lod_px: self.level_of_detail.unwrap_or(defaults.lod_px),
             aa_log2,
             ..defaults
-        };
-        let graph = scene.graph();
-        let camera = camera.of_size(width, height);
-        Ok(FrameSetup::new(
-            &camera,
-            &graph.placement,
-            graph.depth,
-            &options,
-        )?)
+        })
     }
 }
 
-/// A scene's shape with the light of its nodes, for rules that blend.
-fn lit<'s>(scene: &'s Scene, light: &'s [[u16; 3]]) -> GraphView<'s> {
-    GraphView {
-        light,
-        ..scene.view()
+/// Memory of a sample with its voxel and with room to blend, bytes.
+const FRAME_BYTES: u64 = 36;
+
+/// The machine with a probe that counts its operations.
+struct Counting {
+    machine: Machine,
+    operations: Arc<Mutex<Counter>>,
+}
+
+impl Engine for Counting {
+    fn render(
+        &mut self,
+        graph: &GraphView<'_>,
+        setup: &FrameSetup,
+        frame: &mut Frame,
+    ) -> Result<Stats, EngineError> {
+        let (stats, counter) = self
+            .machine
+            .render_probed(graph, setup, frame, Counter::new())?;
+        *self.operations.lock().unwrap_or_else(PoisonError::into_inner) = counter;
+        Ok(stats)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::{Camera, kept::MOST_THREADS};
     use super::*;
 
-    fn refusal(renderer: &Renderer, camera: &Camera, scene: &Scene) -> String {
-        match renderer.render(scene, camera, 8, 8) {
+    fn sponge() -> Scene {
+        Scene::generate("menger,depth=2").expect("a scene")
+    }
+
+    fn refusal(renderer: &Renderer, camera: &impl View) -> String {
+        match renderer.render(&sponge(), camera, 8, 8) {
             Err(Error::Setting(reason)) => reason,
             other => panic!("{other:?}"),
         }
     }
 
     #[test]
-    fn what_an_engine_does_not_have_is_refused() {
-        let scene = Scene::generate("menger,depth=1").expect("a scene");
-        let camera = Camera::fit(&scene);
+    fn settings_that_an_engine_does_not_have_are_rejected() {
+        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
         let rays = Renderer::new().engine(EngineKind::Rays);
-        let reason = refusal(&rays.clone().coverage(Coverage::Alpha), &camera, &scene);
-        assert!(reason.contains("alpha"), "{reason}");
         assert!(rays.render(&scene, &camera, 8, 8).is_ok());
+        for (renderer, word) in [
+            (rays.clone().coverage(Coverage::Alpha), "exact"),
+            (rays.clone().coverage(Coverage::Any), "exact"),
+            (rays.clone().cage(CageKind::Corners), "cage"),
+            (rays.clone().overflow(Overflow::Wrap), "overflow"),
+            (rays.clone().tolerance(1.0), "tolerance"),
+            (Renderer::new().samples(3), "1, 2 or 4"),
+            (Renderer::new().threads(MOST_THREADS + 1), "0 to 1024"),
+            (Renderer::new().threads(usize::MAX), "0 to 1024"),
+        ] {
+            let reason = refusal(&renderer, &camera);
+            assert!(reason.contains(word), "{reason}");
+        }
         let counting = Renderer::new().count_operations();
         for engine in [EngineKind::Fast, EngineKind::Rays] {
-            let reason = refusal(&counting.clone().engine(engine), &camera, &scene);
+            let reason = refusal(&counting.clone().engine(engine), &camera);
             assert!(reason.contains("operations"), "{reason}");
         }
         let counted = counting.engine(EngineKind::Machine);
         assert!(counted.render(&scene, &camera, 8, 8).is_ok());
+        let hardware = Hardware::preset("light").expect("a preset");
+        let simulated = |renderer: Renderer| renderer.simulate(&scene, &camera, 8, 8, &hardware);
+        assert!(matches!(simulated(rays), Err(Error::Setting(_))));
+        assert!(simulated(Renderer::new()).is_ok());
     }
 
     #[test]
-    fn what_a_camera_does_not_have_is_refused() {
-        let scene = Scene::generate("menger,depth=1").expect("a scene");
-        let placed = Camera::look_at([9.0, 9.0, 9.0], [1.0, 1.0, 1.0]);
-        let fitted = Camera::fit(&scene);
+    fn a_zoom_is_above_zero() {
+        let fitted = Camera::fit(&sponge());
+        for zoom in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(refusal(&Renderer::new(), &fitted.clone().zoom(zoom)).contains("zoom"));
+        }
+    }
+
+    /// What is kept from earlier pictures, of other scenes, sizes, rules and buffers, changes no later one.
+    #[test]
+    fn a_renderer_that_was_used_draws_as_a_new_one() {
+        let scenes = ["menger,depth=2", "sierpinski,depth=30", "terrain,depth=5"];
+        let scenes = scenes.map(|scene| Scene::generate(scene).expect("a scene"));
+        let all = [Buffer::Depth, Buffer::Normal, Buffer::Voxel, Buffer::Node];
+        let mut used = Renderer::new();
+        for (round, coverage) in [Coverage::Exact, Coverage::Center, Coverage::Alpha]
+            .into_iter()
+            .cycle()
+            .take(7)
+            .enumerate()
+        {
+            let buffers = all.iter().copied().take(round % 5);
+            used = used.coverage(coverage).buffers(buffers).hashed(round % 3 == 1);
+            used = used.samples([1, 2, 4][round % 3]).threads(round / 3);
+            for scene in &scenes {
+                for (width, height) in [(40, 30), (30, 40), (30, 40), (1, 1)] {
+                    let camera = Camera::fit(scene).azimuth(f64::from(width));
+                    let again = used.render(scene, &camera, width, height).expect("a picture");
+                    let new = used.clone().render(scene, &camera, width, height);
+                    let new = new.expect("a picture");
+                    assert_eq!(again.rgba(), new.rgba());
+                    assert_eq!(again.counters(), new.counters());
+                    assert_eq!(again.hash().ok(), new.hash().ok());
+                    for buffer in all {
+                        let (again, new) = (again.values(buffer), new.values(buffer));
+                        assert_eq!(again.ok(), new.ok(), "{buffer:?}");
+                    }
+                    if round % 5 == 0 && round % 3 != 1 {
+                        let mut pixels = vec![[0; 4]; (width * height) as usize];
+                        let counted = used.render_into(scene, &camera, width, height, &mut pixels);
+                        assert_eq!(counted.expect("a picture"), again.counters());
+                        assert_eq!(pixels, again.rgba());
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_picture_that_is_too_large_is_an_error() {
+        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
         let renderer = Renderer::new();
-        for camera in [
-            placed.clone().azimuth(1.0),
-            placed.clone().elevation(1.0),
-            placed.clone().zoom(1.0),
-            placed.clone().for_turning(),
-            fitted.clone().up([0.0, 1.0, 0.0]),
-            fitted.clone().zoom(0.0),
-        ] {
-            assert!(!refusal(&renderer, &camera, &scene).is_empty());
-        }
-        for camera in [
-            placed.up([0.0, 1.0, 0.0]),
-            fitted.azimuth(1.0).for_turning(),
-        ] {
-            assert!(renderer.render(&scene, &camera, 8, 8).is_ok());
-        }
-        let samples = renderer.samples(3);
-        assert!(refusal(&samples, &Camera::fit(&scene), &scene).contains("1, 2 or 4"));
-        let threads = Renderer::new().threads(MOST_THREADS + 1);
-        assert!(refusal(&threads, &Camera::fit(&scene), &scene).contains("0 to 1024"));
+        let drawn = renderer.render(&scene, &camera, 1 << 15, (1 << 12) + 1);
+        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
+        let drawn = renderer.render(&scene, &camera, u32::MAX, u32::MAX);
+        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
+        let mut pixels = [[0; 4]; 5];
+        let drawn = renderer.render_into(&scene, &camera, 2, 2, &mut pixels);
+        assert!(matches!(drawn, Err(Error::Setting(_))), "{drawn:?}");
+    }
+
+    #[test]
+    fn threads_may_share_a_renderer() {
+        let (scene, camera) = (sponge(), Camera::fit(&sponge()));
+        let renderer = Renderer::new().threads(2);
+        let alone = renderer.render(&scene, &camera, 64, 64).expect("a picture");
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| {
+                    let drawn = renderer.render(&scene, &camera, 64, 64).expect("a picture");
+                    assert_eq!(drawn.rgba(), alone.rgba());
+                });
+            }
+        });
     }
 }

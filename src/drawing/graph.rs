@@ -6,9 +6,9 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::{
-    Buffers, DrawError, Drawable, Figures, Frames, Shown, check_samples, milliseconds_since, timed,
+    Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, milliseconds_since, timed,
 };
-use crate::frame::Colors;
+use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, GraphView};
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
@@ -40,11 +40,42 @@ pub struct GraphDrawing<'g> {
     viewer: Viewer<'g, Box<dyn Engine + Send>>,
     /// What the viewer's frames hold.
     contents: Contents,
-    /// What the viewer shows.
+    /// Memory of a finished pixel, bytes, that drawing will take besides the frame.
+    pixel_bytes: u64,
+    /// The last picture, if it was finished.
     last: Option<Drawn>,
 }
 
-/// What is known of the viewer's frame.
+/// An engine and a frame without a graph: the part of a [`GraphDrawing`] that can be used again for another graph.
+pub struct Canvas {
+    engine: Box<dyn Engine + Send>,
+    frame: Frame,
+}
+
+impl Canvas {
+    /// A canvas that has no frame yet.
+    #[must_use]
+    pub fn new(engine: Box<dyn Engine + Send>) -> Self {
+        Self {
+            engine,
+            frame: Frame::nodes_only(0, 0),
+        }
+    }
+}
+
+/// A frame that the viewer shows.
+pub struct DrawnFrame {
+    /// Its integers.
+    pub setup: FrameSetup,
+    /// What the engine counted.
+    pub stats: Stats,
+    /// Time to draw it, milliseconds.
+    pub draw_ms: f64,
+    /// Whether the viewer showed it already.
+    was_shown: bool,
+}
+
+/// A picture that was made from the viewer's frame.
 struct Drawn {
     pixels: Pixels,
     pixels_drawn: usize,
@@ -59,6 +90,19 @@ impl<'g> GraphDrawing<'g> {
     /// Nothing is drawn yet. `engine` makes a new engine, always the same one.
     #[must_use]
     pub fn new(
+        graph: &'g Graph,
+        up: Up,
+        style: GraphStyle,
+        engine: impl Fn() -> Box<dyn Engine + Send> + 'g,
+    ) -> Self {
+        Self::on(Canvas::new(engine()), graph, up, style, engine)
+    }
+
+    /// [`GraphDrawing::new`] on a canvas that another drawing gave back; its engine must be of the kind that `engine`
+    /// makes.
+    #[must_use]
+    pub fn on(
+        canvas: Canvas,
         graph: &'g Graph,
         up: Up,
         style: GraphStyle,
@@ -79,11 +123,25 @@ impl<'g> GraphDrawing<'g> {
             graph,
             up,
             style,
-            viewer: Viewer::new(graph.view(), engine(), contents),
+            viewer: Viewer::reusing(graph.view(), canvas.engine, canvas.frame, contents),
             engine: Box::new(engine),
             contents,
+            pixel_bytes: COLOR_BYTES,
             last: None,
         }
+    }
+
+    /// The engine and the frame, for another drawing.
+    #[must_use]
+    pub fn into_canvas(self) -> Canvas {
+        let (engine, frame) = self.viewer.into_parts();
+        Canvas { engine, frame }
+    }
+
+    /// Says how much memory the caller is going to take for each finished pixel, bytes: it is counted when the memory
+    /// for a frame is checked. By default 3, for colours.
+    pub fn expect_pixel_bytes(&mut self, bytes: u64) {
+        self.pixel_bytes = bytes;
     }
 
     /// The integers of a frame.
@@ -91,7 +149,12 @@ impl<'g> GraphDrawing<'g> {
     /// # Errors
     /// When the picture is too large, or the frame cannot be set up.
     pub fn setup(&self, camera: &Camera) -> Result<FrameSetup, DrawError> {
-        check_samples(camera, self.style.options.aa_log2, self.sample_bytes())?;
+        check_samples(
+            camera,
+            self.style.options.aa_log2,
+            self.sample_bytes(),
+            self.pixel_bytes,
+        )?;
         let Graph {
             placement, depth, ..
         } = self.graph;
@@ -115,6 +178,60 @@ impl<'g> GraphDrawing<'g> {
         node + voxels + if blends { blend } else { 0 }
     }
 
+    /// Draws a frame, unless the viewer shows it already.
+    ///
+    /// # Errors
+    /// See [`DrawError`]; nothing is shown then.
+    pub fn draw_frame(&mut self, camera: &Camera) -> Result<DrawnFrame, DrawError> {
+        let setup = self.setup(camera)?;
+        let was_shown = self.viewer.shows(&setup);
+        let started = Instant::now();
+        let stats = self.draw_set_up(&setup)?;
+        Ok(DrawnFrame {
+            setup,
+            stats,
+            draw_ms: milliseconds_since(started),
+            was_shown,
+        })
+    }
+
+    fn draw_set_up(&mut self, setup: &FrameSetup) -> Result<Stats, DrawError> {
+        let light = lights(self.graph, setup, self.style.shading);
+        Ok(self.viewer.render_lit(setup, &light)?)
+    }
+
+    /// Makes something from a drawn frame. A frame of nodes alone may not determine the voxels that colours depend on:
+    /// then the frame is drawn again with voxels.
+    ///
+    /// # Errors
+    /// See [`DrawError`].
+    pub fn resolve<T>(
+        &mut self,
+        drawn: &mut DrawnFrame,
+        mut make: impl FnMut(&Resolver<'_>) -> Result<T, ResolveError>,
+    ) -> Result<T, DrawError> {
+        match make(&self.resolver(&drawn.setup)?) {
+            Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
+                self.contents = Contents::Voxels;
+                self.viewer.store(self.contents);
+                let again = self.draw_frame_again(drawn)?;
+                *drawn = again;
+                Ok(make(&self.resolver(&drawn.setup)?)?)
+            }
+            made => Ok(made?),
+        }
+    }
+
+    fn draw_frame_again(&mut self, drawn: &DrawnFrame) -> Result<DrawnFrame, DrawError> {
+        let started = Instant::now();
+        Ok(DrawnFrame {
+            stats: self.draw_set_up(&drawn.setup)?,
+            setup: drawn.setup.clone(),
+            draw_ms: drawn.draw_ms + milliseconds_since(started),
+            was_shown: false,
+        })
+    }
+
     /// The buffers of what the viewer shows.
     fn resolver(&self, setup: &FrameSetup) -> Result<Resolver<'_>, ResolveError> {
         // A frame that is not there has no samples.
@@ -127,17 +244,16 @@ impl<'g> GraphDrawing<'g> {
         } = self.style;
         Resolver::new(frame, self.graph, setup, shading, background)
     }
+}
 
-    /// The colours of what the viewer shows.
-    fn pixels(&self, setup: &FrameSetup) -> Result<Pixels, ResolveError> {
-        let resolver = self.resolver(setup)?;
-        let (width, height) = resolver.size();
-        let rows = 0..height;
-        Ok(match resolver.is_opaque() {
-            true => Pixels::opaque(width, height, resolver.colors(rows)?),
-            false => Pixels::new(width, height, resolver.colors(rows)?),
-        })
-    }
+/// All colours, in the form of a file.
+fn pixels(resolver: &Resolver<'_>) -> Result<Pixels, ResolveError> {
+    let (width, height) = resolver.size();
+    let rows = 0..height;
+    Ok(match resolver.is_opaque() {
+        true => Pixels::opaque(width, height, resolver.colors(rows)?),
+        false => Pixels::new(width, height, resolver.colors(rows)?),
+    })
 }
 
 impl Drawable for GraphDrawing<'_> {
@@ -152,42 +268,26 @@ impl Drawable for GraphDrawing<'_> {
     /// Draws the graph, unless it was drawn like this the last time, and makes the colours. With
     /// several runs the times are those of so many frames drawn for that alone.
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
-        let setup = self.setup(camera)?;
         let measured = match runs {
             0 | 1 => None,
             runs => Some(timed(runs, self.frames(camera)?)?.1),
         };
-        let mut started = Instant::now();
-        let is_shown = self.viewer.shows(&setup);
-        let light = lights(self.graph, &setup, self.style.shading);
-        let mut stats = self.viewer.render_lit(&setup, &light)?;
-        let mut draw_ms = milliseconds_since(started);
-        started = Instant::now();
-        let pixels = match self.last.take().filter(|_| is_shown) {
+        let mut drawn = self.draw_frame(camera)?;
+        let started = Instant::now();
+        let last = self.last.take().filter(|_| drawn.was_shown);
+        let draw_ms = drawn.draw_ms;
+        let pixels = match last {
             Some(last) => last.pixels,
-            None => match self.pixels(&setup) {
-                Err(ResolveError::Voxel) if self.contents == Contents::Nodes => {
-                    // The graph does not determine it: once more, with voxels.
-                    self.contents = Contents::Voxels;
-                    let engine = (self.engine)();
-                    self.viewer = Viewer::new(self.graph.view(), engine, self.contents);
-                    started = Instant::now();
-                    stats = self.viewer.render_lit(&setup, &light)?;
-                    draw_ms += milliseconds_since(started);
-                    started = Instant::now();
-                    self.pixels(&setup)?
-                }
-                made => made?,
-            },
+            None => self.resolve(&mut drawn, pixels)?,
         };
-        let pixels_drawn = self.resolver(&setup)?.drawn();
+        let resolve_ms = milliseconds_since(started) - (drawn.draw_ms - draw_ms);
         self.last = Some(Drawn {
             pixels,
-            pixels_drawn,
-            setup,
-            stats,
-            times_ms: measured.unwrap_or_else(|| vec![draw_ms]),
-            resolve_ms: milliseconds_since(started),
+            pixels_drawn: self.resolver(&drawn.setup)?.drawn(),
+            times_ms: measured.unwrap_or_else(|| vec![drawn.draw_ms]),
+            setup: drawn.setup,
+            stats: drawn.stats,
+            resolve_ms,
         });
         Ok(())
     }

@@ -19,7 +19,7 @@ use crate::picture::npy::Values;
 use crate::picture::{Buffer, Picture, Pixels, ResolveError, Resolver, Rows};
 use crate::project::{Bounds, Camera, CameraError, EngineError, SetupError, Up};
 
-pub use graph::{GraphDrawing, GraphStyle};
+pub use graph::{Canvas, DrawnFrame, GraphDrawing, GraphStyle};
 
 /// Something that can be drawn from any camera.
 pub trait Drawable {
@@ -126,20 +126,31 @@ pub enum DrawError {
     Method(Box<dyn std::error::Error + Send + Sync>),
 }
 
-/// Refuses a picture that would take too much memory: `sample_bytes` for each sample, and colours
-/// for each pixel. `aa_log2`: samples per pixel and axis, as a power of two.
-pub fn check_samples(camera: &Camera, aa_log2: u32, sample_bytes: u64) -> Result<(), DrawError> {
+/// Checks that a picture fits in memory: `sample_bytes` for each sample and `pixel_bytes` for each pixel. `aa_log2`:
+/// samples per pixel and axis, as a power of two.
+///
+/// # Errors
+/// [`DrawError::TooLarge`] for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
+pub fn check_samples(
+    camera: &Camera,
+    aa_log2: u32,
+    sample_bytes: u64,
+    pixel_bytes: u64,
+) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let samples = count_samples(camera.width, camera.height, aa_log2)?;
-    Ok(budget::check(
-        "a picture of this size",
-        samples * sample_bytes + pixels * PIXEL_BYTES,
-    )?)
+    let needed = samples * sample_bytes + pixels * pixel_bytes;
+    if needed > UNCHECKED_BYTES {
+        budget::check("a picture of this size", needed)?;
+    }
+    Ok(())
 }
 
-/// Least bytes of a pixel's colour.
-const PIXEL_BYTES: u64 = 3;
-/// Does something `runs` times, once at the least: the last result, and how long each run took,
+/// Less memory than this is not checked: to ask the system takes longer than to draw a small picture.
+const UNCHECKED_BYTES: u64 = 1 << 24;
+/// Memory of a pixel's colour in a file, bytes.
+pub const COLOR_BYTES: u64 = 3;
+/// Runs `run` `runs` times, once at the least: the last result, and how long each run took,
 /// milliseconds.
 pub fn timed<T>(
     runs: u32,

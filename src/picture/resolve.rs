@@ -60,6 +60,9 @@ pub struct Resolver<'f> {
     shares: OnceLock<Option<Shares>>,
 }
 
+/// Pixels that one thread makes sooner than it can wake another.
+const FEW_PIXELS: usize = 1 << 12;
+
 /// A pixel that is made.
 #[derive(Clone, Copy)]
 struct At {
@@ -102,18 +105,27 @@ impl<'f> Resolver<'f> {
     /// When the frame does not say which voxels are seen and a colour depends on it.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
+        let mut pixels = vec![[0; N]; width as usize * rows.len()];
+        self.write_colors(rows, &mut pixels)?;
+        Ok(pixels)
+    }
+
+    /// [`Resolver::colors`] into the caller's pixels, which are as many as those of the rows.
+    ///
+    /// # Errors
+    /// As [`Resolver::colors`].
+    pub fn write_colors<const N: usize>(
+        &self,
+        rows: Range<u32>,
+        pixels: &mut [[u8; N]],
+    ) -> Result<(), ResolveError> {
         let Shader { sight, light, .. } = &self.shader;
         let is_lit = light.is_directed() && self.frame.blend.is_none();
         let shares = self
             .shares
             .get_or_init(|| is_lit.then(|| Shares::new(sight, *light)));
         let painter = Painter::new(self.frame, &self.shader, shares.as_ref(), self.aa);
-        let mut pixels = vec![[0; N]; width as usize * rows.len()];
-        pixels
-            .par_chunks_mut((width as usize).max(1))
-            .zip(rows)
-            .try_for_each(|(to, y)| painter.row(y, to))?;
-        Ok(pixels)
+        self.each_row(rows, pixels, |y, to| painter.row(y, to))
     }
 
     /// What it is made of.
@@ -148,14 +160,27 @@ impl<'f> Resolver<'f> {
     ) -> Result<Vec<T>, ResolveError> {
         let (width, _) = self.size();
         let mut pixels = vec![nothing; width as usize * rows.len()];
-        pixels
-            .par_chunks_mut((width as usize).max(1))
-            .zip(rows)
-            .try_for_each(|(to, y)| {
-                let row = (0..width).zip(to);
-                { row }.try_for_each(|(x, to)| each(At { x, y }, to))
-            })?;
+        self.each_row(rows, &mut pixels, |y, to| {
+            let row = (0..width).zip(to);
+            { row }.try_for_each(|(x, to)| each(At { x, y }, to))
+        })?;
         Ok(pixels)
+    }
+
+    /// Does something with each row of pixels, on all threads if there are enough pixels.
+    fn each_row<T: Send>(
+        &self,
+        rows: Range<u32>,
+        pixels: &mut [T],
+        each: impl Fn(u32, &mut [T]) -> Result<(), ResolveError> + Sync,
+    ) -> Result<(), ResolveError> {
+        let width = (self.size().0 as usize).max(1);
+        if pixels.len() <= FEW_PIXELS {
+            let mut rows = pixels.chunks_mut(width).zip(rows);
+            return rows.try_for_each(|(to, y)| each(y, to));
+        }
+        let rows = pixels.par_chunks_mut(width).zip(rows);
+        rows.try_for_each(|(to, y)| each(y, to))
     }
 
     /// The sample right of and below a pixel's middle, and its place in the

@@ -77,14 +77,32 @@ impl<'g, E: Engine> Viewer<'g, E> {
     /// depend on graph and set-up alone, as it does with every engine of this crate.
     #[must_use]
     pub fn new(graph: GraphView<'g>, engine: E, contents: Contents) -> Self {
+        Self::reusing(graph, engine, Frame::nodes_only(0, 0), contents)
+    }
+
+    /// [`Viewer::new`] with the memory of a frame of another viewer, from [`Viewer::into_parts`].
+    #[must_use]
+    pub fn reusing(graph: GraphView<'g>, engine: E, frame: Frame, contents: Contents) -> Self {
         Self {
             graph,
             engine,
             contents,
-            frame: Frame::nodes_only(0, 0),
+            frame,
             shown: None,
             stats: None,
         }
+    }
+
+    /// The engine and the frame, to be used again.
+    #[must_use]
+    pub fn into_parts(self) -> (E, Frame) {
+        (self.engine, self.frame)
+    }
+
+    /// Stores other contents of each sample from the next frame on; nothing is shown until then.
+    pub fn store(&mut self, contents: Contents) {
+        self.contents = contents;
+        self.forget();
     }
 
     /// Makes the frame that of a set-up. Returns whether it was drawn; if not,
@@ -161,7 +179,14 @@ impl<'g, E: Engine> Viewer<'g, E> {
     fn make_room(&mut self, setup: &FrameSetup) {
         self.forget();
         let (width, height) = (setup.width, setup.height);
-        if (self.frame.width, self.frame.height) != (width, height) {
+        let has = match (&self.frame.records, self.frame.voxel.is_empty()) {
+            (Some(_), _) => Contents::Records,
+            (None, false) => Contents::Voxels,
+            (None, true) => Contents::Nodes,
+        };
+        if (self.frame.width, self.frame.height, has) != (width, height, self.contents) {
+            // The old one's memory is free before the new one's is taken.
+            self.frame = Frame::nodes_only(0, 0);
             self.frame = match self.contents {
                 Contents::Nodes => Frame::nodes_only(width, height),
                 Contents::Voxels => Frame::new(width, height, false),

@@ -157,7 +157,9 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
         .args(["info", "a.obj", "--depth", "21"])
         .assert()
         .code(2);
-    fs::copy("tests/data/axes.vox", folder.path().join("axes.vox")).unwrap();
+    fs::copy(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/axes.vox"),
+        folder.path().join("axes.vox")).unwrap();
     let assert = shiftvox(folder.path())
         .args(["triangles", "axes.vox", "-o", "x.png"])
         .assert()

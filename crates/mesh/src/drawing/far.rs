@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::mesh_view::{light_of, picture_of_far, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
 use shiftvox::drawing::{
-    DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
+    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
 };
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
@@ -75,7 +75,7 @@ impl Drawable for FarDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
+        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
         let options = self.style.options(&view);
         let ((picture, coverage, counts), times_ms) = timed(runs, || {

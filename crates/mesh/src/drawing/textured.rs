@@ -5,7 +5,7 @@ use serde_json::json;
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
 use shiftvox::drawing::{
-    DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
+    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
 };
 use crate::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use shiftvox::picture::{Background, Shading};
@@ -113,7 +113,7 @@ impl Drawable for TexturedDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES)?;
+        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
         let view = view_of(camera, self.file.bounds())?;
         let ((mut drawn, counts), times_ms) = timed(runs, || Ok(self.drawn(&view)?))?;
         let coverage = std::mem::take(&mut drawn.coverage);

@@ -6,7 +6,7 @@ use serde_json::json;
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
 use shiftvox::drawing::{
-    DrawError, Drawable, Frames, Shown, check_samples, timed,
+    COLOR_BYTES, DrawError, Drawable, Frames, Shown, check_samples, timed,
 };
 use shiftvox::graph::Progress;
 use crate::raster::{self, RasterCamera, RasterOptions, RasterPicture, Samples};
@@ -68,7 +68,7 @@ impl Drawable for TrianglesDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, 0, MESH_SAMPLE_BYTES)?;
+        check_samples(camera, 0, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
         let view = view_of(camera, self.mesh.bounds())?;
         let (mut drawn, times_ms) = timed(runs, || Ok(self.drawn(&view)?))?;
         let samples = drawn.rgba.len() * self.style.samples.per_pixel();

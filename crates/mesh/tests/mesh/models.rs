@@ -6,7 +6,6 @@ use glam::{DAffine3, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox_mesh::voxelize::{Grid, voxelize};
 use shiftvox_mesh::{Instances, LoadOptions, Surface};
-use shiftvox::scene;
 
 use super::shapes::model;
 

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use glam::{DQuat, DVec3};
 use shiftvox_mesh::Mesh;
-use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading};
+use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading, View};
 use shiftvox_mesh::SceneOptions;
 
 use super::shapes::{ball, cuboid, soup, turned};
@@ -41,7 +41,7 @@ fn scene_of(text: &str, depth: u32) -> Scene {
 }
 
 /// The most that red exceeds green in any pixel, and the mean of it over what is covered.
-fn redness(scene: &Scene, camera: &Camera, coverage: Coverage, size: u32) -> (i32, f64) {
+fn redness(scene: &Scene, camera: &impl View, coverage: Coverage, size: u32) -> (i32, f64) {
     let renderer = Renderer::new()
         .coverage(coverage)
         .shading(Shading::Flat)
