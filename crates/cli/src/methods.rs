@@ -12,7 +12,7 @@ use super::error::CliError;
 use super::fatal_signals;
 use super::scenes::{self, Scene};
 use super::{engines, names};
-use shiftvox::drawing::{self, Drawable, GraphDrawing, GraphStyle, milliseconds_since};
+use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, milliseconds_since};
 use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
 use shiftvox_mesh::far::FarFile;
 use shiftvox::picture::Buffer;

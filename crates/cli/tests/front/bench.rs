@@ -6,6 +6,8 @@ use serde_json::Value;
 
 use crate::program::{bench, folder, json_of, shiftvox, stderr_of, stdout_of};
 
+use crate::common::Run;
+
 const SCENE: &str = "gen:menger,depth=2";
 
 #[test]

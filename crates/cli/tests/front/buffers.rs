@@ -3,14 +3,16 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::png;
+
+use crate::common::Run;
 
 const SIZE: (usize, usize) = (24, 16);
 
 fn render(folder: &Path, aa: &str) {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command.current_dir(folder).args([
         "render",
         "gen:sphere,depth=3",

@@ -5,7 +5,6 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-use assert_cmd::cargo::cargo_bin;
 
 /// Runs the program in an empty folder on a disk of 1 MB; the names of the files afterwards. `None` where the system
 /// does not let a test mount one.
@@ -24,7 +23,7 @@ fn on_small_disk(line: &str) -> Option<(Output, String)> {
     let script = format!("{mount} || exit 99; \"$0\" \"$@\"; code=$?; ls -A >&2; exit $code");
     let output = Command::new("unshare")
         .args(["-m", "sh", "-c", &script])
-        .arg(cargo_bin("shiftvox"))
+        .arg(crate::common::program())
         .args(line.split_whitespace())
         .current_dir(folder.path())
         .output()

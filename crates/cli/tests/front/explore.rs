@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use assert_cmd::Command;
+use std::process::Command;
 use serde_json::Value;
 use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::explore::front::{Objective, front};
@@ -12,6 +12,8 @@ use shiftvox_lab::model::explore::space::{SPACES, Space};
 use shiftvox_lab::model::explore::{PointFigures, PointOutcome, RivalFigures};
 use shiftvox_lab::model::range::Range;
 use tempfile::TempDir;
+
+use crate::common::Run;
 
 const SCENE: &str = "gen:menger,depth=3";
 
@@ -40,7 +42,7 @@ impl Folder {
     }
 
     fn command(&self, scene: &str, more: &[&str]) -> Command {
-        let mut command = Command::cargo_bin("shiftvox").expect("built beside the tests");
+        let mut command = crate::common::command();
         command.current_dir(self.0.path());
         command.args(["model", scene, "--size", "40", "--explore", "space.toml"]);
         command.args(more);
@@ -81,7 +83,7 @@ fn assert_as_alone(folder: &Folder, points: &[Value]) {
         let hardware = folder.run(&["--points", &number, "--print-hw"]);
         fs::write(folder.path("hw.toml"), hardware).unwrap();
         let bits = found["values"]["bits"].as_u64().unwrap_or(32).to_string();
-        let mut alone = Command::cargo_bin("shiftvox").unwrap();
+        let mut alone = crate::common::command();
         alone.current_dir(folder.0.path());
         alone.args(["model", SCENE, "--size", "40", "--hw", "hw.toml", "--json"]);
         let output = alone.args(["--bits", &bits]).output().unwrap();
@@ -466,7 +468,7 @@ fn wrong_command_lines() {
         assert_eq!(code, 2, "{more:?}: {told}");
         assert!(told.contains(expected), "{more:?}: {told}");
     }
-    let mut alone = Command::cargo_bin("shiftvox").unwrap();
+    let mut alone = crate::common::command();
     alone
         .args(["model", "--results", "x.jsonl"])
         .assert()
@@ -476,7 +478,7 @@ fn wrong_command_lines() {
 /// The space that ships holds two designs that ship, and is what `--print-space` prints.
 #[test]
 fn the_bundled_space_holds_paper_and_light() {
-    let mut print = Command::cargo_bin("shiftvox").unwrap();
+    let mut print = crate::common::command();
     print.args(["model", "--explore", "bundled", "--print-space"]);
     let told = String::from_utf8(print.output().unwrap().stdout).unwrap();
     assert_eq!(told.trim_end(), SPACES[0].1.trim_end());

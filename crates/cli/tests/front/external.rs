@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 fn shiftvox(folder: &Path, arguments: &[&str]) -> std::process::Output {
-    let mut command = assert_cmd::Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command
         .current_dir(folder)
         .args(arguments)

@@ -7,7 +7,6 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::cargo_bin;
 
 const BENCH: [&str; 6] = [
     "bench",
@@ -23,7 +22,7 @@ fn within(megabytes: u32, folder: &Path, line: &[&str]) -> Output {
     let limit = format!("ulimit -v {}; exec \"$0\" \"$@\"", megabytes << 10);
     Command::new("sh")
         .args(["-c", &limit])
-        .arg(cargo_bin("shiftvox"))
+        .arg(crate::common::program())
         .args(line)
         .args(["--threads", "2"])
         .current_dir(folder)
@@ -37,7 +36,7 @@ fn told(output: &Output) -> String {
 
 /// A run that ends by itself within ten seconds.
 fn patient(folder: &Path, line: &[&str]) -> Output {
-    let mut child = Command::new(cargo_bin("shiftvox"))
+    let mut child = Command::new(crate::common::program())
         .args(line)
         .current_dir(folder)
         .stdout(Stdio::piped())
@@ -190,7 +189,7 @@ fn a_mapped_file_that_is_cut_short_is_told() {
     let file = folder.path().join("a.vxg");
     let made = patient(folder.path(), &["convert", "gen:terrain,depth=7", "a.vxg"]);
     assert!(made.status.success(), "{}", told(&made));
-    let child = Command::new(cargo_bin("shiftvox"))
+    let child = Command::new(crate::common::program())
         .args("render a.vxg --repeat 1000000 --size 128 -o a.png --json".split(' '))
         .current_dir(folder.path())
         .stdout(Stdio::piped())

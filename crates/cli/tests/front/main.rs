@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bench;
+#[path = "../common/mod.rs"]
+mod common;
 mod buffers;
 mod damaged;
 mod disk;

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use crate::program::{folder, shiftvox, stderr_of, stdout_of};
 
+use crate::common::Run;
+
 const SCENE: &str = "gen:sphere,depth=3";
 
 fn names(folder: &Path) -> Vec<String> {

@@ -1,11 +1,13 @@
 //! `model`: what it prints, what it writes, what it refuses.
 
-use assert_cmd::Command;
+use std::process::Command;
 use serde_json::Value;
 use tempfile::TempDir;
 
+use crate::common::Run;
+
 fn shiftvox() -> Command {
-    Command::cargo_bin("shiftvox").expect("built beside the tests")
+    crate::common::command()
 }
 
 /// Runs and reads the JSON document.

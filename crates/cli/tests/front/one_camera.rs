@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 use glam::DVec3;
 use serde_json::Value;
 use shiftvox_mesh::far::FarFile;
@@ -16,9 +16,11 @@ use shiftvox_mesh::SceneOptions;
 use shiftvox::{Camera, Renderer, Scene};
 use xxhash_rust::xxh3::xxh3_64;
 
+use crate::common::Run;
+
 /// What a command prints, without the last line's end.
 fn printed(folder: &Path, line: &str) -> String {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     let assert = command.current_dir(folder).args(line.split(' ')).assert();
     let output = assert.success().get_output().stdout.clone();
     String::from_utf8(output).unwrap().trim_end().to_owned()

@@ -89,7 +89,7 @@ fn files(folder: &Path) -> usize {
 /// and that `again` does not hold yet. Tells how many ran, and which failed.
 fn run_page(page: &Path, again: &Mutex<HashSet<String>>) -> (usize, Vec<String>) {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
-    let program = assert_cmd::cargo::cargo_bin("shiftvox");
+    let program = crate::common::program();
     let path = std::env::var("PATH").unwrap_or_default();
     let path = format!("{}:{path}", program.parent().unwrap().display());
     let all = std::env::var_os("SHIFTVOX_PRINTED").is_some_and(|what| what == "all");

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
+use std::process::Command;
+use crate::common::{Assert, Run};
 use serde_json::Value;
 
 pub(crate) fn folder() -> tempfile::TempDir {
@@ -11,7 +11,7 @@ pub(crate) fn folder() -> tempfile::TempDir {
 }
 
 pub(crate) fn shiftvox(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command.current_dir(folder);
     command
 }

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use assert_cmd::Command;
-use assert_cmd::assert::Assert;
+use std::process::Command;
+use crate::common::{Assert, Run};
 
 use crate::program::{folder, json_of, run, stderr_of};
 
@@ -195,7 +195,7 @@ mod unix {
 
     fn sh(folder: &Path, script: &str) -> Assert {
         let mut command = Command::new("sh");
-        let program = assert_cmd::cargo::cargo_bin("shiftvox");
+        let program = crate::common::program();
         command
             .current_dir(folder)
             .args(["-c", script])
@@ -210,7 +210,7 @@ mod unix {
         run(folder.path(), &["generate", SCENE, "-o", "t.vox"]).success();
         fs::rename(folder.path().join("t.vox"), folder.path().join(odd)).unwrap();
         let with = |verb: &[&str], rest: &[&str]| {
-            let mut command = Command::cargo_bin("shiftvox").unwrap();
+            let mut command = crate::common::command();
             command.current_dir(folder.path());
             command.args(verb).arg(odd).args(rest).assert()
         };
@@ -239,7 +239,7 @@ mod unix {
         )
         .success();
         let missing = OsStr::from_bytes(b"\x1b[31mred\xfe.vox");
-        let mut command = Command::cargo_bin("shiftvox").unwrap();
+        let mut command = crate::common::command();
         let assert = command.arg("info").arg(missing).assert().code(4);
         assert!(
             !stderr_of(&assert).contains('\x1b'),

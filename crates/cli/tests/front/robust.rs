@@ -12,7 +12,6 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::cargo_bin;
 use shiftvox_mesh::far::FarFile;
 use shiftvox::graph::{Silent, vxg};
 use shiftvox_mesh::open::{OpenOptions, open_bytes};
@@ -134,7 +133,7 @@ impl Can {
     fn found(folder: &Path) -> Self {
         let does = |script: &str| {
             let mut shell = Command::new("sh");
-            shell.args(["-c", script]).arg(cargo_bin("shiftvox"));
+            shell.args(["-c", script]).arg(crate::common::program());
             let status = shell.current_dir(folder).stderr(Stdio::null()).status();
             status.is_ok_and(|status| status.success())
         };
@@ -152,7 +151,7 @@ fn start(folder: &Path, script: &str, line: &str) -> Child {
     let stderr = File::create(folder.join("../stderr")).unwrap();
     Command::new("sh")
         .args(["-c", script])
-        .arg(cargo_bin("shiftvox"))
+        .arg(crate::common::program())
         .args(line.split_whitespace())
         .env("RAYON_NUM_THREADS", "2")
         .current_dir(folder)
@@ -360,7 +359,7 @@ fn whatever_happens_it_ends_in_order() {
 #[test]
 fn every_command_is_run() {
     let commands = |line: &[&str]| -> Vec<String> {
-        let output = Command::new(cargo_bin("shiftvox"))
+        let output = Command::new(crate::common::program())
             .args(line)
             .arg("--help")
             .output()

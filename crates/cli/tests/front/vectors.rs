@@ -4,13 +4,15 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 use serde_json::Value;
 
 use crate::program::stderr_of;
 
-fn model(folder: &Path, more: &[&str]) -> assert_cmd::assert::Assert {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+use crate::common::Run;
+
+fn model(folder: &Path, more: &[&str]) -> crate::common::Assert {
+    let mut command = crate::common::command();
     command.current_dir(folder);
     command.args(["model", "gen:menger,depth=2", "--size", "24"]);
     command.args(more).assert()

@@ -3,10 +3,12 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
+
+use crate::common::Run;
 
 fn shiftvox(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command.current_dir(folder);
     command
 }
@@ -231,7 +233,7 @@ fn a_build_that_is_cut_short_leaves_no_file() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
-    let program = assert_cmd::cargo::cargo_bin("shiftvox");
+    let program = crate::common::program();
     for wait_ms in [0, 5, 20, 80] {
         let mut child = std::process::Command::new(&program)
             .current_dir(at)

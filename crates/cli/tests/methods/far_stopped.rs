@@ -7,7 +7,6 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use assert_cmd::cargo::cargo_bin;
 use rustix::process::{Pid, Signal, kill_process};
 use shiftvox_mesh::far::FarFile;
 
@@ -34,7 +33,7 @@ fn stl() -> Vec<u8> {
 fn start(folder: &Path) -> Child {
     let arguments = "convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 24 --force";
     let arguments: Vec<&str> = arguments.split(' ').collect();
-    Command::new(cargo_bin("shiftvox"))
+    Command::new(crate::common::program())
         .current_dir(folder)
         .args(arguments)
         .stdout(Stdio::null())
@@ -112,7 +111,7 @@ fn a_stopped_build_leaves_the_old_file_and_nothing_else() {
 fn start_to_resume(folder: &Path, more: &[&str]) -> Command {
     let arguments =
         "convert sheet.stl kept.far --leaf-triangles 200 --grid 32 --rays 2000000 --resume";
-    let mut command = Command::new(cargo_bin("shiftvox"));
+    let mut command = Command::new(crate::common::program());
     command
         .current_dir(folder)
         .args(arguments.split(' '))
@@ -126,7 +125,7 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
     let at = folder.path();
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     let whole = "convert sheet.stl whole.far --leaf-triangles 200 --grid 32 --rays 2000000 -q";
-    let mut command = Command::new(cargo_bin("shiftvox"));
+    let mut command = Command::new(crate::common::program());
     let built = command.current_dir(at).args(whole.split(' ')).status();
     assert!(built.unwrap().success());
     let expected = fs::read(at.join("whole.far")).unwrap();
@@ -170,7 +169,7 @@ fn a_build_that_was_stopped_goes_on_to_the_same_bytes() {
 /// Builds `a.far` of twenty copies of `sheet.stl`, with more settings.
 fn convert_copies(at: &Path, settings: &str) -> Command {
     let always = "convert sheet.stl a.far --leaf-triangles 5000 --force -q";
-    let mut command = Command::new(cargo_bin("shiftvox"));
+    let mut command = Command::new(crate::common::program());
     command
         .current_dir(at)
         .args(always.split(' '))
@@ -251,7 +250,7 @@ fn a_signal_that_is_ignored_stays_ignored() {
     let mut child = Command::new("sh")
         .current_dir(folder.path())
         .args(["-c", "trap '' HUP; exec \"$0\" convert sheet.stl sheet.far --leaf-triangles 4000000 --instances 20"])
-        .arg(cargo_bin("shiftvox"))
+        .arg(crate::common::program())
         .stderr(Stdio::null())
         .spawn()
         .unwrap();

@@ -1,6 +1,8 @@
 //! Meshes, far voxels and textured voxels by the command line.
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
+#[path = "../common/mod.rs"]
+mod common;
 mod compared;
 mod far;
 mod far_stopped;

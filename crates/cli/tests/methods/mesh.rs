@@ -3,12 +3,14 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 
 use super::shapes::squares;
 
+use crate::common::Run;
+
 fn shiftvox(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command.current_dir(folder);
     command
 }

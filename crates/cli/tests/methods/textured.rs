@@ -3,11 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use assert_cmd::Command;
+use std::process::Command;
 use serde_json::Value;
 
+use crate::common::Run;
+
 fn shiftvox(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("shiftvox").unwrap();
+    let mut command = crate::common::command();
     command.current_dir(folder);
     command
 }

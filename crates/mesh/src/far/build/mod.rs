@@ -3,6 +3,7 @@
 //! The same triangles and options give the same bytes on any number of
 //! threads: a node's rays depend on its number and on nothing else.
 
+mod bvh;
 mod chance;
 mod clusters;
 mod coarser;

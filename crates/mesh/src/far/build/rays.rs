@@ -8,17 +8,11 @@
 //! with a margin for rounding.
 
 use std::io::{self, Read};
-use std::time::Duration;
 
 use bytemuck::Pod;
 use glam::{DVec3, Vec3, Vec3A};
-use obvhs::BvhBuildParams;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::builder::build_cwbvh_from_tris;
-use obvhs::cwbvh::node::CwBvhNode;
-use obvhs::ray::{Ray, RayHit};
-use obvhs::triangle::Triangle as BvhTriangle;
 
+use super::bvh::{self, Node, Ray};
 use super::shot::NOWHERE;
 
 /// Share of an edge by which triangles reach beyond it, so that no ray slips
@@ -100,32 +94,27 @@ type Corners = [[f32; 3]; 3];
 /// Triangles that lie side by side, ready for rays.
 #[derive(Debug)]
 pub(super) struct Cluster {
-    bvh: CwBvh,
-    /// In the order of the ray hierarchy, which may have one several times: those that a ray tests
-    /// one after the other lie together.
+    nodes: Vec<Node>,
+    /// In the order of the ray hierarchy: those that a ray tests one after the other lie together.
     triangles: Vec<Corners>,
+    /// Their numbers.
+    numbers: Vec<u32>,
 }
 
 impl Cluster {
     pub(super) fn new(corners: impl Iterator<Item = [DVec3; 3]>) -> Self {
-        let triangles: Vec<BvhTriangle> = corners
-            .map(|corners| {
-                let [v0, v1, v2] = corners.map(|p| p.as_vec3a());
-                BvhTriangle { v0, v1, v2 }
-            })
+        let triangles: Vec<[Vec3A; 3]> = corners
+            .map(|corners| corners.map(|corner| corner.as_vec3a()))
             .collect();
-        let bvh = build_cwbvh_from_tris(
-            &triangles,
-            BvhBuildParams::slow_build(),
-            &mut Duration::default(),
-        );
-        let in_order = bvh.primitive_indices.iter().map(|&number| {
-            let BvhTriangle { v0, v1, v2 } = triangles[number as usize];
-            [v0, v1 - v0, v2 - v0].map(|p| p.to_array())
+        let (nodes, numbers) = bvh::build(&triangles);
+        let in_order = numbers.iter().map(|&number| {
+            let [a, b, c] = triangles[number as usize];
+            [a, b - a, c - a].map(|point| point.to_array())
         });
         Self {
             triangles: in_order.collect(),
-            bvh,
+            nodes,
+            numbers,
         }
     }
 
@@ -138,8 +127,8 @@ impl Cluster {
     /// Its bytes, to be stored.
     pub(super) fn sections(&self) -> [&[u8]; 3] {
         [
-            bytemuck::cast_slice(&self.bvh.nodes),
-            bytemuck::cast_slice(&self.bvh.primitive_indices),
+            bytemuck::cast_slice(&self.nodes),
+            bytemuck::cast_slice(&self.numbers),
             bytemuck::cast_slice(&self.triangles),
         ]
     }
@@ -151,11 +140,8 @@ impl Cluster {
     pub(super) fn read(from: &mut impl Read, bytes: [usize; 3]) -> io::Result<Self> {
         let [nodes, numbers, triangles] = bytes;
         Ok(Self {
-            bvh: CwBvh {
-                nodes: read_all::<CwBvhNode>(from, nodes)?,
-                primitive_indices: read_all(from, numbers)?,
-                ..CwBvh::default()
-            },
+            nodes: read_all(from, nodes)?,
+            numbers: read_all(from, numbers)?,
             triangles: read_all(from, triangles)?,
         })
     }
@@ -164,20 +150,21 @@ impl Cluster {
     /// the first triangle here.
     fn nearest(&self, query: &Query, first: u32, meeting: &mut Meeting) {
         let most = query.most.min(meeting.distance * MARGIN);
-        let (origin, direction) = (query.origin.into(), query.direction.into());
-        let ray = Ray::new(origin, direction, 0.0, most);
-        self.bvh
-            .ray_traverse(ray, &mut RayHit::none(), |ray, place| {
-                let distance = meet(&self.triangles[place], ray);
-                if distance > meeting.distance.min(query.most) {
-                    return f32::INFINITY;
-                }
-                let triangle = first + self.bvh.primitive_indices[place];
-                if distance < meeting.distance || triangle < meeting.triangle {
-                    *meeting = Meeting { distance, triangle };
-                }
-                distance * MARGIN
-            });
+        let ray = Ray {
+            origin: query.origin.into(),
+            direction: query.direction.into(),
+        };
+        bvh::traverse(&self.nodes, &ray, most, |place| {
+            let distance = meet(&self.triangles[place], &ray);
+            if distance.is_infinite() || distance > meeting.distance.min(query.most) {
+                return f32::INFINITY;
+            }
+            let triangle = first + self.numbers[place];
+            if distance < meeting.distance || triangle < meeting.triangle {
+                *meeting = Meeting { distance, triangle };
+            }
+            distance * MARGIN
+        });
     }
 
     /// As for one ray, for those that get into a box.
@@ -227,4 +214,72 @@ fn meet(&[corner, to_second, to_third]: &Corners, ray: &Ray) -> f32 {
     }
     let t = to_third.dot(over) * sign / scale;
     if t >= 0.0 { t } else { f32::INFINITY }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use shiftvox::split_mix::SplitMix;
+
+    /// Rays through random triangles, many of them equal or in one plane, meet what a test of all of them finds.
+    #[test]
+    fn rays_meet_the_nearest_triangle() {
+        let mut dice = SplitMix::new(7);
+        let mut met = 0;
+        for round in 0..200 {
+            let count = 1 + dice.below(300) as usize;
+            let wide = [1.0, 8.0, 1e4][round % 3];
+            let mut place = |around: DVec3, size: f64| {
+                let coordinate = |_| (dice.below(17) as f64 - 8.0) * size / 8.0;
+                around + DVec3::from_array([0; 3].map(coordinate))
+            };
+            let triangles: Vec<[DVec3; 3]> = (0..count)
+                .map(|_| {
+                    let around = place(DVec3::ZERO, wide);
+                    [0; 3].map(|_| place(around, 1.0))
+                })
+                // Of a sliver the test of a triangle knows no edges.
+                .filter(|[a, b, c]| (b - a).cross(c - a).length() > 0.02)
+                .collect();
+            let cluster = Cluster::new(triangles.iter().copied());
+            let all = triangles.iter().map(|corners| {
+                let [a, b, c] = corners.map(|corner| corner.as_vec3a());
+                [a, b - a, c - a].map(|point| point.to_array())
+            });
+            let all: Vec<Corners> = all.collect();
+            for _ in 0..100 {
+                let (from, to) = (place(DVec3::ZERO, 2.0 * wide), place(DVec3::ZERO, wide));
+                let Some(direction) = (to - from).try_normalize() else {
+                    continue;
+                };
+                let query = Query {
+                    origin: from.as_vec3(),
+                    direction: direction.as_vec3(),
+                    most: [f32::INFINITY, wide as f32][round % 2],
+                };
+                let ray = Ray {
+                    origin: query.origin.into(),
+                    direction: query.direction.into(),
+                };
+                let mut expected = Meeting::NONE;
+                for (number, corners) in all.iter().enumerate() {
+                    let distance = meet(corners, &ray);
+                    // A ray within a triangle's plane may seem to meet it far away.
+                    let [a, b, c] = triangles[number].map(|corner| corner.as_vec3a());
+                    let at = ray.origin + ray.direction * distance;
+                    let outside = (a.min(b).min(c) - at).max(at - a.max(b).max(c));
+                    let is_there = outside.max_element() <= 1e-5 * wide as f32;
+                    if is_there && distance < expected.distance && distance <= query.most {
+                        let triangle = number as u32;
+                        expected = Meeting { distance, triangle };
+                    }
+                }
+                let mut found = Meeting::NONE;
+                cluster.nearest(&query, 0, &mut found);
+                assert_eq!(found, expected);
+                met += u32::from(found != Meeting::NONE);
+            }
+        }
+        assert!(met > 3000, "{met}");
+    }
 }
