@@ -4,9 +4,12 @@ use std::collections::HashMap;
 use std::io::{self, Cursor};
 use std::rc::Rc;
 
-use image::{ImageReader, Limits};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
 
 use crate::MeshBuilder;
+use shiftvox::picture::png;
 use shiftvox::srgb::to_linear;
 
 /// Most texels of a side.
@@ -28,23 +31,36 @@ pub(super) struct Texture {
 impl Texture {
     /// Decodes a PNG or JPEG file.
     fn decode(bytes: &[u8], most_bytes: u64) -> Result<Self, String> {
-        let reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format();
-        let mut reader = reader.map_err(|error| error.to_string())?;
-        let mut limits = Limits::default();
-        limits.max_image_width = Some(MOST_ACROSS);
-        limits.max_image_height = Some(MOST_ACROSS);
-        limits.max_alloc = Some(most_bytes);
-        reader.limits(limits);
-        let picture = reader.decode().map_err(|error| error.to_string())?;
-        let picture = picture.into_rgba8();
-        let (width, height) = picture.dimensions();
-        if width == 0 || height == 0 {
-            return Err("it is empty".to_owned());
+        if let Some((width, height)) = png::size(bytes) {
+            check_size(width, height, most_bytes)?;
+            let image = png::decode(bytes).map_err(|error| error.to_string())?;
+            return Ok(Self {
+                width,
+                height,
+                texels: image.rgba.into_flattened(),
+            });
+        }
+        if !bytes.starts_with(b"\xff\xd8") {
+            return Err("it is neither PNG nor JPEG".to_owned());
+        }
+        let options = DecoderOptions::default()
+            .jpeg_set_out_colorspace(ColorSpace::RGBA)
+            .set_max_width(MOST_ACROSS as usize)
+            .set_max_height(MOST_ACROSS as usize);
+        let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
+        decoder.decode_headers().map_err(|error| error.to_string())?;
+        let (width, height) = decoder.dimensions().unwrap_or_default();
+        // Both are at most 65,535 in a JPEG.
+        let (width, height) = (width as u32, height as u32);
+        check_size(width, height, most_bytes)?;
+        let texels = decoder.decode().map_err(|error| error.to_string())?;
+        if texels.len() != 4 * width as usize * height as usize {
+            return Err("its colours are not supported".to_owned());
         }
         Ok(Self {
             width,
             height,
-            texels: picture.into_raw(),
+            texels,
         })
     }
 
@@ -91,6 +107,18 @@ impl Texture {
         let (x, y) = (place(across, self.width), place(down, self.height));
         self.texels.as_chunks::<4>().0[y * self.width as usize + x]
     }
+}
+
+/// Rejects pictures without texels, and those that are too large.
+fn check_size(width: u32, height: u32, most_bytes: u64) -> Result<(), String> {
+    if width == 0 || height == 0 {
+        return Err("it is empty".to_owned());
+    }
+    let bytes = 4 * u64::from(width) * u64::from(height);
+    if width > MOST_ACROSS || height > MOST_ACROSS || bytes > most_bytes {
+        return Err(format!("{width} x {height} texels are too many"));
+    }
+    Ok(())
 }
 
 /// The textures of a mesh, each read once.
