@@ -12,7 +12,10 @@ struct Dice(u64);
 
 impl Dice {
     fn below(&mut self, end: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
         (self.0 >> 33) % end
     }
 
@@ -40,7 +43,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let camera = Camera::look_at(eye, [0; 3].map(|_: i32| dice.near(8.0, 6)));
         let drawn = machine.render(&scene, &camera.clone().field_of_view(70.0), 48, 48)?;
         let exact = oracle.render(&scene, &camera.field_of_view(70.0), 48, 48)?;
-        assert_eq!(drawn.voxels()?, exact.voxels()?, "a hidden voxel was drawn first");
+        assert_eq!(
+            drawn.voxels()?,
+            exact.voxels()?,
+            "a hidden voxel was drawn first"
+        );
         seen += exact.voxels()?.iter().filter(|voxel| voxel[3] >= 0).count();
     }
     println!("{OCCLUSION_ORDER:?}: {seen} samples of 60 scenes, none out of order");

@@ -9,10 +9,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         None => Scene::from_bytes(include_bytes!("../assets/tree.vox"), "tree.vox")?,
     };
     let output = arguments.next().unwrap_or_else(|| "picture.png".to_owned());
-    let picture = Renderer::new()
-        .samples(2)
-        .hashed(true)
-        .render(&scene, &Camera::fit(&scene), 512, 512)?;
+    let picture =
+        Renderer::new()
+            .samples(2)
+            .hashed(true)
+            .render(&scene, &Camera::fit(&scene), 512, 512)?;
     picture.save_png(&output)?;
     println!(
         "{output}: {} voxels, hash {}",

@@ -66,7 +66,13 @@ fn peak_of(work: impl FnOnce()) -> usize {
 /// One test, so that no other is counted with it.
 #[test]
 fn a_picture_takes_few_bytes_a_sample() {
-    let opened = open("gen:terrain,depth=7", &OpenOptions::default(), &NoMeshes, &Silent).expect("a scene");
+    let opened = open(
+        "gen:terrain,depth=7",
+        &OpenOptions::default(),
+        &NoMeshes,
+        &Silent,
+    )
+    .expect("a scene");
     let graph = &opened.graph;
     let side = f64::from(1u32 << graph.depth);
     for (aa_log2, of_nodes, of_voxels) in [(0, 10.0, 24.0), (1, 6.0, 22.0)] {

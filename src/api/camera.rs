@@ -156,7 +156,14 @@ impl View for FittedCamera {
         }
         let size = (width, height);
         let fov = self.fov_degrees;
-        Ok(fit_camera(&self.bounds, self.up, self.direction, fov, zoom, size))
+        Ok(fit_camera(
+            &self.bounds,
+            self.up,
+            self.direction,
+            fov,
+            zoom,
+            size,
+        ))
     }
 }
 

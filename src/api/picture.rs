@@ -5,8 +5,8 @@ use std::path::Path;
 use hwmodel::count::Counter;
 
 use super::Error;
-use crate::picture::npy::{self, Values};
 use crate::picture::Buffer;
+use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
@@ -150,7 +150,8 @@ impl Picture {
     /// # Errors
     /// [`Error::Setting`] if [`Renderer::hashed`](super::Renderer::hashed) did not request it.
     pub fn hash(&self) -> Result<&str, Error> {
-        let missing = || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
+        let missing =
+            || Error::Setting("the picture has no hash: Renderer::hashed makes it".into());
         self.buffers.hash.as_deref().ok_or_else(missing)
     }
 

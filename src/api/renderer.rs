@@ -251,7 +251,8 @@ impl Renderer {
             drawing.resolve(drawn, |resolver| {
                 let all = 0..resolver.size().1;
                 let buffers = self.buffers.iter();
-                let buffers = buffers.map(|&buffer| Ok((buffer, resolver.rows(buffer, all.clone())?)));
+                let buffers =
+                    buffers.map(|&buffer| Ok((buffer, resolver.rows(buffer, all.clone())?)));
                 Ok(Buffers {
                     rgba: resolver.colors(all.clone())?,
                     others: buffers.collect::<Result<_, ResolveError>>()?,
@@ -261,7 +262,12 @@ impl Renderer {
         };
         let (drawn, buffers) = self.draw(scene, &camera, bytes, operations.as_ref(), finish)?;
         let counters = drawn.stats;
-        let operations = operations.map(|operations| operations.lock().map(|mut o| std::mem::take(&mut *o)).unwrap_or_default());
+        let operations = operations.map(|operations| {
+            operations
+                .lock()
+                .map(|mut o| std::mem::take(&mut *o))
+                .unwrap_or_default()
+        });
         Ok(Picture::new((width, height), buffers, counters, operations))
     }
 
@@ -289,7 +295,10 @@ impl Renderer {
     ) -> Result<Stats, Error> {
         let wanted = u64::from(width) * u64::from(height);
         if pixels.len() as u64 != wanted {
-            let reason = format!("{} pixels are no picture of {width} x {height}", pixels.len());
+            let reason = format!(
+                "{} pixels are no picture of {width} x {height}",
+                pixels.len()
+            );
             return Err(Error::Setting(reason));
         }
         if !self.buffers.is_empty() || self.is_hashed || self.counts_operations {
@@ -298,9 +307,7 @@ impl Renderer {
         }
         let camera = camera.of_size(width, height)?;
         let finish = |drawing: &mut GraphDrawing<'_>, drawn: &mut DrawnFrame| {
-            drawing.resolve(drawn, |resolver| {
-                resolver.write_colors(0..height, pixels)
-            })
+            drawing.resolve(drawn, |resolver| resolver.write_colors(0..height, pixels))
         };
         let (drawn, ()) = self.draw(scene, &camera, 0, None, finish)?;
         Ok(drawn.stats)
@@ -478,7 +485,10 @@ impl Engine for Counting {
         let (stats, counter) = self
             .machine
             .render_probed(graph, setup, frame, Counter::new())?;
-        *self.operations.lock().unwrap_or_else(PoisonError::into_inner) = counter;
+        *self
+            .operations
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner) = counter;
         Ok(stats)
     }
 }
@@ -552,12 +562,17 @@ mod tests {
             .enumerate()
         {
             let buffers = all.iter().copied().take(round % 5);
-            used = used.coverage(coverage).buffers(buffers).hashed(round % 3 == 1);
+            used = used
+                .coverage(coverage)
+                .buffers(buffers)
+                .hashed(round % 3 == 1);
             used = used.samples([1, 2, 4][round % 3]).threads(round / 3);
             for scene in &scenes {
                 for (width, height) in [(40, 30), (30, 40), (30, 40), (1, 1)] {
                     let camera = Camera::fit(scene).azimuth(f64::from(width));
-                    let again = used.render(scene, &camera, width, height).expect("a picture");
+                    let again = used
+                        .render(scene, &camera, width, height)
+                        .expect("a picture");
                     let new = used.clone().render(scene, &camera, width, height);
                     let new = new.expect("a picture");
                     assert_eq!(again.rgba(), new.rgba());

@@ -6,7 +6,9 @@ use super::Error;
 use crate::graph::{BuildOptions, Builder, Graph, GraphView, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
-use crate::scene::{NoMeshes, OpenOptions, Opened, SceneFile, Source, open, open_bytes, open_source};
+use crate::scene::{
+    NoMeshes, OpenOptions, Opened, SceneFile, Source, open, open_bytes, open_source,
+};
 
 /// What a renderer draws: a voxel graph in world coordinates.
 ///

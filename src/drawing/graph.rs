@@ -6,7 +6,8 @@ use std::time::Instant;
 use serde_json::json;
 
 use super::{
-    Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, milliseconds_since, timed,
+    Buffers, COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples,
+    milliseconds_since, timed,
 };
 use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, GraphView};

@@ -83,7 +83,10 @@ fn decode_from(input: impl BufRead + Seek) -> Result<Image, DecodingError> {
     let (color, depth) = reader.output_color_type();
     if depth == BitDepth::Sixteen {
         let (channels, _) = bytes.as_chunks::<2>();
-        bytes = channels.iter().map(|&c| to_8_bits(u16::from_be_bytes(c))).collect();
+        bytes = channels
+            .iter()
+            .map(|&c| to_8_bits(u16::from_be_bytes(c)))
+            .collect();
     }
     let rgba = match color {
         ColorType::Grayscale => bytes.iter().map(|&g| [g, g, g, 255]).collect(),
@@ -142,11 +145,20 @@ mod tests {
             decode(&bytes).unwrap().rgba
         };
         let grey = [[0, 0, 0, 255], [255, 255, 255, 255]];
-        assert_eq!(read(ColorType::Grayscale, BitDepth::One, &[0b0100_0000]), grey);
+        assert_eq!(
+            read(ColorType::Grayscale, BitDepth::One, &[0b0100_0000]),
+            grey
+        );
         let palette = [[6, 5, 4, 255], [9, 8, 7, 255]];
-        assert_eq!(read(ColorType::Indexed, BitDepth::One, &[0b1000_0000]), palette);
+        assert_eq!(
+            read(ColorType::Indexed, BitDepth::One, &[0b1000_0000]),
+            palette
+        );
         let sixteen = [0x01, 0x7f, 0xff, 0xff, 0x01, 0x82, 0x80, 0x00];
         let rounded = [[1, 1, 1, 255], [2, 2, 2, 128]];
-        assert_eq!(read(ColorType::GrayscaleAlpha, BitDepth::Sixteen, &sixteen), rounded);
+        assert_eq!(
+            read(ColorType::GrayscaleAlpha, BitDepth::Sixteen, &sixteen),
+            rounded
+        );
     }
 }

@@ -22,11 +22,7 @@ pub struct Emitter<'a> {
 }
 
 impl<'a> Emitter<'a> {
-    pub fn new(
-        sink: &'a mut dyn FnMut(Voxel),
-        most: u64,
-        progress: &'a dyn Progress,
-    ) -> Self {
+    pub fn new(sink: &'a mut dyn FnMut(Voxel), most: u64, progress: &'a dyn Progress) -> Self {
         Self {
             sink,
             progress,

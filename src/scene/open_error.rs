@@ -1,7 +1,7 @@
 //! Why a scene of any kind was not opened.
 
-use super::{MeshFailure, SceneError};
 use super::generate::SpecError;
+use super::{MeshFailure, SceneError};
 use crate::graph::{BuildError, ExternalError, vxg};
 
 /// Why a scene could not be opened.

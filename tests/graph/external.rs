@@ -218,7 +218,8 @@ fn files_of_every_format_are_built_the_same() {
         vxg::write_to(&opened.graph, &mut expected).unwrap();
         let path = folder.path().join("out.vxg");
         let external = options(10_000, Normals::FromSurface, folder.path());
-        let built = scene::build_file(&source, &reading, &NoMeshes, external, &path, true, &Silent).unwrap();
+        let built = scene::build_file(&source, &reading, &NoMeshes, external, &path, true, &Silent)
+            .unwrap();
         let file = fs::read(&path).unwrap();
         assert_eq!(difference(&file, &expected), None, "{source}");
         assert_eq!(

@@ -174,7 +174,8 @@ fn graphs_of_any_sharing_are_read_or_refused_in_time() {
     for seed in 0..60 {
         let file = Graph::random(1000 + seed, 30 + seed as u32 * 4).bytes();
         // Some hold no voxels, and how much memory is free decides of others.
-        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &NoMeshes, &Silent) {
+        if let Ok(opened) = open_bytes(&file, "a.vox", &OpenOptions::default(), &NoMeshes, &Silent)
+        {
             assert!(opened.graph.voxels < 1 << 24);
         }
     }

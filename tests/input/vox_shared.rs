@@ -32,7 +32,14 @@ fn a_model_at_one_place_costs_once_however_often_it_is_placed_there() {
     assert_eq!((voxels.len(), info.instances), (65_536, 1 << 17));
     let said = "131071 placements put a model where it is already";
     assert!(info.warnings[0].starts_with(said), "{:?}", info.warnings);
-    let opened = open_bytes(&file, "slab.vox", &OpenOptions::default(), &NoMeshes, &Silent).unwrap();
+    let opened = open_bytes(
+        &file,
+        "slab.vox",
+        &OpenOptions::default(),
+        &NoMeshes,
+        &Silent,
+    )
+    .unwrap();
     assert_eq!(opened.graph.voxels, 65_536);
 }
 
@@ -84,7 +91,14 @@ fn more_voxels_than_are_wanted_are_refused_before_the_first() {
 fn a_scene_of_too_many_voxels_is_a_limit_with_figures() {
     // 2^17 places a voxel apart: 2^33 voxels.
     let file = slab(17, ["0 0 0", "0 0 N"]);
-    let refused = open_bytes(&file, "slab.vox", &OpenOptions::default(), &NoMeshes, &Silent).unwrap_err();
+    let refused = open_bytes(
+        &file,
+        "slab.vox",
+        &OpenOptions::default(),
+        &NoMeshes,
+        &Silent,
+    )
+    .unwrap_err();
     assert!(refused.is_limit());
     let told = refused.to_string();
     assert!(

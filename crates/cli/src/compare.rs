@@ -11,10 +11,10 @@ use super::error::{CliError, Kind};
 use super::{names, report};
 use shiftvox::bounded;
 use shiftvox::budget;
-use shiftvox_lab::measure::{ColorError, CoverageError, count_differing, difference};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::png::{self, Image};
 use shiftvox::whole;
+use shiftvox_lab::measure::{ColorError, CoverageError, count_differing, difference};
 
 /// Arguments of `compare`.
 #[derive(Debug, Args)]

@@ -10,11 +10,11 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::scene_files::Conversion;
 use super::{far, names, report, scene_files, scenes, textured};
-use shiftvox_mesh::far::view::Opacity;
 use shiftvox::graph::{BuildOptions, ExternalOptions};
 use shiftvox::scene::Source;
-use shiftvox_mesh::textured::Element;
 use shiftvox::whole;
+use shiftvox_mesh::far::view::Opacity;
+use shiftvox_mesh::textured::Element;
 
 /// Most rays of a `.far` build: days of work.
 const MOST_RAYS: u64 = 1 << 36;

@@ -8,11 +8,11 @@ use super::error::{CliError, Kind};
 use shiftvox::fast::{Fast, FastOptions, Switches};
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
-use shiftvox_lab::bench::{Candidate, Family, Frames, Variant};
-use shiftvox_lab::float_rays::FloatRays;
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup};
 use shiftvox::rays::Rays;
+use shiftvox_lab::bench::{Candidate, Family, Frames, Variant};
+use shiftvox_lab::float_rays::FloatRays;
 
 /// What makes the engine that the flags name, as often as one is needed.
 pub(super) type Maker = Box<dyn Fn() -> Box<dyn Engine + Send>>;

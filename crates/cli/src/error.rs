@@ -6,16 +6,15 @@ use std::process::ExitCode;
 
 use shiftvox::budget::{DiskShortage, Shortage};
 use shiftvox::drawing::DrawError;
-use shiftvox_mesh::drawing::MethodError;
 use shiftvox::graph::ExternalError;
 use shiftvox::graph::file::FileError;
 use shiftvox::graph::vxg::VxgError;
-use shiftvox_lab::bench::BenchError;
 use shiftvox::picture::ResolveError;
 use shiftvox::project::{EngineError, SetupError};
-use shiftvox_lab::report::plot::PlotError;
 use shiftvox::scene::{MeshFailure, OpenError, SceneError};
 use shiftvox::whole::WholeError;
+use shiftvox_lab::bench::BenchError;
+use shiftvox_mesh::drawing::MethodError;
 use shiftvox_mesh::{far, textured};
 
 /// The kinds of failure that a script can tell apart.
@@ -355,11 +354,5 @@ impl From<BenchError> for CliError {
             BenchError::Setup(error) => error.into(),
             BenchError::Picture(_) | BenchError::Threads { .. } => Self::new(Kind::Run, error),
         }
-    }
-}
-
-impl From<PlotError> for CliError {
-    fn from(error: PlotError) -> Self {
-        Self::new(Kind::Run, error)
     }
 }

@@ -15,12 +15,12 @@ use super::scene_files::Conversion;
 use super::scenes;
 use shiftvox::budget;
 use shiftvox::drawing::milliseconds_since;
+use shiftvox::project::Up;
+use shiftvox::whole;
+use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::build::{Outside, part_of};
 use shiftvox_mesh::far::record::{LISTS, OPACITY_BYTES, OpacityKind, ShaderKind};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarFile, build_outside};
-use shiftvox_mesh::Instances;
-use shiftvox::project::Up;
-use shiftvox::whole;
 
 /// What a build may take, and where it keeps what is not in memory.
 pub(super) struct Resources<'r> {

@@ -10,9 +10,9 @@ use super::args::SceneArgs;
 use super::console::Console;
 use super::error::CliError;
 use super::{names, report, scene_files, scenes};
-use shiftvox_mesh::generate;
 use shiftvox::scene::Source;
 use shiftvox::whole;
+use shiftvox_mesh::generate;
 
 /// Arguments of `generate`.
 #[derive(Debug, Args)]

@@ -13,10 +13,10 @@ use super::fatal_signals;
 use super::scenes::{self, Scene};
 use super::{engines, names};
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle, milliseconds_since};
-use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
-use shiftvox_mesh::far::FarFile;
 use shiftvox::picture::Buffer;
 use shiftvox::scene::{FileKind, Source};
+use shiftvox_mesh::drawing::{FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::textured::TexturedFile;
 
 /// What a scene is drawn with.

@@ -15,9 +15,9 @@ use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
 use shiftvox::drawing::{DrawError, Shown};
 use shiftvox::frame::count_samples;
-use shiftvox_lab::bench::Summary;
 use shiftvox::picture;
 use shiftvox::project::Camera;
+use shiftvox_lab::bench::Summary;
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]

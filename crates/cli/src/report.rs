@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use super::args::camera_line;
 pub(super) use super::document::document;
 use shiftvox::drawing::{Figures, Shown};
-use shiftvox_lab::bench::Summary;
 use shiftvox::project::Camera;
+use shiftvox_lab::bench::Summary;
 pub(super) use shiftvox_lab::report::grouped;
 
 /// A camera in JSON.

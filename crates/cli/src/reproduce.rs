@@ -13,11 +13,11 @@ use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::experiment::subjects;
 use super::report;
-use shiftvox_lab::bench::{Harness, Subject};
-use shiftvox_lab::reproduce::{self, Engines, Plan, ReproduceError, tables};
 use shiftvox::project::SetupOptions;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{OpenError, Source};
+use shiftvox_lab::bench::{Harness, Subject};
+use shiftvox_lab::reproduce::{self, Engines, Plan, ReproduceError, tables};
 
 /// Arguments of `reproduce`.
 #[derive(Debug, Args)]

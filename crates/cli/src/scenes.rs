@@ -10,11 +10,11 @@ use super::fatal_signals;
 use super::names;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::{Graph, Progress};
-use shiftvox_mesh::{LoadOptions, Mesh};
 use shiftvox::project::Up;
+use shiftvox::scene::{self, FileKind, MeshSummary, NoMeshes, Opened, ReadOptions, Source};
 use shiftvox_lab::report::grouped;
-use shiftvox::scene::{self, FileKind, NoMeshes, MeshSummary, Opened, ReadOptions, Source};
 use shiftvox_mesh::open::{MeshOptions, OpenOptions};
+use shiftvox_mesh::{LoadOptions, Mesh};
 
 /// The scene that the demo draws: a tree, see `assets/ATTRIBUTION.md`.
 const DEMO: &[u8] = scene::BUNDLED_TREE;
@@ -159,7 +159,8 @@ pub(super) fn read_mesh(
         )));
     }
     fatal_signals::reads(source);
-    let (mesh, y_up) = shiftvox_mesh::open::read_mesh(&names::path(source), &load_options(args), progress)?;
+    let (mesh, y_up) =
+        shiftvox_mesh::open::read_mesh(&names::path(source), &load_options(args), progress)?;
     Ok((mesh, args.up_or(Up::y_or_z(y_up))))
 }
 

@@ -10,8 +10,8 @@ use super::error::{CliError, Kind};
 use super::experiment::context::Context;
 use super::experiment::export;
 use super::report;
-use shiftvox_lab::stress::{self, Case, End, Findings, Hold, Outcome, SweepPlan, rows, tables};
 use shiftvox::whole;
+use shiftvox_lab::stress::{self, Case, End, Findings, Hold, Outcome, SweepPlan, rows, tables};
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]

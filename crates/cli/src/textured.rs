@@ -12,10 +12,10 @@ use super::scene_files::Conversion;
 use super::scenes;
 use shiftvox::drawing::milliseconds_since;
 use shiftvox::project::Up;
+use shiftvox::whole;
 use shiftvox_mesh::textured::levels::LevelRow;
 use shiftvox_mesh::textured::store::{Grid, write_to};
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
-use shiftvox::whole;
 
 /// Builds textured voxels of a mesh and writes them.
 pub(super) fn convert(

@@ -14,11 +14,11 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::{names, outputs, report, scenes};
 use shiftvox::drawing::{Drawable, milliseconds_since};
-use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
-use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::whole;
+use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
+use shiftvox_mesh::raster::{Pattern, Samples};
 
 /// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

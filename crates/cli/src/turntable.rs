@@ -13,8 +13,8 @@ use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
 use super::{names, outputs, report, scenes};
 use shiftvox::drawing::Shown;
-use shiftvox_lab::bench::Summary;
 use shiftvox::picture;
+use shiftvox_lab::bench::Summary;
 
 /// Arguments of `turntable`.
 #[derive(Debug, Args)]

@@ -7,15 +7,15 @@
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 
-use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
-use shiftvox_mesh::far::FarFile;
-use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
 use crate::bench::Clock;
 use crate::error::PixelStyle;
 use crate::methods::opacity_in_words;
-use shiftvox::project::Camera;
 use crate::report::plot::{Axis, Chart, Panel, Scale, Series};
 use crate::report::{Cell, Table};
+use shiftvox::project::Camera;
+use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
+use shiftvox_mesh::far::FarFile;
+use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
 
 /// What is walked.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,8 @@ use std::time::Instant;
 
 use shiftvox::graph::{Graph, MeshBox, Progress, Voxel};
 use shiftvox::scene::{
-    self, FileKind, MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels,
-    OpenError, Opened, SceneFile, SceneInfo,
+    self, FileKind, MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels, OpenError, Opened,
+    SceneFile, SceneInfo,
 };
 
 use crate::voxelize::{self, DEFAULT_DEPTH, Grid, GridError};
@@ -84,7 +84,11 @@ pub fn open_bytes(
     scene::open_bytes(bytes, name, &options.voxels, &options.mesh, progress)
 }
 
-fn failure(is_limit: bool, is_io: bool, error: impl std::error::Error + Send + Sync + 'static) -> OpenError {
+fn failure(
+    is_limit: bool,
+    is_io: bool,
+    error: impl std::error::Error + Send + Sync + 'static,
+) -> OpenError {
     OpenError::Mesh(MeshFailure {
         is_limit,
         is_io,

@@ -9,9 +9,9 @@ use hwmodel::Overflow;
 use super::scene::SceneArgs;
 use super::setting::{Setting, word};
 use super::values::Tolerance;
-use shiftvox_mesh::far::view::Opacity;
 use shiftvox::fast::Instructions;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
+use shiftvox_mesh::far::view::Opacity;
 
 /// Which engine draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]

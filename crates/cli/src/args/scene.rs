@@ -3,10 +3,10 @@
 use clap::Args;
 
 use super::setting::{Setting, word};
-use shiftvox_mesh::ColorSpace;
-use shiftvox_mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
 use shiftvox::project::Up;
 use shiftvox::scene::OutOfBounds;
+use shiftvox_mesh::ColorSpace;
+use shiftvox_mesh::voxelize::{DEFAULT_DEPTH, MAX_DEPTH};
 
 /// How scenes are read.
 #[derive(Debug, Clone, Default, Args)]

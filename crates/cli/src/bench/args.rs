@@ -3,14 +3,14 @@
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 
-use shiftvox::budget;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size, Tolerance};
 use crate::engines;
 use crate::error::{CliError, Kind};
 use crate::experiment::export::ExportArgs;
-use shiftvox_lab::bench::{Candidate, Scan, Schedule};
+use shiftvox::budget;
 use shiftvox::project::camera::MAX_SIDE;
 use shiftvox::project::{Coverage, SetupOptions};
+use shiftvox_lab::bench::{Candidate, Scan, Schedule};
 
 /// Most pixels of a picture: two gigabytes of samples.
 const MAX_PIXELS: u64 = 1 << 26;

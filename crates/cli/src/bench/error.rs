@@ -15,11 +15,11 @@ use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use crate::{engines, report};
+use shiftvox::project::{Coverage, SetupOptions};
 use shiftvox_lab::bench::{Schedule, Subject};
 use shiftvox_lab::error::{
     self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, voxel_method,
 };
-use shiftvox::project::{Coverage, SetupOptions};
 
 /// Scenes where none is named: a model, a landscape, a sponge, thin things.
 pub(super) const SCENES: [&str; 5] = [

@@ -13,9 +13,9 @@ use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use crate::{engines, report};
+use shiftvox::project::{Coverage, SetupOptions};
 use shiftvox_lab::error::{PixelStyle, References, voxel_method};
 use shiftvox_lab::flicker::{self as experiment, FilmPlan, Films, Motion};
-use shiftvox::project::{Coverage, SetupOptions};
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 128;

@@ -11,13 +11,13 @@ use crate::error::{CliError, Kind};
 use crate::experiment::subjects::BUNDLED;
 use crate::scenes;
 use shiftvox::drawing::milliseconds_since;
-use shiftvox_mesh::far::store::encode;
-use shiftvox_mesh::far::view::Opacity;
-use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 use shiftvox_lab::error::{Method, PixelStyle};
 use shiftvox_lab::methods;
 use shiftvox_mesh::Mesh;
 use shiftvox_mesh::decimate::{Decimation, compact, decimate};
+use shiftvox_mesh::far::store::encode;
+use shiftvox_mesh::far::view::Opacity;
+use shiftvox_mesh::far::{BuildOptions, FarFile, build};
 
 /// Samples a pixel that triangles are drawn with.
 pub(super) const TRIANGLE_SAMPLES: [u32; 3] = [1, 4, 16];

@@ -7,9 +7,9 @@ use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
 use crate::experiment::subjects::file_stem;
 use crate::names;
+use shiftvox::whole;
 use shiftvox_lab::report::html::Page;
 use shiftvox_lab::report::plot::{self, Panel};
-use shiftvox::whole;
 
 /// What stands for a scene in the name of a file of plots.
 const SCENE_FIELD: &str = "{scene}";
@@ -44,7 +44,7 @@ pub(super) fn write_plots(
     let names: Vec<String> = scenes.iter().map(|(name, _)| name.clone()).collect();
     let paths = svg_paths(export, &names);
     let write = |path: &Path, panels: &[Panel]| {
-        whole::write(path, plot::svg(panels)?.as_bytes(), export.force)?;
+        whole::write(path, plot::svg(panels).as_bytes(), export.force)?;
         console.note(format!("{}: written", path.display()));
         Ok::<(), CliError>(())
     };
@@ -64,7 +64,7 @@ pub(super) fn write_plots(
 /// The page's mention of a plot: one figure for each panel, drawn alone.
 pub(super) fn plots(page: &mut Page, panels: &[Panel], caption: &str) -> Result<(), CliError> {
     for panel in panels {
-        page.plot(&plot::svg(std::slice::from_ref(panel))?, caption);
+        page.plot(&plot::svg(std::slice::from_ref(panel)), caption);
     }
     Ok(())
 }

@@ -9,10 +9,10 @@ use crate::error::CliError;
 use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::{names, report};
+use shiftvox_lab::far_path::{self as experiment, FarPathPlan};
 use shiftvox_mesh::drawing::resident;
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::view::Opacity;
-use shiftvox_lab::far_path::{self as experiment, FarPathPlan};
 
 /// Arguments of `bench walk`.
 #[derive(Debug, Args)]

@@ -3,14 +3,14 @@
 use serde_json::{Value, json};
 
 use crate::console::Console;
-use shiftvox_lab::bench::Schedule;
 use shiftvox::project::SetupOptions;
+use shiftvox_lab::bench::Schedule;
 
 /// Load above which times are likely to be disturbed.
 const BUSY: f64 = 0.5;
 
 /// Machine and command, found before the first measurement.
-pub(in crate) struct Context {
+pub(crate) struct Context {
     processor: Option<String>,
     threads: usize,
     /// Processes that ran or waited, averaged over the last minute.
@@ -20,7 +20,7 @@ pub(in crate) struct Context {
 
 impl Context {
     /// What the system reports of itself.
-    pub(in crate) fn now() -> Self {
+    pub(crate) fn now() -> Self {
         let command: Vec<String> = std::env::args_os()
             .skip(1)
             .map(|word| word.to_string_lossy().into_owned())
@@ -38,12 +38,12 @@ impl Context {
     }
 
     /// What was typed.
-    pub(in crate) fn command_line(&self) -> String {
+    pub(crate) fn command_line(&self) -> String {
         self.command.clone()
     }
 
     /// Says so where other work is likely to show in the times.
-    pub(in crate) fn warn(&self, console: &Console) {
+    pub(crate) fn warn(&self, console: &Console) {
         if let Some(load) = self.load.filter(|&load| load > BUSY) {
             console.note(format!(
                 "the machine is not idle (load {load}): trust counters, thread times and minima"
@@ -52,7 +52,7 @@ impl Context {
     }
 
     /// As JSON fields, with how the frames were drawn.
-    pub(in crate) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
+    pub(crate) fn json(&self, schedule: Schedule, options: &SetupOptions) -> Value {
         json!({
             "command": self.command,
             "machine": {
@@ -68,7 +68,7 @@ impl Context {
     }
 
     /// As lines of Markdown.
-    pub(in crate) fn markdown(&self, schedule: Schedule) -> String {
+    pub(crate) fn markdown(&self, schedule: Schedule) -> String {
         let processor = self
             .processor
             .as_deref()

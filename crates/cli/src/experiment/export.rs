@@ -9,45 +9,45 @@ use serde_json::Value;
 
 use crate::console::Console;
 use crate::error::CliError;
+use shiftvox::whole;
 use shiftvox_lab::report::plot::{self, Panel};
 use shiftvox_lab::report::{Cell, Table};
-use shiftvox::whole;
 
 /// Files that the results are written to.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Output")]
-pub(in crate) struct ExportArgs {
+pub(crate) struct ExportArgs {
     /// All results, as --json prints them
     #[arg(long, value_name = "FILE")]
-    pub(in crate) export_json: Option<PathBuf>,
+    pub(crate) export_json: Option<PathBuf>,
     /// A row for each measurement
     #[arg(long, value_name = "FILE")]
-    pub(in crate) export_csv: Option<PathBuf>,
+    pub(crate) export_csv: Option<PathBuf>,
     /// The tables, with machine and command
     #[arg(long, value_name = "FILE")]
-    pub(in crate) export_markdown: Option<PathBuf>,
+    pub(crate) export_markdown: Option<PathBuf>,
     /// A plot
     #[arg(long, value_name = "FILE")]
-    pub(in crate) export_svg: Option<PathBuf>,
+    pub(crate) export_svg: Option<PathBuf>,
     /// Replace files that exist
     #[arg(long)]
-    pub(in crate) force: bool,
+    pub(crate) force: bool,
 }
 
 /// The results of an experiment in all forms.
-pub(in crate) struct Results {
+pub(crate) struct Results {
     /// The JSON document.
-    pub(in crate) document: Value,
+    pub(crate) document: Value,
     /// The measurements, one a row: CSV.
-    pub(in crate) rows: Table,
+    pub(crate) rows: Table,
     /// What people read: stdout and Markdown.
-    pub(in crate) tables: Vec<Table>,
+    pub(crate) tables: Vec<Table>,
     /// What Markdown has beside those.
-    pub(in crate) more_tables: Vec<Table>,
+    pub(crate) more_tables: Vec<Table>,
     /// What stands above the tables in Markdown.
-    pub(in crate) preface: String,
+    pub(crate) preface: String,
     /// The plot.
-    pub(in crate) panels: Vec<Panel>,
+    pub(crate) panels: Vec<Panel>,
 }
 
 impl ExportArgs {
@@ -64,12 +64,12 @@ impl ExportArgs {
 }
 
 /// Fails before the work where a file would be replaced without `--force`, or two be one.
-pub(in crate) fn check(args: &ExportArgs) -> Result<(), CliError> {
+pub(crate) fn check(args: &ExportArgs) -> Result<(), CliError> {
     check_with(args, [])
 }
 
 /// [`check`], with files that are written beside these.
-pub(in crate) fn check_with<'p>(
+pub(crate) fn check_with<'p>(
     args: &'p ExportArgs,
     others: impl IntoIterator<Item = &'p PathBuf>,
 ) -> Result<(), CliError> {
@@ -87,7 +87,7 @@ pub(in crate) fn check_with<'p>(
 }
 
 /// Writes the files, then prints.
-pub(in crate) fn write(
+pub(crate) fn write(
     results: &Results,
     args: &ExportArgs,
     console: &Console,
@@ -100,7 +100,7 @@ pub(in crate) fn write(
 }
 
 /// Writes the files.
-pub(in crate) fn write_files(
+pub(crate) fn write_files(
     results: &Results,
     args: &ExportArgs,
     console: &Console,
@@ -121,11 +121,11 @@ pub(in crate) fn write_files(
         let tables: Vec<String> = tables.collect();
         Ok(format!("{}\n{}", results.preface, tables.join("\n")))
     })?;
-    file(&args.export_svg, &|| Ok(plot::svg(&results.panels)?))
+    file(&args.export_svg, &|| Ok(plot::svg(&results.panels)))
 }
 
 /// The same where plots were written before, one file a scene.
-pub(in crate) fn write_without_plots(
+pub(crate) fn write_without_plots(
     results: &Results,
     args: &ExportArgs,
     console: &Console,
@@ -138,7 +138,7 @@ pub(in crate) fn write_without_plots(
 }
 
 /// What tables look like on a terminal, one below the other.
-pub(in crate) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
+pub(crate) fn print(tables: &[Table], console: &Console) -> Result<(), CliError> {
     let tables: Vec<String> = tables.iter().map(in_text).collect();
     console.data(tables.join("\n\n"))
 }

@@ -1,6 +1,6 @@
 //! What experiments share: their scenes, the machine that they run on, and the files of their
 //! results.
 
-pub(in crate) mod context;
-pub(in crate) mod export;
-pub(in crate) mod subjects;
+pub(crate) mod context;
+pub(crate) mod export;
+pub(crate) mod subjects;

@@ -7,11 +7,11 @@ use crate::console::Console;
 use crate::error::CliError;
 use crate::scenes;
 use crate::scenes::Scene;
-use shiftvox_lab::bench::Subject;
 use shiftvox::project::{Bounds, Camera};
+use shiftvox_lab::bench::Subject;
 
 /// What stands for the bundled scene.
-pub(in crate) const BUNDLED: &str = "bundled";
+pub(crate) const BUNDLED: &str = "bundled";
 /// Scenes where none is named.
 const DEFAULT: [&str; 3] = ["gen:terrain,depth=10", "gen:menger,depth=5", BUNDLED];
 
@@ -51,12 +51,12 @@ impl Standpoint {
 }
 
 /// Scenes of the command line, or of the configuration file, or the standard ones.
-pub(in crate) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
+pub(crate) fn names(given: &[String], from_config: Vec<String>) -> Vec<String> {
     names_or(given, from_config, &DEFAULT)
 }
 
 /// The same with other scenes where none is named.
-pub(in crate) fn names_or(
+pub(crate) fn names_or(
     given: &[String],
     from_config: Vec<String>,
     default: &[&str],
@@ -71,7 +71,7 @@ pub(in crate) fn names_or(
 }
 
 /// A scene's name as part of a file's: letters, digits, and hyphens between them.
-pub(in crate) fn file_stem(name: &str) -> String {
+pub(crate) fn file_stem(name: &str) -> String {
     let name = name.strip_prefix("gen:").unwrap_or(name);
     let letters = |c: char| !c.is_ascii_alphanumeric();
     let words: Vec<&str> = name.split(letters).filter(|w| !w.is_empty()).collect();
@@ -80,7 +80,7 @@ pub(in crate) fn file_stem(name: &str) -> String {
 
 /// Opens a scene. Terrain, sponge and the bundled tree have their standard
 /// cameras unless the flags say another; all others are fitted into `size`.
-pub(in crate) fn open(
+pub(crate) fn open(
     name: &str,
     camera: &CameraArgs,
     scene_args: &SceneArgs,

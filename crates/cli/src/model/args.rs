@@ -7,17 +7,17 @@ use hwmodel::cost::{CostTable, Costing, Goal, MinMaxUnits, ShiftUnits};
 use hwmodel::cycles::{Hardware, PRESETS};
 
 use super::explore::args::ExploreArgs;
-use shiftvox::bounded;
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
 use crate::error::{CliError, Kind};
 use crate::experiment::export::ExportArgs;
+use shiftvox::bounded;
 use shiftvox_lab::bench::Scan;
 use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::cost::Prices;
 
 /// Arguments of `model`.
 #[derive(Debug, Args)]
-pub(in crate) struct ModelArgs {
+pub(crate) struct ModelArgs {
     /// Scene: a file, a generator, or `bundled` [default: bundled]
     #[arg(value_name = "SCENE", value_parser = crate::names::parser())]
     pub(super) scenes: Vec<String>,

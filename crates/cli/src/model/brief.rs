@@ -10,10 +10,10 @@ use super::args::ModelArgs;
 use super::findings::setup_options;
 use crate::error::CliError;
 use shiftvox::graph::Graph;
+use shiftvox::project::{Camera, FrameSetup};
 use shiftvox_lab::model::design::LightDesign;
 use shiftvox_lab::model::frame;
 use shiftvox_lab::model::range::Range;
-use shiftvox::project::{Camera, FrameSetup};
 
 #[derive(Parser)]
 #[command(no_binary_name = true)]
@@ -26,7 +26,7 @@ struct Line {
 ///
 /// # Errors
 /// Wrong flags, or a frame that the machine cannot draw.
-pub(in crate) fn brief(
+pub(crate) fn brief(
     flags: impl Iterator<Item = OsString>,
     graph: &Graph,
     camera: &Camera,

@@ -15,11 +15,11 @@ use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::report;
-use shiftvox_lab::model::{caches, cost, fill_bits, floor, heat, plots, record, statistics};
 use shiftvox::picture::png;
+use shiftvox::whole;
+use shiftvox_lab::model::{caches, cost, fill_bits, floor, heat, plots, record, statistics};
 use shiftvox_lab::report::plot::Panel;
 use shiftvox_lab::report::{Cell, Table};
-use shiftvox::whole;
 
 /// Fails before the work where a file would be replaced without `--force`.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {

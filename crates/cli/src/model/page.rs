@@ -4,8 +4,8 @@ use super::findings::Findings;
 use super::summary;
 use crate::error::{CliError, Kind};
 use crate::experiment::context::Context;
-use shiftvox_lab::model::fill_bits;
 use shiftvox::picture::{Background, Shading, png, resolve};
+use shiftvox_lab::model::fill_bits;
 use shiftvox_lab::report::html::Page;
 use shiftvox_lab::report::plot::{self, Panel};
 
@@ -72,7 +72,7 @@ pub(super) fn html(
     }
     page.chapter("Plots");
     for panel in panels {
-        page.plot(&plot::svg(std::slice::from_ref(panel))?, "");
+        page.plot(&plot::svg(std::slice::from_ref(panel)), "");
     }
     page.chapter("Details, line by line");
     for table in summary::long_tables(found) {

@@ -7,9 +7,9 @@ use super::args::ModelArgs;
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use shiftvox::graph::{Graph, GraphView};
-use shiftvox_lab::model::vectors::{self, FolderError, Request, VectorsError};
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::FrameSetup;
+use shiftvox_lab::model::vectors::{self, FolderError, Request, VectorsError};
 
 /// Fails before the work where something would be replaced.
 pub(super) fn check(args: &ModelArgs) -> Result<(), CliError> {

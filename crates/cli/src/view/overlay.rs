@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::request::Show;
 use crate::error::CliError;
 use shiftvox::drawing::Buffers;
-use shiftvox_lab::model::heat;
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{Buffer, Rows};
+use shiftvox_lab::model::heat;
 
 /// What is shown where nothing is seen.
 const NOTHING: [u8; 4] = [24, 26, 30, 255];

@@ -58,7 +58,12 @@ impl Assert {
 
     #[track_caller]
     pub(crate) fn stdout(self, expected: &str) -> Self {
-        assert_eq!(String::from_utf8_lossy(&self.output.stdout), expected, "{}", self.line);
+        assert_eq!(
+            String::from_utf8_lossy(&self.output.stdout),
+            expected,
+            "{}",
+            self.line
+        );
         self
     }
 

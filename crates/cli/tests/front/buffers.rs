@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use std::process::Command;
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::png;
+use std::process::Command;
 
 use crate::common::Run;
 

@@ -5,7 +5,6 @@
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
-
 /// Runs the program in an empty folder on a disk of 1 MB; the names of the files afterwards. `None` where the system
 /// does not let a test mount one.
 fn on_small_disk(line: &str) -> Option<(Output, String)> {

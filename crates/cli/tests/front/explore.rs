@@ -3,7 +3,6 @@
 use std::fs;
 use std::path::PathBuf;
 
-use std::process::Command;
 use serde_json::Value;
 use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::explore::front::{Objective, front};
@@ -11,6 +10,7 @@ use shiftvox_lab::model::explore::lines::PointLine;
 use shiftvox_lab::model::explore::space::{SPACES, Space};
 use shiftvox_lab::model::explore::{PointFigures, PointOutcome, RivalFigures};
 use shiftvox_lab::model::range::Range;
+use std::process::Command;
 use tempfile::TempDir;
 
 use crate::common::Run;

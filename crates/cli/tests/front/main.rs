@@ -2,9 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "the helpers of tests fail like tests")]
 
 mod bench;
+mod buffers;
 #[path = "../common/mod.rs"]
 mod common;
-mod buffers;
 mod damaged;
 mod disk;
 mod explore;

@@ -1,7 +1,7 @@
 //! `model`: what it prints, what it writes, what it refuses.
 
-use std::process::Command;
 use serde_json::Value;
+use std::process::Command;
 use tempfile::TempDir;
 
 use crate::common::Run;

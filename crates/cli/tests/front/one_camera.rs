@@ -3,17 +3,17 @@
 use std::fs;
 use std::path::Path;
 
-use std::process::Command;
 use glam::DVec3;
 use serde_json::Value;
-use shiftvox_mesh::far::FarFile;
 use shiftvox::graph::{Silent, vxg};
-use shiftvox_mesh::{LoadOptions, mesh_box};
 use shiftvox::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
+use shiftvox::{Camera, Renderer, Scene};
+use shiftvox_mesh::SceneOptions;
+use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::textured::TexturedFile;
-use shiftvox_mesh::SceneOptions;
-use shiftvox::{Camera, Renderer, Scene};
+use shiftvox_mesh::{LoadOptions, mesh_box};
+use std::process::Command;
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::common::Run;

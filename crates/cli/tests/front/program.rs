@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use std::process::Command;
 use crate::common::{Assert, Run};
 use serde_json::Value;
+use std::process::Command;
 
 pub(crate) fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()

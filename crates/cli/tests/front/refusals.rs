@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use std::process::Command;
 use crate::common::{Assert, Run};
+use std::process::Command;
 
 use crate::program::{folder, json_of, run, stderr_of};
 

@@ -12,10 +12,10 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use shiftvox_mesh::far::FarFile;
 use shiftvox::graph::{Silent, vxg};
-use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox::split_mix::SplitMix;
+use shiftvox_mesh::far::FarFile;
+use shiftvox_mesh::open::{OpenOptions, open_bytes};
 use shiftvox_mesh::textured::TexturedFile;
 
 /// What is run: every command, on inputs from `../in`.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use std::process::Command;
 use serde_json::Value;
+use std::process::Command;
 
 use crate::program::stderr_of;
 

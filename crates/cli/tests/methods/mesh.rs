@@ -161,7 +161,9 @@ fn bad_meshes_exit_with_4_and_leave_nothing() {
         .code(2);
     fs::copy(
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/axes.vox"),
-        folder.path().join("axes.vox")).unwrap();
+        folder.path().join("axes.vox"),
+    )
+    .unwrap();
     let assert = shiftvox(folder.path())
         .args(["triangles", "axes.vox", "-o", "x.png"])
         .assert()

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use std::process::Command;
 use serde_json::Value;
+use std::process::Command;
 
 use crate::common::Run;
 

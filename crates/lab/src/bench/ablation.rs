@@ -7,9 +7,9 @@ use super::harness::{BenchError, Contender, Drawer, Harness, Measured};
 use super::measure::{Subject, as_map, counter, picture_of};
 use super::statistics::Summary;
 use crate::measure::CoverageError;
-use shiftvox::project::{Contents, FrameSetup, SetupOptions, Stats, Viewer};
 use crate::report::plot::{Bar, Panel};
 use crate::report::{Cell, Table};
+use shiftvox::project::{Contents, FrameSetup, SetupOptions, Stats, Viewer};
 
 /// What tables call an engine with everything on.
 pub const WHOLE: &str = "everything on";

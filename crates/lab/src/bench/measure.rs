@@ -5,9 +5,9 @@ use serde::{Serialize, Serializer};
 use super::candidate::Candidate;
 use super::harness::{BenchError, Contender, Drawer, Harness, Measured};
 use super::statistics::Summary;
+use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
-use crate::measure::CoverageError;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions, Stats};
 
 /// A scene and from where it is seen.

@@ -10,14 +10,14 @@ use super::method::{Examined, Method, Refused, VertexLevel, over_levels};
 use super::picture_error::{Judge, PictureError};
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::PixelStyle;
-use shiftvox::frame::Frame;
-use shiftvox::graph::Progress;
 use crate::bench::{BenchError, Clock, Schedule, Subject, Summary};
 use crate::measure::{CoverageError, Spread, count_elsewhere};
-use shiftvox_mesh::Surface;
+use shiftvox::frame::Frame;
+use shiftvox::graph::Progress;
 use shiftvox::picture::{Background, Picture, resolve};
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions, Stats};
 use shiftvox::rays::Rays;
+use shiftvox_mesh::Surface;
 
 /// What is measured, and how.
 #[derive(Debug, Clone, Copy)]
@@ -125,7 +125,7 @@ pub struct SceneErrors {
 }
 
 /// Names and values as an object.
-pub(in crate) fn as_map<S: Serializer, V: Serialize>(
+pub(crate) fn as_map<S: Serializer, V: Serialize>(
     entries: &[(&'static str, V)],
     to: S,
 ) -> Result<S::Ok, S::Error> {
@@ -133,7 +133,7 @@ pub(in crate) fn as_map<S: Serializer, V: Serialize>(
 }
 
 /// What came of a method, or why nothing did.
-pub(in crate) fn outcome_or_reason<S: Serializer, O: Serialize>(
+pub(crate) fn outcome_or_reason<S: Serializer, O: Serialize>(
     outcome: &Result<O, Refused>,
     to: S,
 ) -> Result<S::Ok, S::Error> {
@@ -401,10 +401,10 @@ fn judged(
 }
 
 /// Times of frames drawn in turn, on one thread: wall, and processor time.
-pub(in crate) type Times = Vec<(Summary, Option<Summary>)>;
+pub(crate) type Times = Vec<(Summary, Option<Summary>)>;
 
 /// Lets methods draw in turn from a camera, those that take part.
-pub(in crate) fn race(
+pub(crate) fn race(
     methods: &[Method<'_>],
     taking_part: &[bool],
     camera: &Camera,

@@ -3,8 +3,8 @@
 //! An experiment does not depend on how a picture is made. A [`Method`] says what it is called and
 //! how it is set, and makes a [`Drawable`], which draws.
 
-use shiftvox::drawing::{DrawError, Drawable, Figures, Shown};
 use crate::measure::Spread;
+use shiftvox::drawing::{DrawError, Drawable, Figures, Shown};
 use shiftvox::project::{Camera, Stats};
 
 /// A way to draw a scene: an engine with its settings, or any other renderer.
@@ -46,7 +46,7 @@ impl Method<'_> {
 }
 
 /// Draws a frame.
-pub(in crate) fn drawn<'d>(
+pub(crate) fn drawn<'d>(
     drawing: &'d mut (dyn Drawable + '_),
     camera: &Camera,
 ) -> Result<Shown<'d>, Refused> {
@@ -105,7 +105,7 @@ pub struct Samples {
 pub type Sum = (&'static str, &'static [&'static str]);
 
 /// Counters as sums of other ones; those that are not there count as 0.
-pub(in crate) fn sums(figures: &Figures, of: &[Sum]) -> Stats {
+pub(crate) fn sums(figures: &Figures, of: &[Sum]) -> Stats {
     let count = |name: &&str| {
         let figure = figures.iter().find(|(of, _)| of == name);
         figure.and_then(|(_, value)| value.as_u64()).unwrap_or(0)

@@ -18,15 +18,15 @@ pub use cut::cut_at;
 pub use measure::{
     ErrorPlan, MethodErrors, Outcome, References, SampleError, SceneErrors, measure,
 };
-pub(in crate) use measure::{as_map, outcome_or_reason, race};
+pub(crate) use measure::{as_map, outcome_or_reason, race};
 pub use method::{
     Examine, Examined, Method, Refused, Samples, Sum, VertexLevel, WithCutOf, over_levels,
 };
-pub(in crate) use method::{drawn, sums};
+pub(crate) use method::{drawn, sums};
 pub use pareto::panels;
 pub use pareto::{beaten_by, dominated};
 pub use picture_error::{Judge, PictureError};
-pub(in crate) use reference::of_triangles;
+pub(crate) use reference::of_triangles;
 pub use reference::{MAX_REFERENCE_LEVELS, Reference, Sampling, cast};
 pub use tables::{rows, table, vertex_table};
 pub use vertices::vertex_levels;

@@ -4,15 +4,15 @@
 use rayon::prelude::*;
 
 use super::voxels::PixelStyle;
-use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
-use shiftvox::graph::{Graph, Progress};
 use crate::bench::BenchError;
-use shiftvox_mesh::Surface;
-use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
+use shiftvox::graph::{Graph, Progress};
 use shiftvox::picture::{Background, Shader, Shading};
 use shiftvox::project::{Camera, FrameSetup};
 use shiftvox::rays::{Caster, MAX_CASTER_LEVELS};
 use shiftvox::split_mix::mix;
+use shiftvox_mesh::Surface;
+use shiftvox_mesh::drawing::mesh_view::{light_of, view_of};
+use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
 
 /// How a reference is sampled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -102,7 +102,7 @@ pub(super) const TRIANGLE_SAMPLES: u32 = 256;
 ///
 /// # Errors
 /// When the camera cannot see, or the picture is too large.
-pub(in crate) fn of_triangles(
+pub(crate) fn of_triangles(
     surface: &dyn Surface,
     camera: &Camera,
     style: PixelStyle,

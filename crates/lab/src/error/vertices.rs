@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::method::VertexLevel;
-use shiftvox::machine::{Positions, Space, visit_positions};
 use crate::measure::Spread;
+use shiftvox::machine::{Positions, Space, visit_positions};
 use shiftvox::project::camera::Axes;
 use shiftvox::project::{Camera, FrameSetup};
 

@@ -12,13 +12,13 @@ use serde::Serialize;
 
 pub use motion::Motion;
 
-use shiftvox::graph::{Progress, Silent};
 use crate::bench::{BenchError, Subject};
 use crate::error::{Method, PixelStyle, References, Refused, Sampling, drawn};
 use crate::measure::{Flicker, LinearPicture, SizeError};
-use shiftvox::project::Camera;
 use crate::report::plot::{Axis, Chart, Panel, Scale, Series};
 use crate::report::{Cell, Table};
+use shiftvox::graph::{Progress, Silent};
+use shiftvox::project::Camera;
 
 /// What is filmed, and how.
 #[derive(Debug, Clone, Copy)]
@@ -170,7 +170,7 @@ fn flicker(film: &[LinearPicture], truth: &[LinearPicture]) -> Result<Flicker, S
 }
 
 /// Films one method.
-pub(in crate) fn film_flicker(
+pub(crate) fn film_flicker(
     method: &Method<'_>,
     cameras: &[Camera],
     truth: &[LinearPicture],

@@ -147,9 +147,9 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use shiftvox::graph::Silent;
     use crate::float_rays::FloatRays;
     use crate::measure::CoverageError;
+    use shiftvox::graph::Silent;
     use shiftvox::project::{Camera, Engine, SetupOptions};
     use shiftvox_mesh::open::{OpenOptions, open};
 

@@ -150,8 +150,8 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use shiftvox::graph::{Graph, Silent};
     use crate::measure::CoverageError;
+    use shiftvox::graph::{Graph, Silent};
     use shiftvox::project::{Camera, SetupOptions};
     use shiftvox::rays::Rays as Oracle;
     use shiftvox_mesh::open::{OpenOptions, open};

@@ -185,8 +185,8 @@ mod tests {
     use super::*;
     use crate::bench::Summary;
     use crate::error::{PictureError, Reference};
-    use crate::methods::MethodAtDistance;
     use crate::measure::{CoverageBias, ShareError};
+    use crate::methods::MethodAtDistance;
 
     fn error(rms: f64) -> PictureError {
         PictureError {

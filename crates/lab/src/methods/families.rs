@@ -1,17 +1,19 @@
 //! The methods of meshes: triangles, which the others have to beat, and decimated; far voxels,
 //! textured voxels, the hybrid.
 
-use shiftvox_mesh::drawing::mesh_view::view_of;
-use shiftvox::drawing::{Shown};
-use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle};
-use shiftvox_mesh::far::FarFile;
-use shiftvox_mesh::far::view::{FarViewer, Opacity};
-use shiftvox::graph::Silent;
 use crate::error::{Examined, Method, PixelStyle, Refused, Sum, drawn, sums};
-use shiftvox_mesh::Mesh;
-use shiftvox_mesh::raster::{Pattern, Samples};
+use shiftvox::drawing::Shown;
+use shiftvox::graph::Silent;
 use shiftvox::picture::Background;
 use shiftvox::project::{Camera, Up};
+use shiftvox_mesh::Mesh;
+use shiftvox_mesh::drawing::mesh_view::view_of;
+use shiftvox_mesh::drawing::{
+    Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle, TrianglesDrawing, TrianglesStyle,
+};
+use shiftvox_mesh::far::FarFile;
+use shiftvox_mesh::far::view::{FarViewer, Opacity};
+use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox_mesh::textured::TexturedFile;
 use shiftvox_mesh::textured::view::choose;
 

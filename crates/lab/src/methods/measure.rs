@@ -3,7 +3,6 @@
 use serde::Serialize;
 
 use super::distance::at_distance;
-use shiftvox::graph::{Progress, Silent};
 use crate::bench::{BenchError, Schedule, Summary};
 use crate::error::{
     Examined, Judge, Method, PictureError, PixelStyle, Reference, Refused, as_map, of_triangles,
@@ -11,8 +10,9 @@ use crate::error::{
 };
 use crate::flicker::{Motion, film_flicker};
 use crate::measure::LinearPicture;
-use shiftvox_mesh::Surface;
+use shiftvox::graph::{Progress, Silent};
 use shiftvox::project::{Camera, Stats};
+use shiftvox_mesh::Surface;
 
 /// What is measured, and how.
 #[derive(Debug, Clone)]

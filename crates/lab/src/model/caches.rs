@@ -12,9 +12,9 @@ use super::frame::{self, Counted};
 use super::range::{Range, Winner};
 use super::ray_caster;
 use super::ray_cycles::RayHardware;
+use crate::float_rays::RayOrder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
-use crate::float_rays::RayOrder;
 use shiftvox::project::FrameSetup;
 
 /// Sizes of the node cache, bytes: 4 KiB to 1 MiB.

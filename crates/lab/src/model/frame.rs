@@ -11,10 +11,10 @@ use hwmodel::shifts::ShiftProbe;
 
 use super::record::{RecordField, bits_by_kind, record_bits, record_fields};
 use super::{ModelError, fill_bits};
+use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
 use shiftvox::machine::{Machine, MachineOptions, SimulateError, Simulated, narrowed};
-use crate::measure::CoverageError;
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
 use shiftvox::rays::Rays;

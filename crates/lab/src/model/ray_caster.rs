@@ -12,10 +12,10 @@ use super::area::{self, DesignArea};
 use super::cost::{FrameCost, OuterTraffic, Prices, outer_energy};
 use super::frame;
 use super::ray_cycles::{self, RayCycles, RayHardware, RayMisses};
-use shiftvox::frame::Frame;
-use shiftvox::graph::{Graph, NodeLayout};
 use crate::float_rays::{self, FloatRayCounts, FloatStep, RayOrder, RayRead};
 use crate::measure::CoverageError;
+use shiftvox::frame::Frame;
+use shiftvox::graph::{Graph, NodeLayout};
 use shiftvox::project::FrameSetup;
 
 /// What the ray caster took, its rays in one order.

@@ -11,9 +11,9 @@ use super::area::{self, LightFrame};
 use super::cost::{self, Prices};
 use super::frame;
 use super::record::{record_bits, record_fields};
+use crate::measure::CoverageError;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
-use crate::measure::CoverageError;
 use shiftvox::project::{CageKind, Camera, Coverage, EngineError, FrameSetup, SetupOptions};
 
 /// Tolerances of the table, pixels, of a rule: `exact` has none but 0.

@@ -9,11 +9,11 @@ pub mod tables;
 use hwmodel::Overflow;
 use serde::Serialize;
 
-use shiftvox::graph::Progress;
 use crate::bench::{
     BenchError, BenchPlan, Candidate, Family, Harness, Schedule, Subject, Timing, ablation, measure,
 };
 use crate::model::frame::count_operations;
+use shiftvox::graph::Progress;
 use shiftvox::picture::{self, Background, Shading, resolve};
 use shiftvox::project::SetupOptions;
 

@@ -4,11 +4,11 @@ use super::case::Case;
 use super::outcome::{Check, End, Outcome};
 use super::subject::Subject;
 use super::vertex::{self, Vertices};
+use crate::measure::CoverageError;
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::frame::Frame;
 use shiftvox::graph::Graph;
 use shiftvox::machine::Machine;
-use crate::measure::CoverageError;
 use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup, SetupError};
 use shiftvox::rays::Rays;
 

@@ -3,9 +3,9 @@
 
 use glam::DVec3;
 use proptest::prelude::*;
+use shiftvox::project::{CageKind, Coverage, SetupOptions};
 use shiftvox_lab::bounds::{Bounds, Cube, Space, Widths, worst_host_px};
 use shiftvox_lab::stress::{Case, Check, Hold, StressScene, run_case};
-use shiftvox::project::{CageKind, Coverage, SetupOptions};
 
 use crate::common::{any_camera, cases, tolerance_of};
 

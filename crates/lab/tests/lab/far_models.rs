@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
+use shiftvox::graph::Silent;
+use shiftvox_lab::far_path::{FarPathPlan, camera};
+use shiftvox_mesh::LoadOptions;
 use shiftvox_mesh::drawing::mesh_view::view_of;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
-use shiftvox::graph::Silent;
-use shiftvox_lab::far_path::{FarPathPlan, camera};
-use shiftvox_mesh::LoadOptions;
 
 /// Where a model of the shared data is, or a note on stderr that it is skipped.
 fn model(name: &str) -> Option<PathBuf> {
-    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
+    let beside =
+        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
     let folder = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
     let path = folder.join("mesh").join(name);
     if path.exists() {
@@ -36,7 +37,8 @@ fn nothing_but_time_changes_on_a_walk() {
     let folder = tempfile::tempdir().unwrap();
     for name in ["as_AC14-FZK-Haus.obj"] {
         let Some(path) = model(name) else { continue };
-        let (mesh, _) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+        let (mesh, _) =
+            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let options = BuildOptions {
             rays: Some(150_000),
             leaf_triangles: 500,

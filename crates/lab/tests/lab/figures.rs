@@ -6,12 +6,12 @@ use hwmodel::cycles::{Hardware, NoObserver, Organisation, StackHolds};
 use hwmodel::{Memory, OpClass, Overflow, Probe, StageLevel};
 use shiftvox::frame::Frame;
 use shiftvox::graph::{BuildOptions, Builder, Graph, Silent, Voxel};
+use shiftvox::machine::Machine;
+use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 use shiftvox_lab::model::area::{self, LightFrame};
 use shiftvox_lab::model::compare::{self, Design};
 use shiftvox_lab::model::cost::{self, Prices};
 use shiftvox_lab::model::{clock, frame};
-use shiftvox::machine::Machine;
-use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 
 use crate::scenes::*;
 
@@ -195,7 +195,10 @@ fn naive_misses(addresses: &[u64], entry: u64, (bytes, ways, line): (u64, usize,
 
 /// The row of a table for an operation and a width, and optionally a goal, as the file has it.
 fn row(table: &str, operation: &str, width: i64, figure: &str) -> (f64, f64) {
-    let path = format!("{}/hwmodel/tables/{table}.toml", concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+    let path = format!(
+        "{}/hwmodel/tables/{table}.toml",
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../..")
+    );
     let text = std::fs::read_to_string(path).unwrap();
     let table: toml::Table = text.parse().unwrap();
     let rows = table["row"].as_array().unwrap();

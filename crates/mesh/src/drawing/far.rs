@@ -4,12 +4,12 @@ use serde_json::{Value, json};
 
 use super::mesh_view::{light_of, picture_of_far, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
-use shiftvox::drawing::{
-    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
-};
 use crate::far::FarFile;
 use crate::far::view::{FarCounts, FarViewer, Opacity, ViewOptions};
 use crate::raster::RasterCamera;
+use shiftvox::drawing::{
+    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
+};
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::{Bounds, Camera, Up};
 
@@ -79,7 +79,10 @@ impl Drawable for FarDrawing<'_> {
         let view = view_of(camera, self.file.bounds())?;
         let options = self.style.options(&view);
         let ((picture, coverage, counts), times_ms) = timed(runs, || {
-            let (mut drawn, counts) = self.viewer.draw(&view, &options).map_err(MethodError::from)?;
+            let (mut drawn, counts) = self
+                .viewer
+                .draw(&view, &options)
+                .map_err(MethodError::from)?;
             let coverage = std::mem::take(&mut drawn.coverage);
             Ok((picture_of_far(drawn), coverage, counts))
         })?;

@@ -4,15 +4,15 @@ use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
-use shiftvox::drawing::{
-    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
-};
 use crate::raster::{Pattern, RasterCamera, RasterPicture, Samples};
-use shiftvox::picture::{Background, Shading};
-use shiftvox::project::{Bounds, Camera, Up};
 use crate::textured::TexturedFile;
 use crate::textured::record::Primitive;
 use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
+use shiftvox::drawing::{
+    COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
+};
+use shiftvox::picture::{Background, Shading};
+use shiftvox::project::{Bounds, Camera, Up};
 
 /// How often voxels are eroded.
 #[derive(Debug, Clone, Copy, PartialEq)]

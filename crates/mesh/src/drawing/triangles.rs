@@ -5,12 +5,10 @@ use serde_json::json;
 
 use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
-use shiftvox::drawing::{
-    COLOR_BYTES, DrawError, Drawable, Frames, Shown, check_samples, timed,
-};
-use shiftvox::graph::Progress;
 use crate::raster::{self, RasterCamera, RasterOptions, RasterPicture, Samples};
 use crate::{Mesh, mesh_box};
+use shiftvox::drawing::{COLOR_BYTES, DrawError, Drawable, Frames, Shown, check_samples, timed};
+use shiftvox::graph::Progress;
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::{Bounds, Camera, Up};
 

@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
 use super::blend::{Blend, DIRECTIONS};
-use shiftvox::graph::PackedNormal;
 use crate::{linear_to_srgb, srgb_to_linear};
+use shiftvox::graph::PackedNormal;
 
 /// Which shader a voxel has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

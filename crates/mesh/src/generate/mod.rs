@@ -120,8 +120,8 @@ pub fn ply(mesh: &Mesh) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use shiftvox::graph::Silent;
     use crate::{LoadOptions, MeshFormat, Nothing, read};
+    use shiftvox::graph::Silent;
 
     #[test]
     fn every_kind_is_small_follows_its_seed_and_survives_its_file() {

@@ -48,7 +48,9 @@ impl Texture {
             .set_max_width(MOST_ACROSS as usize)
             .set_max_height(MOST_ACROSS as usize);
         let mut decoder = JpegDecoder::new_with_options(Cursor::new(bytes), options);
-        decoder.decode_headers().map_err(|error| error.to_string())?;
+        decoder
+            .decode_headers()
+            .map_err(|error| error.to_string())?;
         let (width, height) = decoder.dimensions().unwrap_or_default();
         // Both are at most 65,535 in a JPEG.
         let (width, height) = (width as u32, height as u32);

@@ -23,9 +23,9 @@ pub use samples::{Pattern, Samples, SamplesError};
 pub use shade::Light;
 
 use super::Surface;
-use shiftvox::graph::Progress;
 use bin::Bin;
 use bins::Bins;
+use shiftvox::graph::Progress;
 
 /// `triangle` where nothing is seen.
 pub const NO_TRIANGLE: u32 = u32::MAX;

@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
 
-use shiftvox::graph::PackedNormal;
 use crate::{Triangle, linear_to_srgb, srgb_to_linear};
+use shiftvox::graph::PackedNormal;
 
 /// A triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]

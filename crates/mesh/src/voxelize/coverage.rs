@@ -217,7 +217,8 @@ mod tests {
     #[test]
     fn opacities_are_shares_without_bias() {
         for points in 0..=64u32 {
-            let opacity = |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
+            let opacity =
+                |dither| f64::from(shiftvox::graph::sixteenths(opacity_of(points, dither)));
             let mean = (0..128).map(opacity).sum::<f64>() / 128.0;
             assert!(
                 (mean - f64::from(points) / 4.0).abs() < 0.13,

@@ -8,10 +8,10 @@ use glam::DVec3;
 
 use super::distinct::Repeated;
 use super::touch::Prepared;
-use shiftvox::graph::PackedNormal;
 use crate::Triangle;
 use crate::material::linear_to_srgb;
 use crate::surface::barycentric;
+use shiftvox::graph::PackedNormal;
 
 /// Weight of a touch alone, in faces of the voxel.
 const TOUCH: f64 = 1.0 / (1u32 << 20) as f64;

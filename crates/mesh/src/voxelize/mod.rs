@@ -24,8 +24,8 @@ pub use grid::{DEFAULT_DEPTH, Grid, GridError, MAX_DEPTH, MOST_LOOKED_AT};
 pub use opacity::opacities;
 
 use super::Surface;
-use shiftvox::graph::{Progress, Voxel};
 use distinct::Distinct;
+use shiftvox::graph::{Progress, Voxel};
 use subtree::Subtree;
 pub(crate) use touch::{Prepared, child};
 

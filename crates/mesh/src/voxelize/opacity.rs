@@ -9,8 +9,8 @@ use super::coverage::{Covered, Masks, cover, joined};
 use super::distinct::Distinct;
 use super::touch::{Prepared, child};
 use super::{Grid, SUBTREE_LEVELS, columns, parts};
-use shiftvox::graph::{Graph, GraphView, Opacity, Progress};
 use crate::Surface;
+use shiftvox::graph::{Graph, GraphView, Opacity, Progress};
 
 /// The opacities of a graph's nodes, one each. The graph is the tree of the
 /// voxels that [`voxelize`](super::voxelize()) made of the same surface on the same grid.

@@ -4,8 +4,8 @@ use super::distinct::Distinct;
 use super::mix::{Mix, Painted};
 use super::touch::{Prepared, child};
 use super::{Grid, VoxelizeReport};
-use shiftvox::graph::Voxel;
 use crate::Surface;
+use shiftvox::graph::Voxel;
 
 /// A node of the octree and the triangles that touch it, in their order.
 #[derive(Debug)]

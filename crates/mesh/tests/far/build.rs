@@ -1,12 +1,12 @@
 //! What is built: the same on any threads, better with more rays, level by level.
 
 use glam::{DAffine3, DVec3};
+use shiftvox::graph::Silent;
+use shiftvox_mesh::Instances;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, ViewOptions};
 use shiftvox_mesh::far::{BuildError, BuildOptions, FarData, FarFile, build};
-use shiftvox::graph::Silent;
-use shiftvox_mesh::Instances;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::city::{city, far, light, on_threads, options, view};

@@ -1,8 +1,8 @@
 //! A mesh in which much is hidden: blocks on a ground, a wall, thin masts, a ball.
 
 use glam::DVec3;
-use shiftvox_mesh::far::{BuildOptions, FarData, build};
 use shiftvox::graph::Silent;
+use shiftvox_mesh::far::{BuildOptions, FarData, build};
 use shiftvox_mesh::raster::{Light, RasterCamera};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 

@@ -1,10 +1,10 @@
 //! The file: it comes back, and what is damaged is refused.
 
+use shiftvox::scene::{FileKind, detect};
+use shiftvox_mesh::Surface;
 use shiftvox_mesh::far::record::{NODE_BYTES, RECORD_BYTES};
 use shiftvox_mesh::far::store::{FarError, encode};
 use shiftvox_mesh::far::{BuildOptions, FarFile};
-use shiftvox_mesh::Surface;
-use shiftvox::scene::{FileKind, detect};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::city::{city, far, options};

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use glam::DVec3;
+use shiftvox::graph::Silent;
 use shiftvox_mesh::far::record::Node;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarData, FarFile, build};
-use shiftvox::graph::Silent;
 use shiftvox_mesh::generate::{Kind, generate};
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, srgb_to_linear};

@@ -1,9 +1,9 @@
 //! More than one sample a pixel.
 
+use shiftvox::graph::Silent;
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewError, ViewOptions};
-use shiftvox::graph::Silent;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 
 use super::city::{city, far, light, options, view};

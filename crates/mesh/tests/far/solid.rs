@@ -1,10 +1,10 @@
 //! Parts of large objects stay opaque, thin ones keep their area: both kinds of opacity.
 
 use glam::DVec3;
+use shiftvox::graph::Silent;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarPicture, FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
-use shiftvox::graph::Silent;
 use shiftvox_mesh::raster::{self, Pattern, RasterCamera, RasterOptions, Samples};
 use shiftvox_mesh::{Material, Mesh, MeshBuilder, Surface};
 

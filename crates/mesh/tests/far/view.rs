@@ -1,9 +1,9 @@
 //! The view: culling, late answers, threads and batches never change a picture.
 
+use shiftvox::graph::Silent;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarCounts, FarViewer, Opacity, ViewError, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile};
-use shiftvox::graph::Silent;
 use shiftvox_mesh::raster::{self, Pattern, RasterOptions, Samples};
 
 use super::city::{city, far, far_behind_wall, far_on_ground, light, on_threads, options, view};

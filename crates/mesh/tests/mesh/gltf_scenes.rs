@@ -5,8 +5,8 @@ use std::cell::Cell;
 use std::io;
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Beside, LoadOptions, MeshFormat, read};
 use shiftvox::split_mix::SplitMix;
+use shiftvox_mesh::{Beside, LoadOptions, MeshFormat, read};
 
 use super::gltf_document::compose;
 use super::shapes::{gltf_json, square_buffer};

@@ -25,7 +25,8 @@ fn models_have_their_triangles_and_voxels() {
     for (name, in_file, drawn, voxels) in MODELS {
         let Some(path) = model(name) else { continue };
         let started = Instant::now();
-        let (mesh, y_up) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+        let (mesh, y_up) =
+            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let load_ms = started.elapsed().as_secs_f64() * 1e3;
         assert!(y_up);
         assert_eq!(mesh.triangles().len(), drawn, "{name}");
@@ -72,7 +73,8 @@ fn a_fleet_is_voxelised_in_bounded_memory() {
     let Some(path) = model("CG-57.obj") else {
         return;
     };
-    let (mesh, _) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+    let (mesh, _) =
+        shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
     let places = (0..165)
         .map(|i| DVec3::new(f64::from(i % 11) * 200.0, 0.0, f64::from(i / 11) * 40.0))
         .map(DAffine3::from_translation)

@@ -1,6 +1,5 @@
 //! Triangles to pixels: known answers, no cracks, ray casting, more samples.
 
-
 use glam::{DVec2, DVec3};
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
@@ -354,7 +353,8 @@ fn pictures_of_models_are_those_of_ray_casting() {
         "CG-57.obj",
     ] {
         let Some(path) = model(name) else { continue };
-        let (mesh, _) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+        let (mesh, _) =
+            shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
         let (low, high) = mesh.bounds();
         let centre = (low + high) / 2.0;
         let away = (high - low).length();

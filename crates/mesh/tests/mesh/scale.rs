@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use shiftvox::graph::Voxel;
 use shiftvox_mesh::MeshFormat;
-use shiftvox_mesh::voxelize::{Grid, voxelize};
 use shiftvox_mesh::textured::{BuildOptions, build};
+use shiftvox_mesh::voxelize::{Grid, voxelize};
 
 use super::shapes::{ball, load, soup};
 use shiftvox::graph::Silent;

@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use glam::{DQuat, DVec3};
-use shiftvox_mesh::Mesh;
 use shiftvox::{Background, Camera, Coverage, Renderer, Scene, Shading, View};
+use shiftvox_mesh::Mesh;
 use shiftvox_mesh::SceneOptions;
 
 use super::shapes::{ball, cuboid, soup, turned};

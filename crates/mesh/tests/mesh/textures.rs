@@ -6,8 +6,8 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageFormat, Rgb, RgbImage};
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Mesh, Surface};
 use shiftvox_mesh::open::read_mesh;
+use shiftvox_mesh::{Mesh, Surface};
 
 use super::shapes::{data_uri, square_buffer};
 

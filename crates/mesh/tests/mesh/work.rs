@@ -1,12 +1,12 @@
 //! The work of voxelising grows with the mesh, or the mesh is refused: counted in pairs of a triangle and a voxel.
 
 use shiftvox::graph::{Silent, Voxel};
+use shiftvox::split_mix::SplitMix;
+use shiftvox_mesh::open::{MeshOptions, OpenOptions, open_bytes};
 use shiftvox_mesh::voxelize::{
     Grid, MOST_LOOKED_AT, VoxelizeReport, least_looked_at, opacities, voxelize,
 };
 use shiftvox_mesh::{Material, Mesh, MeshBuilder};
-use shiftvox_mesh::open::{MeshOptions, OpenOptions, open_bytes};
-use shiftvox::split_mix::SplitMix;
 
 use super::shapes::{ball, cuboid, mesh_of};
 

@@ -5,16 +5,16 @@ use std::path::Path;
 use std::sync::OnceLock;
 
 use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle};
-use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
-use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox::fast::{Fast, FastOptions};
 use shiftvox::graph::{Graph, LinkedGraph, MergeBy, Silent, merge, vxg};
 use shiftvox::machine::Machine;
-use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 use shiftvox::picture::{Background, Shading, hash_rows};
 use shiftvox::project::{Direction, SetupOptions, fit_camera};
+use shiftvox_mesh::drawing::{Erosion, FarDrawing, FarStyle, TexturedDrawing, TexturedStyle};
+use shiftvox_mesh::far::{self, FarFile, view::Opacity};
 use shiftvox_mesh::open::{MeshOptions, OpenOptions, open_bytes};
 use shiftvox_mesh::textured::{self, Element, TexturedFile};
+use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
 use super::{edit, seal};
 

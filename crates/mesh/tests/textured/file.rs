@@ -3,13 +3,13 @@
 use std::fs;
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Mesh, Surface, Triangle};
 use shiftvox::scene::{FileKind, detect};
 use shiftvox_mesh::textured::record::{CLEAR, NEVER};
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{
     BuildError, BuildOptions, Element, TexturedData, TexturedError, TexturedFile, build,
 };
+use shiftvox_mesh::{Mesh, Surface, Triangle};
 
 use super::scenes::{balls, file_of, mesh_of};
 

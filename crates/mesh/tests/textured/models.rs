@@ -9,7 +9,8 @@ use super::scenes::{file_of, model};
 
 fn rows(name: &str) -> Option<Vec<LevelRow>> {
     let path = model(name)?;
-    let (mesh, _) = shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
+    let (mesh, _) =
+        shiftvox_mesh::open::read_mesh(&path, &LoadOptions::default(), &Silent).unwrap();
     let data = build(&mesh, &BuildOptions::default(), &Silent).unwrap();
     let file = file_of(&data);
     file.verify().unwrap();

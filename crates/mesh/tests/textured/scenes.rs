@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use proptest::prelude::*;
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedData, TexturedFile, build};
+use shiftvox_mesh::{Material, Mesh, MeshBuilder};
 
 /// Triangles, each of a colour of its own: [`color_of`] its number.
 pub fn mesh_of(triangles: &[[[f32; 3]; 3]]) -> Option<Mesh> {
@@ -106,7 +106,8 @@ fn ball(middle: [f32; 3], radius: f32, triangles: &mut Vec<[[f32; 3]; 3]>) {
 
 /// A model of the shared data, where it is.
 pub fn model(name: &str) -> Option<PathBuf> {
-    let beside = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
+    let beside =
+        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../..")).join("../shared/data");
     let data = std::env::var_os("SHIFTVOX_DATA").map_or(beside, PathBuf::from);
     let path = data.join("mesh").join(name);
     if path.exists() {

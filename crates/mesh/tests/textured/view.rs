@@ -6,7 +6,9 @@ use shiftvox_mesh::Mesh;
 use shiftvox_mesh::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterOptions, RasterPicture, Samples,
 };
-use shiftvox_mesh::textured::view::{Choice, Detail, ViewError, ViewOptions, choose, choose_grid, draw};
+use shiftvox_mesh::textured::view::{
+    Choice, Detail, ViewError, ViewOptions, choose, choose_grid, draw,
+};
 use shiftvox_mesh::textured::{BuildOptions, Element, TexturedFile, build};
 
 use super::file::rayon_pool;

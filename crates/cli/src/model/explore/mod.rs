@@ -22,15 +22,15 @@ use crate::document;
 use crate::error::{CliError, Kind};
 use crate::experiment::subjects;
 use crate::report;
+use results::ResultsFile;
+use shiftvox::project::Camera;
+use shiftvox::whole;
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::model::cost::Prices;
 use shiftvox_lab::model::explore::front::{self, FrontPoint};
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::model::explore::space::{Point, SPACES, Space};
 use shiftvox_lab::model::explore::{self, Explored};
-use shiftvox::project::Camera;
-use shiftvox::whole;
-use results::ResultsFile;
 
 /// What was found of a scene.
 struct Explorations {

@@ -10,11 +10,11 @@ use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, Results};
 use crate::model::args::ModelArgs;
+use shiftvox::whole;
 use shiftvox_lab::model::explore::front::FrontPoint;
 use shiftvox_lab::model::explore::lines::{PointLine, kind_first};
 use shiftvox_lab::report::plot::{Axis, Chart, Panel, Point, Scale, Series};
 use shiftvox_lab::report::{Cell, Table};
-use shiftvox::whole;
 
 /// Writes all files, then prints.
 pub(super) fn write(

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use shiftvox::bounded;
 use crate::error::{CliError, Kind};
-use shiftvox_lab::model::explore::lines::{self, Recorded};
+use shiftvox::bounded;
 use shiftvox::whole;
+use shiftvox_lab::model::explore::lines::{self, Recorded};
 
 /// A file of results that is open, and nobody else's.
 pub(super) struct ResultsFile {

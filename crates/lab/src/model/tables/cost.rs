@@ -6,13 +6,13 @@ use hwmodel::{Memory, OpClass};
 
 use super::{micro, number};
 use crate::float_rays::FloatStep;
+use crate::measure::CoverageError;
 use crate::model::area::DesignArea;
 use crate::model::clock::ClockCheck;
 use crate::model::compare::ComparedLine;
 use crate::model::cost::FrameCost;
 use crate::model::frame::Counted;
 use crate::model::ray_caster::RayCasterReport;
-use crate::measure::CoverageError;
 use crate::report::{Cell, Table};
 
 /// A sum of costs line by line, each with its rows and source.

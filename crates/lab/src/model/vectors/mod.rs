@@ -30,12 +30,12 @@ pub use description::{Description, absence};
 pub use folder::{FolderError, check_free};
 pub use ports::{Field, Ports};
 
+use recorder::Recorder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{GraphView, NodeLayout};
 use shiftvox::machine::{Machine, MachineOptions};
 use shiftvox::project::{EngineError, FrameSetup};
 use shiftvox::whole::{self, WholeError};
-use recorder::Recorder;
 
 /// Version of the manifest and of what blocks there are.
 pub const SCHEMA: u32 = 5;

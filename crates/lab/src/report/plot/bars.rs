@@ -1,8 +1,7 @@
 //! Bars, whole and in parts.
 
-use plotters::prelude::*;
-
-use super::{Area, COLORS, PlotError, TITLE_HEIGHT, WIDTH, words};
+use super::canvas::{Anchor, Canvas, Color};
+use super::{COLORS, TITLE_HEIGHT, WIDTH};
 use crate::report::table::Cell;
 
 /// A bar with its name.
@@ -24,97 +23,87 @@ pub struct Stack {
 }
 
 /// Height of a bar with its gap.
-const BAR_HEIGHT: u32 = 26;
+const BAR_HEIGHT: f64 = 26.0;
 /// Height of the legend of parts.
-const LEGEND_HEIGHT: u32 = 48;
+const LEGEND_HEIGHT: f64 = 48.0;
 /// Where bars begin, and how long the longest is.
-const BAR_LEFT: i32 = 300;
+const BAR_LEFT: f64 = 300.0;
 const BAR_LENGTH: f64 = 500.0;
 
-pub(super) fn height(bars: usize) -> u32 {
-    TITLE_HEIGHT + BAR_HEIGHT * bars as u32 + 16
+pub(super) fn height(bars: usize) -> f64 {
+    TITLE_HEIGHT + BAR_HEIGHT * bars as f64 + 16.0
 }
 
-pub(super) fn stacked_height(stacks: usize) -> u32 {
+pub(super) fn stacked_height(stacks: usize) -> f64 {
     height(stacks) + LEGEND_HEIGHT
 }
 
-pub(super) fn draw(area: &Area<'_>, title: &str, bars: &[Bar]) -> Result<(), PlotError> {
-    words(area, title, (14, 12), 20)?;
+pub(super) fn draw(canvas: &mut Canvas, title: &str, bars: &[Bar]) {
+    canvas.text(title, (14.0, 22.0), 20, Anchor::Start);
     let longest = bars.iter().map(|bar| bar.value).fold(0.0, f64::max);
     for (place, bar) in bars.iter().enumerate() {
-        let top = (TITLE_HEIGHT + BAR_HEIGHT * place as u32) as i32;
-        let right = BAR_LEFT + length(bar.value, longest);
         let color = COLORS[place % COLORS.len()];
-        rectangle(area, (BAR_LEFT, right), top, color)?;
-        words(area, &bar.name, (14, top + 3), 14)?;
-        let value = Cell::ms(bar.value).for_people();
-        words(area, &value, (right + 6, top + 3), 14)?;
+        let top = row(canvas, place, &bar.name, bar.value, longest);
+        part(canvas, top, [0.0, length(bar.value, longest)], color);
     }
-    Ok(())
 }
 
-pub(super) fn draw_stacked(
-    area: &Area<'_>,
-    title: &str,
-    parts: &[String],
-    stacks: &[Stack],
-) -> Result<(), PlotError> {
-    words(area, title, (14, 12), 20)?;
-    let sums: Vec<f64> = stacks
-        .iter()
-        .map(|stack| stack.values.iter().sum())
-        .collect();
-    let longest = sums.iter().copied().fold(0.0, f64::max);
-    for (place, (stack, sum)) in stacks.iter().zip(&sums).enumerate() {
-        let top = (TITLE_HEIGHT + BAR_HEIGHT * place as u32) as i32;
-        words(area, &stack.name, (14, top + 3), 14)?;
+pub(super) fn draw_stacked(canvas: &mut Canvas, title: &str, parts: &[String], stacks: &[Stack]) {
+    canvas.text(title, (14.0, 22.0), 20, Anchor::Start);
+    let sums = stacks.iter().map(|stack| stack.values.iter().sum());
+    let longest = sums.fold(0.0, f64::max);
+    for (place, stack) in stacks.iter().enumerate() {
+        let sum = stack.values.iter().sum();
+        let top = row(canvas, place, &stack.name, sum, longest);
         let mut before = 0.0;
-        for (part, value) in stack.values.iter().enumerate() {
-            let left = BAR_LEFT + length(before, longest);
+        for (number, value) in stack.values.iter().enumerate() {
+            let ends = [before, before + value].map(|end| length(end, longest));
             before += value;
-            let right = BAR_LEFT + length(before, longest);
-            if right > left {
-                rectangle(area, (left, right), top, COLORS[part % COLORS.len()])?;
+            if ends[1] > ends[0] {
+                part(canvas, top, ends, COLORS[number % COLORS.len()]);
             }
         }
-        let right = BAR_LEFT + length(*sum, longest);
-        words(area, &Cell::ms(*sum).for_people(), (right + 6, top + 3), 14)?;
     }
-    let first = (TITLE_HEIGHT + BAR_HEIGHT * stacks.len() as u32) as i32 + 8;
-    let (mut left, mut top) = (14, first);
-    for (part, name) in parts.iter().enumerate() {
+    let (mut left, mut top) = (14.0, TITLE_HEIGHT + BAR_HEIGHT * stacks.len() as f64 + 8.0);
+    for (number, name) in parts.iter().enumerate() {
         // About the width of a letter of this size.
-        let width = 30 + 8 * name.chars().count() as i32;
-        if left + width > WIDTH as i32 - 14 {
-            left = 14;
-            top += 22;
+        let width = 30.0 + 8.0 * name.chars().count() as f64;
+        if left + width > WIDTH - 14.0 {
+            left = 14.0;
+            top += 22.0;
         }
-        let color = COLORS[part % COLORS.len()];
-        let key = Rectangle::new([(left, top), (left + 14, top + 14)], color.filled());
-        area.draw(&key).map_err(PlotError::of)?;
-        words(area, name, (left + 19, top), 13)?;
+        canvas.rectangle([left, top, 14.0, 14.0], COLORS[number % COLORS.len()]);
+        canvas.text(name, (left + 19.0, top + 7.0), 13, Anchor::Start);
         left += width;
     }
-    Ok(())
 }
 
-fn length(value: f64, longest: f64) -> i32 {
+/// Names of a bar and its value; returns its top.
+fn row(canvas: &mut Canvas, place: usize, name: &str, value: f64, longest: f64) -> f64 {
+    let top = TITLE_HEIGHT + BAR_HEIGHT * place as f64;
+    let middle = top + BAR_HEIGHT / 2.0 - 3.0;
+    canvas.text(name, (14.0, middle), 14, Anchor::Start);
+    let right = BAR_LEFT + length(value, longest) + 6.0;
+    canvas.text(
+        &Cell::ms(value).for_people(),
+        (right, middle),
+        14,
+        Anchor::Start,
+    );
+    top
+}
+
+fn part(canvas: &mut Canvas, top: f64, [left, right]: [f64; 2], color: Color) {
+    canvas.rectangle(
+        [BAR_LEFT + left, top, right - left, BAR_HEIGHT - 6.0],
+        color,
+    );
+}
+
+fn length(value: f64, longest: f64) -> f64 {
     if longest > 0.0 {
-        (BAR_LENGTH * value / longest) as i32
+        BAR_LENGTH * value / longest
     } else {
-        0
+        0.0
     }
-}
-
-fn rectangle(
-    area: &Area<'_>,
-    (left, right): (i32, i32),
-    top: i32,
-    color: RGBColor,
-) -> Result<(), PlotError> {
-    let bottom = top + BAR_HEIGHT as i32 - 6;
-    let corners = [(left, top), (right, bottom)];
-    area.draw(&Rectangle::new(corners, color.filled()))
-        .map_err(PlotError::of)
 }

@@ -1,12 +1,12 @@
 //! Curves and points over two axes.
 
-use plotters::coord::ranged1d::{AsRangedCoord, ValueFormatter};
-use plotters::prelude::*;
+use std::ops::Range;
 
-use super::{Area, COLORS, GREY, PlotError, in_short};
+use super::canvas::{Anchor, Canvas, Color};
+use super::{COLORS, GREY, TITLE_HEIGHT, WIDTH, in_short};
 
 /// Height of a chart, pixels.
-pub(super) const HEIGHT: u32 = 540;
+pub(super) const HEIGHT: f64 = 540.0;
 
 /// How values lie along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,7 +130,7 @@ impl Chart {
 }
 
 /// The powers of ten that enclose some values; a decade for none.
-fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((f64::INFINITY, 0.0f64), |(low, high), value| {
         (low.min(value), high.max(value))
     });
@@ -143,7 +143,7 @@ fn decades(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 }
 
 /// From zero, or below the least, to a little above the greatest.
-fn around(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+fn around(values: impl Iterator<Item = f64>) -> Range<f64> {
     let (low, high) = values.fold((0.0f64, f64::NEG_INFINITY), |(low, high), value| {
         (low.min(value), high.max(value))
     });
@@ -154,43 +154,200 @@ fn around(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     (if low < 0.0 { low - room } else { 0.0 })..high + room
 }
 
-pub(super) fn draw(area: &Area<'_>, chart: &Chart) -> Result<(), PlotError> {
-    let shown: Vec<(&Series, Vec<&Point>)> = chart
-        .series
-        .iter()
-        .map(|series| {
-            (
-                series,
-                series
-                    .points
-                    .iter()
-                    .filter(|p| has_place(chart, p))
-                    .collect(),
-            )
-        })
-        .collect();
-    let all = || shown.iter().flat_map(|(_, points)| points.iter().copied());
+/// Pixels of the plot: across, and down from its upper edge.
+const ACROSS: Range<f64> = 88.0..WIDTH - 18.0;
+const DOWN: Range<f64> = TITLE_HEIGHT..HEIGHT - 58.0;
+/// Grid lines, and the frame of the legend.
+const LINES: Color = 0xdc_dcdc;
+
+/// An axis with its ends.
+struct Scaled {
+    scale: Scale,
+    ends: Range<f64>,
+}
+
+impl Scaled {
+    fn new(scale: Scale, values: impl Iterator<Item = f64>) -> Self {
+        let ends = match scale {
+            Scale::Log => decades(values),
+            Scale::Linear => around(values),
+        };
+        Self { scale, ends }
+    }
+
+    /// Where a value lies: 0 at the beginning, 1 at the end.
+    fn share(&self, value: f64) -> f64 {
+        let along = |value: f64| match self.scale {
+            Scale::Log => libm::log10(value),
+            Scale::Linear => value,
+        };
+        let (from, to) = (along(self.ends.start), along(self.ends.end));
+        (along(value) - from) / (to - from)
+    }
+
+    /// Values with a line and a number: powers of ten, of few decades also twice and five times these; else about
+    /// eight multiples of one, two or five times a power of ten.
+    fn ticks(&self) -> Vec<f64> {
+        let Range { start, end } = self.ends;
+        if self.scale == Scale::Log {
+            let decades = libm::round(libm::log10(end / start)) as i32;
+            let first = libm::round(libm::log10(start)) as i32;
+            let steps: &[f64] = if decades <= 3 {
+                &[1.0, 2.0, 5.0]
+            } else {
+                &[1.0]
+            };
+            let each = 1 + decades / 12;
+            let powers = (0..=decades).step_by(each as usize);
+            let ticks = powers.flat_map(|power| {
+                let power = libm::pow(10.0, f64::from(first + power));
+                steps.iter().map(move |step| step * power)
+            });
+            return ticks.filter(|tick| *tick <= end * 1.001).collect();
+        }
+        let rough = (end - start) / 8.0;
+        let power = libm::pow(10.0, libm::floor(libm::log10(rough)));
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * power);
+        let step = steps.into_iter().find(|step| *step >= rough);
+        let step = step.unwrap_or(rough);
+        let first = libm::ceil(start / step) as i64;
+        let last = libm::floor(end / step) as i64;
+        (first..=last).map(|tick| tick as f64 * step).collect()
+    }
+}
+
+pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
     let level = chart.level.iter().map(|(at, _)| *at);
     let level = level.filter(|&at| chart.y.scale == Scale::Linear || at > 0.0);
-    let xs = || all().map(|p| p.x);
-    let ys = || all().map(|p| p.y).chain(level.clone());
-    match (chart.x.scale, chart.y.scale) {
-        (Scale::Log, Scale::Log) => {
-            let (x, y) = (decades(xs()), decades(ys()));
-            on_axes(area, chart, &shown, x.clone().log_scale(), y.log_scale(), x)
+    let points = |series: &'_ Series| -> Vec<Point> {
+        let points = series.points.iter();
+        points
+            .filter(|point| has_place(chart, point))
+            .cloned()
+            .collect()
+    };
+    let shown: Vec<(&Series, Vec<Point>)> = chart
+        .series
+        .iter()
+        .map(|series| (series, points(series)))
+        .collect();
+    let all = || shown.iter().flat_map(|(_, points)| points);
+    let x = Scaled::new(chart.x.scale, all().map(|p| p.x));
+    let y = Scaled::new(chart.y.scale, all().map(|p| p.y).chain(level.clone()));
+    let right_of = |value| ACROSS.start + x.share(value) * (ACROSS.end - ACROSS.start);
+    let below = |value| DOWN.end - y.share(value) * (DOWN.end - DOWN.start);
+    let place = |p: &Point| (right_of(p.x), below(p.y));
+    canvas.text(&chart.title, (WIDTH / 2.0, 24.0), 20, Anchor::Middle);
+    for tick in x.ticks() {
+        let at = right_of(tick);
+        canvas.line(&[(at, DOWN.start), (at, DOWN.end)], LINES, 1, "");
+        canvas.text(&in_short(tick), (at, DOWN.end + 14.0), 14, Anchor::Middle);
+    }
+    for tick in y.ticks() {
+        let at = below(tick);
+        canvas.line(&[(ACROSS.start, at), (ACROSS.end, at)], LINES, 1, "");
+        canvas.text(&in_short(tick), (ACROSS.start - 6.0, at), 14, Anchor::End);
+    }
+    let corner = (ACROSS.start, DOWN.end);
+    canvas.line(
+        &[(corner.0, DOWN.start), corner, (ACROSS.end, corner.1)],
+        0,
+        1,
+        "",
+    );
+    let middle = (ACROSS.start + ACROSS.end) / 2.0;
+    canvas.text(
+        &chart.x.label,
+        (middle, DOWN.end + 40.0),
+        14,
+        Anchor::Middle,
+    );
+    canvas.upwards(&chart.y.label, (20.0, (DOWN.start + DOWN.end) / 2.0), 14);
+    let mut legend: Vec<(&str, Color, u32)> = Vec::new();
+    if let (Some((_, name)), Some(at)) = (&chart.level, level.clone().next()) {
+        let at = below(at);
+        canvas.line(&[(ACROSS.start, at), (ACROSS.end, at)], GREY, 1, "6 5");
+        legend.push((name, GREY, 1));
+    }
+    let mut labels: Vec<Room> = Vec::new();
+    let pixel = |p: &Point| {
+        let (x, y) = place(p);
+        (x as i32, y as i32)
+    };
+    let dots: Vec<(i32, i32)> = shown
+        .iter()
+        .filter(|(series, _)| series.dots)
+        .flat_map(|(_, points)| points.iter().map(pixel))
+        .collect();
+    let mut colored = 0;
+    for (series, points) in &shown {
+        let (color, stroke) = if series.grey {
+            (GREY, 1)
+        } else {
+            colored += 1;
+            // The second time round the colours, lines are thin.
+            let stroke = if colored <= COLORS.len() { 2 } else { 1 };
+            (COLORS[(colored - 1) % COLORS.len()], stroke)
+        };
+        let places: Vec<(f64, f64)> = points.iter().map(place).collect();
+        if series.line && places.len() > 1 {
+            canvas.line(&places, color, stroke, "");
         }
-        (Scale::Log, Scale::Linear) => {
-            let (x, y) = (decades(xs()), around(ys()));
-            on_axes(area, chart, &shown, x.clone().log_scale(), y, x)
+        if !series.name.is_empty() {
+            legend.push((&series.name, color, stroke));
         }
-        (Scale::Linear, Scale::Log) => {
-            let (x, y) = (around(xs()), decades(ys()));
-            on_axes(area, chart, &shown, x.clone(), y.log_scale(), x)
+        if series.dots {
+            places.iter().for_each(|&at| canvas.dot(at, color));
         }
-        (Scale::Linear, Scale::Linear) => {
-            let (x, y) = (around(xs()), around(ys()));
-            on_axes(area, chart, &shown, x.clone(), y, x)
+        for point in points {
+            let Some(label) = &point.label else { continue };
+            let (at, letters) = (pixel(point), label.chars().count());
+            let across = ACROSS.start as i32..ACROSS.end as i32;
+            if let Some((x, y)) = free_place(at, letters, &across, &mut labels, &dots) {
+                // Its line has its upper left corner there.
+                let at = (f64::from(at.0 + x), f64::from(at.1 + y) + 7.0);
+                canvas.text(label, at, 12, Anchor::Start);
+            }
         }
+    }
+    let places: Vec<(i32, i32)> = all().map(pixel).collect();
+    draw_legend(canvas, &legend, &places);
+}
+
+/// Height of a line of the legend.
+const LINE: f64 = 18.0;
+
+fn draw_legend(canvas: &mut Canvas, legend: &[(&str, Color, u32)], places: &[(i32, i32)]) {
+    let letters = legend.iter().map(|(name, ..)| name.chars().count()).max();
+    let Some(letters) = letters else { return };
+    let (width, height) = (
+        44.0 + 7.0 * letters as f64,
+        LINE * legend.len() as f64 + 8.0,
+    );
+    let across = ACROSS.start as i32..ACROSS.end as i32;
+    let (is_right, is_lower) = legend_corner((across, DOWN.start as i32..DOWN.end as i32), places);
+    let left = match is_right {
+        true => ACROSS.end - width - 6.0,
+        false => ACROSS.start + 6.0,
+    };
+    let top = match is_lower {
+        true => DOWN.end - height - 6.0,
+        false => DOWN.start + 6.0,
+    };
+    canvas.rectangle([left, top, width, height], LINES);
+    canvas.rectangle(
+        [left + 1.0, top + 1.0, width - 2.0, height - 2.0],
+        0xff_ffff,
+    );
+    for (number, (name, color, stroke)) in legend.iter().enumerate() {
+        let middle = top + 4.0 + LINE * (number as f64 + 0.5);
+        canvas.line(
+            &[(left + 8.0, middle), (left + 26.0, middle)],
+            *color,
+            *stroke,
+            "",
+        );
+        canvas.text(name, (left + 32.0, middle), 13, Anchor::Start);
     }
 }
 
@@ -212,7 +369,7 @@ const LETTER: (i32, i32) = (13, 7);
 fn free_place(
     at: (i32, i32),
     letters: usize,
-    across: &std::ops::Range<i32>,
+    across: &Range<i32>,
     labels: &mut Vec<Room>,
     dots: &[(i32, i32)],
 ) -> Option<(i32, i32)> {
@@ -250,112 +407,9 @@ fn free_place(
     Some(chosen)
 }
 
-/// Draws on axes of any kind. `across`: the ends of the axis across.
-fn on_axes<X, Y>(
-    area: &Area<'_>,
-    chart: &Chart,
-    shown: &[(&Series, Vec<&Point>)],
-    x: X,
-    y: Y,
-    across: std::ops::Range<f64>,
-) -> Result<(), PlotError>
-where
-    X: AsRangedCoord<Value = f64>,
-    Y: AsRangedCoord<Value = f64>,
-    X::CoordDescType: ValueFormatter<f64>,
-    Y::CoordDescType: ValueFormatter<f64>,
-{
-    let mut drawing = ChartBuilder::on(area)
-        .caption(&chart.title, ("sans-serif", 20))
-        .margin(14)
-        .x_label_area_size(44)
-        .y_label_area_size(64)
-        .build_cartesian_2d(x, y)
-        .map_err(PlotError::of)?;
-    drawing
-        .configure_mesh()
-        .x_desc(&chart.x.label)
-        .y_desc(&chart.y.label)
-        .light_line_style(RGBColor(235, 235, 235))
-        .bold_line_style(RGBColor(205, 205, 205))
-        .x_label_formatter(&|x| in_short(*x))
-        .y_label_formatter(&|y| in_short(*y))
-        .label_style(("sans-serif", 14))
-        .draw()
-        .map_err(PlotError::of)?;
-    if let Some((at, name)) = &chart.level {
-        let ends = [(across.start, *at), (across.end, *at)];
-        let line = DashedLineSeries::new(ends, 6, 5, GREY.stroke_width(1));
-        let drawn = drawing.draw_series(line).map_err(PlotError::of)?;
-        drawn
-            .label(name)
-            .legend(|(x, y)| PathElement::new([(x, y), (x + 18, y)], GREY));
-    }
-    let mut colored = 0;
-    let mut labels: Vec<Room> = Vec::new();
-    let (across_px, _) = drawing.plotting_area().get_pixel_range();
-    let dots: Vec<(i32, i32)> = shown
-        .iter()
-        .filter(|(series, _)| series.dots)
-        .flat_map(|(_, points)| points.iter().map(|p| drawing.backend_coord(&(p.x, p.y))))
-        .collect();
-    for (series, points) in shown {
-        let (color, stroke) = if series.grey {
-            (GREY, 1)
-        } else {
-            colored += 1;
-            // The second time round the colours, lines are thin.
-            let stroke = if colored <= COLORS.len() { 2 } else { 1 };
-            (COLORS[(colored - 1) % COLORS.len()], stroke)
-        };
-        let style = color.stroke_width(stroke);
-        let joined = if series.line { points.as_slice() } else { &[] };
-        let line = LineSeries::new(joined.iter().map(|p| (p.x, p.y)), style);
-        let drawn = drawing.draw_series(line).map_err(PlotError::of)?;
-        if !series.name.is_empty() {
-            drawn
-                .label(&series.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
-        }
-        if series.dots {
-            let dots = points
-                .iter()
-                .map(|p| Circle::new((p.x, p.y), 3, color.filled()));
-            drawing.draw_series(dots).map_err(PlotError::of)?;
-        }
-        let labelled: Vec<_> = points
-            .iter()
-            .filter_map(|p| {
-                let label = p.label.clone()?;
-                let at = drawing.backend_coord(&(p.x, p.y));
-                let offset = free_place(at, label.chars().count(), &across_px, &mut labels, &dots)?;
-                let text = Text::new(label, offset, ("sans-serif", 12).into_font());
-                Some(EmptyElement::at((p.x, p.y)) + text)
-            })
-            .collect();
-        drawing.draw_series(labelled).map_err(PlotError::of)?;
-    }
-    let places: Vec<(i32, i32)> = shown
-        .iter()
-        .flat_map(|(_, points)| points.iter().map(|p| drawing.backend_coord(&(p.x, p.y))))
-        .collect();
-    let corner = legend_corner(drawing.plotting_area().get_pixel_range(), &places);
-    drawing
-        .configure_series_labels()
-        .position(corner)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(205, 205, 205))
-        .label_font(("sans-serif", 13))
-        .draw()
-        .map_err(PlotError::of)
-}
-
-/// The corner of the plotting area with the fewest points in it; of equal
-/// ones the upper left comes first. Everything in pixels of the picture.
-fn legend_corner(
-    (across, down): (std::ops::Range<i32>, std::ops::Range<i32>),
-    places: &[(i32, i32)],
-) -> SeriesLabelPosition {
+/// The corner of the plotting area with the fewest points in it, as whether it is right and whether it is lower; of
+/// equal ones the upper left comes first. Everything in pixels of the picture.
+fn legend_corner((across, down): (Range<i32>, Range<i32>), places: &[(i32, i32)]) -> (bool, bool) {
     // The room of a legend of seven lines.
     const ROOM: (i32, i32) = (240, 180);
     let left = across.start..across.start + ROOM.0;
@@ -363,12 +417,12 @@ fn legend_corner(
     let upper = down.start..down.start + ROOM.1;
     let lower = down.end - ROOM.1..down.end;
     let corners = [
-        (&left, &upper, SeriesLabelPosition::UpperLeft),
-        (&right, &upper, SeriesLabelPosition::UpperRight),
-        (&left, &lower, SeriesLabelPosition::LowerLeft),
-        (&right, &lower, SeriesLabelPosition::LowerRight),
+        (&left, &upper, (false, false)),
+        (&right, &upper, (true, false)),
+        (&left, &lower, (false, true)),
+        (&right, &lower, (true, true)),
     ];
-    let within = |x: &std::ops::Range<i32>, y: &std::ops::Range<i32>| {
+    let within = |x: &Range<i32>, y: &Range<i32>| {
         let inside = places
             .iter()
             .filter(|p| x.contains(&p.0) && y.contains(&p.1));
@@ -377,7 +431,7 @@ fn legend_corner(
     corners
         .into_iter()
         .min_by_key(|(x, y, _)| within(x, y))
-        .map_or(SeriesLabelPosition::UpperLeft, |corner| corner.2)
+        .map_or((false, false), |corner| corner.2)
 }
 
 #[cfg(test)]
@@ -387,12 +441,11 @@ mod tests {
     #[test]
     fn legends_go_where_no_points_are() {
         let area = || (60..880, 40..500);
-        let corner = |places: &[(i32, i32)]| format!("{:?}", legend_corner(area(), places));
-        let is = |p: SeriesLabelPosition| format!("{p:?}");
-        assert_eq!(corner(&[]), is(SeriesLabelPosition::UpperLeft));
+        let corner = |places: &[(i32, i32)]| legend_corner(area(), places);
+        assert_eq!(corner(&[]), (false, false));
         let upper = [(100, 60), (800, 60)];
-        assert_eq!(corner(&upper[..1]), is(SeriesLabelPosition::UpperRight));
-        assert_eq!(corner(&upper), is(SeriesLabelPosition::LowerLeft));
+        assert_eq!(corner(&upper[..1]), (true, false));
+        assert_eq!(corner(&upper), (false, true));
     }
 
     #[test]
@@ -422,6 +475,20 @@ mod tests {
         assert_eq!(decades([3.0, 40.0].into_iter()), 1.0..100.0);
         assert_eq!(decades([10.0].into_iter()), 10.0..100.0);
         assert_eq!(decades(std::iter::empty()), 1.0..10.0);
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        let ticks = |scale, ends: Range<f64>| Scaled { scale, ends }.ticks();
+        assert_eq!(
+            ticks(Scale::Linear, 0.0..34.0),
+            [0.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0]
+        );
+        assert_eq!(
+            ticks(Scale::Log, 1.0..100.0),
+            [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0]
+        );
+        assert_eq!(ticks(Scale::Log, 1.0..1e5).len(), 6);
     }
 
     #[test]
@@ -458,7 +525,7 @@ mod tests {
                 )],
             )
         };
-        let text = super::super::svg(&[super::super::Panel::Chart(chart)]).unwrap();
+        let text = super::super::svg(&[super::super::Panel::Chart(chart)]);
         assert_eq!(text.matches("<circle").count(), 2);
         assert!(text.contains("here") && text.contains("noise") && !text.contains("gone"));
     }

@@ -17,8 +17,8 @@ use hwmodel::Overflow;
 use hwmodel::cycles::Organisation;
 use serde_json::Value;
 use shiftvox::graph::{Graph, GraphView, Opacity};
-use shiftvox_lab::model::vectors::{self, Recorded, Request};
 use shiftvox::project::{CageKind, Camera, Coverage, FrameSetup, SetupOptions};
+use shiftvox_lab::model::vectors::{self, Recorded, Request};
 use tempfile::TempDir;
 
 use self::replay::replay;

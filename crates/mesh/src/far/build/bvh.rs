@@ -141,7 +141,9 @@ impl Build {
 
     fn extent(&self, from: usize, to: usize) -> Extent {
         let boxes = self.order[from..to].iter();
-        boxes.fold(Extent::EMPTY, |all, &triangle| all.with(self.boxes[triangle as usize]))
+        boxes.fold(Extent::EMPTY, |all, &triangle| {
+            all.with(self.boxes[triangle as usize])
+        })
     }
 
     /// Sorts some triangles to both sides of the best cut, or of one into halves; returns the place of the first
@@ -208,7 +210,12 @@ fn bin_of(extent: Extent, axis: usize, low: Vec3A, scale: f32) -> usize {
 
 /// Calls `meet` with the place of each triangle that a ray may meet before `most`, near boxes first. `meet` returns the
 /// distance before which the ray is followed on.
-pub(super) fn traverse(nodes: &[Node], ray: &Ray, mut most: f32, mut meet: impl FnMut(usize) -> f32) {
+pub(super) fn traverse(
+    nodes: &[Node],
+    ray: &Ray,
+    mut most: f32,
+    mut meet: impl FnMut(usize) -> f32,
+) {
     if nodes.is_empty() {
         return;
     }
@@ -233,8 +240,16 @@ pub(super) fn traverse(nodes: &[Node], ray: &Ray, mut most: f32, mut meet: impl 
             for child in 0..4 {
                 let enters = (near[child] - origin[axis]) * per_unit[axis];
                 let leaves = (far[child] - origin[axis]) * per_unit[axis];
-                enter[child] = if enters > enter[child] { enters } else { enter[child] };
-                leave[child] = if leaves < leave[child] { leaves } else { leave[child] };
+                enter[child] = if enters > enter[child] {
+                    enters
+                } else {
+                    enter[child]
+                };
+                leave[child] = if leaves < leave[child] {
+                    leaves
+                } else {
+                    leave[child]
+                };
             }
         }
         let first_new = height;

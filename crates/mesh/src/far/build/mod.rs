@@ -42,7 +42,6 @@ use super::record::{LeafTriangle, Node, Opacity};
 use super::store::pack::pack;
 use super::store::surface::lay_out;
 use super::store::write_parts;
-use shiftvox::graph::{PackedNormal, Progress, place};
 use crate::{Surface, barycentric, linear_to_srgb, mesh_box};
 use clusters::{CLUSTER, Occluders, Part};
 use count::{Seen, SurfaceSample};
@@ -50,6 +49,7 @@ use rays::Around;
 use room::{Room, shares};
 use sample::{Rays, Triangles};
 use shader_fit::ShaderFit;
+use shiftvox::graph::{PackedNormal, Progress, place};
 use shot::{Own, Target};
 use split::{Branch, split};
 use spool::{Origin, Spool, open_part};
@@ -499,11 +499,7 @@ fn share_rays(touched: &[u32], rays: u64) -> Vec<Rays> {
 }
 
 /// Normal and colour of a triangle at a point, seen from a side.
-fn surface_sample(
-    triangle: &crate::Triangle,
-    point: DVec3,
-    towards_eye: DVec3,
-) -> SurfaceSample {
+fn surface_sample(triangle: &crate::Triangle, point: DVec3, towards_eye: DVec3) -> SurfaceSample {
     let [a, b, c] = triangle.corners;
     let plane = (b - a).cross(c - a).normalize_or(DVec3::Z);
     let shares = barycentric(&triangle.corners, point);

@@ -12,8 +12,8 @@ use bytemuck::{Pod, Zeroable};
 use xxhash_rust::xxh3::{Xxh3, xxh3_64};
 
 use super::{BuildError, BuildOptions};
-use crate::far::record::Node;
 use crate::Surface;
+use crate::far::record::Node;
 
 /// How an unfinished file begins; the last byte is the version of the layout and of the build.
 const MAGIC: [u8; 8] = *b"\x89FARPRT\x01";

@@ -13,12 +13,12 @@ use super::compare::{Candidate, Comparison};
 use super::parts::Parts;
 use super::split::Branch;
 use super::{BuildError, BuildOptions, leaf_triangles};
+use crate::decimate::{Decimation, decimate_between};
 use crate::far::record::{LeafTriangle, Node};
 use crate::far::store::pack::pack;
 use crate::far::store::surface;
-use shiftvox::graph::PackedNormal;
-use crate::decimate::{Decimation, decimate_between};
 use crate::{Mesh, Surface, srgb_to_linear};
+use shiftvox::graph::PackedNormal;
 
 /// Parts narrower than so many voxels of a node are thin.
 const THIN: f64 = 2.0;

@@ -15,9 +15,9 @@ mod read;
 pub(in crate::far) mod surface;
 mod write;
 
-pub use shiftvox::graph::file::FileError as FarError;
 pub use budget::Resident;
 pub use data::NodeData;
 pub use read::FarFile;
+pub use shiftvox::graph::file::FileError as FarError;
 pub(in crate::far) use write::write_parts;
 pub use write::{encode, write_to};

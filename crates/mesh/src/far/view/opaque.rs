@@ -12,11 +12,11 @@ use super::splat::{Places, Square};
 use super::{FarCounts, Opacity, Pixel, ViewError, ViewOptions};
 use crate::far::record::{LISTS, LeafTriangle, OpacityKind, RECORD_BYTES, Voxel};
 use crate::far::store::{FarFile, NodeData};
-use shiftvox::graph::{PackedNormal, Silent};
 use crate::raster::{
     self, NO_TRIANGLE, Pattern, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
 };
 use crate::{Surface, Triangle, srgb_to_linear};
+use shiftvox::graph::{PackedNormal, Silent};
 
 /// Nothing: as deep as can be, and no number.
 const EMPTY: u64 = (f32::INFINITY.to_bits() as u64) << 32 | u32::MAX as u64;

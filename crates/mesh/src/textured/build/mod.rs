@@ -14,9 +14,9 @@ use super::cell_grid::{ACROSS, MOST_ACROSS, MOST_CELLS, MOST_TEXELS};
 use super::levels::surfels;
 use super::record::{CLEAR, NEVER, Primitive, Texel, VoxelRecord};
 use super::{CellGrid, Element, GridData, TexturedData};
-use shiftvox::graph::Progress;
 use crate::{Surface, mesh_box};
 use project::{Column, Projected, project};
+use shiftvox::graph::Progress;
 use voxels::{Filled, cell_of, depths, fill};
 
 /// How textured voxels are built.

@@ -8,12 +8,12 @@
 
 use glam::DVec3;
 
-use shiftvox::graph::PackedNormal;
 use crate::raster::Edges;
-use crate::{Surface, Triangle, barycentric, linear_to_srgb};
 use crate::textured::CellGrid;
 use crate::textured::cell_grid::{ACROSS, is_positive_half};
 use crate::textured::record::{Texel, plane_normal};
+use crate::{Surface, Triangle, barycentric, linear_to_srgb};
+use shiftvox::graph::PackedNormal;
 
 /// A column of cells along an axis.
 #[derive(Debug)]

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use crate::voxelize::{Prepared, child};
 use crate::textured::{CellGrid, Element};
+use crate::voxelize::{Prepared, child};
 
 /// Cells that are not empty, with the primitives that touch them.
 #[derive(Debug, Default)]

@@ -6,8 +6,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
 use crate::textured::record::{PRIMITIVE_BYTES, TEXEL_BYTES, VOXEL_BYTES};
+use shiftvox::graph::file::{Format, HEADER_BYTES, section_after};
 
 /// How files begin.
 pub(super) const FORMAT: Format = Format {

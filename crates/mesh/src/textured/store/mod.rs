@@ -9,6 +9,6 @@ mod format;
 mod read;
 mod write;
 
-pub use shiftvox::graph::file::FileError as TexturedError;
 pub use read::{Grid, TexturedFile};
+pub use shiftvox::graph::file::FileError as TexturedError;
 pub use write::{encode, write_to};

@@ -11,13 +11,13 @@ use super::check::{Part, check, check_entry, check_primitives};
 use super::format::{
     ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, VERSION_WITHOUT_BEVELS, at,
 };
-use shiftvox::graph::MeshBox;
-use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
-use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
 use crate::textured::{CellGrid, Element};
+use shiftvox::graph::MeshBox;
+use shiftvox::graph::file::{self, Bytes, HEADER_BYTES, check_padding, range};
+use shiftvox::graph::place::{MOST_PARTS, can_be_seen};
 
 /// An open `.tvx` file.
 #[derive(Debug)]

@@ -6,8 +6,8 @@ use bytemuck::cast_slice;
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::format::{FORMAT, GridEntry, Layout, at};
-use shiftvox::graph::file::{self, HEADER_BYTES};
 use crate::textured::{Element, GridData, TexturedData};
+use shiftvox::graph::file::{self, HEADER_BYTES};
 
 /// Writes textured voxels: to a temporary file, say, that then gets its name
 /// ([`shiftvox::whole::write_with`]).

@@ -7,10 +7,10 @@
 mod choose;
 mod scene;
 
-use shiftvox::graph::Silent;
 use crate::raster::{
     self, Light, RasterCamera, RasterError, RasterOptions, RasterPicture, Samples,
 };
+use shiftvox::graph::Silent;
 
 pub use choose::{Choice, choose, choose_grid};
 

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use shiftvox::graph::PackedNormal;
-use crate::{Surface, Triangle, srgb_to_linear};
 use crate::textured::cell_grid::ACROSS;
 use crate::textured::levels::Surfel;
 use crate::textured::record::{Primitive, Texel};
 use crate::textured::store::{Grid, TexturedFile};
+use crate::{Surface, Triangle, srgb_to_linear};
+use shiftvox::graph::PackedNormal;
 
 /// A surfel with what is needed to draw it.
 struct Face<'f> {
