@@ -1,9 +1,8 @@
 //! Exact voxel rendering on the CPU, and a model of hardware that needs only adders and shifts.
 //!
 //! `shiftvox` draws voxel files without a GPU, and counts what the same picture would cost simple hardware that has
-//! adders, shifts, logic and compares, and no multiplier, divider or floating point. Its default picture is exact: at
-//! each sample it shows the first voxel on the ray, proved against an oracle in wide integers, the same on every
-//! platform, instruction set and number of threads.
+//! adders, shifts, logic and compares, and no multiplier, divider or floating point. Its default picture is exact: each
+//! sample shows the first voxel on its ray, the same on every platform, instruction set and number of threads.
 //!
 //! ```
 //! use shiftvox::{Buffer, Camera, Renderer, Scene, Voxel};
@@ -22,55 +21,240 @@
 //! ```
 //!
 //! **Use it** for pictures of voxel files, where there is no GPU or where they must be the same everywhere; to study what
-//! a renderer in hardware would cost; as a reference for another voxel renderer. **Not** for frame rates of a GPU, for
-//! light that bounces, or for scenes that change every frame.
+//! a renderer in hardware would cost; as a reference for another voxel renderer. **Do not use it** for the frame rates of
+//! a GPU, for light that bounces, or for scenes that change every frame.
 //!
-//! # What is where
+//! # The names
 //!
 //! | | |
 //! |---|---|
-//! | [`Scene`] | opens voxel files and meshes, makes generated scenes, builds voxels of your own; [`SceneOptions`] |
-//! | [`Camera`] | fitted to a scene, or placed |
-//! | [`Renderer`] | engine ([`EngineKind`]), drawing rule ([`Coverage`]), level of detail, samples a pixel, machine words |
-//! | [`Picture`] | colours, depths, normals, voxels, counters; PNG and NumPy files; a hash |
-//! | [`Engine`] | the engines themselves ([`Fast`], [`Machine`], [`Rays`]), frame after frame without a picture |
-//! | [`hwmodel`] | words that cannot multiply, and the model of cycles, memory, area and energy |
+//! | [`Scene`] | opens voxel files, generates scenes, builds [`Voxel`]s of your own; which axis is [`Up`] |
+//! | [`Camera`], [`FittedCamera`] | placed, or fitted to a scene; either is a [`View`] |
+//! | [`Renderer`] | the engine ([`EngineKind`]), the drawing rule ([`Coverage`]), samples per pixel, light ([`Shading`]), [`Background`], and for the machine its [`CageKind`] and [`Overflow`] |
+//! | [`Picture`] | colours, and the requested [`Buffer`]s; counters; PNG and NumPy files; a hash |
+//! | [`Error`] | every failure, with [`SetupError`], [`CameraError`], [`EngineError`] and [`Shortage`] |
+//! | [`hwmodel`], [`Simulated`] | words that cannot multiply, and the model of cycles, memory, area and energy |
 //!
-//! `examples/` has programs to begin with; the command line does the same and more. The rules are in `SPEC.md`, the
-//! layers of the source in `ARCHITECTURE.md`.
+//! Meshes are opened by the crate `shiftvox-mesh`. `examples/` has programs to begin with; the program `shiftvox` does
+//! the same and more. The rules are in `SPEC.md`, the layers of the source in `ARCHITECTURE.md`.
 //!
 //! # Features
 //!
-//! | feature | default | what for |
+//! | feature | default | purpose |
 //! |---|---|---|
 //! | `png` | yes | [`Picture::save_png`] |
-//! | `mesh` | yes | meshes, far voxels and textured voxels; without it meshes are refused, and a binary `.stl` is not recognised |
-//! | `lab` | yes | experiments: time against error, stress, the hardware model of whole frames; needs `mesh` |
-//! | `cli` | yes | the command line; needs all of them |
-//! | `view` | yes | the command `view`, a page for a browser; needs `cli` |
-//!
-//! Without them (`default-features = false`) the renderer and its voxel formats are left.
+//! | `clap` | no | settings as values of command-line flags |
+//! | `mutants` | no | machines with one deliberate fault each, for tests of tests |
 
 mod api;
 
-pub use api::{Camera, EngineKind, Error, FittedCamera, Picture, Renderer, Scene, Up, View};
+pub use api::{Camera, EngineKind, Error, FittedCamera, Picture, Renderer, Scene};
 
-pub use fast::{Declined, Fast, FastOptions, Instructions, Switches};
-pub use frame::Frame;
-pub use graph::{Graph, GraphView, PackedNormal, Voxel};
-pub use machine::{Machine, MachineOptions, Simulated};
-pub use picture::{Background, Buffer, Shading};
-pub use project::{
-    CageKind, CameraError, Coverage, Engine, EngineError, FrameSetup, OCCLUSION_ORDER, SetupError,
-    SetupOptions, Stats,
-};
-pub use rays::Rays;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// assert_eq!(scene.up(), Up::Z); // voxel files; meshes have mostly `Up::Y`
+/// let lying = scene.with_up(Up::Y);
+/// let camera = Camera::fit(&lying);
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use api::Up;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// fn side_by_side(scene: &Scene, views: [&impl View; 2]) -> Result<[Picture; 2], Error> {
+///     let [left, right] = views.map(|view| Renderer::new().render(scene, view, 32, 32));
+///     Ok([left?, right?])
+/// }
+/// let inside = Camera::look_at([4.5, 0.5, 4.5], [4.5, 9.0, 4.5]);
+/// side_by_side(&scene, [&inside, &inside.clone().field_of_view(100.0)])?;
+/// side_by_side(&scene, [&camera, &camera.clone().azimuth(90.0)])?;
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use api::View;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// match Renderer::new().render(&scene, &camera, 64, 64) {
+///     Err(Error::Memory(short)) => println!("{} bytes are needed, {:?} are free", short.needed, short.free),
+///     other => drop(other?),
+/// }
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use budget::Shortage;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // The paper's rules are drawn by the machine, and the picture says so.
+/// let picture = Renderer::new().paper().render(&scene, &camera, 32, 32)?;
+/// assert_eq!(picture.counter(Declined::Rule.counter()), Some(1));
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use fast::Declined;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let voxel = Voxel {
+///     index: [0, 0, 0],
+///     color: [200, 180, 160],
+///     normal: Some(PackedNormal::encode([0.0, 0.6, 0.8].into())),
+/// };
+/// Scene::from_voxels([voxel])?;
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use graph::PackedNormal;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let row = (0..10).map(|x| Voxel { index: [x, 0, 0], color: [25 * x as u8, 80, 80], normal: None });
+/// assert_eq!(Scene::from_voxels(row)?.voxels(), 10);
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use graph::Voxel;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// use shiftvox::hwmodel::cycles::Hardware;
+/// let hardware = Hardware::preset("light").expect("it ships");
+/// let simulated: Simulated = Renderer::new().word(32, None).simulate(&scene, &camera, 32, 32, &hardware)?;
+/// assert!(simulated.cycles.cycles > 0);
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use machine::Simulated;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let clear = Renderer::new().background(Background::None);
+/// let corner = clear.render(&scene, &camera, 32, 32)?.pixel(0, 0);
+/// assert_eq!(corner.map(|[.., alpha]| alpha), Some(0));
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use picture::Background;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let renderer = Renderer::new().buffers([Buffer::Depth, Buffer::Normal]);
+/// let picture = renderer.render(&scene, &camera, 32, 32)?;
+/// assert_eq!(picture.depth()?.len(), picture.normals()?.len());
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use picture::Buffer;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // Colours as the file has them: any pixel that is not background has the colour of a voxel.
+/// Renderer::new().shading(Shading::Flat).render(&scene, &camera, 32, 32)?;
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use picture::Shading;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // The two ways to store a voxel's projected vertices show the same picture, for other operations.
+/// let machine = Renderer::new().count_operations();
+/// let frame = machine.render(&scene, &camera, 16, 16)?;
+/// let corners = machine.cage(CageKind::Corners).render(&scene, &camera, 16, 16)?;
+/// assert_eq!(frame.rgba(), corners.rgba());
+/// assert_ne!(frame.operations(), corners.operations());
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::CageKind;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let nowhere = Camera::look_at([1.0; 3], [1.0; 3]);
+/// let drawn = Renderer::new().render(&scene, &nowhere, 32, 32);
+/// assert!(matches!(drawn, Err(Error::Setup(SetupError::Camera(CameraError::NoDirection)))));
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::CameraError;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let exact = Renderer::new().render(&scene, &camera, 32, 32)?;
+/// let any = Renderer::new().coverage(Coverage::Any).render(&scene, &camera, 32, 32)?;
+/// assert!(any.counter("samples_drawn") > exact.counter("samples_drawn"));
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::Coverage;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // Words that are too short for a frame: an error, unless another `Overflow` is chosen.
+/// let short = Renderer::new().engine(EngineKind::Machine).word(16, Some(12));
+/// match short.render(&scene, &camera, 32, 32) {
+///     Err(Error::Engine(EngineError::Trap(trap))) => println!("{trap}"),
+///     other => drop(other),
+/// }
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::EngineError;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // From any octant the nearest child comes first, and the farthest last.
+/// for eye in 0..8 {
+///     let order = OCCLUSION_ORDER.map(|child| child ^ 7 ^ eye);
+///     assert_eq!((order[0], order[7]), (eye, eye ^ 7));
+/// }
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::OCCLUSION_ORDER;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// let drawn = Renderer::new().tolerance(1.0).render(&scene, &camera, 32, 32);
+/// assert!(matches!(drawn, Err(Error::Setup(SetupError::Tolerance(_))))); // `Coverage::Exact` approximates nothing
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
+pub use project::SetupError;
 
 pub use hwmodel;
+/// ```
+/// # use shiftvox::*;
+/// # let scene = Scene::generate("menger,depth=2")?;
+/// # let camera = Camera::fit(&scene);
+/// // Saturating words draw on where exact ones would be too short.
+/// let machine = Renderer::new().engine(EngineKind::Machine).overflow(Overflow::Saturate);
+/// machine.word(24, None).render(&scene, &camera, 32, 32)?;
+/// # Ok::<(), shiftvox::Error>(())
+/// ```
+#[doc(inline)]
 pub use hwmodel::Overflow;
 
-// Internal modules, public for this project's own tests and tools. They may change in any version and are no part of
-// the API.
+// Modules for the other crates of this workspace. They may change in any version and are no part of the API.
 #[doc(hidden)]
 pub mod bounded;
 #[doc(hidden)]
