@@ -1,7 +1,7 @@
 //! The last step of every importer: limits, bounds and progress, then the caller's sink.
 
 use super::SceneInfo;
-use super::error::{Fault, Problem};
+use super::fault::{Fault, Problem};
 use crate::graph::{PackedNormal, Progress, Voxel};
 
 /// Extent, in voxels, that a scene must stay below along every axis.
@@ -11,7 +11,7 @@ pub const MAX_EXTENT: i64 = 1 << 21;
 const PROGRESS_STEP: u64 = 1 << 16;
 
 /// Hands voxels on, having checked that their indices are within limits.
-pub struct Emitter<'a> {
+pub(super) struct Emitter<'a> {
     sink: &'a mut dyn FnMut(Voxel),
     progress: &'a dyn Progress,
     count: u64,
@@ -22,7 +22,7 @@ pub struct Emitter<'a> {
 }
 
 impl<'a> Emitter<'a> {
-    pub fn new(
+    pub(super) fn new(
         sink: &'a mut dyn FnMut(Voxel),
         most: u64,
         progress: &'a dyn Progress,
@@ -39,7 +39,7 @@ impl<'a> Emitter<'a> {
 
     /// Hands one voxel on. `place`: which part of the file it comes from, and at which byte that is.
     #[inline]
-    pub fn voxel(
+    pub(super) fn voxel(
         &mut self,
         index: [i64; 3],
         color: [u8; 3],
@@ -77,7 +77,7 @@ impl<'a> Emitter<'a> {
     }
 
     /// Fails where so many voxels that are to come are more than may be handed on: for readers that know their number.
-    pub fn expect(&self, voxels: u64) -> Result<(), Problem> {
+    pub(super) fn expect(&self, voxels: u64) -> Result<(), Problem> {
         match self.count.saturating_add(voxels) {
             all if all > self.most => Err(self.too_many(all)),
             _ => Ok(()),
@@ -93,7 +93,7 @@ impl<'a> Emitter<'a> {
     }
 
     /// Enters what was handed on.
-    pub fn finish(self, info: &mut SceneInfo) {
+    pub(super) fn finish(self, info: &mut SceneInfo) {
         self.progress.advance(self.count % PROGRESS_STEP);
         info.voxels = self.count;
         info.bounds = (self.count > 0).then_some((self.low, self.high));

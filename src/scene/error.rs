@@ -1,8 +1,7 @@
-//! What can be wrong with a scene file, in terms that the user can act on.
+//! Errors of reading and writing scene files.
 
-use std::fmt;
-
-use super::FileKind;
+use super::fault::{Fault, Problem};
+use super::formats::{self, FileKind};
 
 /// Why a scene could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -45,7 +44,8 @@ pub enum SceneError {
     },
     /// The file is no mesh.
     #[error(
-        "{file}: this is a {kind} file, which has no triangles; triangles are in .obj, .ply, .stl, .gltf and .glb files"
+        "{file}: this is a {kind} file, which has no triangles; triangles are in files of the formats {}",
+        formats::mesh_endings()
     )]
     NotMesh {
         /// The file, as the user named it.
@@ -69,7 +69,8 @@ pub enum SceneError {
     },
     /// The content begins like none of the known formats.
     #[error(
-        "{file}: not a known scene file: it begins with {begins}; expected .vox (\"VOX \"), .ply (\"ply\"), .npy (\"\\x93NUMPY\") .vxg (\"\\x89VXG\"), or a mesh (.obj, .ply, .stl, .gltf, .glb); formats are recognised by content, so renaming the file does not help"
+        "{file}: not a known scene file: it begins with {begins}; expected {}; formats are recognised by content, so renaming the file does not help",
+        formats::all_endings()
     )]
     Unknown {
         /// The file, as the user named it.
@@ -100,77 +101,9 @@ impl SceneError {
     }
 }
 
-/// One finding in a file: where, what was expected, what was found, and what to do.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    /// The file, as the user named it.
-    pub file: String,
-    /// The chunk, section or element: "chunk XYZI", "header", "vertex 17".
-    pub part: String,
-    /// Byte offset from the beginning of the file.
-    pub offset: u64,
-    /// What the format, or this program, expects there.
-    pub expected: String,
-    /// What is there instead.
-    pub found: String,
-    /// What the user can do.
-    pub advice: String,
-}
-
-impl fmt::Display for Fault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}: {} at byte {}: expected {}, found {}; {}",
-            self.file, self.part, self.offset, self.expected, self.found, self.advice
-        )
-    }
-}
-
-impl std::error::Error for Fault {}
-
-impl Fault {
-    /// A finding in a file whose name is filled in by [`Fault::in_file`] once it is known.
-    pub fn new(
-        part: impl Into<String>,
-        offset: u64,
-        expected: impl Into<String>,
-        found: impl Into<String>,
-        advice: impl Into<String>,
-    ) -> Box<Self> {
-        Box::new(Self {
-            file: String::new(),
-            part: part.into(),
-            offset,
-            expected: expected.into(),
-            found: found.into(),
-            advice: advice.into(),
-        })
-    }
-}
-
-/// What went wrong below the level at which the file's name is known.
-#[derive(Debug)]
-pub enum Problem {
-    /// See [`SceneError::Invalid`].
-    Invalid(Box<Fault>),
-    /// See [`SceneError::Limit`].
-    Limit(Box<Fault>),
-    /// See [`SceneError::TooMany`].
-    TooMany { voxels: u64, most: u64 },
-    /// Reading failed.
-    Read(std::io::Error),
-}
-
-impl From<Box<Fault>> for Problem {
-    fn from(fault: Box<Fault>) -> Self {
-        Self::Invalid(fault)
-    }
-}
-
 impl Problem {
     /// Adds the file's name.
-    pub fn in_file(self, file: &str) -> SceneError {
+    pub(super) fn in_file(self, file: &str) -> SceneError {
         match self {
             Self::Invalid(mut fault) => {
                 file.clone_into(&mut fault.file);
@@ -192,18 +125,4 @@ impl Problem {
             },
         }
     }
-}
-
-/// At most 16 bytes as they can be shown on one line of a terminal.
-pub fn printable(bytes: &[u8]) -> String {
-    if bytes.is_empty() {
-        return "nothing (no bytes)".to_owned();
-    }
-    let shown: String = bytes
-        .iter()
-        .take(16)
-        .map(|b| b.escape_ascii().to_string())
-        .collect();
-    let rest = if bytes.len() > 16 { "..." } else { "" };
-    format!("\"{shown}{rest}\"")
 }

@@ -10,32 +10,31 @@ use std::path::Path;
 use crate::graph::{Progress, Voxel};
 
 mod build_file;
-mod detect;
 mod emit;
 mod error;
+mod fault;
 mod file;
+mod formats;
 pub mod generate;
+mod input;
 mod memory;
 mod mesh;
-mod npy;
 mod open;
 mod open_error;
 mod options;
-mod ply;
-mod ply_write;
-mod vox;
 
 pub use build_file::{BuiltFile, build_file, build_file_of};
-pub use detect::{FileKind, detect, is_binary_stl};
 pub use emit::MAX_EXTENT;
-pub use error::{Fault, SceneError};
+pub use error::SceneError;
+pub use fault::Fault;
 pub use file::{SceneFile, Source};
-pub use mesh::{MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
+pub use formats::{
+    FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, write_ply,
+};
+pub use mesh::{MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
 pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
-pub use open_error::OpenError;
+pub use open_error::{MeshFailure, OpenError};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
-pub use ply_write::write_ply;
-pub use vox::{VoxWriter, VoxWritten};
 
 /// A tree of 30,000 voxels as a `.vox` file: the scene of the demo (`assets/ATTRIBUTION.md`).
 pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");

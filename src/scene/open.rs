@@ -115,9 +115,10 @@ fn open_file<R: Read + Seek>(
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let name = file.name();
+    let ending = file.kind().map(|kind| kind.to_string()).unwrap_or_default();
     if file.kind().is_some_and(FileKind::is_mesh) {
         let mesh = meshes.read(file.mesh_file(folder)?, progress)?;
-        return open_mesh(&*mesh, &name, progress);
+        return open_mesh(&*mesh, format!("{ending} mesh"), &name, progress);
     }
     let mut gathered = Gathered::default();
     let read = ReadOptions {
@@ -139,7 +140,7 @@ fn open_file<R: Read + Seek>(
     })?;
     Ok(Opened {
         graph: gathered.finish(&name, UNIT, progress)?,
-        format: info.kind.to_string(),
+        format: ending,
         info: Some(info),
         mesh: None,
         is_verified: true,
@@ -152,6 +153,7 @@ const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
 /// Voxelises a mesh that was read.
 fn open_mesh(
     mesh: &dyn MeshVoxels,
+    format: String,
     source: &str,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
@@ -166,7 +168,7 @@ fn open_mesh(
     mesh.finish(&mut graph, progress);
     Ok(Opened {
         graph,
-        format: format!("{} mesh", info.kind),
+        format,
         info: Some(info),
         mesh: Some(summary),
         is_verified: true,

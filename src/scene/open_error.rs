@@ -1,6 +1,6 @@
 //! Why a scene of any kind was not opened.
 
-use super::{MeshFailure, SceneError};
+use super::SceneError;
 use super::generate::SpecError;
 use crate::graph::{BuildError, ExternalError, vxg};
 
@@ -53,6 +53,17 @@ pub enum OpenError {
         /// Bytes of memory that were free when reading began.
         available: u64,
     },
+}
+
+/// An error of a mesh reader, and whether its input is sound but exceeds a limit.
+#[derive(Debug)]
+pub struct MeshFailure {
+    /// Whether the input is sound and only too large.
+    pub is_limit: bool,
+    /// Whether the operating system refused to read the file.
+    pub is_io: bool,
+    /// The reader's error; its message names the file.
+    pub error: Box<dyn std::error::Error + Send + Sync>,
 }
 
 impl OpenError {

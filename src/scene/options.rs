@@ -1,7 +1,5 @@
 //! What a caller may choose about reading, and what it learns besides the voxels.
 
-use super::FileKind;
-
 /// What to do with `.vox` voxels whose coordinates lie outside their model's `SIZE`.
 ///
 /// VoxelShop writes such files when asked to fit the model to its bounding box:
@@ -55,10 +53,8 @@ impl Default for ReadOptions {
 }
 
 /// What a file turned out to hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SceneInfo {
-    /// The file's format.
-    pub kind: FileKind,
     /// Voxels that were handed on. Voxels that several models place at the
     /// same index are counted, and handed on, each time: the last one counts.
     /// A model that is placed where it is already is handed on once.
@@ -85,24 +81,4 @@ pub struct SceneInfo {
     pub has_normals: bool,
     /// Warnings about a file that could be read, one sentence each.
     pub warnings: Vec<String>,
-}
-
-impl SceneInfo {
-    pub fn new(kind: FileKind) -> Self {
-        Self {
-            kind,
-            voxels: 0,
-            stored_voxels: 0,
-            bounds: None,
-            models: 0,
-            nodes: 0,
-            instances: 0,
-            hidden_instances: 0,
-            outside_size: 0,
-            palette: Vec::new(),
-            has_colors: false,
-            has_normals: false,
-            warnings: Vec::new(),
-        }
-    }
 }

@@ -14,11 +14,11 @@ use super::console::Console;
 use super::error::{CliError, Kind};
 use super::{names, outputs, report, scenes};
 use shiftvox::drawing::{Drawable, milliseconds_since};
-use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
-use shiftvox_mesh::raster::{Pattern, Samples};
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::{Background, Buffer, Shading};
 use shiftvox::whole;
+use shiftvox_mesh::drawing::{TrianglesDrawing, TrianglesStyle};
+use shiftvox_mesh::raster::{Pattern, Samples};
 
 /// How samples are spread in a pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -42,7 +42,7 @@ pub enum BufferName {
 /// Arguments of `triangles`.
 #[derive(Debug, Args)]
 pub struct TrianglesArgs {
-    /// Mesh: .obj, .ply, .stl, .gltf or .glb, recognised by its content
+    /// Mesh, whose format is recognised by its content (`shiftvox --help` lists the formats)
     #[arg(value_name = "MESH", value_parser = crate::names::parser())]
     mesh: String,
     /// Picture to write, .png

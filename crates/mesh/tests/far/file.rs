@@ -1,10 +1,10 @@
 //! The file: it comes back, and what is damaged is refused.
 
+use shiftvox::scene::{FileKind, detect};
+use shiftvox_mesh::Surface;
 use shiftvox_mesh::far::record::{NODE_BYTES, RECORD_BYTES};
 use shiftvox_mesh::far::store::{FarError, encode};
 use shiftvox_mesh::far::{BuildOptions, FarFile};
-use shiftvox_mesh::Surface;
-use shiftvox::scene::{FileKind, detect};
 use xxhash_rust::xxh3::xxh3_64;
 
 use super::city::{city, far, options};
@@ -32,7 +32,7 @@ pub(crate) fn is_refused(bytes: &[u8]) -> bool {
 fn a_file_comes_back() {
     let data = far(&options());
     let bytes = encode(&data).unwrap();
-    assert_eq!(detect(&bytes), Some(FileKind::Far));
+    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Far));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("city.far");
     std::fs::write(&path, &bytes).unwrap();

@@ -3,13 +3,13 @@
 use std::fs;
 
 use shiftvox::graph::Silent;
-use shiftvox_mesh::{Mesh, Surface, Triangle};
 use shiftvox::scene::{FileKind, detect};
 use shiftvox_mesh::textured::record::{CLEAR, NEVER};
 use shiftvox_mesh::textured::store::encode;
 use shiftvox_mesh::textured::{
     BuildError, BuildOptions, Element, TexturedData, TexturedError, TexturedFile, build,
 };
+use shiftvox_mesh::{Mesh, Surface, Triangle};
 
 use super::scenes::{balls, file_of, mesh_of};
 
@@ -62,7 +62,7 @@ fn files_hold_what_was_built() {
 #[test]
 fn truncated_and_damaged_files_are_refused() {
     let bytes = encode(&small()).unwrap();
-    assert_eq!(detect(&bytes), Some(FileKind::Tvx));
+    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Tvx));
     for length in 0..bytes.len() {
         let error = TexturedFile::from_bytes(&bytes[..length]).unwrap_err();
         let is_placed = matches!(error, TexturedError::Malformed { .. });

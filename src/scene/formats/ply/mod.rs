@@ -8,18 +8,21 @@
 mod header;
 mod numbers;
 mod source;
+mod write;
 
 use std::io::BufRead;
 
 use glam::DVec3;
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem, printable};
-use super::{FileKind, ReadOptions, SceneInfo};
 use crate::graph::PackedNormal;
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem, printable};
+use crate::scene::input::Input;
+use crate::scene::{ReadOptions, SceneInfo};
 use header::{Element, Property};
 use numbers::{Encoding, Scalar};
 use source::{Number, Source, decode, parse_number};
+pub use write::write_ply;
 
 /// Longest line of an ASCII body, bytes.
 const MAX_LINE: usize = 1 << 20;
@@ -67,17 +70,17 @@ struct Layout<'h> {
 
 /// Whether a PLY file is a mesh: whether its header promises faces. `false` of a damaged header, of
 /// which [`read`] says what is wrong.
-pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
+pub(in crate::scene) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
     header::read(&mut Source::new(reader)).is_ok_and(|header| header.has_faces())
 }
 
 /// Hands on the voxels of a PLY cloud.
-pub(super) fn read<R: BufRead>(
-    reader: &mut R,
+pub(super) fn read(
+    input: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
-    let mut source = Source::new(reader);
+    let mut source = Source::new(&mut input.reader);
     let header = header::read(&mut source)?;
     let is_named = |element: &&Element, name: &[u8]| element.name == name;
     let Some(vertices) = header.elements.iter().find(|e| is_named(e, b"vertex")) else {
@@ -95,12 +98,14 @@ pub(super) fn read<R: BufRead>(
     for element in header.elements.iter().take_while(|e| e.name != b"vertex") {
         skip(&mut source, element, header.encoding, &mut line)?;
     }
-    let mut info = SceneInfo::new(FileKind::Ply);
-    info.models = 1;
-    info.instances = 1;
-    info.stored_voxels = vertices.count;
-    info.has_colors = layout.has_color;
-    info.has_normals = layout.has_normal;
+    let info = SceneInfo {
+        models: 1,
+        instances: 1,
+        stored_voxels: vertices.count,
+        has_colors: layout.has_color,
+        has_normals: layout.has_normal,
+        ..SceneInfo::default()
+    };
     for number in 0..vertices.count {
         let begin = source.offset();
         let zero = [Number::Whole(0); 3];

@@ -7,7 +7,7 @@
 //! editor shows the palette, so it changes no colour.
 
 use super::chunk::Chunk;
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// Colours by index, 1 to 255; entry 0 is never asked for.
 #[derive(Debug, Clone)]

@@ -2,7 +2,7 @@
 
 use super::numbers::{Encoding, Scalar};
 use super::source::Source;
-use crate::scene::error::{Fault, Problem, printable};
+use crate::scene::fault::{Fault, Problem, printable};
 use std::io::BufRead;
 
 /// Longest line of a header, bytes.

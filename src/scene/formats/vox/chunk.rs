@@ -6,7 +6,7 @@
 //! compared with what is left before it is used, so nothing here reads beyond
 //! its bounds and nothing allocates by a number that the file merely claims.
 
-use crate::scene::error::{Fault, printable};
+use crate::scene::fault::{Fault, printable};
 
 /// Bytes of a chunk's header.
 const HEADER: usize = 12;

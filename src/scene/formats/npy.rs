@@ -3,11 +3,12 @@
 //! Read block by block, so memory does not depend on the file. Arrays in Fortran
 //! order keep each column together; their blocks are gathered by seeking.
 
-use std::io::{BufRead, Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem, printable};
-use super::{FileKind, ReadOptions, SceneInfo};
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem, printable};
+use crate::scene::input::Input;
+use crate::scene::{ReadOptions, SceneInfo};
 
 /// Rows that are read at a time.
 const BLOCK_ROWS: u64 = 4096;
@@ -41,12 +42,12 @@ struct Layout {
 }
 
 /// Hands on the voxels of an array.
-pub(super) fn read<R: BufRead + Seek>(
-    reader: &mut R,
-    length: u64,
+pub(super) fn read(
+    Input { reader, length }: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
+    let length = *length;
     let layout = read_header(reader, length)?;
     let needed = u128::from(layout.rows) * (layout.columns * layout.width) as u128;
     let there = u128::from(length.saturating_sub(layout.data));
@@ -60,11 +61,13 @@ pub(super) fn read<R: BufRead + Seek>(
         )
         .into());
     }
-    let mut info = SceneInfo::new(FileKind::Npy);
-    info.models = 1;
-    info.instances = 1;
-    info.stored_voxels = layout.rows;
-    info.has_colors = layout.columns > 3;
+    let mut info = SceneInfo {
+        models: 1,
+        instances: 1,
+        stored_voxels: layout.rows,
+        has_colors: layout.columns > 3,
+        ..SceneInfo::default()
+    };
     if needed < there {
         info.warnings.push(format!(
             "{} bytes after the end of the array were not read",

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::chunk::{Chunk, Dict, Fields};
 use super::transform::{Transform, bad_rotation};
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// A node, and where it stands in the file.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
 //! Rotations in one byte, and where they put a voxel.
 
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// A signed permutation of the axes and a translation, applied in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

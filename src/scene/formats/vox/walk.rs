@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::nodes::{Node, NodeKind, SceneGraph};
 use super::transform::Transform;
-use crate::scene::error::{Fault, Problem};
+use crate::scene::fault::{Fault, Problem};
 
 /// How many nodes are visited, and models shown, at most. A scene graph is meant to be a tree, but a
 /// file may name one node as the child of many, and then visits can grow beyond

@@ -2,7 +2,7 @@
 
 use super::chunk::{Chunk, Fields};
 use crate::scene::OutOfBounds;
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// A model as the file stores it.
 #[derive(Debug, Clone, Copy)]

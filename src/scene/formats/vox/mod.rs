@@ -23,9 +23,10 @@ mod write;
 
 pub use write::{VoxWriter, VoxWritten};
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem};
-use super::{FileKind, OutOfBounds, ReadOptions, SceneInfo};
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem};
+use crate::scene::input::Input;
+use crate::scene::{OutOfBounds, ReadOptions, SceneInfo};
 use chunk::Chunk;
 use model::Model;
 use nodes::SceneGraph;
@@ -42,12 +43,13 @@ struct Contents<'a> {
 
 /// Hands on the voxels of a `.vox` file.
 pub(super) fn read(
-    bytes: &[u8],
+    input: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
-    let mut info = SceneInfo::new(FileKind::Vox);
-    let contents = read_contents(bytes, options, &mut info)?;
+    let mut info = SceneInfo::default();
+    let bytes = input.bytes().map_err(Problem::Read)?;
+    let contents = read_contents(&bytes, options, &mut info)?;
     survey(&contents, options, &mut info)?;
     if contents.graph.is_empty() {
         place_bare_models(&contents, options, emitter, &mut info)?;

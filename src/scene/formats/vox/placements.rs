@@ -10,7 +10,7 @@ use super::Contents;
 use super::model::Model;
 use super::transform::Transform;
 use super::walk;
-use crate::scene::error::{Fault, Problem};
+use crate::scene::fault::{Fault, Problem};
 use crate::scene::{ReadOptions, SceneInfo};
 
 /// A model at a place.
