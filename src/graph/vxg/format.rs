@@ -46,8 +46,7 @@ pub(super) mod at {
     pub(in super::super) const CHECKSUM: usize = 504;
 }
 
-/// What byte [`at::MESH_UP`] says: voxels that were not made of a mesh, or in a file of an earlier program; of a mesh
-/// with +Z up; with +Y up.
+/// Values of byte [`at::MESH_UP`]: voxels that were not made of a mesh, of a mesh with +Z up, and with +Y up.
 pub(super) const NO_MESH: u8 = 0;
 pub(super) const MESH_Z_UP: u8 = 1;
 pub(super) const MESH_Y_UP: u8 = 2;

@@ -11,7 +11,6 @@ use crate::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use shiftvox::picture::{Background, Shading};
 use shiftvox::project::{Bounds, Camera, Up};
 use crate::textured::TexturedFile;
-use crate::textured::record::Primitive;
 use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
 
 /// How often voxels are eroded.
@@ -93,18 +92,8 @@ impl<'f> TexturedDrawing<'f> {
 }
 
 impl Drawable for TexturedDrawing<'_> {
-    /// The mesh's; of a file that does not keep them all the corners of primitives.
     fn bounds(&self) -> Bounds {
-        if let Some(mesh) = self.file.mesh_box() {
-            return Bounds::of_mesh(&mesh);
-        }
-        let (low, high) = self.file.bounds();
-        let hull = self.file.primitives().iter().flat_map(Primitive::positions);
-        Bounds {
-            low,
-            high,
-            hull: hull.collect(),
-        }
+        Bounds::of_mesh(&self.file.mesh_box())
     }
 
     fn up(&self) -> Up {
