@@ -113,6 +113,17 @@ pub static FORMATS: [Format; 11] = {
     ]
 };
 
+impl Format {
+    /// The marks with which its files begin, if they hold voxels: for tests of every reader of voxels.
+    #[must_use]
+    pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
+        match (self.sign, self.contents) {
+            (Sign::Marks(marks), Contents::Voxels(_)) => marks,
+            _ => &[],
+        }
+    }
+}
+
 const _: () = {
     let mut row = 0;
     while row < FORMATS.len() {
