@@ -56,7 +56,9 @@ NPY = {
 }
 
 # The target's first byte chooses the mark of the format.
-VOXELS = {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}
+BINVOX = b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"
+VOXELS = {"binvox": b"\4" + BINVOX}
+VOXELS |= {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}
 VOXELS |= {f"npy_{name}": b"\3" + seed for name, seed in NPY.items()}
 
 # A triangle and a square of two: positions, normals, indices.

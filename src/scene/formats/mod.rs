@@ -3,6 +3,7 @@
 //! To add a voxel format, write its reader beside this file, add a [`FileKind`] and a row of [`FORMATS`], and describe
 //! the format in `spec/input.md`.
 
+mod binvox;
 mod npy;
 mod ply;
 mod vox;
@@ -33,6 +34,8 @@ pub enum FileKind {
     Ply,
     /// NumPy array of voxel indices.
     Npy,
+    /// Grid of the program binvox.
+    Binvox,
     /// Voxel graph of this program.
     Vxg,
     /// Wavefront mesh (text).
@@ -90,7 +93,7 @@ pub struct Format {
 
 /// All formats, in the order of [`FileKind`].
 #[rustfmt::skip]
-pub static FORMATS: [Format; 11] = {
+pub static FORMATS: [Format; 12] = {
     use Contents::{BuiltOfMesh, Graph, Mesh, Voxels};
     use FileKind::*;
     use Sign::{Looks, Marks};
@@ -98,18 +101,19 @@ pub static FORMATS: [Format; 11] = {
         Format { kind, ending, name, sign, contents }
     }
     [
-        row(Vox,     ".vox",  "MagicaVoxel or VoxelShop scene",   Marks(&[b"VOX "]),                  Voxels(vox::read)),
-        row(Ply,     ".ply",  "cloud of voxel indices",           Marks(&[b"ply\n", b"ply\r"]),       Voxels(ply::read)),
-        row(Npy,     ".npy",  "NumPy array of voxel indices",     Marks(&[b"\x93NUMPY"]),             Voxels(npy::read)),
-        row(Vxg,     ".vxg",  "voxel graph of this program",      Looks(|file, _| vxg::is_vxg(file)), Graph),
-        row(Obj,     ".obj",  "Wavefront mesh",                   Looks(is_obj),                      Mesh),
-        row(PlyMesh, ".ply",  "mesh (PLY with faces)",            Marks(&[]),                         Mesh),
-        row(Gltf,    ".gltf", "glTF mesh",                        Looks(is_gltf),                     Mesh),
-        row(Glb,     ".glb",  "binary glTF mesh",                 Marks(&[b"glTF"]),                  Mesh),
-        row(Stl,     ".stl",  "stereolithography mesh",           Looks(is_stl),                      Mesh),
+        row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   Marks(&[b"VOX "]),                  Voxels(vox::read)),
+        row(Ply,     ".ply",    "cloud of voxel indices",           Marks(&[b"ply\n", b"ply\r"]),       Voxels(ply::read)),
+        row(Npy,     ".npy",    "NumPy array of voxel indices",     Marks(&[b"\x93NUMPY"]),             Voxels(npy::read)),
+        row(Binvox,  ".binvox", "grid of the program binvox",       Marks(&[b"#binvox "]),              Voxels(binvox::read)),
+        row(Vxg,     ".vxg",    "voxel graph of this program",      Looks(|file, _| vxg::is_vxg(file)), Graph),
+        row(Obj,     ".obj",    "Wavefront mesh",                   Looks(is_obj),                      Mesh),
+        row(PlyMesh, ".ply",    "mesh (PLY with faces)",            Marks(&[]),                         Mesh),
+        row(Gltf,    ".gltf",   "glTF mesh",                        Looks(is_gltf),                     Mesh),
+        row(Glb,     ".glb",    "binary glTF mesh",                 Marks(&[b"glTF"]),                  Mesh),
+        row(Stl,     ".stl",    "stereolithography mesh",           Looks(is_stl),                      Mesh),
         // The crate of meshes writes these two, and its tests compare their marks.
-        row(Far,     ".far",  "far voxels, built of a mesh",      Marks(&[b"\x89FAR\r\n\x1a\n"]),     BuiltOfMesh),
-        row(Tvx,     ".tvx",  "textured voxels, built of a mesh", Marks(&[b"\x89TVX\r\n\x1a\n"]),     BuiltOfMesh),
+        row(Far,     ".far",    "far voxels, built of a mesh",      Marks(&[b"\x89FAR\r\n\x1a\n"]),     BuiltOfMesh),
+        row(Tvx,     ".tvx",    "textured voxels, built of a mesh", Marks(&[b"\x89TVX\r\n\x1a\n"]),     BuiltOfMesh),
     ]
 };
 
@@ -274,6 +278,8 @@ mod tests {
             (b"{\"no\": 1}", None),
             (b"velvet 1 2 3\n", None),
             (b"DOOD\xef\xbf\xbd", None),
+            (b"#binvox 1\n", Some(FileKind::Binvox)),
+            (b"#binvoxel\n", None),
             (b"plyform", None),
             (b"", None),
         ] {
