@@ -6,12 +6,12 @@ use super::formats::{self, FileKind};
 /// Why a scene could not be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
-    /// The operating system refused; the file's content was not at fault.
+    /// The operating system rejected an operation; the file's content was not examined.
     #[error("{file}: cannot {action}: {source}")]
     Io {
         /// The file, as the user named it.
         file: String,
-        /// What was tried, as a verb phrase: "read the file".
+        /// The action that failed, as a verb phrase: "read the file".
         action: &'static str,
         /// The system's reason.
         source: std::io::Error,
@@ -19,7 +19,7 @@ pub enum SceneError {
     /// The content breaks its format's rules, or has a value that no voxel scene can have.
     #[error(transparent)]
     Invalid(Box<Fault>),
-    /// The content is sound but larger than this program handles.
+    /// The content is sound but exceeds a limit of this program.
     #[error(transparent)]
     Limit(Box<Fault>),
     /// There are more voxels than the reader has room for.
@@ -27,9 +27,9 @@ pub enum SceneError {
     TooMany {
         /// The file, as the user named it.
         file: String,
-        /// Voxels that there are at the least, those at one place counted each.
+        /// Least number of voxels, with those at one index counted each.
         voxels: u64,
-        /// Most that there may be: [`ReadOptions::most_voxels`](super::ReadOptions::most_voxels).
+        /// The limit: [`ReadOptions::most_voxels`](super::ReadOptions::most_voxels).
         most: u64,
     },
     /// The file is a mesh.
@@ -39,7 +39,7 @@ pub enum SceneError {
     Mesh {
         /// The file, as the user named it.
         file: String,
-        /// Which mesh format it is.
+        /// Its format.
         kind: FileKind,
     },
     /// The file is no mesh.
@@ -50,7 +50,7 @@ pub enum SceneError {
     NotMesh {
         /// The file, as the user named it.
         file: String,
-        /// Which format it is.
+        /// Its format.
         kind: FileKind,
     },
     /// The file holds a finished voxel graph, not voxels to build one from.
@@ -64,10 +64,10 @@ pub enum SceneError {
     BuiltOfMesh {
         /// The file, as the user named it.
         file: String,
-        /// Which format it is.
+        /// Its format.
         kind: FileKind,
     },
-    /// The content begins like none of the known formats.
+    /// The format is unknown.
     #[error(
         "{file}: not a known scene file: it begins with {begins}; expected {}; formats are recognised by content, so renaming the file does not help",
         formats::all_endings()
@@ -88,15 +88,6 @@ impl SceneError {
             Self::Limit(_) | Self::TooMany { .. } => true,
             Self::Io { source, .. } => source.kind() == std::io::ErrorKind::OutOfMemory,
             _ => false,
-        }
-    }
-
-    /// The details, where the content is at fault.
-    #[must_use]
-    pub fn fault(&self) -> Option<&Fault> {
-        match self {
-            Self::Invalid(fault) | Self::Limit(fault) => Some(fault),
-            _ => None,
         }
     }
 }

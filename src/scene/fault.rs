@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// One finding in a file: where, what was expected, what was found, and what to do.
+/// A fault in a file: its place, the expected and the actual content, and a remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     /// The file, as the user named it.
@@ -11,11 +11,11 @@ pub struct Fault {
     pub part: String,
     /// Byte offset from the beginning of the file.
     pub offset: u64,
-    /// What the format, or this program, expects there.
+    /// Content that the format, or this program, expects there.
     pub expected: String,
-    /// What is there instead.
+    /// The actual content.
     pub found: String,
-    /// What the user can do.
+    /// A remedy.
     pub advice: String,
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Fault {
-    /// A finding in a file whose name is filled in by [`Fault::in_file`] once it is known.
+    /// A fault in a file whose name is filled in later.
     pub(super) fn new(
         part: impl Into<String>,
         offset: u64,
@@ -51,7 +51,7 @@ impl Fault {
     }
 }
 
-/// What went wrong below the level at which the file's name is known.
+/// An error of a reader, which does not know the file's name.
 #[derive(Debug)]
 pub(super) enum Problem {
     /// See [`SceneError::Invalid`].

@@ -40,6 +40,14 @@ impl Source {
         }
     }
 
+    /// The scene's name in error messages.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Generated(spec) => spec.clone(),
+            Self::File(file) => file.name(),
+        }
+    }
+
     /// The file's format; `None` for a generator and for an unknown format.
     #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
@@ -218,7 +226,7 @@ mod tests {
         SceneFile::in_memory(bytes, name).unwrap().kind()
     }
 
-    /// A PLY header longer than what is examined of other formats.
+    /// A PLY header of more than [`DETECT_BYTES`].
     fn ply(elements: &str) -> Vec<u8> {
         let comments = "comment nothing\n".repeat(1000);
         format!("ply\nformat ascii 1.0\n{comments}{elements}end_header\n").into_bytes()

@@ -1,7 +1,7 @@
 //! The interface to readers of triangle meshes, which are a crate of their own (`shiftvox-mesh`).
 //!
 //! This crate recognises mesh files and turns voxels into graphs. A [`MeshReader`] reads the triangles and turns them
-//! into voxels. [`NoMeshes`] stands in where the caller has no reader: it rejects every mesh.
+//! into voxels. [`NoMeshes`] rejects every mesh.
 
 use std::path::PathBuf;
 
@@ -61,7 +61,7 @@ pub trait MeshVoxels {
     fn finish(&self, graph: &mut Graph, progress: &dyn Progress);
 }
 
-/// The reader of callers that have none: rejects every mesh.
+/// Rejects every mesh: for callers without a reader.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoMeshes;
 

@@ -6,7 +6,7 @@
 use crate::graph::MAX_DEPTH;
 
 /// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
-pub(super) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
+pub(crate) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
 /// Version of the layout with five sections.
 pub(super) const VERSION: u32 = 1;
 /// Version of the layout with opacities as a sixth section.

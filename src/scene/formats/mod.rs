@@ -29,8 +29,8 @@ pub(super) const DETECT_BYTES: usize = 4096;
 pub enum FileKind {
     /// MagicaVoxel or VoxelShop scene.
     Vox,
-    /// PLY: a cloud of voxel indices. [`detect`] does not see the faces of a mesh and returns this for both;
-    /// [`SceneFile`](super::SceneFile) reads the header and distinguishes them.
+    /// PLY: a cloud of voxel indices. [`detect`] returns this for a mesh, too.
+    /// [`SceneFile`](super::SceneFile) reads the header and distinguishes the two.
     Ply,
     /// NumPy array of voxel indices.
     Npy,
@@ -70,15 +70,6 @@ pub(super) enum Contents {
     BuiltOfMesh,
 }
 
-/// How files of a format are recognised.
-#[derive(Debug, Clone, Copy)]
-enum Sign {
-    /// They begin with one of these.
-    Marks(&'static [&'static [u8]]),
-    /// A function of the first bytes and the file's length accepts them.
-    Looks(fn(&[u8], u64) -> bool),
-}
-
 /// A file format.
 #[derive(Debug)]
 pub struct Format {
@@ -87,7 +78,10 @@ pub struct Format {
     pub ending: &'static str,
     /// Its name in the help text.
     pub name: &'static str,
-    sign: Sign,
+    /// Its files begin with one of these.
+    marks: &'static [&'static [u8]],
+    /// Whether a file without a mark is of this format, by its first bytes and its length.
+    accepts: fn(&[u8], u64) -> bool,
     contents: Contents,
 }
 
@@ -96,33 +90,36 @@ pub struct Format {
 pub static FORMATS: [Format; 12] = {
     use Contents::{BuiltOfMesh, Graph, Mesh, Voxels};
     use FileKind::*;
-    use Sign::{Looks, Marks};
-    const fn row(kind: FileKind, ending: &'static str, name: &'static str, sign: Sign, contents: Contents) -> Format {
-        Format { kind, ending, name, sign, contents }
+    type Marks = &'static [&'static [u8]];
+    type Accepts = fn(&[u8], u64) -> bool;
+    const fn row(
+        kind: FileKind, ending: &'static str, name: &'static str, marks: Marks, accepts: Accepts, contents: Contents,
+    ) -> Format {
+        Format { kind, ending, name, marks, accepts, contents }
     }
     [
-        row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   Marks(&[b"VOX "]),                  Voxels(vox::read)),
-        row(Ply,     ".ply",    "cloud of voxel indices",           Marks(&[b"ply\n", b"ply\r"]),       Voxels(ply::read)),
-        row(Npy,     ".npy",    "NumPy array of voxel indices",     Marks(&[b"\x93NUMPY"]),             Voxels(npy::read)),
-        row(Binvox,  ".binvox", "grid of the program binvox",       Marks(&[b"#binvox "]),              Voxels(binvox::read)),
-        row(Vxg,     ".vxg",    "voxel graph of this program",      Looks(|file, _| vxg::is_vxg(file)), Graph),
-        row(Obj,     ".obj",    "Wavefront mesh",                   Looks(is_obj),                      Mesh),
-        row(PlyMesh, ".ply",    "mesh (PLY with faces)",            Marks(&[]),                         Mesh),
-        row(Gltf,    ".gltf",   "glTF mesh",                        Looks(is_gltf),                     Mesh),
-        row(Glb,     ".glb",    "binary glTF mesh",                 Marks(&[b"glTF"]),                  Mesh),
-        row(Stl,     ".stl",    "stereolithography mesh",           Looks(is_stl),                      Mesh),
+        row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   &[b"VOX "],              no,      Voxels(vox::read)),
+        row(Ply,     ".ply",    "cloud of voxel indices",           &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
+        row(Npy,     ".npy",    "NumPy array of voxel indices",     &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
+        row(Binvox,  ".binvox", "grid of the program binvox",       &[b"#binvox "],          no,      Voxels(binvox::read)),
+        row(Vxg,     ".vxg",    "voxel graph of this program",      &[&vxg::MAGIC],          no,      Graph),
+        row(Obj,     ".obj",    "Wavefront mesh",                   &[],                     is_obj,  Mesh),
+        row(PlyMesh, ".ply",    "mesh (PLY with faces)",            &[],                     no,      Mesh),
+        row(Gltf,    ".gltf",   "glTF mesh",                        &[],                     is_gltf, Mesh),
+        row(Glb,     ".glb",    "binary glTF mesh",                 &[b"glTF"],              no,      Mesh),
+        row(Stl,     ".stl",    "stereolithography mesh",           &[],                     is_stl,  Mesh),
         // The crate of meshes writes these two, and its tests compare their marks.
-        row(Far,     ".far",    "far voxels, built of a mesh",      Marks(&[b"\x89FAR\r\n\x1a\n"]),     BuiltOfMesh),
-        row(Tvx,     ".tvx",    "textured voxels, built of a mesh", Marks(&[b"\x89TVX\r\n\x1a\n"]),     BuiltOfMesh),
+        row(Far,     ".far",    "far voxels, built of a mesh",      &[b"\x89FAR\r\n\x1a\n"], no,      BuiltOfMesh),
+        row(Tvx,     ".tvx",    "textured voxels, built of a mesh", &[b"\x89TVX\r\n\x1a\n"], no,      BuiltOfMesh),
     ]
 };
 
 impl Format {
-    /// The marks with which its files begin, if they hold voxels: for tests of every reader of voxels.
+    /// The beginnings of its files, if they hold voxels: for tests of all readers of voxels.
     #[must_use]
     pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
-        match (self.sign, self.contents) {
-            (Sign::Marks(marks), Contents::Voxels(_)) => marks,
+        match self.contents {
+            Contents::Voxels(_) => self.marks,
             _ => &[],
         }
     }
@@ -185,29 +182,23 @@ pub(super) fn all_endings() -> String {
     )
 }
 
-/// Recognises a format by a file's first [`DETECT_BYTES`] (all of a shorter file) and its length in bytes.
+/// Recognises a format by a file's first 4096 bytes (all of a shorter file) and its length in bytes.
 ///
 /// `None` if it is no known format.
 #[must_use]
 pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
-    let is_marked = |format: &&Format| match format.sign {
-        Sign::Marks(marks) => marks.iter().any(|mark| beginning.starts_with(mark)),
-        Sign::Looks(_) => false,
-    };
-    let looks = |format: &&Format| match format.sign {
-        Sign::Marks(_) => false,
-        Sign::Looks(accepts) => accepts(beginning, length),
-    };
-    let mut formats = FORMATS.iter();
-    // A mark is surer than a look.
-    let found = formats
-        .clone()
-        .find(is_marked)
-        .or_else(|| formats.find(looks));
+    let begins = |mark: &&[u8]| beginning.starts_with(mark);
+    let marked = FORMATS.iter().find(|f| f.marks.iter().any(begins));
+    let found = marked.or_else(|| FORMATS.iter().find(|f| (f.accepts)(beginning, length)));
     found.map(|format| format.kind)
 }
 
-/// Whether a file is an STL mesh: text, or binary, which may begin with the word of a text, too.
+/// Accepts no file, for formats with a mark.
+fn no(_: &[u8], _: u64) -> bool {
+    false
+}
+
+/// Whether a file is an STL mesh, text or binary. A binary one may begin with the same word as a text.
 fn is_stl(beginning: &[u8], length: u64) -> bool {
     beginning.starts_with(b"solid") || is_binary_stl(beginning, length)
 }

@@ -1,9 +1,7 @@
 //! PLY clouds whose positions are voxel indices: one voxel a vertex.
 //!
-//! Read as a stream, element by element: memory does not depend on the file, and
-//! the counts of the header are never believed before the elements are there.
-//! The crate `ply-rs-bw` gathers whole elements in memory before anyone sees
-//! them, so it serves only as the tests' second opinion.
+//! Read as a stream, element by element: memory depends neither on the file nor on the counts in its header. The crate
+//! `ply-rs-bw` holds whole elements in memory, so only the tests use it, for comparison.
 
 mod header;
 mod numbers;
@@ -29,7 +27,7 @@ const MAX_LINE: usize = 1 << 20;
 
 const CUT: &str = "the file is cut short; export or copy it again";
 
-/// What a vertex property is for.
+/// The use of a vertex property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     Position(usize),
@@ -37,7 +35,7 @@ enum Role {
     Normal(usize),
 }
 
-/// The numbers of one vertex that matter.
+/// The used numbers of one vertex.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
     position: [Number; 3],
@@ -55,26 +53,26 @@ impl Vertex {
     }
 }
 
-/// The vertex element, understood.
+/// The meaning of the vertex element's properties.
 struct Layout<'h> {
     properties: &'h [Property],
-    /// What each property is for, if for anything.
+    /// The use of each property; `None` if it is skipped.
     roles: Vec<Option<Role>>,
-    /// Of those that are for something: type and first byte in a binary vertex.
+    /// The used properties, with type and first byte in a binary vertex.
     wanted: Vec<(Role, Scalar, usize)>,
-    /// Bytes of a binary vertex; `None`: they differ, for there are lists.
+    /// Bytes of a binary vertex; `None` if it contains lists, so that sizes differ.
     stride: Option<usize>,
     has_color: bool,
     has_normal: bool,
 }
 
-/// Whether a PLY file is a mesh: whether its header promises faces. `false` of a damaged header, of
-/// which [`read`] says what is wrong.
+/// Whether the header of a PLY file declares faces, so that it is a mesh. `false` for a damaged header, whose fault
+/// [`read`] reports.
 pub(in crate::scene) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
     header::read(&mut Source::new(reader)).is_ok_and(|header| header.has_faces())
 }
 
-/// Hands on the voxels of a PLY cloud.
+/// Passes on the voxels of a PLY cloud.
 pub(super) fn read(
     input: &mut Input<'_>,
     options: &ReadOptions,
@@ -130,7 +128,7 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// Finds out which properties of the vertices matter.
+/// Finds the used properties of the vertices.
 fn understand(vertices: &Element, offset: u64) -> Result<Layout<'_>, Box<Fault>> {
     let role = |name: &[u8]| {
         Some(match name {
@@ -222,7 +220,7 @@ fn skip<R: BufRead>(
     Ok(())
 }
 
-/// Reads a binary number, or skips a list (and says 0); `None` where the file ends first.
+/// Reads a binary number, or skips a list and returns 0; `None` if the file ends first.
 fn skip_or_read<R: BufRead>(
     source: &mut Source<'_, R>,
     property: &Property,
