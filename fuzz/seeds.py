@@ -1,4 +1,4 @@
-"""Writes small seed files for the targets vox, ply, npy, gltf and mesh into corpus/; run in fuzz/."""
+"""Writes small seed files for the targets vox, voxels, gltf and mesh into corpus/; run in fuzz/."""
 
 import base64
 import json
@@ -54,6 +54,12 @@ NPY = {
     "fortran": npy(2, b"{'descr': '>f4', 'fortran_order': True, 'shape': (2, 3), }", bytes(24)),
     "color": npy(3, b"{'descr': '|u1', 'fortran_order': False, 'shape': (2, 7), }", bytes(14)),
 }
+
+# The target's first byte chooses the mark of the format.
+BINVOX = b"1\ndim 2 3 4\ntranslate 0 0 0\nscale 1\ndata\n\0\5\1\3\0\20"
+VOXELS = {"binvox": b"\4" + BINVOX}
+VOXELS |= {f"ply_{name}": b"\1" + seed for name, seed in PLY.items()}
+VOXELS |= {f"npy_{name}": b"\3" + seed for name, seed in NPY.items()}
 
 # A triangle and a square of two: positions, normals, indices.
 BUFFER = struct.pack("<12f", 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 2) + struct.pack("<12f", *(0, 0, 1) * 4) + struct.pack("<6H", 0, 1, 2, 0, 2, 3)
@@ -120,7 +126,7 @@ MESH = {
     "stl_binary": b"\3" + bytes(80) + numbers(1) + struct.pack("<3f", 0, 0, 1) + SQUARE + bytes(2),
 }
 
-for target, seeds in {"vox": VOX, "ply": PLY, "npy": NPY, "gltf": GLTF, "mesh": MESH}.items():
+for target, seeds in {"vox": VOX, "voxels": VOXELS, "gltf": GLTF, "mesh": MESH}.items():
     folder = pathlib.Path("corpus") / target
     folder.mkdir(parents=True, exist_ok=True)
     for name, seed in seeds.items():

@@ -4,16 +4,16 @@
 //! 4 kB long, behind a byte that says what the target does with it.
 
 #[allow(dead_code)]
-#[path = "../../tests/sealed/seal.rs"]
+#[path = "../../crates/mesh/tests/sealed/seal.rs"]
 mod sealed;
 
 use std::error::Error;
 use std::fs;
 
-use shiftvox::far::view::Opacity;
+use shiftvox_mesh::far::view::Opacity;
 use shiftvox::graph::Silent;
-use shiftvox::mesh::{LoadOptions, Mesh, MeshFormat, Nothing, read};
-use shiftvox::{far, textured};
+use shiftvox_mesh::{LoadOptions, Mesh, MeshFormat, Nothing, read};
+use shiftvox_mesh::{far, textured};
 
 /// Two squares and a thin spike.
 const OBJ: &str = "v 0 0 0\nv 4 0 1\nv 4 4 2\nv 0 4 1\nv 1 1 5\nv 1.2 1 5\nv 3 3 9\nv 0 0 3\nv 4 0 3\nv 4 4 3\nv 0 4 3\n\

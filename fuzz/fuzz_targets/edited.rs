@@ -3,11 +3,11 @@
 #![no_main]
 #![allow(clippy::unwrap_used)]
 
-#[path = "../../tests/sealed/edit.rs"]
+#[path = "../../crates/mesh/tests/sealed/edit.rs"]
 mod edit;
-#[path = "../../tests/sealed/exercise.rs"]
+#[path = "../../crates/mesh/tests/sealed/exercise.rs"]
 mod exercise;
-#[path = "../../tests/sealed/seal.rs"]
+#[path = "../../crates/mesh/tests/sealed/seal.rs"]
 mod seal;
 
 use libfuzzer_sys::fuzz_target;

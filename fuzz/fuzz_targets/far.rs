@@ -4,13 +4,13 @@
 #![no_main]
 
 #[allow(dead_code)]
-#[path = "../../tests/sealed/seal.rs"]
+#[path = "../../crates/mesh/tests/sealed/seal.rs"]
 mod sealed;
 
 use libfuzzer_sys::fuzz_target;
-use shiftvox::far::FarFile;
-use shiftvox::far::view::{FarViewer, Opacity, ViewOptions};
-use shiftvox::mesh::raster::RasterCamera;
+use shiftvox_mesh::far::FarFile;
+use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
+use shiftvox_mesh::raster::RasterCamera;
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&choice, rest)) = bytes.split_first() else {

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
-use shiftvox::mesh::{LoadOptions, MeshFormat, Nothing, read};
+use shiftvox_mesh::{LoadOptions, MeshFormat, Nothing, read};
 
 fuzz_target!(|bytes: &[u8]| {
     // The first byte chooses: JSON alone, or JSON and a buffer in a binary file.

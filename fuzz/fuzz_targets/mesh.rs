@@ -6,8 +6,8 @@ use std::io;
 
 use libfuzzer_sys::fuzz_target;
 use shiftvox::graph::Silent;
-use shiftvox::mesh::voxelize::{Grid, voxelize};
-use shiftvox::mesh::{Beside, LoadOptions, MeshFormat, read};
+use shiftvox_mesh::voxelize::{Grid, voxelize};
+use shiftvox_mesh::{Beside, LoadOptions, MeshFormat, read};
 
 /// Every other file is the rest of the input.
 struct Rest<'a>(&'a [u8]);

@@ -4,13 +4,13 @@
 #![no_main]
 
 #[allow(dead_code)]
-#[path = "../../tests/sealed/seal.rs"]
+#[path = "../../crates/mesh/tests/sealed/seal.rs"]
 mod sealed;
 
 use libfuzzer_sys::fuzz_target;
-use shiftvox::mesh::raster::{Pattern, RasterCamera, Samples};
-use shiftvox::textured::TexturedFile;
-use shiftvox::textured::view::{Detail, ViewOptions, draw};
+use shiftvox_mesh::raster::{Pattern, RasterCamera, Samples};
+use shiftvox_mesh::textured::TexturedFile;
+use shiftvox_mesh::textured::view::{Detail, ViewOptions, draw};
 
 fuzz_target!(|bytes: &[u8]| {
     let Some((&choice, rest)) = bytes.split_first() else {

@@ -24,9 +24,9 @@ class Scene:
 
     @staticmethod
     def open(path: str | PathLike[str], *, depth: int = 9, opacities: bool = False, up: Axis | None = None) -> Scene:
-        """Open a voxel file (.vox, .ply, .npy, .vxg) or a mesh (.obj, .ply, .stl, .gltf, .glb), which is voxelised
-        with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: as `coverage="alpha"` blends
-        them. `up`: another axis than the format's custom.
+        """Open a voxel file, a voxel graph or a mesh; spec/input.md and spec/mesh.md list the formats. A mesh is
+        voxelised with 2**depth voxels along its longest side, depth 1 to 20. `opacities`: as `coverage="alpha"`
+        blends them. `up`: another axis than the format's custom.
 
         Raises `Error` where the file is missing, damaged, unknown or too large.
         """

@@ -18,16 +18,17 @@ use crate::scene::{
 pub struct Scene {
     graph: Graph,
     up: Up,
+    warnings: Vec<String>,
+    is_verified: bool,
 }
 
 impl Scene {
-    /// Opens a voxel file (`.vox`, `.ply`, `.npy`, `.vxg`), whose format is recognised by content, or a mesh (`.obj`,
-    /// `.ply`, `.stl`, `.gltf`, `.glb`), which is voxelised at 2^9 voxels along its longest side. Other settings:
-    /// [`SceneOptions`](super::SceneOptions).
+    /// Opens a voxel file or a voxel graph, whose format is recognised by content. `spec/input.md` describes the
+    /// formats. Meshes are opened by `SceneOptions` of the crate `shiftvox-mesh`.
     ///
     /// # Errors
-    /// [`Error::Open`] where the file cannot be read, is of no known format, is damaged, or holds more
-    /// voxels than memory does.
+    /// [`Error::Open`] if the file cannot be read, is damaged, is of another format, or holds more voxels than fit in
+    /// memory.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let file = SceneFile::open(path.as_ref()).map_err(|e| Error::Open(e.into()))?;
         let source = Source::File(file);
@@ -35,8 +36,7 @@ impl Scene {
         Ok(opened.map_err(|e| Error::Open(e.into()))?.into())
     }
 
-    /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`. A mesh
-    /// finds no other files, such as materials.
+    /// Opens a file that is held in memory, of any format that [`Scene::open`] takes; errors call it `name`.
     ///
     /// # Errors
     /// As [`Scene::open`].
@@ -73,7 +73,7 @@ impl Scene {
         } = Placement::default();
         let graph = builder.finish((world_origin, voxel_size), &Silent);
         let graph = graph.map_err(|e| Error::Build(e.into()))?;
-        Ok(Self { graph, up: Up::Z })
+        Ok(graph.into())
     }
 
     /// The same scene with another axis up, which [`Camera::fit`](super::Camera::fit) follows; kept by
@@ -134,6 +134,30 @@ impl Scene {
         self.up
     }
 
+    /// Warnings about the file that was opened, one sentence each: for example, that some of it was skipped.
+    ///
+    /// ```
+    /// use shiftvox::Scene;
+    ///
+    /// let mut bytes = std::fs::read("assets/tree.vox").unwrap();
+    /// bytes.extend(*b"more");
+    /// let scene = Scene::from_bytes(&bytes, "tree.vox")?;
+    /// assert_eq!(scene.warnings(), ["4 bytes after the end of the file's main chunk were not read"]);
+    /// assert!(scene.is_verified());
+    /// # Ok::<(), shiftvox::Error>(())
+    /// ```
+    #[must_use]
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Whether the whole file was checked. Only the header of a `.vxg` file of more than 256 MiB is checked, because
+    /// its other pages are read when a picture needs them. Damage there makes a wrong picture.
+    #[must_use]
+    pub fn is_verified(&self) -> bool {
+        self.is_verified
+    }
+
     /// The graph.
     #[doc(hidden)]
     #[must_use]
@@ -144,21 +168,46 @@ impl Scene {
 
 impl From<Opened> for Scene {
     fn from(opened: Opened) -> Self {
-        opened.graph.into()
+        Self {
+            warnings: opened.info.map(|info| info.warnings).unwrap_or_default(),
+            is_verified: opened.is_verified,
+            ..opened.graph.into()
+        }
     }
 }
 
 impl From<Graph> for Scene {
-    /// A scene of a graph, Z up unless it was made of a mesh with Y up.
+    /// A scene of a graph, Z up unless it was made of a mesh with Y up. It counts as verified.
     fn from(graph: Graph) -> Self {
-        let up = Up::of(&graph);
-        Self { graph, up }
+        Self {
+            up: Up::of(&graph),
+            graph,
+            warnings: Vec::new(),
+            is_verified: true,
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_graph_file_of_which_only_the_header_was_checked_says_so() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("menger.vxg");
+        let scene = Scene::generate("menger,depth=2").expect("a scene");
+        scene.save_vxg(&path).expect("a file");
+        for (verify_up_to, is_verified) in [(u64::MAX, true), (0, false)] {
+            let options = OpenOptions {
+                verify_up_to,
+                ..OpenOptions::default()
+            };
+            let source = Source::find(&path).expect("a file");
+            let opened = open_source(source, &options, &NoMeshes, &Silent).expect("a graph");
+            assert_eq!(Scene::from(opened).is_verified(), is_verified);
+        }
+    }
 
     #[test]
     fn files_of_any_name_are_opened_as_files() {

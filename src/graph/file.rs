@@ -4,7 +4,7 @@
 
 use std::fs::File;
 use std::io::{self, Read, Write};
-use std::ops::{Range, RangeInclusive};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -176,8 +176,8 @@ pub struct Format {
     pub ending: &'static str,
     /// First eight bytes.
     pub magic: [u8; 8],
-    /// Versions of the layout that are read; the last is written.
-    pub versions: RangeInclusive<u32>,
+    /// Version of the layout.
+    pub version: u32,
     /// What a header should begin with.
     pub signature: &'static str,
     /// Advice for a file that is something else.
@@ -219,7 +219,7 @@ impl Format {
             header[offset..offset + bytes.len()].copy_from_slice(bytes);
         };
         put(0, &self.magic);
-        put(at::VERSION, &self.versions.end().to_le_bytes());
+        put(at::VERSION, &self.version.to_le_bytes());
         put(at::HEADER_BYTES, &(HEADER_BYTES as u32).to_le_bytes());
         put(at::FILE_BYTES, &file_bytes.to_le_bytes());
         fields(&mut put);
@@ -251,13 +251,12 @@ impl Format {
             return Err(other(length, expected, DAMAGED));
         };
         let fields = Fields { header, path };
-        let version = fields.version();
+        let version = fields.u32_at(at::VERSION);
         let stored = fields.u64_at(at::CHECKSUM);
         let sound = stored == xxh3_64(&header[..at::CHECKSUM]);
         // A sound header of another version is no damage.
-        if !self.versions.contains(&version) && sound {
-            let (oldest, newest) = (self.versions.start(), self.versions.end());
-            let expected = format!("version {oldest} to {newest}, not {version}");
+        if version != self.version && sound {
+            let expected = format!("version {}, not {version}", self.version);
             return Err(other(at::VERSION, expected, NEWER));
         }
         fields.ensure(sound, at::CHECKSUM, || {
@@ -283,10 +282,6 @@ pub struct Fields<'f> {
 
 /// Offsets are those of a format: within the header.
 impl Fields<'_> {
-    pub fn version(&self) -> u32 {
-        self.u32_at(at::VERSION)
-    }
-
     pub fn bytes_at<const N: usize>(&self, offset: usize) -> [u8; N] {
         std::array::from_fn(|i| self.header[offset + i])
     }

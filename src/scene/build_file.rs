@@ -1,4 +1,4 @@
-//! From a scene to a `.vxg` file that need never be in memory as a whole.
+//! Builds a `.vxg` file of a scene within a limit of memory.
 
 use std::path::Path;
 
@@ -16,45 +16,23 @@ pub struct BuiltFile {
     pub voxels: u64,
     /// Bytes of the file.
     pub bytes: u64,
-    /// What a voxel file held beside its voxels.
+    /// Properties of the voxel file or mesh.
     pub info: Option<SceneInfo>,
-    /// What the mesh was, where it was one.
+    /// Properties of the mesh, if it was one.
     pub mesh: Option<MeshSummary>,
-    /// What building took; none for a cyclic scene, which is a few nodes.
+    /// Cost of building; `None` for a cyclic scene, which has a few nodes.
     pub report: Option<ExternalReport>,
 }
 
-/// Reads a voxel file, or makes the scene of a `gen:` specification, and
-/// builds a `.vxg` file of it within a limit of memory. The file is the one
-/// that [`open`](super::open()) and [`vxg::write`] give.
+/// Builds a `.vxg` file of a scene within a limit of memory. The result is byte for byte the file that
+/// [`open`](super::open()) and [`vxg::write`] make.
 ///
-/// A `.vox` file is held whole besides: its own length, within 4 GB. So is a
-/// mesh, whose triangles are taken off the limit.
+/// A `.vox` file, of at most 4 GB, is held in memory in addition to the limit. A mesh counts towards the limit.
 ///
 /// # Errors
-/// See [`OpenError`]; a `.vxg` file is refused as input.
+/// See [`OpenError`]. A `.vxg` file is rejected as input.
 pub fn build_file(
-    source: &str,
-    options: &OpenOptions,
-    meshes: &dyn MeshReader,
-    external: ExternalOptions,
-    output: &Path,
-    overwrite: bool,
-    progress: &dyn Progress,
-) -> Result<BuiltFile, OpenError> {
-    let found = Source::find(source)?;
-    build_file_of(
-        found, source, options, meshes, external, output, overwrite, progress,
-    )
-}
-
-/// [`build_file`], of what was found already; `name` is what errors call it.
-///
-/// # Errors
-/// As [`build_file`].
-pub fn build_file_of(
     source: Source,
-    name: &str,
     options: &OpenOptions,
     meshes: &dyn MeshReader,
     external: ExternalOptions,
@@ -62,8 +40,9 @@ pub fn build_file_of(
     overwrite: bool,
     progress: &dyn Progress,
 ) -> Result<BuiltFile, OpenError> {
+    let name = source.name();
     let failed = |error| OpenError::External {
-        source_name: name.to_owned(),
+        source_name: name.clone(),
         error,
     };
     let mut builder = ExternalBuilder::new(external.clone());
@@ -93,7 +72,7 @@ pub fn build_file_of(
         Source::File(file) if file.kind().is_some_and(FileKind::is_mesh) => {
             let folder = file.path().parent().map(Path::to_owned);
             let ready = meshes.read(file.mesh_file(folder)?, progress)?;
-            // The mesh's share; nothing was pushed yet.
+            // The builder is still empty.
             if let Some(voxels) = ready.expected_voxels(progress) {
                 if voxels >= u64::from(u32::MAX) {
                     return Err(failed(BuildError::TooMany(voxels).into()));
@@ -115,7 +94,7 @@ pub fn build_file_of(
             };
             let found = file.read_voxels(&read, &mut |voxel| builder.push(voxel), progress);
             info = Some(match found {
-                // Fewer than the caller would take: for want of room.
+                // The limit was the builder's room, not the caller's.
                 Err(SceneError::TooMany { voxels, most, .. }) if most < wanted => {
                     builder.expect(voxels, output).map_err(failed)?;
                     found?

@@ -1,7 +1,7 @@
-//! The last step of every importer: limits, bounds and progress, then the caller's sink.
+//! The last step of every reader of voxels: limits, bounds and progress, then the caller's sink.
 
 use super::SceneInfo;
-use super::error::{Fault, Problem};
+use super::fault::{Fault, Problem};
 use crate::graph::{PackedNormal, Progress, Voxel};
 
 /// Extent, in voxels, that a scene must stay below along every axis.
@@ -10,19 +10,23 @@ pub const MAX_EXTENT: i64 = 1 << 21;
 /// Voxels between two calls of [`Progress::advance`].
 const PROGRESS_STEP: u64 = 1 << 16;
 
-/// Hands voxels on, having checked that their indices are within limits.
-pub struct Emitter<'a> {
+/// Checks that voxels are within limits and passes them to a sink.
+pub(super) struct Emitter<'a> {
     sink: &'a mut dyn FnMut(Voxel),
     progress: &'a dyn Progress,
     count: u64,
-    /// Most voxels that may be handed on.
+    /// Most voxels that are accepted.
     most: u64,
     low: [i32; 3],
     high: [i32; 3],
 }
 
 impl<'a> Emitter<'a> {
-    pub fn new(sink: &'a mut dyn FnMut(Voxel), most: u64, progress: &'a dyn Progress) -> Self {
+    pub(super) fn new(
+        sink: &'a mut dyn FnMut(Voxel),
+        most: u64,
+        progress: &'a dyn Progress,
+    ) -> Self {
         Self {
             sink,
             progress,
@@ -33,9 +37,9 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Hands one voxel on. `place`: which part of the file it comes from, and at which byte that is.
+    /// Passes one voxel on. `place` returns the part of the file that it comes from, and its byte offset.
     #[inline]
-    pub fn voxel(
+    pub(super) fn voxel(
         &mut self,
         index: [i64; 3],
         color: [u8; 3],
@@ -72,8 +76,8 @@ impl<'a> Emitter<'a> {
         Ok(())
     }
 
-    /// Fails where so many voxels that are to come are more than may be handed on: for readers that know their number.
-    pub fn expect(&self, voxels: u64) -> Result<(), Problem> {
+    /// Fails if so many further voxels exceed the limit: for readers that know their number in advance.
+    pub(super) fn expect(&self, voxels: u64) -> Result<(), Problem> {
         match self.count.saturating_add(voxels) {
             all if all > self.most => Err(self.too_many(all)),
             _ => Ok(()),
@@ -88,8 +92,8 @@ impl<'a> Emitter<'a> {
         }
     }
 
-    /// Enters what was handed on.
-    pub fn finish(self, info: &mut SceneInfo) {
+    /// Records the number and bounds of the voxels.
+    pub(super) fn finish(self, info: &mut SceneInfo) {
         self.progress.advance(self.count % PROGRESS_STEP);
         info.voxels = self.count;
         info.bounds = (self.count > 0).then_some((self.low, self.high));

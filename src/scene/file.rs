@@ -1,17 +1,18 @@
 //! A scene's file: opened once, its format found, then read from the same handle.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Cursor, Read, Seek, SeekFrom};
+use std::io::{BufReader, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use super::detect::{DETECT_BYTES, detect_named};
 use super::emit::Emitter;
-use super::error::{Problem, printable};
-use super::{FileKind, MeshFile, ReadOptions, SceneError, SceneInfo, generate, npy, ply, vox};
+use super::fault::{Problem, printable};
+use super::formats::{self, Contents, DETECT_BYTES, FileKind};
+use super::input::Input;
+use super::{MeshFile, ReadOptions, SceneError, SceneInfo, generate};
 use crate::bounded;
 use crate::graph::{Progress, Voxel};
 
-/// What a user calls a scene.
+/// A scene by its name: a generator's specification, or a file.
 #[derive(Debug)]
 pub enum Source {
     /// A generator's specification, `gen:...`.
@@ -39,7 +40,15 @@ impl Source {
         }
     }
 
-    /// The file's format; `None` of a generator and of what is no known format.
+    /// The scene's name in error messages.
+    pub(super) fn name(&self) -> String {
+        match self {
+            Self::Generated(spec) => spec.clone(),
+            Self::File(file) => file.name(),
+        }
+    }
+
+    /// The file's format; `None` for a generator and for an unknown format.
     #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         match self {
@@ -49,11 +58,11 @@ impl Source {
     }
 }
 
-/// A file whose format is known, ready to be read from its beginning.
+/// An open file, to be read from its beginning.
 #[derive(Debug)]
 pub struct SceneFile<R = File> {
     path: PathBuf,
-    reader: R,
+    stream: R,
     length: u64,
     kind: Option<FileKind>,
     /// At most [`DETECT_BYTES`].
@@ -61,7 +70,7 @@ pub struct SceneFile<R = File> {
 }
 
 impl SceneFile<File> {
-    /// Opens a file and finds its format. A file of no known format can be opened, not read.
+    /// Opens a file and finds its format. A file of an unknown format can be opened, but not read.
     ///
     /// # Errors
     /// [`SceneError::Io`].
@@ -80,17 +89,17 @@ impl SceneFile<File> {
 }
 
 impl<'b> SceneFile<Cursor<&'b [u8]>> {
-    /// A file that is held in memory; `name` is what errors call it.
+    /// A file that is held in memory; errors call it `name`.
     pub(super) fn in_memory(bytes: &'b [u8], name: &str) -> Result<Self, SceneError> {
         Self::begin(Cursor::new(bytes), bytes.len() as u64, Path::new(name))
     }
 }
 
 impl<R: Read + Seek> SceneFile<R> {
-    fn begin(reader: R, length: u64, path: &Path) -> Result<Self, SceneError> {
+    fn begin(stream: R, length: u64, path: &Path) -> Result<Self, SceneError> {
         let mut file = Self {
             path: path.to_owned(),
-            reader,
+            stream,
             length,
             kind: None,
             beginning: Vec::new(),
@@ -101,32 +110,43 @@ impl<R: Read + Seek> SceneFile<R> {
     }
 
     fn find_kind(&mut self) -> std::io::Result<()> {
-        let beginning = (&mut self.reader).take(DETECT_BYTES as u64);
+        let beginning = (&mut self.stream).take(DETECT_BYTES as u64);
         { beginning }.read_to_end(&mut self.beginning)?;
-        self.kind = detect_named(&self.beginning, self.length, &self.path);
-        self.reader.seek(SeekFrom::Start(0))?;
-        if self.kind == Some(FileKind::Ply) {
-            if ply::has_faces(&mut BufReader::new(&mut self.reader)) {
-                self.kind = Some(FileKind::PlyMesh);
+        self.stream.seek(SeekFrom::Start(0))?;
+        self.kind = formats::detect(&self.beginning, self.length);
+        match self.kind {
+            Some(FileKind::Ply) => {
+                if formats::has_faces(&mut BufReader::new(&mut self.stream)) {
+                    self.kind = Some(FileKind::PlyMesh);
+                }
+                self.stream.seek(SeekFrom::Start(0))?;
             }
-            self.reader.seek(SeekFrom::Start(0))?;
+            // A truncated binary STL is recognised by its name only. Its reader reports what is missing.
+            None if self
+                .path
+                .extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case("stl")) =>
+            {
+                self.kind = Some(FileKind::Stl);
+            }
+            _ => {}
         }
         Ok(())
     }
 
-    /// The format, if it is a known one.
+    /// The format, unless it is unknown.
     #[must_use]
     pub fn kind(&self) -> Option<FileKind> {
         self.kind
     }
 
-    /// Where the file is; of one in memory its name.
+    /// The file's path, or the name of a file in memory.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What errors call the file.
+    /// The file's name in error messages.
     pub(super) fn name(&self) -> String {
         self.path.display().to_string()
     }
@@ -136,108 +156,66 @@ impl<R: Read + Seek> SceneFile<R> {
         self.length
     }
 
-    /// All of the file.
-    pub(super) fn bytes(mut self) -> Result<Vec<u8>, SceneError> {
-        let mut bytes = Vec::new();
-        // All but the last of what is read besides; a length is known of files only.
-        let length = usize::try_from(self.length).unwrap_or(usize::MAX);
-        if let Err(refused) = bytes.try_reserve_exact(length) {
-            let source = std::io::Error::new(std::io::ErrorKind::OutOfMemory, refused);
-            return Err(Problem::Read(source).in_file(&self.name()));
-        }
-        match self.reader.read_to_end(&mut bytes) {
-            Ok(_) => Ok(bytes),
-            Err(source) => Err(Problem::Read(source).in_file(&self.name())),
-        }
-    }
-
     /// All of a mesh file; `folder` is where it finds other files.
     ///
     /// # Errors
-    /// If this is no mesh, or it cannot be read.
-    pub fn mesh_file(self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
+    /// If this is not a mesh, or it cannot be read.
+    pub fn mesh_file(mut self, folder: Option<PathBuf>) -> Result<MeshFile, SceneError> {
+        let name = self.name();
         let kind = match self.kind {
-            // The mesh reader says that a cloud has no faces, or what is wrong with its header.
+            // The mesh reader reports that a cloud has no faces, or a fault of its header.
             Some(kind) if kind.is_mesh() || kind == FileKind::Ply => kind,
             _ => return Err(self.refused(|file, kind| SceneError::NotMesh { file, kind })),
         };
+        let bytes = Input::new(&mut self.stream, self.length).bytes();
         Ok(MeshFile {
-            name: self.name(),
+            bytes: bytes.map_err(|source| Problem::Read(source).in_file(&name))?,
+            name,
             kind,
-            bytes: self.bytes()?,
             folder,
         })
     }
 
-    /// Why there is nothing of a kind in the file, where its format holds something else.
-    pub(super) fn refused(
-        &self,
-        otherwise: impl FnOnce(String, FileKind) -> SceneError,
-    ) -> SceneError {
+    /// The error of a file that is of an unknown format, was built of a mesh, or holds something else.
+    fn refused(&self, otherwise: impl FnOnce(String, FileKind) -> SceneError) -> SceneError {
         let file = self.name();
-        match self.kind {
-            None => SceneError::Unknown {
-                file,
-                begins: printable(&self.beginning),
-            },
-            Some(kind) if kind.is_built_of_mesh() => SceneError::BuiltOfMesh { file, kind },
-            Some(kind) => otherwise(file, kind),
+        let Some(kind) = self.kind else {
+            let begins = printable(&self.beginning);
+            return SceneError::Unknown { file, begins };
+        };
+        match kind.contents() {
+            Contents::BuiltOfMesh => SceneError::BuiltOfMesh { file, kind },
+            _ => otherwise(file, kind),
         }
     }
 
-    /// Hands each voxel of a voxel file to `sink`; see [`read_voxels`](super::read_voxels).
+    /// Passes each voxel of a voxel file to `sink`; see [`read_voxels`](super::read_voxels).
     ///
     /// # Errors
     /// As [`read_voxels`](super::read_voxels).
     pub fn read_voxels(
-        self,
+        mut self,
         options: &ReadOptions,
         sink: &mut dyn FnMut(Voxel),
         progress: &dyn Progress,
     ) -> Result<SceneInfo, SceneError> {
-        let (name, length) = (self.name(), self.length);
-        let most = options.most_voxels;
-        match self.kind {
-            Some(FileKind::Vox) => {
-                let bytes = self.bytes()?;
-                import(&name, sink, most, progress, |to| {
-                    vox::read(&bytes, options, to)
-                })
-            }
-            Some(FileKind::Npy) => import(&name, sink, most, progress, |to| {
-                npy::read(&mut self.buffered(), length, options, to)
-            }),
-            Some(FileKind::Ply) => import(&name, sink, most, progress, |to| {
-                ply::read(&mut self.buffered(), options, to)
-            }),
-            _ => Err(self.refused(|file, kind| match kind {
+        let Some(Contents::Voxels(read)) = self.kind.map(FileKind::contents) else {
+            return Err(self.refused(|file, kind| match kind {
                 FileKind::Vxg => SceneError::IsGraph { file },
                 kind => SceneError::Mesh { file, kind },
-            })),
-        }
+            }));
+        };
+        let name = self.name();
+        progress.begin(&format!("reading {name}"), 0);
+        let mut emitter = Emitter::new(sink, options.most_voxels, progress);
+        let mut input = Input::new(&mut self.stream, self.length);
+        let result = read(&mut input, options, &mut emitter).map(|mut info| {
+            emitter.finish(&mut info);
+            info
+        });
+        progress.end();
+        result.map_err(|problem| problem.in_file(&name))
     }
-
-    fn buffered(self) -> impl BufRead + Seek {
-        BufReader::with_capacity(1 << 16, self.reader)
-    }
-}
-
-/// Runs an importer between the beginning and the end of its progress.
-fn import(
-    name: &str,
-    sink: &mut dyn FnMut(Voxel),
-    most: u64,
-    progress: &dyn Progress,
-    read: impl FnOnce(&mut Emitter<'_>) -> Result<SceneInfo, Problem>,
-) -> Result<SceneInfo, SceneError> {
-    progress.begin(&format!("reading {name}"), 0);
-    let mut emitter = Emitter::new(sink, most, progress);
-    let result = read(&mut emitter).map(|mut info| {
-        emitter.finish(&mut info);
-        info
-    });
-    progress.end();
-    result.map_err(|problem| problem.in_file(name))
 }
 
 #[cfg(test)]
@@ -248,7 +226,7 @@ mod tests {
         SceneFile::in_memory(bytes, name).unwrap().kind()
     }
 
-    /// A PLY header longer than what is examined of other formats.
+    /// A PLY header of more than [`DETECT_BYTES`].
     fn ply(elements: &str) -> Vec<u8> {
         let comments = "comment nothing\n".repeat(1000);
         format!("ply\nformat ascii 1.0\n{comments}{elements}end_header\n").into_bytes()
@@ -273,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_built_of_a_mesh_is_neither_voxels_nor_a_mesh() {
+    fn a_file_built_of_a_mesh_is_neither_voxels_nor_a_mesh() {
         let file = SceneFile::in_memory(b"\x89FAR\r\n\x1a\n", "a.far").unwrap();
         assert_eq!(file.kind(), Some(FileKind::Far));
         let refused = file.read_voxels(&ReadOptions::default(), &mut |_| (), &crate::graph::Silent);

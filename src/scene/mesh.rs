@@ -1,9 +1,8 @@
 //! The interface to readers of triangle meshes, which are a crate of their own (`shiftvox-mesh`).
 //!
 //! This crate recognises mesh files and turns voxels into graphs. A [`MeshReader`] reads the triangles and turns them
-//! into voxels. [`NoMeshes`] stands in where the caller has no reader: it rejects every mesh.
+//! into voxels. [`NoMeshes`] rejects every mesh.
 
-use std::error::Error;
 use std::path::PathBuf;
 
 use glam::DVec3;
@@ -62,7 +61,7 @@ pub trait MeshVoxels {
     fn finish(&self, graph: &mut Graph, progress: &dyn Progress);
 }
 
-/// The reader of callers that have none: rejects every mesh.
+/// Rejects every mesh: for callers without a reader.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoMeshes;
 
@@ -70,17 +69,6 @@ impl MeshReader for NoMeshes {
     fn read(&self, file: MeshFile, _: &dyn Progress) -> Result<Box<dyn MeshVoxels>, OpenError> {
         Err(OpenError::NoMeshes(file.name))
     }
-}
-
-/// An error of a mesh reader, and whether its input is sound but exceeds a limit.
-#[derive(Debug)]
-pub struct MeshFailure {
-    /// Whether the input is sound and only too large.
-    pub is_limit: bool,
-    /// Whether the operating system refused to read the file.
-    pub is_io: bool,
-    /// The reader's error; its message names the file.
-    pub error: Box<dyn Error + Send + Sync>,
 }
 
 /// Properties of a mesh, and the cost of its voxelisation.

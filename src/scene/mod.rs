@@ -1,52 +1,50 @@
 //! Importers and exporters of voxel files.
 //!
-//! Importers hand voxels to a sink one by one, so that memory stays bounded by
-//! what the sink keeps (and, for `.vox`, by the file, which is held whole). The
-//! format is recognised by content. File coordinates are kept: voxel `(i, j, k)`
-//! fills `[i, i+1) x [j, j+1) x [k, k+1)`, Z up, and colours are sRGB as stored.
+//! Importers pass voxels to a sink one by one, so only the sink's memory grows with their number. (A `.vox` file is
+//! held whole in addition.) File coordinates are kept: voxel `(i, j, k)` fills `[i, i+1) x [j, j+1) x [k, k+1)`, Z up,
+//! and colours are sRGB as stored. [`FORMATS`] is the table of formats.
 
 use std::path::Path;
 
 use crate::graph::{Progress, Voxel};
 
 mod build_file;
-mod detect;
 mod emit;
 mod error;
+mod fault;
 mod file;
+mod formats;
 pub mod generate;
+mod input;
 mod memory;
 mod mesh;
-mod npy;
 mod open;
 mod open_error;
 mod options;
-mod ply;
-mod ply_write;
-mod vox;
 
-pub use build_file::{BuiltFile, build_file, build_file_of};
-pub use detect::{FileKind, detect, is_binary_stl};
+pub use build_file::{BuiltFile, build_file};
 pub use emit::MAX_EXTENT;
-pub use error::{Fault, SceneError};
+pub use error::SceneError;
+pub use fault::Fault;
 pub use file::{SceneFile, Source};
-pub use mesh::{MeshFailure, MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
+pub use formats::{
+    FORMATS, FileKind, Format, VoxWriter, VoxWritten, detect, is_binary_stl, write_ply,
+};
+pub use mesh::{MeshFile, MeshReader, MeshSummary, MeshVoxels, NoMeshes};
 pub use open::{OpenOptions, Opened, open, open_bytes, open_source};
-pub use open_error::OpenError;
+pub use open_error::{MeshFailure, OpenError};
 pub use options::{OutOfBounds, ReadOptions, SceneInfo};
-pub use ply_write::write_ply;
-pub use vox::{VoxWriter, VoxWritten};
 
 /// A tree of 30,000 voxels as a `.vox` file: the scene of the demo (`assets/ATTRIBUTION.md`).
 pub const BUNDLED_TREE: &[u8] = include_bytes!("../../assets/tree.vox");
 
-/// Reads a voxel file and hands each voxel to `sink`.
+/// Reads a voxel file and passes each voxel to `sink`.
 ///
-/// Voxels handed on before an error was found must be thrown away by the caller.
+/// After an error the caller must discard the voxels that it received.
 ///
 /// # Errors
-/// [`SceneError`] where the file cannot be read, is of no supported format, breaks
-/// its format's rules, or exceeds [`MAX_EXTENT`] or the range of `i32`.
+/// [`SceneError`] if the file cannot be read, is of another format, breaks its format's rules, or exceeds
+/// [`MAX_EXTENT`] or the range of `i32`.
 pub fn read_voxels(
     path: &Path,
     options: &ReadOptions,
@@ -56,7 +54,7 @@ pub fn read_voxels(
     SceneFile::open(path)?.read_voxels(options, sink, progress)
 }
 
-/// Reads a voxel file that is in memory; `name` is what errors call it. See [`read_voxels`].
+/// Reads a voxel file that is held in memory; errors call it `name`. See [`read_voxels`].
 ///
 /// # Errors
 /// As [`read_voxels`], except that reading cannot fail.

@@ -1,5 +1,4 @@
-//! From what a user calls a scene to a graph: a generator's specification or
-//! a file of any known format.
+//! Opens a scene as a graph: a generator's specification, or a file of any known format.
 
 use std::io::{Read, Seek};
 use std::path::{Path, PathBuf};
@@ -12,7 +11,7 @@ use super::{FileKind, ReadOptions, SceneError, SceneFile, SceneInfo, Source};
 use crate::budget;
 use crate::graph::{BuildOptions, Builder, Graph, Progress, vxg};
 
-/// Where nothing else is said; of larger files only the pages that a picture needs are read.
+/// The default limit. Of a larger file, only the pages that a picture needs are read.
 const VERIFY_BYTES: u64 = 256 << 20;
 
 /// How a scene is opened.
@@ -20,8 +19,8 @@ const VERIFY_BYTES: u64 = 256 << 20;
 pub struct OpenOptions {
     /// How voxel files are read.
     pub read: ReadOptions,
-    /// Graph files of so many bytes are checked in full; of larger ones, which are mapped, the header only. What
-    /// is going to read all of a file has it checked at any size.
+    /// Graph files of up to this many bytes are checked in full. Of larger ones, only the header is. Callers that read
+    /// all of a file set the limit to its size or more.
     pub verify_up_to: u64,
 }
 
@@ -37,23 +36,34 @@ impl Default for OpenOptions {
 /// An open scene.
 #[derive(Debug)]
 pub struct Opened {
-    /// What to draw; not empty.
+    /// The voxels, at least one.
     pub graph: Graph,
-    /// The format, in words.
+    /// The format in words, such as `.vox` or `.obj mesh`.
     pub format: String,
-    /// What a voxel file held beside its voxels.
+    /// Properties of the voxel file or mesh.
     pub info: Option<SceneInfo>,
-    /// What the mesh was, where it was one.
+    /// Properties of the mesh, if it was one.
     pub mesh: Option<MeshSummary>,
-    /// Whether all of it was checked: not the contents of a graph file larger than [`OpenOptions::verify_up_to`].
+    /// Whether all of the file was checked: `false` for a graph file larger than [`OpenOptions::verify_up_to`].
     pub is_verified: bool,
+}
+
+impl Opened {
+    fn of(graph: Graph, format: impl ToString) -> Self {
+        Self {
+            graph,
+            format: format.to_string(),
+            info: None,
+            mesh: None,
+            is_verified: true,
+        }
+    }
 }
 
 /// Opens a file, or makes the scene of a `gen:` specification.
 ///
-/// Voxels are gathered and built in memory; more than fit the memory that is
-/// free at the beginning are an error, in advance where their number is given.
-/// [`build_file`](super::build_file()) makes a `.vxg` file of those.
+/// The graph is built in memory. Voxels that exceed the free memory are an error, which comes before they are read if
+/// the file states their number. [`build_file`](super::build_file()) builds such a scene on disk.
 ///
 /// # Errors
 /// See [`OpenError`].
@@ -66,7 +76,7 @@ pub fn open(
     open_source(Source::find(source)?, options, meshes, progress)
 }
 
-/// [`open`], of what was found already.
+/// [`open`], given an open file or a specification.
 ///
 /// # Errors
 /// See [`OpenError`].
@@ -88,22 +98,11 @@ pub fn open_source(
         };
         return Ok(Opened {
             is_verified,
-            ..of_graph(graph)
+            ..Opened::of(graph, FileKind::Vxg)
         });
     }
     let folder = file.path().parent().map(Path::to_owned);
     open_file(file, folder, options, meshes, progress)
-}
-
-/// A scene of a `.vxg` file's graph.
-fn of_graph(graph: Graph) -> Opened {
-    Opened {
-        graph,
-        format: FileKind::Vxg.to_string(),
-        info: None,
-        mesh: None,
-        is_verified: true,
-    }
 }
 
 /// Opens voxels or a mesh.
@@ -115,9 +114,10 @@ fn open_file<R: Read + Seek>(
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
     let name = file.name();
+    let ending = file.kind().map(|kind| kind.to_string()).unwrap_or_default();
     if file.kind().is_some_and(FileKind::is_mesh) {
         let mesh = meshes.read(file.mesh_file(folder)?, progress)?;
-        return open_mesh(&*mesh, &name, progress);
+        return open_mesh(&*mesh, format!("{ending} mesh"), &name, progress);
     }
     let mut gathered = Gathered::default();
     let read = ReadOptions {
@@ -125,24 +125,17 @@ fn open_file<R: Read + Seek>(
         ..options.read.clone()
     };
     let read = file.read_voxels(&read, &mut |v| gathered.push(v), progress);
-    let info = read.map_err(|error| match error {
-        // Fewer than the caller would take: for want of memory.
-        SceneError::TooMany { file, voxels, most } if most < options.read.most_voxels => {
-            OpenError::TooMany {
-                source_name: file,
-                voxels,
-                needed: memory::least_bytes(voxels),
-                available: gathered.available.unwrap_or_default(),
-            }
-        }
-        error => error.into(),
-    })?;
+    // If the limit was free memory, not the caller's, that is the error.
+    if let Err(SceneError::TooMany { voxels, most, .. }) = read
+        && most < options.read.most_voxels
+    {
+        gathered.expect(voxels, &name)?;
+    }
+    let info = Some(read?);
+    let graph = gathered.finish(&name, UNIT, progress)?;
     Ok(Opened {
-        graph: gathered.finish(&name, UNIT, progress)?,
-        format: info.kind.to_string(),
-        info: Some(info),
-        mesh: None,
-        is_verified: true,
+        info,
+        ..Opened::of(graph, ending)
     })
 }
 
@@ -152,6 +145,7 @@ const UNIT: ([f64; 3], f64) = ([0.0; 3], 1.0);
 /// Voxelises a mesh that was read.
 fn open_mesh(
     mesh: &dyn MeshVoxels,
+    format: String,
     source: &str,
     progress: &dyn Progress,
 ) -> Result<Opened, OpenError> {
@@ -165,15 +159,13 @@ fn open_mesh(
     graph.placement.mesh = Some(mesh.mesh_box());
     mesh.finish(&mut graph, progress);
     Ok(Opened {
-        graph,
-        format: format!("{} mesh", info.kind),
         info: Some(info),
         mesh: Some(summary),
-        is_verified: true,
+        ..Opened::of(graph, format)
     })
 }
 
-/// Opens a file that is held in memory. A mesh finds no other files there.
+/// Opens a file that is held in memory. A mesh there has no other files.
 ///
 /// # Errors
 /// See [`OpenError`].
@@ -186,7 +178,7 @@ pub fn open_bytes(
 ) -> Result<Opened, OpenError> {
     let file = SceneFile::in_memory(bytes, name)?;
     if file.kind() == Some(FileKind::Vxg) {
-        return Ok(of_graph(vxg::from_bytes(bytes)?));
+        return Ok(Opened::of(vxg::from_bytes(bytes)?, FileKind::Vxg));
     }
     open_file(file, None, options, meshes, progress)
 }
@@ -202,23 +194,17 @@ fn open_generated(source: &str, progress: &dyn Progress) -> Result<Opened, OpenE
             gathered.finish(source, UNIT, progress)?
         }
     };
-    Ok(Opened {
-        graph,
-        format: "generated".to_owned(),
-        info: None,
-        mesh: None,
-        is_verified: true,
-    })
+    Ok(Opened::of(graph, "generated"))
 }
 
-/// Voxels on their way into a graph.
+/// Collects voxels and builds their graph.
 struct Gathered {
     builder: Builder,
     /// Free memory at the beginning, where the system reports it.
     available: Option<u64>,
     /// Most voxels that fit it.
     most: u64,
-    /// Voxels seen, kept or not.
+    /// Voxels counted, kept or not.
     seen: u64,
 }
 
@@ -240,12 +226,12 @@ impl Gathered {
         if self.seen <= self.most {
             self.builder.push(voxel);
         } else if !self.builder.is_empty() {
-            // It is lost; let go of what there is.
+            // Too many: release the memory.
             self.builder = Builder::new(BuildOptions::default());
         }
     }
 
-    /// Fails where so many voxels cannot be built in memory.
+    /// Fails if so many voxels cannot be built in memory.
     fn expect(&self, voxels: u64, source: &str) -> Result<(), OpenError> {
         match self.available {
             Some(available) if voxels > self.most => Err(OpenError::TooMany {
@@ -278,7 +264,7 @@ mod tests {
     use crate::graph::{Silent, Voxel};
 
     #[test]
-    fn more_voxels_than_memory_are_told() {
+    fn more_voxels_than_memory_are_refused() {
         let mut gathered = Gathered {
             available: Some(100),
             most: 4,

@@ -1,16 +1,16 @@
-//! Why a scene of any kind was not opened.
+//! Errors of opening a scene.
 
 use super::generate::SpecError;
-use super::{MeshFailure, SceneError};
+use super::SceneError;
 use crate::graph::{BuildError, ExternalError, vxg};
 
-/// Why a scene could not be opened.
+/// An error of opening a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
-    /// The specification names no scene.
+    /// The specification is wrong.
     #[error(transparent)]
     Spec(#[from] SpecError),
-    /// The file could not be read, or holds no voxels that can be.
+    /// The file could not be read as voxels.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The file is a damaged graph.
@@ -27,7 +27,7 @@ pub enum OpenError {
     Build {
         /// The scene, as the user named it.
         source_name: String,
-        /// What is wrong with them.
+        /// The fault.
         error: BuildError,
     },
     /// The voxels make no `.vxg` file.
@@ -35,7 +35,7 @@ pub enum OpenError {
     External {
         /// The scene, as the user named it.
         source_name: String,
-        /// What is wrong with them, or with the place to write to.
+        /// The fault of the voxels or of the output.
         error: ExternalError,
     },
     /// More voxels than can be built in memory.
@@ -46,13 +46,24 @@ pub enum OpenError {
     TooMany {
         /// The scene, as the user named it.
         source_name: String,
-        /// Voxels that there are at the least.
+        /// Least number of voxels.
         voxels: u64,
-        /// Bytes that they take at the least.
+        /// Least number of bytes for them.
         needed: u64,
         /// Bytes of memory that were free when reading began.
         available: u64,
     },
+}
+
+/// An error of a mesh reader, and whether its input is sound but exceeds a limit.
+#[derive(Debug)]
+pub struct MeshFailure {
+    /// Whether the input is sound and only too large.
+    pub is_limit: bool,
+    /// Whether the operating system refused to read the file.
+    pub is_io: bool,
+    /// The reader's error; its message names the file.
+    pub error: Box<dyn std::error::Error + Send + Sync>,
 }
 
 impl OpenError {

@@ -1,8 +1,6 @@
-//! What a caller may choose about reading, and what it learns besides the voxels.
+//! Options of reading a voxel file, and the properties of a file that was read.
 
-use super::FileKind;
-
-/// What to do with `.vox` voxels whose coordinates lie outside their model's `SIZE`.
+/// The treatment of `.vox` voxels whose coordinates lie outside their model's `SIZE`.
 ///
 /// VoxelShop writes such files when asked to fit the model to its bounding box:
 /// coordinates left of the box, or far right of it, end up in one byte modulo 256.
@@ -29,15 +27,15 @@ pub struct ReadOptions {
     pub oob: OutOfBounds,
     /// Whether nodes and layers that are hidden in the editor are read too; only `.vox` has them.
     pub hidden: bool,
-    /// Which frame of an animated `.vox` scene is read: the last key frame at or before this one.
+    /// Frame of an animated `.vox` scene: the last key frame at or before this one is read.
     pub frame: u32,
-    /// Which model, counted from 0, is read from a `.vox` that has several models
-    /// but no scene graph; `None` reads all of them, each at its own coordinates.
+    /// Number of the only model to read from a `.vox` that has several models but no scene graph, from 0.
+    /// `None` reads all of them, each at its own coordinates.
     pub model: Option<u32>,
     /// sRGB colour of voxels in files without colours.
     pub default_color: [u8; 3],
-    /// Most voxels that are handed on, those at one place counted each. More are an error: before the first is
-    /// handed on where the file states their number, else as soon as there are more.
+    /// Most voxels, with those at one index counted each. More are an error, before the first voxel is passed on if
+    /// the file states their number.
     pub most_voxels: u64,
 }
 
@@ -54,30 +52,27 @@ impl Default for ReadOptions {
     }
 }
 
-/// What a file turned out to hold.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// Properties of a file that was read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct SceneInfo {
-    /// The file's format.
-    pub kind: FileKind,
-    /// Voxels that were handed on. Voxels that several models place at the
-    /// same index are counted, and handed on, each time: the last one counts.
-    /// A model that is placed where it is already is handed on once.
+    /// Voxels that were passed on. Several at one index are counted each, and the last one is drawn.
+    /// A model with several equal placements is passed on once.
     pub voxels: u64,
     /// Voxels stored in the file: each model counted once, however often it is placed.
     pub stored_voxels: u64,
-    /// Lowest and highest index handed on, both inclusive; `None` where there is no voxel.
+    /// Lowest and highest index, both inclusive; `None` without voxels.
     pub bounds: Option<([i32; 3], [i32; 3])>,
     /// Models in the file; 1 for a cloud.
     pub models: u32,
     /// Scene graph nodes in the file.
     pub nodes: u32,
-    /// Placements of models that were read, or left out because the model is at that place already.
+    /// Placements of models, including those that repeat another one.
     pub instances: u32,
-    /// Placements of models that were left out because they are hidden.
+    /// Placements of models that were skipped because they are hidden.
     pub hidden_instances: u32,
     /// Stored voxels outside their model's `SIZE`.
     pub outside_size: u64,
-    /// The palette, RGBA, of colour indices 1, 2, ...; empty where the file has none of its own.
+    /// The file's palette, RGBA, of colour indices 1, 2, ...; empty if it has none.
     pub palette: Vec<[u8; 4]>,
     /// Whether the voxels have colours of their own.
     pub has_colors: bool,
@@ -85,24 +80,4 @@ pub struct SceneInfo {
     pub has_normals: bool,
     /// Warnings about a file that could be read, one sentence each.
     pub warnings: Vec<String>,
-}
-
-impl SceneInfo {
-    pub fn new(kind: FileKind) -> Self {
-        Self {
-            kind,
-            voxels: 0,
-            stored_voxels: 0,
-            bounds: None,
-            models: 0,
-            nodes: 0,
-            instances: 0,
-            hidden_instances: 0,
-            outside_size: 0,
-            palette: Vec::new(),
-            has_colors: false,
-            has_normals: false,
-            warnings: Vec::new(),
-        }
-    }
 }

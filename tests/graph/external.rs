@@ -11,7 +11,7 @@ use shiftvox::graph::{
 };
 use shiftvox::picture::npy::{Array, Values, encode};
 use shiftvox::scene::generate::Spec;
-use shiftvox::scene::{self, NoMeshes, OpenOptions};
+use shiftvox::scene::{self, BuiltFile, NoMeshes, OpenError, OpenOptions, Source};
 
 const PLACE: ([f64; 3], f64) = ([0.5, -2.0, 1e3], 0.25);
 
@@ -187,6 +187,16 @@ fn what_cannot_be_built_leaves_nothing_behind() {
     assert_eq!(fs::read(&path).unwrap(), b"precious");
 }
 
+fn build_file(
+    source: &str,
+    external: ExternalOptions,
+    output: &Path,
+) -> Result<BuiltFile, OpenError> {
+    let found = Source::find(source)?;
+    let reading = OpenOptions::default();
+    scene::build_file(found, &reading, &NoMeshes, external, output, true, &Silent)
+}
+
 /// Importers and generators lead to the same file by both ways.
 #[test]
 fn files_of_every_format_are_built_the_same() {
@@ -218,8 +228,7 @@ fn files_of_every_format_are_built_the_same() {
         vxg::write_to(&opened.graph, &mut expected).unwrap();
         let path = folder.path().join("out.vxg");
         let external = options(10_000, Normals::FromSurface, folder.path());
-        let built = scene::build_file(&source, &reading, &NoMeshes, external, &path, true, &Silent)
-            .unwrap();
+        let built = build_file(&source, external, &path).unwrap();
         let file = fs::read(&path).unwrap();
         assert_eq!(difference(&file, &expected), None, "{source}");
         assert_eq!(
@@ -232,16 +241,7 @@ fn files_of_every_format_are_built_the_same() {
     let path = folder.path().join("again.vxg");
     let source = folder.path().join("out.vxg");
     let external = options(10_000, Normals::FromSurface, folder.path());
-    let reading = OpenOptions::default();
-    let refused = scene::build_file(
-        source.to_str().unwrap(),
-        &reading,
-        &NoMeshes,
-        external,
-        &path,
-        true,
-        &Silent,
-    );
+    let refused = build_file(source.to_str().unwrap(), external, &path);
     assert!(refused.unwrap_err().to_string().contains(".vxg graph"));
 }
 
@@ -252,16 +252,7 @@ fn scenes_beyond_all_numbers_are_refused_at_once() {
     let path = folder.path().join("out.vxg");
     let external = options(64 << 20, Normals::FromSurface, folder.path());
     let source = "gen:menger,depth=8";
-    let refused = scene::build_file(
-        source,
-        &OpenOptions::default(),
-        &NoMeshes,
-        external,
-        &path,
-        true,
-        &Silent,
-    );
-    let refused = refused.unwrap_err();
+    let refused = build_file(source, external, &path).unwrap_err();
     assert!(
         refused.is_limit() && refused.to_string().contains("25600000000"),
         "{refused}"

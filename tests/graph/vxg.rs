@@ -10,6 +10,7 @@ use shiftvox::graph::{
     BuildOptions, Builder, Graph, LinkedGraph, MergeBy, MeshBox, Opacity, Silent, Store, Voxel,
     merge,
 };
+use shiftvox::scene::{FileKind, detect};
 
 fn build(indices: &[[i32; 3]]) -> Graph {
     let mut builder = Builder::new(BuildOptions::default());
@@ -115,7 +116,7 @@ fn files_return_what_was_stored() {
             parts(&vxg::from_bytes(&bytes_of(graph)).unwrap()),
             parts(graph)
         );
-        assert!(vxg::is_vxg(&bytes_of(graph)));
+        assert_eq!(detect(&bytes_of(graph), 0), Some(FileKind::Vxg));
         exercise(&opened);
         // Over the file that is mapped: the map keeps the old one.
         vxg::write(&opened, &path, true).unwrap();

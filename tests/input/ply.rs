@@ -7,7 +7,7 @@ use ply_rs_bw::parser::Parser;
 use ply_rs_bw::ply::{DefaultElement, Property};
 use proptest::prelude::*;
 use shiftvox::graph::Voxel;
-use shiftvox::scene::{FileKind, ReadOptions, SceneError, write_ply};
+use shiftvox::scene::{FileKind, ReadOptions, SceneError, detect, write_ply};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Encoding {
@@ -137,13 +137,10 @@ fn normals_are_packed() {
         vec![0.0, 0.0, 0.0, 0.0, 0.0, 2.0],
         vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     ];
-    let (voxels, info) = read(
-        &cloud(Encoding::Little, &columns, &rows),
-        &ReadOptions::default(),
-    )
-    .unwrap();
+    let bytes = cloud(Encoding::Little, &columns, &rows);
+    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Ply));
+    let (voxels, info) = read(&bytes, &ReadOptions::default()).unwrap();
     assert!(info.has_normals && !info.has_colors);
-    assert_eq!(info.kind, FileKind::Ply);
     assert!(voxels[0].normal.is_some());
     assert_eq!(voxels[1].normal, None);
 }

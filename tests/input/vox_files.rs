@@ -162,7 +162,7 @@ fn a_missing_file_is_no_fault_of_its_content() {
             .to_string()
             .starts_with("/nowhere/at all.vox: cannot open the file: ")
     );
-    assert!(error.fault().is_none());
+    assert!(matches!(error, SceneError::Io { .. }));
 }
 
 #[test]

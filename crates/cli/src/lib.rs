@@ -44,20 +44,34 @@ use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 
 use console::Console;
 use error::{CliError, Kind};
+use shiftvox::scene::FORMATS;
+
+/// The second part of the help text.
+fn long_about() -> String {
+    let formats: String = FORMATS
+        .iter()
+        .map(|format| format!("  {:<8} {}\n", format.ending, format.name))
+        .collect();
+    format!(
+        "\
+Draws voxel files and meshes, the same to the bit on every computer.
+
+Without a command it draws the bundled scene, writes the picture to out/demo.png (replacing an \
+older one) and prints the cost.
+
+Scenes are generators, such as gen:terrain,depth=10,seed=1, or files, whose format is recognised by \
+their content. Meshes are voxelised at --depth. Formats:
+
+{formats}
+Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a comparison or an expectation \
+failed, 4 bad input, 5 a limit is exceeded. If a signal (Ctrl-C) stops the program, it removes \
+unfinished files and ends by that signal, which shells show as 130."
+    )
+}
 
 /// Draws voxel files and meshes, the same to the bit on every computer.
-///
-/// With no command it draws the bundled scene, writes it to out/demo.png (replacing an older one)
-/// and says what that took. Scenes are .vox, .ply, .npy and .vxg files, recognised by
-/// their content, or generators such as gen:terrain,depth=10,seed=1, or meshes (.obj,
-/// .ply with faces, .stl, .gltf, .glb), which are voxelised at --depth.
-///
-/// Exit codes: 0 done, 1 failed while running, 2 wrong command line, 3 a
-/// comparison or an expectation failed, 4 bad input, 5 a limit is exceeded. Stopped by a
-/// signal (Ctrl-C), it removes what it has not written to the end and ends by that signal,
-/// which shells show as 130.
 #[derive(Debug, Parser)]
-#[command(name = "shiftvox", version, max_term_width = 100)]
+#[command(name = "shiftvox", version, max_term_width = 100, long_about = long_about())]
 pub struct Cli {
     #[command(flatten)]
     common: CommonArgs,

@@ -130,9 +130,8 @@ pub(super) fn build_file(
     let found = Source::find(names::path(source))?;
     let mut options = scenes::options(args);
     options.voxels.verify_up_to = u64::MAX;
-    let built = scene::build_file_of(
+    let built = scene::build_file(
         found,
-        source,
         &options.voxels,
         &options.mesh,
         external,

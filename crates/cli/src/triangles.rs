@@ -42,7 +42,7 @@ pub enum BufferName {
 /// Arguments of `triangles`.
 #[derive(Debug, Args)]
 pub struct TrianglesArgs {
-    /// Mesh: .obj, .ply, .stl, .gltf or .glb, recognised by its content
+    /// Mesh, whose format is recognised by its content (`shiftvox --help` lists the formats)
     #[arg(value_name = "MESH", value_parser = crate::names::parser())]
     mesh: String,
     /// Picture to write, .png

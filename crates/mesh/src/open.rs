@@ -158,7 +158,6 @@ fn read(
 
 /// A mesh that is ready to be voxelised.
 struct Ready {
-    kind: FileKind,
     mesh: Mesh,
     y_up: bool,
     opacities: bool,
@@ -188,7 +187,6 @@ impl Ready {
         }
         Ok(Self {
             y_up: options.y_up.unwrap_or(is_y_up(file.kind)),
-            kind: file.kind,
             opacities: options.opacities,
             mesh,
             grid,
@@ -255,15 +253,16 @@ impl MeshVoxels for Ready {
             progress,
         );
         let voxelize_ms = started.elapsed().as_secs_f64() * 1e3;
-        let mut info = SceneInfo::new(self.kind);
-        info.voxels = report.voxels;
-        info.stored_voxels = 0;
-        info.bounds = (report.voxels > 0).then_some((low, high));
-        info.models = 1;
-        info.instances = 1;
-        info.has_colors = true;
-        info.has_normals = true;
-        info.warnings = self.mesh.warnings().to_vec();
+        let info = SceneInfo {
+            voxels: report.voxels,
+            bounds: (report.voxels > 0).then_some((low, high)),
+            models: 1,
+            instances: 1,
+            has_colors: true,
+            has_normals: true,
+            warnings: self.mesh.warnings().to_vec(),
+            ..SceneInfo::default()
+        };
         let summary = MeshSummary {
             triangles: self.mesh.triangles().len() as u64,
             positions: self.mesh.positions().len() as u64,

@@ -14,6 +14,7 @@ use crate::open::{OpenOptions, open_bytes};
 /// use shiftvox::{Camera, Coverage, Renderer};
 /// use shiftvox_mesh::SceneOptions;
 ///
+/// # std::env::set_current_dir("../..").unwrap();
 /// // 2^6 voxels along the longest side, with opacities for pictures that blend.
 /// let scene = SceneOptions::new().mesh_depth(6).opacities(true).open("assets/wires.obj")?;
 /// assert_eq!(scene.depth(), 6);

@@ -6,7 +6,7 @@
 use crate::graph::MAX_DEPTH;
 
 /// First eight bytes. As in PNG, they show a transfer that changes line ends or bit 7.
-pub(super) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
+pub(crate) const MAGIC: [u8; 8] = *b"\x89VXG\r\n\x1a\n";
 /// Version of the layout with five sections.
 pub(super) const VERSION: u32 = 1;
 /// Version of the layout with opacities as a sixth section.
@@ -46,8 +46,7 @@ pub(super) mod at {
     pub(in super::super) const CHECKSUM: usize = 504;
 }
 
-/// What byte [`at::MESH_UP`] says: voxels that were not made of a mesh, or in a file of an earlier program; of a mesh
-/// with +Z up; with +Y up.
+/// Values of byte [`at::MESH_UP`]: voxels that were not made of a mesh, of a mesh with +Z up, and with +Y up.
 pub(super) const NO_MESH: u8 = 0;
 pub(super) const MESH_Z_UP: u8 = 1;
 pub(super) const MESH_Y_UP: u8 = 2;

@@ -17,7 +17,8 @@ mod read;
 mod write;
 
 pub use error::VxgError;
+pub(crate) use format::MAGIC;
 pub use pages::MappedPages;
-pub use read::{from_bytes, is_vxg, open, verify};
+pub use read::{from_bytes, open, verify};
 pub(in crate::graph) use write::{check_free, write_pieces};
 pub use write::{write, write_to};

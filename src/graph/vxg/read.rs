@@ -15,12 +15,6 @@ use crate::graph::file::{self, Refused};
 use crate::graph::map::{Access, advise};
 use crate::graph::{Graph, Invalid, MeshBox, Opacity, PackedNormal, Placement, Store};
 
-/// Whether a file that begins with these bytes is a `.vxg` file (of any version).
-#[must_use]
-pub fn is_vxg(beginning: &[u8]) -> bool {
-    beginning.starts_with(&MAGIC)
-}
-
 /// Opens a file: maps it, and checks the header and that all sections are there.
 ///
 /// No section is read. A graph from a damaged file may look wrong, but walking

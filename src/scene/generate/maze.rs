@@ -36,7 +36,7 @@ pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress:
     progress.end();
 }
 
-/// Which squares of the plan are open, row by row: from room to random
+/// The open squares of the plan, row by row: from room to random
 /// unvisited neighbour, and back where there is none.
 fn plan(depth: u32, seed: u32) -> Vec<bool> {
     let side = (1i32 << depth) - 1;

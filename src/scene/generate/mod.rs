@@ -1,5 +1,5 @@
-//! Scenes made from a few numbers, in integers only: the same voxels on every
-//! machine. What each is, and which keys it takes: `spec/generators.md`.
+//! Generated scenes, made from a few numbers in integers only: the same voxels on every machine. `spec/generators.md`
+//! describes the generators and their keys.
 
 mod checker;
 mod color;

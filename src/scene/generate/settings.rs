@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Key {
     /// Levels of the scene: it fits a cube of `2^depth` voxels a side. For `menger`, its iterations.
     Depth,
-    /// Which of the random scenes.
+    /// Seed of a random scene.
     Seed,
     /// Share of the voxels that are filled, percent.
     Density,
@@ -39,7 +39,7 @@ impl fmt::Display for Key {
 pub struct Settings {
     /// Levels of the scene (iterations for `menger`).
     pub depth: u32,
-    /// Which of the random scenes.
+    /// Seed of a random scene.
     pub seed: u32,
     /// Filled voxels, percent.
     pub density: u32,

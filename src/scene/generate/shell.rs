@@ -5,9 +5,8 @@ use super::settings::Settings;
 use super::sphere::half_chord;
 use crate::graph::{Progress, Voxel};
 
-/// The ball's voxels that have one of their 26 neighbours outside of it. What
-/// is left inside then has all its 26 neighbours in the ball, so that no step
-/// over a face, an edge or a corner leads from the inside out.
+/// The ball's voxels that have one of their 26 neighbours outside of it. Each voxel inside then has all its 26
+/// neighbours in the ball, so that no step over a face, an edge or a corner leads from the inside out.
 pub(super) fn voxels(settings: &Settings, sink: &mut dyn FnMut(Voxel), progress: &dyn Progress) {
     let side = 1i32 << settings.depth;
     let middle = side / 2;

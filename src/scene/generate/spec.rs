@@ -1,4 +1,4 @@
-//! A scene in a line of text: `gen:terrain,depth=10,seed=1`.
+//! Specifications of generated scenes, such as `gen:terrain,depth=10,seed=1`.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::list::{GENERATORS, Generator, Shape};
 use super::settings::{Key, Settings};
 use crate::graph::{Graph, GraphView, Progress, Voxel};
 
-/// What every spec begins with.
+/// The beginning of every specification.
 pub const PREFIX: &str = "gen:";
 
 /// A scene that can be generated: a generator and its settings, all in range.
@@ -16,7 +16,7 @@ pub struct Spec {
     settings: Settings,
 }
 
-/// Why a line is no spec.
+/// A fault in a specification.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SpecError {
     /// It does not begin with [`PREFIX`].
@@ -148,7 +148,7 @@ impl Spec {
         self.settings
     }
 
-    /// A lower bound of the scene's voxels: 0 where a better one takes work.
+    /// A lower bound of the scene's voxels: 0 if a better one takes long to compute.
     #[must_use]
     pub fn least_voxels(&self) -> u64 {
         let power = |base: u64| base.saturating_pow(self.settings.depth);
@@ -161,8 +161,8 @@ impl Spec {
         }
     }
 
-    /// The scene as a graph, where it is one with cycles; else `None`, and
-    /// [`Self::voxels`] gives it.
+    /// The graph of a scene with cycles; `None` for others, whose voxels
+    /// [`Self::voxels`] passes on.
     #[must_use]
     pub fn linked(&self) -> Option<Graph> {
         match self.generator.shape {
@@ -171,7 +171,7 @@ impl Spec {
         }
     }
 
-    /// Gives every voxel of the scene once, always in the same order.
+    /// Passes on every voxel of the scene once, always in the same order.
     ///
     /// File indices are 0 or more. A cyclic scene is walked through: at depth
     /// 30 that takes years, so try [`Self::linked`] first.
@@ -214,7 +214,7 @@ fn walk(
     }
 }
 
-/// The canonical spec: every key of the generator, whether given or not.
+/// The canonical specification, with every key of the generator.
 impl fmt::Display for Spec {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{PREFIX}{}", self.generator.name)?;

@@ -1,8 +1,8 @@
 //! Hills under floating balls, hollow: the benchmark's large scene.
 //!
-//! The benchmark's generator fills a grid of bits; here a column is a short
-//! list of solid spans, and three rows of columns are held at a time, so that
-//! depths beyond memory for a grid work. Its axes are x right, y up, z forward;
+//! The benchmark's generator fills a grid of bits. Here a column is a short
+//! list of solid spans, and three rows of columns are held at a time. So depths
+//! work for which a grid would exceed memory. Its axes are x right, y up, z forward;
 //! `row` is its z and our y, `height` its y and our z. For seed 1 all voxels
 //! and colours are the benchmark's.
 
@@ -25,7 +25,7 @@ struct Ball {
 struct Terrain {
     depth: u32,
     side: i32,
-    /// What the seed changes of the hashes' seeds.
+    /// Derived from the scene's seed and combined with the seeds of the hashes.
     variation: u32,
     balls: Vec<Ball>,
 }

@@ -5,16 +5,14 @@ use std::path::Path;
 
 use glam::DVec3;
 use serde_json::Value;
-use shiftvox::graph::{Silent, vxg};
+use shiftvox::graph::Silent;
 use shiftvox::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 use shiftvox::{Camera, Renderer, Scene};
 use shiftvox_mesh::SceneOptions;
 use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::open::read_mesh;
-use shiftvox_mesh::textured::TexturedFile;
 use shiftvox_mesh::{LoadOptions, mesh_box};
 use std::process::Command;
-use xxhash_rust::xxh3::xxh3_64;
 
 use crate::common::Run;
 
@@ -124,56 +122,4 @@ fn the_camera_is_nearer_than_one_that_sees_the_whole_box() {
         ((camera.eye - camera.target).length() * 100.0).round() / 100.0
     });
     assert_eq!(distances, [10.92, 11.99, 14.57]);
-}
-
-/// Makes a file what an earlier program would have written: no field of the camera, its version, its checksum.
-fn earlier(path: &Path, fields: &[[usize; 2]], version: u8, header: usize) {
-    let mut bytes = fs::read(path).unwrap();
-    for field in fields {
-        let field = &mut bytes[field[0]..field[1]];
-        assert!(field.iter().any(|&byte| byte != 0));
-        field.fill(0);
-    }
-    bytes[8] = version;
-    let sum = xxh3_64(&bytes[..header - 8]).to_le_bytes();
-    bytes[header - 8..header].copy_from_slice(&sum);
-    fs::write(path, bytes).unwrap();
-}
-
-#[test]
-fn files_of_earlier_programs_keep_their_camera() {
-    let folder = tempfile::tempdir().unwrap();
-    let folder = folder.path();
-    put_knot(folder);
-    let [vxg_path, far_path, tvx_path] = ["a.vxg", "a.far", "a.tvx"].map(|name| {
-        printed(folder, &format!("convert knot.obj {name}"));
-        folder.join(name)
-    });
-    earlier(&vxg_path, &[[104, 105], [448, 504]], 1, 512);
-    earlier(&tvx_path, &[[96, 104]], 1, 128);
-    // Of voxels their own bounds, of textured voxels all corners. Earlier far voxels are not read.
-    let graph = vxg::verify(&vxg_path).unwrap();
-    let (low, high) = FarFile::open(&far_path).unwrap().bounds();
-    let textured = TexturedFile::open(&tvx_path).unwrap();
-    let corners = textured.primitives().iter().flat_map(|p| p.positions());
-    let of_textured = Bounds {
-        hull: corners.collect(),
-        ..Bounds::of_box(low, high)
-    };
-    let mut seen = Vec::new();
-    for (name, bounds, up) in [
-        ("a.vxg", Bounds::of_voxels(&graph), Up::Z),
-        ("a.tvx", of_textured, Up::Y),
-    ] {
-        let size = (40, 30);
-        let camera = fit_camera(&bounds, up, Direction::CORNER, DEFAULT_FOV, 1.0, size);
-        let line = camera_of(folder, name);
-        let [x, y, z] = camera.eye.to_array();
-        assert!(
-            line.starts_with(&format!("--eye {x},{y},{z} ")),
-            "{name}: {line}"
-        );
-        seen.push(line);
-    }
-    assert!(seen[0] != seen[1], "{seen:?}");
 }

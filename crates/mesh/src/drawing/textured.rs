@@ -6,7 +6,6 @@ use super::mesh_view::{light_of, picture_of_triangles, view_of};
 use super::{KeptPicture, MESH_SAMPLE_BYTES, MethodError};
 use crate::raster::{Pattern, RasterCamera, RasterPicture, Samples};
 use crate::textured::TexturedFile;
-use crate::textured::record::Primitive;
 use crate::textured::view::{Detail, TexturedCounts, ViewOptions, choose_grid, draw};
 use shiftvox::drawing::{
     COLOR_BYTES, DrawError, Drawable, Figures, Frames, Shown, check_samples, timed,
@@ -93,18 +92,8 @@ impl<'f> TexturedDrawing<'f> {
 }
 
 impl Drawable for TexturedDrawing<'_> {
-    /// The mesh's; of a file that does not keep them all the corners of primitives.
     fn bounds(&self) -> Bounds {
-        if let Some(mesh) = self.file.mesh_box() {
-            return Bounds::of_mesh(&mesh);
-        }
-        let (low, high) = self.file.bounds();
-        let hull = self.file.primitives().iter().flat_map(Primitive::positions);
-        Bounds {
-            low,
-            high,
-            hull: hull.collect(),
-        }
+        Bounds::of_mesh(&self.file.mesh_box())
     }
 
     fn up(&self) -> Up {

@@ -32,7 +32,7 @@ pub(crate) fn is_refused(bytes: &[u8]) -> bool {
 fn a_file_comes_back() {
     let data = far(&options());
     let bytes = encode(&data).unwrap();
-    assert_eq!(detect(&bytes), Some(FileKind::Far));
+    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Far));
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("city.far");
     std::fs::write(&path, &bytes).unwrap();
@@ -126,10 +126,7 @@ fn fields_are_checked_behind_their_checksums() {
     let mut version = bytes.clone();
     version[8] = 4;
     let error = FarFile::from_bytes(&with_checksums(version)).unwrap_err();
-    assert!(
-        error.to_string().contains("version 6 to 6, not 4"),
-        "{error}"
-    );
+    assert!(error.to_string().contains("version 6, not 4"), "{error}");
     // Every byte of the header and of the root, but for those that may have any
     // value: the centre (48..72), the distance (72..80), the settings (80, 84),
     // the bevels (104..112), and of the root its box, origin and

@@ -99,3 +99,15 @@ fn a_closed_surface_shows_nothing_of_what_is_inside() {
         }
     }
 }
+
+#[test]
+fn a_scene_keeps_the_warnings_of_its_mesh() {
+    let text = "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let scene = scene_of(text, 3);
+    assert!(
+        scene.warnings()[0].contains("missing.mtl"),
+        "{:?}",
+        scene.warnings()
+    );
+    assert!(scene.is_verified());
+}

@@ -62,7 +62,7 @@ fn files_hold_what_was_built() {
 #[test]
 fn truncated_and_damaged_files_are_refused() {
     let bytes = encode(&small()).unwrap();
-    assert_eq!(detect(&bytes), Some(FileKind::Tvx));
+    assert_eq!(detect(&bytes, bytes.len() as u64), Some(FileKind::Tvx));
     for length in 0..bytes.len() {
         let error = TexturedFile::from_bytes(&bytes[..length]).unwrap_err();
         let is_placed = matches!(error, TexturedError::Malformed { .. });

@@ -11,7 +11,7 @@ pub(super) const FORMAT: Format = Format {
     ending: ".far",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89FAR\r\n\x1a\n",
-    versions: 6..=6,
+    version: 6,
     signature: "the signature of a .far file",
     not_ours: "is this a .far file? Make one of a mesh with `convert`",
 };

@@ -14,13 +14,10 @@ pub(super) const FORMAT: Format = Format {
     ending: ".tvx",
     // As in PNG, they show a transfer that changes line ends or bit 7.
     magic: *b"\x89TVX\r\n\x1a\n",
-    versions: VERSION_WITHOUT_BEVELS..=2,
+    version: 2,
     signature: "the signature of a .tvx file",
     not_ours: "is this a .tvx file? Make one of a mesh with `convert`",
 };
-
-/// The version of the layout without bevels.
-pub(super) const VERSION_WITHOUT_BEVELS: u32 = 1;
 
 /// Where things are in the header, beside what every header has.
 pub(super) mod at {

@@ -8,9 +8,7 @@ use xxhash_rust::xxh3::xxh3_64;
 
 use super::TexturedError;
 use super::check::{Part, check, check_entry, check_primitives};
-use super::format::{
-    ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, VERSION_WITHOUT_BEVELS, at,
-};
+use super::format::{ENTRY_BYTES, FORMAT, GridEntry, GridPlaces, Layout, at};
 use crate::textured::build::{MOST_GRIDS, depths_of};
 use crate::textured::levels::Levels;
 use crate::textured::record::{PRIMITIVE_BYTES, Primitive, Texel, VOXEL_BYTES, VoxelRecord};
@@ -28,7 +26,7 @@ pub struct TexturedFile {
     low: DVec3,
     high: DVec3,
     y_up: bool,
-    bevels: Option<[u8; 8]>,
+    bevels: [u8; 8],
     entries: Vec<GridEntry>,
     levels: Vec<Levels>,
     /// Grids whose texels were found sound.
@@ -152,12 +150,11 @@ impl TexturedFile {
         self.y_up
     }
 
-    /// What fitted cameras look at; none in a file of an earlier program.
+    /// The box that fitted cameras look at.
     #[must_use]
-    pub fn mesh_box(&self) -> Option<MeshBox> {
+    pub fn mesh_box(&self) -> MeshBox {
         let span = (self.low.to_array(), self.high.to_array());
-        self.bevels
-            .map(|bevels| MeshBox::new(span, bevels, self.y_up))
+        MeshBox::new(span, self.bevels, self.y_up)
     }
 
     /// The primitives, in the mesh's order.
@@ -349,7 +346,7 @@ struct Header {
     low: DVec3,
     high: DVec3,
     y_up: bool,
-    bevels: Option<[u8; 8]>,
+    bevels: [u8; 8],
     primitives_checksum: u64,
     grids_checksum: u64,
 }
@@ -373,16 +370,13 @@ impl Header {
         let is_seen = can_be_seen(low.to_array(), high.to_array(), finest);
         header.ensure(is_seen, at::LOW, || "a box whose parts can be told apart")?;
         header.ensure(header.byte_at(at::Y_UP) <= 1, at::Y_UP, || "0 or 1")?;
-        let bevels = header.bytes_at(at::BEVELS);
-        let says_bevels = header.version() > VERSION_WITHOUT_BEVELS;
-        header.ensure(says_bevels || bevels == [0; 8], at::BEVELS, || "zeros")?;
         Ok(Self {
             primitives,
             grids,
             low,
             high,
             y_up: header.byte_at(at::Y_UP) == 1,
-            bevels: says_bevels.then_some(bevels),
+            bevels: header.bytes_at(at::BEVELS),
             primitives_checksum: header.u64_at(at::PRIMITIVES_CHECKSUM),
             grids_checksum: header.u64_at(at::GRIDS_CHECKSUM),
         })

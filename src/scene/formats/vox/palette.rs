@@ -1,19 +1,17 @@
-//! Colour indices to colours.
+//! The colours of colour indices.
 //!
-//! Index 0 is no voxel; index `i` is entry `i - 1` of the file's palette, whose
-//! 256th entry is therefore never used, and some exporters leave it out. Alpha is
-//! not looked at: MagicaVoxel keeps transparency in its materials, and exporters
-//! fill alpha with 255 or 0 as they like. `IMAP` only says in which order the
-//! editor shows the palette, so it changes no colour.
+//! Index 0 is no voxel. Index `i` is entry `i - 1` of the file's palette, so its 256th entry is never used, and some
+//! exporters omit it. Alpha is ignored, because MagicaVoxel keeps transparency in its materials and exporters write
+//! 255 or 0 arbitrarily. `IMAP` is the order in which the editor shows the palette and changes no colour.
 
 use super::chunk::Chunk;
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// Colours by index, 1 to 255; entry 0 is never asked for.
 #[derive(Debug, Clone)]
 pub(super) struct Palette {
     rgba: [[u8; 4]; 256],
-    /// Entries that the file gives, 0 where it has no palette.
+    /// Entries in the file, 0 without a palette.
     pub given: usize,
 }
 
@@ -63,7 +61,7 @@ impl Palette {
         [r, g, b]
     }
 
-    /// The entries that the file gives and that an index can name.
+    /// The entries in the file that have an index.
     pub(super) fn entries(&self) -> &[[u8; 4]] {
         &self.rgba[1..=self.given.min(255)]
     }

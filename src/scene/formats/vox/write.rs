@@ -1,4 +1,4 @@
-//! Voxels to a `.vox` file: models of at most 256 a side under a scene graph.
+//! Writes a `.vox` file: models of at most 256 voxels per side under a scene graph.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -14,39 +14,38 @@ type Stored = ([u8; 3], [u8; 3]);
 
 /// Collects voxels and writes them as `.vox`.
 ///
-/// Space is cut into blocks of 256 voxels a side at multiples of 256; each block that holds a voxel
-/// becomes a model as small as its voxels allow, placed by the scene graph so
-/// that every voxel keeps its index, negative ones too. A voxel given twice
-/// counts as it was given last. Up to 255 colours are kept exactly; more are
-/// reduced by median cut. Normals are not kept: the format has none.
+/// Space is cut into blocks of 256 voxels per side at multiples of 256. Each block with a voxel becomes a model as
+/// small as its voxels allow. The scene graph places it so that every voxel keeps its index, also a negative one. Of
+/// several voxels at one index the last one is kept. Up to 255 colours are kept exactly; more are reduced by median
+/// cut. The format has no normals.
 ///
-/// Memory: 6 bytes a voxel and the file's own size.
+/// Memory: 6 bytes per voxel and the size of the file.
 #[derive(Debug, Default)]
 pub struct VoxWriter {
     blocks: BTreeMap<[i32; 3], Vec<Stored>>,
 }
 
-/// What a [`VoxWriter`] wrote.
+/// The result of a [`VoxWriter`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct VoxWritten {
     /// Voxels in the file.
     pub voxels: u64,
     /// Models in the file.
     pub models: u32,
-    /// Different colours that were given.
+    /// Different colours of the voxels.
     pub colors_given: usize,
     /// Colours in the palette, at most 255.
     pub colors_kept: usize,
 }
 
 impl VoxWriter {
-    /// Nothing yet.
+    /// A writer without voxels.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Takes one voxel.
+    /// Adds one voxel.
     pub fn add(&mut self, voxel: Voxel) {
         let block = voxel.index.map(|i| i.div_euclid(MODEL_SIDE));
         // The remainder by 256 is a byte.
@@ -57,10 +56,10 @@ impl VoxWriter {
             .push((local, voxel.color));
     }
 
-    /// Writes all voxels taken.
+    /// Writes all voxels.
     ///
     /// # Errors
-    /// What `out` reports, and [`io::ErrorKind::InvalidInput`] where the file
+    /// Errors of `out`, and [`io::ErrorKind::InvalidInput`] if the file
     /// would exceed the 4 GiB that the format can count.
     pub fn write(mut self, out: &mut dyn Write) -> io::Result<VoxWritten> {
         if self.blocks.is_empty() {

@@ -3,7 +3,7 @@
 use std::io::{BufRead, Read};
 
 use super::numbers::{Encoding, Scalar};
-use crate::scene::error::{Fault, Problem};
+use crate::scene::fault::{Fault, Problem};
 
 /// A number as a file has it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,6 +1,6 @@
-//! A palette for any number of colours: all of them where they fit, else by median cut.
+//! A palette for any number of colours: all of them if they fit, else by median cut.
 //!
-//! Nothing depends on the order in which colours come, so equal scenes give equal files.
+//! The order of the colours does not matter, so equal scenes give equal files.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Voxels to a PLY cloud: binary, little endian, one vertex a voxel.
+//! Writes a PLY cloud: binary, little endian, one vertex per voxel.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
@@ -7,14 +7,14 @@ use crate::graph::{PackedNormal, Voxel};
 /// Digits of the largest count.
 const COUNT_DIGITS: usize = 20;
 
-/// Writes voxels as they come and returns how many there were.
+/// Writes voxels in the given order and returns their number.
 ///
-/// Positions are the voxels' indices (`int`), colours `uchar`; with `normals`,
-/// `float` normals follow, zero where a voxel has none. The number of vertices
-/// is entered in the header at the end, hence `Seek`; `out` must be at its beginning.
+/// Positions are the voxels' indices (`int`), colours `uchar`. With `normals`,
+/// `float` normals follow, zero for a voxel without one. The number of vertices
+/// is written into the header last, so `out` must be at its beginning.
 ///
 /// # Errors
-/// What `out` reports.
+/// Errors of `out`.
 pub fn write_ply<W: Write + Seek>(
     out: &mut W,
     voxels: impl IntoIterator<Item = Voxel>,

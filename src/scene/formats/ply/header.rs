@@ -2,7 +2,7 @@
 
 use super::numbers::{Encoding, Scalar};
 use super::source::Source;
-use crate::scene::error::{Fault, Problem, printable};
+use crate::scene::fault::{Fault, Problem, printable};
 use std::io::BufRead;
 
 /// Longest line of a header, bytes.
@@ -26,16 +26,16 @@ pub(super) struct Property {
 pub(super) struct Element {
     /// Its name.
     pub name: Vec<u8>,
-    /// How many the file says there are.
+    /// The stated number of them.
     pub count: u64,
-    /// What each one has.
+    /// Their properties.
     pub properties: Vec<Property>,
 }
 
 /// A whole header.
 #[derive(Debug)]
 pub(super) struct Header {
-    /// How the body is written.
+    /// Encoding of the body.
     pub encoding: Encoding,
     /// The elements in the order of the body.
     pub elements: Vec<Element>,

@@ -1,32 +1,33 @@
 //! PLY clouds whose positions are voxel indices: one voxel a vertex.
 //!
-//! Read as a stream, element by element: memory does not depend on the file, and
-//! the counts of the header are never believed before the elements are there.
-//! The crate `ply-rs-bw` gathers whole elements in memory before anyone sees
-//! them, so it serves only as the tests' second opinion.
+//! Read as a stream, element by element: memory depends neither on the file nor on the counts in its header. The crate
+//! `ply-rs-bw` holds whole elements in memory, so only the tests use it, for comparison.
 
 mod header;
 mod numbers;
 mod source;
+mod write;
 
 use std::io::BufRead;
 
 use glam::DVec3;
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem, printable};
-use super::{FileKind, ReadOptions, SceneInfo};
 use crate::graph::PackedNormal;
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem, printable};
+use crate::scene::input::Input;
+use crate::scene::{ReadOptions, SceneInfo};
 use header::{Element, Property};
 use numbers::{Encoding, Scalar};
 use source::{Number, Source, decode, parse_number};
+pub use write::write_ply;
 
 /// Longest line of an ASCII body, bytes.
 const MAX_LINE: usize = 1 << 20;
 
 const CUT: &str = "the file is cut short; export or copy it again";
 
-/// What a vertex property is for.
+/// The use of a vertex property.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     Position(usize),
@@ -34,7 +35,7 @@ enum Role {
     Normal(usize),
 }
 
-/// The numbers of one vertex that matter.
+/// The used numbers of one vertex.
 #[derive(Debug, Clone, Copy)]
 struct Vertex {
     position: [Number; 3],
@@ -52,32 +53,32 @@ impl Vertex {
     }
 }
 
-/// The vertex element, understood.
+/// The meaning of the vertex element's properties.
 struct Layout<'h> {
     properties: &'h [Property],
-    /// What each property is for, if for anything.
+    /// The use of each property; `None` if it is skipped.
     roles: Vec<Option<Role>>,
-    /// Of those that are for something: type and first byte in a binary vertex.
+    /// The used properties, with type and first byte in a binary vertex.
     wanted: Vec<(Role, Scalar, usize)>,
-    /// Bytes of a binary vertex; `None`: they differ, for there are lists.
+    /// Bytes of a binary vertex; `None` if it contains lists, so that sizes differ.
     stride: Option<usize>,
     has_color: bool,
     has_normal: bool,
 }
 
-/// Whether a PLY file is a mesh: whether its header promises faces. `false` of a damaged header, of
-/// which [`read`] says what is wrong.
-pub(super) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
+/// Whether the header of a PLY file declares faces, so that it is a mesh. `false` for a damaged header, whose fault
+/// [`read`] reports.
+pub(in crate::scene) fn has_faces<R: BufRead>(reader: &mut R) -> bool {
     header::read(&mut Source::new(reader)).is_ok_and(|header| header.has_faces())
 }
 
-/// Hands on the voxels of a PLY cloud.
-pub(super) fn read<R: BufRead>(
-    reader: &mut R,
+/// Passes on the voxels of a PLY cloud.
+pub(super) fn read(
+    input: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
-    let mut source = Source::new(reader);
+    let mut source = Source::new(&mut input.reader);
     let header = header::read(&mut source)?;
     let is_named = |element: &&Element, name: &[u8]| element.name == name;
     let Some(vertices) = header.elements.iter().find(|e| is_named(e, b"vertex")) else {
@@ -95,12 +96,14 @@ pub(super) fn read<R: BufRead>(
     for element in header.elements.iter().take_while(|e| e.name != b"vertex") {
         skip(&mut source, element, header.encoding, &mut line)?;
     }
-    let mut info = SceneInfo::new(FileKind::Ply);
-    info.models = 1;
-    info.instances = 1;
-    info.stored_voxels = vertices.count;
-    info.has_colors = layout.has_color;
-    info.has_normals = layout.has_normal;
+    let info = SceneInfo {
+        models: 1,
+        instances: 1,
+        stored_voxels: vertices.count,
+        has_colors: layout.has_color,
+        has_normals: layout.has_normal,
+        ..SceneInfo::default()
+    };
     for number in 0..vertices.count {
         let begin = source.offset();
         let zero = [Number::Whole(0); 3];
@@ -125,7 +128,7 @@ pub(super) fn read<R: BufRead>(
     Ok(info)
 }
 
-/// Finds out which properties of the vertices matter.
+/// Finds the used properties of the vertices.
 fn understand(vertices: &Element, offset: u64) -> Result<Layout<'_>, Box<Fault>> {
     let role = |name: &[u8]| {
         Some(match name {
@@ -217,7 +220,7 @@ fn skip<R: BufRead>(
     Ok(())
 }
 
-/// Reads a binary number, or skips a list (and says 0); `None` where the file ends first.
+/// Reads a binary number, or skips a list and returns 0; `None` if the file ends first.
 fn skip_or_read<R: BufRead>(
     source: &mut Source<'_, R>,
     property: &Property,

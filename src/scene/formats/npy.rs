@@ -1,13 +1,14 @@
 //! Numpy arrays of voxel indices: N x 3, or N x 6 and N x 7 with colours.
 //!
-//! Read block by block, so memory does not depend on the file. Arrays in Fortran
-//! order keep each column together; their blocks are gathered by seeking.
+//! Arrays are read block by block, so memory does not depend on the file. In Fortran order each column is contiguous,
+//! and a block is collected by seeking.
 
-use std::io::{BufRead, Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom};
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem, printable};
-use super::{FileKind, ReadOptions, SceneInfo};
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem, printable};
+use crate::scene::input::Input;
+use crate::scene::{ReadOptions, SceneInfo};
 
 /// Rows that are read at a time.
 const BLOCK_ROWS: u64 = 4096;
@@ -40,13 +41,13 @@ struct Layout {
     data: u64,
 }
 
-/// Hands on the voxels of an array.
-pub(super) fn read<R: BufRead + Seek>(
-    reader: &mut R,
-    length: u64,
+/// Passes on the voxels of an array.
+pub(super) fn read(
+    Input { reader, length }: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
+    let length = *length;
     let layout = read_header(reader, length)?;
     let needed = u128::from(layout.rows) * (layout.columns * layout.width) as u128;
     let there = u128::from(length.saturating_sub(layout.data));
@@ -60,11 +61,13 @@ pub(super) fn read<R: BufRead + Seek>(
         )
         .into());
     }
-    let mut info = SceneInfo::new(FileKind::Npy);
-    info.models = 1;
-    info.instances = 1;
-    info.stored_voxels = layout.rows;
-    info.has_colors = layout.columns > 3;
+    let mut info = SceneInfo {
+        models: 1,
+        instances: 1,
+        stored_voxels: layout.rows,
+        has_colors: layout.columns > 3,
+        ..SceneInfo::default()
+    };
     if needed < there {
         info.warnings.push(format!(
             "{} bytes after the end of the array were not read",
@@ -175,7 +178,7 @@ fn hand_on(
     })
 }
 
-/// A number as a whole one, or what it is instead.
+/// A number as an integer, or its text if it is not one.
 fn whole(layout: &Layout, bytes: &[u8]) -> Result<i64, String> {
     let mut eight = [0u8; 8];
     eight[..bytes.len()].copy_from_slice(bytes);
@@ -251,7 +254,7 @@ fn fault(offset: u64, expected: impl Into<String>, found: impl Into<String>) -> 
     Fault::new("header", offset, expected, found, SAVE_AGAIN)
 }
 
-/// Understands the header's dictionary.
+/// Interprets the header's dictionary.
 fn understand(text: &[u8], start: u64) -> Result<Layout, Problem> {
     let data = start + text.len() as u64;
     let missing = |key: &str| fault(start, format!("an entry '{key}'"), printable(text));
@@ -292,14 +295,14 @@ fn understand(text: &[u8], start: u64) -> Result<Layout, Problem> {
     })
 }
 
-/// What follows a key and its colon in a dictionary written as Python does.
+/// The text after a key and its colon in a Python dictionary.
 fn value<'t>(text: &'t [u8], key: &[u8]) -> Option<&'t [u8]> {
     let at = text.windows(key.len()).position(|window| window == key)?;
     let rest = text[at + key.len()..].trim_ascii_start();
     Some(rest.strip_prefix(b":")?.trim_ascii_start())
 }
 
-/// The type that a description such as `'<i4'` names, if it is one that can be read.
+/// The type that a description such as `'<i4'` names, if it is supported.
 fn element_type(descr: &[u8]) -> Option<(Kind, usize, bool)> {
     let [b'\'', order, kind, width, b'\'', ..] = descr else {
         return None;

@@ -1,15 +1,17 @@
 //! MagicaVoxel's and VoxelShop's `.vox`.
 //!
-//! | file | does |
+//! The files, in import order:
+//!
+//! | file | contents |
 //! |---|---|
-//! | `chunk` | chunks and their fields, every size checked before it is used |
+//! | `chunk` | chunks and their fields, with every size checked before it is used |
 //! | `model` | voxels, and the rule for those outside `SIZE` |
-//! | `palette` | colour indices to colours |
-//! | `nodes` | the scene graph as the file has it |
-//! | `transform` | rotations in a byte, and where they put a voxel |
-//! | `walk` | from the root to every placement of a model |
+//! | `palette` | the colours of colour indices |
+//! | `transform` | rotations in a byte, and the index of a transformed voxel |
+//! | `nodes` | the scene graph as the file stores it |
+//! | `walk` | all placements of models, from the root down |
 //! | `placements` | the different ones of these |
-//! | `write`, `quantize` | voxels to a file, and their colours to a palette |
+//! | `quantize`, `write` | the palette of a file to write, and its chunks |
 
 mod chunk;
 mod model;
@@ -23,9 +25,10 @@ mod write;
 
 pub use write::{VoxWriter, VoxWritten};
 
-use super::emit::Emitter;
-use super::error::{Fault, Problem};
-use super::{FileKind, OutOfBounds, ReadOptions, SceneInfo};
+use crate::scene::emit::Emitter;
+use crate::scene::fault::{Fault, Problem};
+use crate::scene::input::Input;
+use crate::scene::{OutOfBounds, ReadOptions, SceneInfo};
 use chunk::Chunk;
 use model::Model;
 use nodes::SceneGraph;
@@ -33,21 +36,22 @@ use palette::Palette;
 use placements::Placement;
 use transform::Transform;
 
-/// What the file's chunks say, before anything is placed.
+/// The contents of the file's chunks.
 struct Contents<'a> {
     models: Vec<Model<'a>>,
     graph: SceneGraph,
     palette: Palette,
 }
 
-/// Hands on the voxels of a `.vox` file.
+/// Passes on the voxels of a `.vox` file.
 pub(super) fn read(
-    bytes: &[u8],
+    input: &mut Input<'_>,
     options: &ReadOptions,
     emitter: &mut Emitter<'_>,
 ) -> Result<SceneInfo, Problem> {
-    let mut info = SceneInfo::new(FileKind::Vox);
-    let contents = read_contents(bytes, options, &mut info)?;
+    let mut info = SceneInfo::default();
+    let bytes = input.bytes().map_err(Problem::Read)?;
+    let contents = read_contents(&bytes, options, &mut info)?;
     survey(&contents, options, &mut info)?;
     if contents.graph.is_empty() {
         place_bare_models(&contents, options, emitter, &mut info)?;
@@ -71,7 +75,7 @@ pub(super) fn read(
     Ok(info)
 }
 
-/// Reads all chunks that bear on voxels, places or colours.
+/// Reads all chunks of voxels, placements and colours.
 fn read_contents<'a>(
     bytes: &'a [u8],
     options: &ReadOptions,
@@ -119,7 +123,7 @@ fn read_contents<'a>(
             b"IMAP" => palette::check_index_map(&chunk)?,
             b"nTRN" | b"nGRP" | b"nSHP" => contents.graph.add_node(&chunk, options.frame)?,
             b"LAYR" => contents.graph.add_layer(&chunk)?,
-            // Materials, cameras, notes, render settings, and what the future may bring.
+            // Materials, cameras, notes, render settings, and chunks of later versions.
             _ => {}
         }
     }
@@ -149,7 +153,7 @@ fn lonely_size(chunk: &Chunk<'_>) -> Box<Fault> {
     )
 }
 
-/// Counts what the models hold, once each, and refuses what the options refuse.
+/// Counts the voxels of all models, each model once, and rejects those that the options reject.
 fn survey(
     contents: &Contents<'_>,
     options: &ReadOptions,
@@ -241,7 +245,7 @@ fn place_bare_models(
     Ok(())
 }
 
-/// Hands on the voxels of one placement of a model; without a transform, at their own coordinates.
+/// Passes on the voxels of one placement of a model, at their own coordinates without a transform.
 fn place(
     model: &Model<'_>,
     transform: Option<&Transform>,

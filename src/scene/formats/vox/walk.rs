@@ -1,14 +1,13 @@
-//! From the root of the scene graph to every placement of a model.
+//! Visits every placement of a model, from the root of the scene graph down.
 
 use std::collections::BTreeSet;
 
 use super::nodes::{Node, NodeKind, SceneGraph};
 use super::transform::Transform;
-use crate::scene::error::{Fault, Problem};
+use crate::scene::fault::{Fault, Problem};
 
-/// How many nodes are visited, and models shown, at most. A scene graph is meant to be a tree, but a
-/// file may name one node as the child of many, and then visits can grow beyond
-/// all bounds that the file's length sets.
+/// Most visits of nodes and models. A scene graph is meant to be a tree. But a file can name one node as the child of
+/// many, and then the number of visits is not bounded by the file's length.
 const MAX_VISITS: u64 = 1 << 20;
 
 /// A model, placed.
@@ -16,7 +15,7 @@ const MAX_VISITS: u64 = 1 << 20;
 pub(super) struct Instance {
     /// Number of the model.
     pub model: u32,
-    /// Where it goes.
+    /// Its transform.
     pub transform: Transform,
     /// Whether it, a node above it or its layer is hidden.
     pub hidden: bool,
@@ -79,7 +78,7 @@ pub(super) fn walk(
     Ok(())
 }
 
-/// Refuses more visits than may be, at a node.
+/// Fails at a node after too many visits.
 fn check_visits(visits: u64, node: &Node) -> Result<(), Problem> {
     if visits <= MAX_VISITS {
         return Ok(());
@@ -152,7 +151,7 @@ fn enter(
     Ok(())
 }
 
-/// Names the shape node where a problem has no place yet.
+/// Adds the shape node to a problem without a place.
 fn at_shape(problem: Problem, part: &str, offset: u64) -> Problem {
     match problem {
         Problem::Invalid(mut fault) if fault.part.is_empty() => {

@@ -1,6 +1,6 @@
-//! Rotations in one byte, and where they put a voxel.
+//! Rotations in one byte, and the index of a transformed voxel.
 
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// A signed permutation of the axes and a translation, applied in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -71,12 +71,12 @@ impl Transform {
         })
     }
 
-    /// Where a voxel of a model of this size comes to lie.
+    /// The index of a transformed voxel of a model of this size.
     ///
-    /// MagicaVoxel turns a model about the lattice point `floor(size / 2)`, so a
-    /// voxel's centre lies half a voxel off the axes and stays so. In half voxels
-    /// all is whole: the centre is `2 (p - floor(size / 2)) + 1`, odd, rotation only
-    /// permutes and negates, and halving an odd number downwards gives the cell.
+    /// MagicaVoxel rotates a model about the lattice point `floor(size / 2)`, so a
+    /// voxel's centre stays half a voxel off the axes. In units of half a voxel all
+    /// numbers are integers: the centre is `2 (p - floor(size / 2)) + 1`, which is odd.
+    /// Rotation permutes and negates. Half of the result, rounded down, is the index.
     #[inline]
     pub(super) fn place(&self, position: [i64; 3], size: [u32; 3]) -> [i64; 3] {
         let center: [i64; 3] =
@@ -86,7 +86,7 @@ impl Transform {
     }
 }
 
-/// The fault of a rotation that is none.
+/// The fault of an invalid rotation byte.
 pub(super) fn bad_rotation(part: &str, offset: u64, value: i32) -> Box<Fault> {
     Fault::new(
         format!("{part}, attribute _r"),
@@ -153,8 +153,8 @@ mod tests {
         // No rotation: the pivot of 4 is 2, of 5 is 2.
         let still = Transform::IDENTITY.with_translation([10, 20, 30]);
         assert_eq!(still.place([0, 0, 0], [4, 5, 1]), [8, 18, 30]);
-        // A quarter turn about z, x' = -y, y' = x, byte 1 | 0 << 2 | 1 << 4 = 17, of a
-        // 4 x 2 x 1 slab: x 0..4 becomes y -2..2, y 0..2 becomes x 1..-1 downwards.
+        // A quarter turn about z (x' = -y, y' = x), byte 1 | 0 << 2 | 1 << 4 = 17, of a 4 x 2 x 1 slab.
+        // x 0..4 becomes y -2..2; y 0..2 becomes x 1..-1 downwards.
         let turn = Transform::from_rotation_byte(17).unwrap();
         assert_eq!(turn.place([0, 0, 0], [4, 2, 1]), [0, -2, 0]);
         assert_eq!(turn.place([3, 0, 0], [4, 2, 1]), [0, 1, 0]);

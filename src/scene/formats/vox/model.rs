@@ -2,7 +2,7 @@
 
 use super::chunk::{Chunk, Fields};
 use crate::scene::OutOfBounds;
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
 /// A model as the file stores it.
 #[derive(Debug, Clone, Copy)]
@@ -43,9 +43,9 @@ pub(super) fn is_inside(position: [u8; 3], size: [u32; 3]) -> bool {
     (0..3).all(|axis| u32::from(position[axis]) < size[axis])
 }
 
-/// A stored byte as the coordinate that was meant.
+/// The coordinate that a stored byte means.
 ///
-/// Inside `SIZE` it stands for itself. Outside, it is the number congruent to
+/// Inside `SIZE` it is the coordinate. Outside, it is the number congruent to
 /// it modulo 256 that is nearest to the middle of `SIZE`: one of the 256 numbers
 /// from `floor(SIZE / 2) - 128` on. Numbers inside `SIZE` are all among these
 /// (`SIZE` is below 256 where a byte can be outside it), so the rule has no seam.
@@ -88,7 +88,7 @@ mod tests {
                 }
             }
         }
-        // As VoxelShop's dragon in a box of 20: 183 stands for -73, 72 for itself.
+        // VoxelShop's dragon in a box of 20: 183 means -73, and 72 means 72.
         assert_eq!(unwrap(203, 20), -53);
         assert_eq!(unwrap(72, 20), 72);
     }

@@ -1,8 +1,8 @@
-//! Where models go, each place once.
+//! The different placements of models.
 //!
-//! A file of some kilobytes can place a model a million times, by nodes that are children of many. So places
-//! are found before any voxel is handed on: their number is known, and a model that comes to lie where it lies
-//! already costs nothing. Of equal placements the last stays, because of voxels at one index the last counts.
+//! A file of some kilobytes can place a model a million times, by nodes with many parents. So placements are found
+//! before any voxel is passed on: their number is known, and a repeated placement costs nothing. Of equal placements
+//! the last is kept, because of voxels at one index the last one counts.
 
 use std::collections::HashMap;
 
@@ -10,10 +10,10 @@ use super::Contents;
 use super::model::Model;
 use super::transform::Transform;
 use super::walk;
-use crate::scene::error::{Fault, Problem};
+use crate::scene::fault::{Fault, Problem};
 use crate::scene::{ReadOptions, SceneInfo};
 
-/// A model at a place.
+/// A model and its transform.
 pub(super) struct Placement<'m, 'f> {
     pub(super) model: &'m Model<'f>,
     pub(super) transform: Transform,
@@ -29,7 +29,7 @@ pub(super) fn find<'m, 'f>(
     let mut last: HashMap<(u32, Transform), u32> = HashMap::new();
     walk::walk(&contents.graph, |instance| {
         let Some(is_placed) = is_placed.get_mut(instance.model as usize) else {
-            // The walk fills in which shape node asks for it.
+            // The walk adds the shape node.
             return Err(Problem::Invalid(Fault::new(
                 "",
                 0,

@@ -4,22 +4,22 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::chunk::{Chunk, Dict, Fields};
 use super::transform::{Transform, bad_rotation};
-use crate::scene::error::Fault;
+use crate::scene::fault::Fault;
 
-/// A node, and where it stands in the file.
+/// A node and its place in the file.
 #[derive(Debug)]
 pub(super) struct Node {
-    /// What errors call it.
+    /// Its name in error messages.
     pub part: String,
     /// Offset of its chunk.
     pub offset: u64,
     /// Whether the editor hides it.
     pub hidden: bool,
-    /// What it does.
+    /// Its kind.
     pub kind: NodeKind,
 }
 
-/// What a node does.
+/// A node's kind.
 #[derive(Debug)]
 pub(super) enum NodeKind {
     /// Moves its child.
@@ -28,7 +28,7 @@ pub(super) enum NodeKind {
         child: u32,
         /// The layer's id, if it is on one.
         layer: Option<u32>,
-        /// What it does to its child at the frame that is read.
+        /// Its transform at the frame that is read.
         transform: Transform,
     },
     /// Holds other nodes, by id.

@@ -1,12 +1,11 @@
-//! The walk over a `.vox` file's chunks, and the reading of one chunk's fields.
+//! Iterates over the chunks of a `.vox` file, and reads the fields of a chunk.
 //!
-//! A file is `VOX `, a version, and one chunk `MAIN` whose children are all that
-//! matters. A chunk is an id of 4 bytes, the size of its content, the size of its
-//! children, the content, the children; numbers are little endian. Every size is
-//! compared with what is left before it is used, so nothing here reads beyond
-//! its bounds and nothing allocates by a number that the file merely claims.
+//! A file is `VOX `, a version, and one chunk `MAIN`, whose children are read. A chunk is an id of 4 bytes, the size of
+//! its content, the size of its children, the content, and the children. Numbers are little endian. Every size is
+//! compared with the bytes left before it is used. So reads stay within bounds, and no allocation depends on a number
+//! alone.
 
-use crate::scene::error::{Fault, printable};
+use crate::scene::fault::{Fault, printable};
 
 /// Bytes of a chunk's header.
 const HEADER: usize = 12;
@@ -65,7 +64,7 @@ pub(super) fn chunks(bytes: &[u8]) -> Result<Chunks<'_>, Box<Fault>> {
 }
 
 impl Chunks<'_> {
-    /// Bytes of the file after the end of `MAIN`, which nobody reads.
+    /// Bytes of the file after the end of `MAIN`, which are ignored.
     pub(super) fn left_over(&self) -> usize {
         self.bytes.len() - self.end
     }
@@ -211,17 +210,17 @@ impl<'a> Fields<'a> {
         }
     }
 
-    /// What errors call this chunk.
+    /// The chunk's name in error messages.
     pub(super) fn part(&self) -> &str {
         &self.part
     }
 
-    /// Where the next field lies in the file.
+    /// Byte offset of the next field in the file.
     pub(super) fn offset(&self) -> u64 {
         (self.base + self.at) as u64
     }
 
-    /// What has not been read yet.
+    /// The unread rest.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.content[self.at..]
     }
@@ -253,7 +252,7 @@ impl<'a> Fields<'a> {
         Ok(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
     }
 
-    /// A count of things that take at least `least` bytes each.
+    /// A number of items that take at least `least` bytes each.
     pub(super) fn count(&mut self, what: &str, least: usize) -> Result<u32, Box<Fault>> {
         let count = self.u32(what)?;
         let room = self.rest().len() / least;

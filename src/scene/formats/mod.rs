@@ -1,0 +1,289 @@
+//! The table of file formats: recognition, names and contents. Every list of formats comes from it.
+//!
+//! To add a voxel format, write its reader beside this file, add a [`FileKind`] and a row of [`FORMATS`], and describe
+//! the format in `spec/input.md`.
+
+mod binvox;
+mod npy;
+mod ply;
+mod vox;
+
+use std::fmt;
+
+use super::emit::Emitter;
+use super::fault::Problem;
+use super::input::Input;
+use super::{ReadOptions, SceneInfo};
+use crate::graph::vxg;
+
+pub(super) use ply::has_faces;
+pub use ply::write_ply;
+pub use vox::{VoxWriter, VoxWritten};
+
+/// Bytes of a file that [`detect`] examines; all of a shorter file.
+pub(super) const DETECT_BYTES: usize = 4096;
+
+/// The formats that are recognised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum FileKind {
+    /// MagicaVoxel or VoxelShop scene.
+    Vox,
+    /// PLY: a cloud of voxel indices. [`detect`] returns this for a mesh, too.
+    /// [`SceneFile`](super::SceneFile) reads the header and distinguishes the two.
+    Ply,
+    /// NumPy array of voxel indices.
+    Npy,
+    /// Grid of the program binvox.
+    Binvox,
+    /// Voxel graph of this program.
+    Vxg,
+    /// Wavefront mesh (text).
+    Obj,
+    /// PLY with faces: a mesh.
+    PlyMesh,
+    /// glTF mesh (JSON).
+    Gltf,
+    /// glTF mesh (binary).
+    Glb,
+    /// Stereolithography mesh (text or binary).
+    Stl,
+    /// Far voxels, built of a mesh.
+    Far,
+    /// Textured voxels, built of a mesh.
+    Tvx,
+}
+
+/// Reads the voxels of a file and passes them to an emitter.
+pub(super) type Reader =
+    fn(&mut Input<'_>, &ReadOptions, &mut Emitter<'_>) -> Result<SceneInfo, Problem>;
+
+/// The contents of a format's files.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Contents {
+    Voxels(Reader),
+    /// A voxel graph, ready to be drawn.
+    Graph,
+    /// Triangles.
+    Mesh,
+    /// Data built of a mesh for one method, which alone draws it.
+    BuiltOfMesh,
+}
+
+/// A file format.
+#[derive(Debug)]
+pub struct Format {
+    kind: FileKind,
+    /// The ending of its files, with the dot.
+    pub ending: &'static str,
+    /// Its name in the help text.
+    pub name: &'static str,
+    /// Its files begin with one of these.
+    marks: &'static [&'static [u8]],
+    /// Whether a file without a mark is of this format, by its first bytes and its length.
+    accepts: fn(&[u8], u64) -> bool,
+    contents: Contents,
+}
+
+/// All formats, in the order of [`FileKind`].
+#[rustfmt::skip]
+pub static FORMATS: [Format; 12] = {
+    use Contents::{BuiltOfMesh, Graph, Mesh, Voxels};
+    use FileKind::*;
+    type Marks = &'static [&'static [u8]];
+    type Accepts = fn(&[u8], u64) -> bool;
+    const fn row(
+        kind: FileKind, ending: &'static str, name: &'static str, marks: Marks, accepts: Accepts, contents: Contents,
+    ) -> Format {
+        Format { kind, ending, name, marks, accepts, contents }
+    }
+    [
+        row(Vox,     ".vox",    "MagicaVoxel or VoxelShop scene",   &[b"VOX "],              no,      Voxels(vox::read)),
+        row(Ply,     ".ply",    "cloud of voxel indices",           &[b"ply\n", b"ply\r"],   no,      Voxels(ply::read)),
+        row(Npy,     ".npy",    "NumPy array of voxel indices",     &[b"\x93NUMPY"],         no,      Voxels(npy::read)),
+        row(Binvox,  ".binvox", "grid of the program binvox",       &[b"#binvox "],          no,      Voxels(binvox::read)),
+        row(Vxg,     ".vxg",    "voxel graph of this program",      &[&vxg::MAGIC],          no,      Graph),
+        row(Obj,     ".obj",    "Wavefront mesh",                   &[],                     is_obj,  Mesh),
+        row(PlyMesh, ".ply",    "mesh (PLY with faces)",            &[],                     no,      Mesh),
+        row(Gltf,    ".gltf",   "glTF mesh",                        &[],                     is_gltf, Mesh),
+        row(Glb,     ".glb",    "binary glTF mesh",                 &[b"glTF"],              no,      Mesh),
+        row(Stl,     ".stl",    "stereolithography mesh",           &[],                     is_stl,  Mesh),
+        // The crate of meshes writes these two, and its tests compare their marks.
+        row(Far,     ".far",    "far voxels, built of a mesh",      &[b"\x89FAR\r\n\x1a\n"], no,      BuiltOfMesh),
+        row(Tvx,     ".tvx",    "textured voxels, built of a mesh", &[b"\x89TVX\r\n\x1a\n"], no,      BuiltOfMesh),
+    ]
+};
+
+impl Format {
+    /// The beginnings of its files, if they hold voxels: for tests of all readers of voxels.
+    #[must_use]
+    pub fn voxel_marks(&self) -> &'static [&'static [u8]] {
+        match self.contents {
+            Contents::Voxels(_) => self.marks,
+            _ => &[],
+        }
+    }
+}
+
+const _: () = {
+    let mut row = 0;
+    while row < FORMATS.len() {
+        assert!(
+            FORMATS[row].kind as usize == row,
+            "the table is in the order of FileKind"
+        );
+        row += 1;
+    }
+};
+
+impl FileKind {
+    fn format(self) -> &'static Format {
+        &FORMATS[self as usize]
+    }
+
+    pub(super) fn contents(self) -> Contents {
+        self.format().contents
+    }
+
+    /// Whether files of this kind hold triangles.
+    #[must_use]
+    pub fn is_mesh(self) -> bool {
+        matches!(self.contents(), Contents::Mesh)
+    }
+}
+
+/// The ending of such files.
+impl fmt::Display for FileKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.format().ending)
+    }
+}
+
+/// The endings of some formats, such as `.far, .tvx`.
+fn endings(are_meant: fn(&Contents) -> bool) -> String {
+    let meant = FORMATS.iter().filter(|format| are_meant(&format.contents));
+    let endings: Vec<_> = meant.map(|format| format.ending).collect();
+    endings.join(", ")
+}
+
+/// The endings of meshes.
+pub(super) fn mesh_endings() -> String {
+    endings(|contents| matches!(contents, Contents::Mesh))
+}
+
+/// All formats by their endings, for an error message.
+pub(super) fn all_endings() -> String {
+    format!(
+        "voxels ({}), a voxel graph ({}), a mesh ({}) or a file built of a mesh ({})",
+        endings(|contents| matches!(contents, Contents::Voxels(_))),
+        endings(|contents| matches!(contents, Contents::Graph)),
+        mesh_endings(),
+        endings(|contents| matches!(contents, Contents::BuiltOfMesh)),
+    )
+}
+
+/// Recognises a format by a file's first 4096 bytes (all of a shorter file) and its length in bytes.
+///
+/// `None` if it is no known format.
+#[must_use]
+pub fn detect(beginning: &[u8], length: u64) -> Option<FileKind> {
+    let begins = |mark: &&[u8]| beginning.starts_with(mark);
+    let marked = FORMATS.iter().find(|f| f.marks.iter().any(begins));
+    let found = marked.or_else(|| FORMATS.iter().find(|f| (f.accepts)(beginning, length)));
+    found.map(|format| format.kind)
+}
+
+/// Accepts no file, for formats with a mark.
+fn no(_: &[u8], _: u64) -> bool {
+    false
+}
+
+/// Whether a file is an STL mesh, text or binary. A binary one may begin with the same word as a text.
+fn is_stl(beginning: &[u8], length: u64) -> bool {
+    beginning.starts_with(b"solid") || is_binary_stl(beginning, length)
+}
+
+/// Whether a file with this beginning and length, bytes, is a binary STL mesh: 84 bytes of header, of which the last
+/// four count the triangles, and 50 bytes per triangle.
+#[must_use]
+pub fn is_binary_stl(beginning: &[u8], length: u64) -> bool {
+    let count = beginning
+        .get(80..84)
+        .and_then(|count| count.try_into().ok());
+    count.is_some_and(|count| length == 84 + 50 * u64::from(u32::from_le_bytes(count)))
+}
+
+/// A text without its byte order mark.
+fn text(beginning: &[u8]) -> &[u8] {
+    beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning)
+}
+
+/// Whether a file is JSON with one of the keys of glTF. Some exporters write the longer lists before `asset`.
+fn is_gltf(beginning: &[u8], _: u64) -> bool {
+    let text = text(beginning);
+    let has = |key: &&[u8]| text.windows(key.len()).any(|window| window == *key);
+    let keys = [&b"\"asset\""[..], b"\"accessors\"", b"\"bufferViews\""];
+    text.trim_ascii_start().starts_with(b"{") && keys.iter().any(has)
+}
+
+/// Whether the first line that is neither blank nor a comment begins with a Wavefront keyword.
+fn is_obj(beginning: &[u8], _: u64) -> bool {
+    const KEYWORDS: [&[u8]; 11] = [
+        b"v", b"vn", b"vt", b"vp", b"f", b"l", b"o", b"g", b"s", b"mtllib", b"usemtl",
+    ];
+    text(beginning)
+        .split(|b| *b == b'\n' || *b == b'\r')
+        .map(<[u8]>::trim_ascii)
+        .find(|line| !line.is_empty() && line[0] != b'#')
+        .and_then(|line| {
+            let end = line.iter().position(u8::is_ascii_whitespace)?;
+            Some(KEYWORDS.contains(&&line[..end]))
+        })
+        .unwrap_or(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_recognised_by_content() {
+        for (begins, kind) in [
+            (&b"VOX \x96\0\0\0MAIN"[..], Some(FileKind::Vox)),
+            (b"ply\nformat ascii 1.0\n", Some(FileKind::Ply)),
+            (b"ply\r\nformat ascii 1.0\r\n", Some(FileKind::Ply)),
+            (b"\x93NUMPY\x01\0", Some(FileKind::Npy)),
+            (b"\x89VXG\r\n\x1a\n\x01", Some(FileKind::Vxg)),
+            (b"glTF\x02\0\0\0", Some(FileKind::Glb)),
+            (
+                b"  {\n \"asset\": {\"version\": \"2.0\"}}",
+                Some(FileKind::Gltf),
+            ),
+            (b"{\"accessors\": [", Some(FileKind::Gltf)),
+            (
+                b"# made by hand\n\nmtllib a.mtl\nv 0 0 0\n",
+                Some(FileKind::Obj),
+            ),
+            (b"v 0 0 0\n", Some(FileKind::Obj)),
+            (b"solid cube\n facet normal", Some(FileKind::Stl)),
+            (b"{\"no\": 1}", None),
+            (b"velvet 1 2 3\n", None),
+            (b"DOOD\xef\xbf\xbd", None),
+            (b"#binvox 1\n", Some(FileKind::Binvox)),
+            (b"#binvoxel\n", None),
+            (b"plyform", None),
+            (b"", None),
+        ] {
+            assert_eq!(detect(begins, 0), kind, "{}", begins.escape_ascii());
+        }
+    }
+
+    #[test]
+    fn binary_stl_is_recognised_by_its_length() {
+        let mut bytes = vec![b' '; 84 + 50];
+        bytes[80..84].copy_from_slice(&1u32.to_le_bytes());
+        assert_eq!(detect(&bytes, 0), None);
+        assert_eq!(detect(&bytes, 134), Some(FileKind::Stl));
+        assert_eq!(detect(&bytes, 135), None);
+    }
+}
