@@ -152,7 +152,7 @@ fn overlays_are_buffers_as_colours() {
     let program = Program::start(&["gen:menger,depth=3"]);
     let mut page = program.page();
     let mut seen = Vec::new();
-    for show in ["color", "records", "level", "depth", "normal"] {
+    for show in ["color", "records", "voxel", "depth", "normal"] {
         let (head, rgba) = page.ask(json!({ "show": show, "hash": true, "size": [64, 64] }));
         assert_eq!(rgba.len(), 64 * 64 * 4, "{head}");
         assert_eq!(
