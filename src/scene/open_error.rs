@@ -1,7 +1,7 @@
 //! Errors of opening a scene.
 
-use super::generate::SpecError;
 use super::SceneError;
+use super::generate::SpecError;
 use crate::graph::{BuildError, ExternalError, vxg};
 
 /// An error of opening a scene.

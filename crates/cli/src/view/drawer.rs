@@ -1,154 +1,96 @@
-//! The thread of a socket: it draws what is asked for, one question after the other.
+//! Draws what a page asks for, with the engines and files of the command line.
 
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use axum::body::Bytes;
 use serde_json::{Value, json};
-use tokio::sync::mpsc::Sender;
+use shiftvox::drawing::{Drawable, milliseconds_since};
+use shiftvox::picture::{self, Buffer, Pixels};
+use shiftvox::project::Camera;
+use shiftvox_view::{Answer, Ask, FLAGS, Flags, Program, Request};
 
-use super::request::{self, Ask, Flags, MODEL_SIDE, MOST_PIXELS, MOST_SAMPLES, Request, Show};
+use super::flags::{self, MODEL_FLAGS};
 use super::{Shared, overlay};
-use crate::args::Setting;
+use crate::args::{Setting, camera_line};
 use crate::error::{CliError, Kind};
 use crate::methods::DrawArgs;
 use crate::{model, report};
-use shiftvox::drawing::{Drawable, milliseconds_since};
-use shiftvox::picture::{self, Pixels};
-use shiftvox::project::Camera;
 
-/// Drawings that are kept: of a picture that moves, and of the same when it stands still.
+/// Drawings that are kept: one of the moving picture, and one of the picture that stands still.
 const KEPT: usize = 2;
-/// After so long without a question nothing is kept: buffers of large pictures take hundreds of megabytes.
-const IDLE: Duration = Duration::from_secs(10);
+/// Longer side of the pictures that the hardware model draws. Larger ones take many seconds.
+const MODEL_SIDE: u32 = 256;
 
-/// What a drawing depends on, but for camera and size.
-#[derive(Debug, Clone, PartialEq)]
+/// The settings that a drawing depends on. Camera and size change without a new drawing.
+#[derive(PartialEq)]
 struct Key {
     scene: usize,
     flags: Flags,
-    aa_log2: u32,
-    show: Show,
+    aa: u32,
+    show: Option<Buffer>,
     hash: bool,
 }
 
-/// What is drawn for a socket.
-struct Drawer<'s> {
-    shared: &'s Shared,
-    kept: Vec<(Key, Box<dyn Drawable + 's>)>,
-}
+/// Drawings of one socket, the latest first.
+type Kept<'s> = Vec<(Key, Box<dyn Drawable + 's>)>;
 
-/// Answers questions until nobody asks any more. Of those that wait it answers the newest.
-pub(super) fn run(shared: &Shared, questions: &Receiver<String>, answers: &Sender<Bytes>) {
-    let mut drawer = Drawer {
-        shared,
-        kept: Vec::new(),
-    };
-    if answers.blocking_send(message(&hello(shared), &[])).is_err() {
-        return;
+impl Program for Shared {
+    fn hello(&self) -> Value {
+        let names: Vec<&str> = self.scenes.iter().map(|s| s.name.as_str()).collect();
+        let picture = &self.args.picture;
+        json!({
+            "scenes": names,
+            "flags": flags::first(&self.args),
+            "size": picture.size.map(|size| [size.width, size.height]),
+            "aa": 1 << picture.aa_log2(),
+        })
     }
-    loop {
-        let question = match questions.recv_timeout(IDLE) {
-            Ok(question) => question,
-            Err(RecvTimeoutError::Timeout) => {
-                drawer.kept.clear();
-                continue;
-            }
-            Err(RecvTimeoutError::Disconnected) => return,
-        };
-        let newest = questions.try_iter().last().unwrap_or(question);
-        if answers.blocking_send(drawer.answer(&newest)).is_err() {
-            return;
+
+    fn drawer(&self) -> impl FnMut(&Request) -> Result<Answer, String> {
+        let mut kept = Kept::new();
+        move |request| {
+            let answer = match request.ask {
+                Ask::Picture => self.picture(request, &mut kept),
+                Ask::Figures => self.figures(request),
+            };
+            answer.map_err(|error| error.to_string())
         }
     }
 }
 
-/// What a page begins with.
-fn hello(shared: &Shared) -> Value {
-    let names: Vec<&str> = shared.scenes.iter().map(|s| s.name.as_str()).collect();
-    let picture = &shared.args.picture;
-    let size = picture.size.map(|size| [size.width, size.height]);
-    json!({
-        "ask": "hello",
-        "version": env!("CARGO_PKG_VERSION"),
-        "scenes": names,
-        "flags": request::first_flags(&shared.args),
-        "size": size,
-        "aa": 1 << picture.aa_log2(),
-        "most_pixels": MOST_PIXELS,
-        "most_samples": MOST_SAMPLES,
-    })
-}
-
-/// A message to a page: the length of its head in four bytes (least significant first), the head as
-/// JSON, and the picture.
-fn message(head: &Value, body: &[u8]) -> Bytes {
-    let head = head.to_string();
-    let mut bytes = Vec::with_capacity(4 + head.len() + body.len());
-    begin(&mut bytes, &head);
-    bytes.extend_from_slice(body);
-    bytes.into()
-}
-
-fn begin(bytes: &mut Vec<u8>, head: &str) {
-    // A head is a few thousand bytes.
-    bytes.extend_from_slice(&(head.len() as u32).to_le_bytes());
-    bytes.extend_from_slice(head.as_bytes());
-}
-
-impl<'s> Drawer<'s> {
-    fn answer(&mut self, question: &str) -> Bytes {
-        let request = Request::read(question);
-        let seq = request.as_ref().ok().map(|request| request.seq);
-        let answer = request.and_then(|request| match request.ask {
-            Ask::Picture => self.picture(&request),
-            Ask::Figures => Ok(message(&self.figures(&request)?, &[])),
-        });
-        answer.unwrap_or_else(|error| {
-            let CliError {
-                message: said,
-                advice,
-                ..
-            } = error;
-            message(
-                &json!({ "ask": "error", "seq": seq, "error": said, "advice": advice }),
-                &[],
-            )
-        })
-    }
-
-    fn picture(&mut self, request: &Request) -> Result<Bytes, CliError> {
+impl Shared {
+    fn picture<'s>(&'s self, request: &Request, kept: &mut Kept<'s>) -> Result<Answer, CliError> {
         let started = Instant::now();
-        let shared = self.shared;
-        let settings = request.settings()?;
-        let listed = shared.scenes.get(request.scene).ok_or_else(no_scene)?;
+        let settings = flags::settings(request)?;
+        let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
         let args = DrawArgs {
             is_hashed: request.hash,
-            ..shared.args.draw_args(&settings.engine, &settings.picture)
+            ..self.args.draw_args(&settings.engine, &settings.picture)
         };
+        let show = settings.picture.aov.first().copied();
         let key = Key {
             scene: request.scene,
             flags: request.flags.clone(),
-            aa_log2: settings.picture.aa_log2(),
-            show: request.show,
+            aa: request.aa,
+            show,
             hash: request.hash,
         };
         let opened = listed.for_flags(&args)?;
-        let drawable = match self.kept.iter().position(|(of, _)| *of == key) {
-            Some(at) => self.kept.remove(at).1,
+        let drawable = match kept.iter().position(|(of, _)| *of == key) {
+            Some(at) => kept.remove(at).1,
             None => {
                 opened.check(&listed.name, &args)?;
-                self.kept.truncate(KEPT - 1);
+                kept.truncate(KEPT - 1);
                 opened.drawable(&args)?
             }
         };
-        // Those used last are first.
-        self.kept.insert(0, (key, drawable));
-        let drawable = &mut self.kept[0].1;
-        let up = shared.args.scene.up_or(drawable.up());
-        let size = settings.picture.size();
-        let fitted = || shared.args.camera.camera(&drawable.bounds(), up, size, 0.0);
-        let camera = request.camera().unwrap_or_else(fitted);
+        kept.insert(0, (key, drawable));
+        let drawable = &mut kept[0].1;
+        let up = self.args.scene.up_or(drawable.up());
+        let (width, height) = settings.picture.size();
+        let camera = flags::camera(request).unwrap_or_else(|| {
+            let args = &self.args.camera;
+            args.camera(&drawable.bounds(), up, (width, height), 0.0)
+        });
         drawable.draw(&camera, 1)?;
         let shown = drawable.shown()?;
         let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
@@ -156,22 +98,32 @@ impl<'s> Drawer<'s> {
             true => Some(picture::hash_rows(&shown.buffers)?),
             false => None,
         };
-        let overlay = match request.show {
-            Show::Color => None,
-            show => Some(overlay::colors(&shown.buffers, show)?),
+        let overlay = match show {
+            Some(buffer) => Some(overlay::colors(&shown.buffers, buffer)?),
+            None => None,
         };
         let ends = overlay.as_ref().and_then(|(_, ends)| ends.clone());
+        let made = overlay.map(|(colors, _)| Pixels::new(width, height, colors));
+        let pixels = made.as_ref().unwrap_or(&*shown.pixels);
+        let mut picture = Vec::new();
+        if request.png {
+            let failed = |error| CliError::new(Kind::Run, format!("no PNG: {error}"));
+            pixels.write(&mut picture).map_err(failed)?;
+        } else {
+            picture.reserve_exact(4 * width as usize * height as usize);
+            pixels.append_rgba(&mut picture);
+        }
+        let aa = (request.aa != 1).then(|| format!("--aa={}", request.aa));
+        let words = request.words(FLAGS).chain(aa);
         let engine: Setting = ("engine", crate::args::word(&opened.engine));
         let head = json!({
-            "ask": request.ask,
-            "seq": request.seq,
-            "width": size.0,
-            "height": size.1,
+            "width": width,
+            "height": height,
             "png": request.png,
             "camera": report::camera(&camera),
             "axis": up.axis().to_array(),
             "engine": engine.1.as_str(),
-            "command": request.render_command(&listed.name, &shared.args.scene, &camera),
+            "command": self.command("render", &listed.name, words, &camera) + " -o picture.png",
             "hash": hash,
             "counters": shown.counters,
             "pixels_drawn": shown.pixels_drawn,
@@ -179,43 +131,43 @@ impl<'s> Drawer<'s> {
             "draw_ms": shown.times_ms.last(),
             "all_ms": milliseconds_since(started),
         });
-        let head = head.to_string();
-        let pixels = u64::from(size.0) * u64::from(size.1);
-        let mut bytes = Vec::with_capacity(4 + head.len() + 4 * pixels as usize);
-        begin(&mut bytes, &head);
-        let made = overlay.map(|(colors, _)| Pixels::new(size.0, size.1, colors));
-        let shown = made.as_ref().unwrap_or(&*shown.pixels);
-        if request.png {
-            let failed = |error| CliError::new(Kind::Run, format!("no PNG: {error}"));
-            shown.write(&mut bytes).map_err(failed)?;
-        } else {
-            shown.append_rgba(&mut bytes);
-        }
-        Ok(bytes.into())
+        Ok((head, picture))
     }
 
-    /// Figures of the hardware model, of a picture of at most [`MODEL_SIDE`].
-    fn figures(&self, request: &Request) -> Result<Value, CliError> {
-        let shared = self.shared;
-        let settings = request.settings()?;
-        let listed = shared.scenes.get(request.scene).ok_or_else(no_scene)?;
-        let args = shared.args.draw_args(&settings.engine, &settings.picture);
+    /// Figures of the hardware model, for a picture of at most [`MODEL_SIDE`].
+    fn figures(&self, request: &Request) -> Result<Answer, CliError> {
+        let settings = flags::settings(request)?;
+        let listed = self.scenes.get(request.scene).ok_or_else(no_scene)?;
+        let args = self.args.draw_args(&settings.engine, &settings.picture);
         let graph = listed.for_flags(&args)?.graph().ok_or_else(|| {
             CliError::usage("the hardware model is of voxels, and this scene has none")
         })?;
-        let camera = request
-            .camera()
+        let camera = flags::camera(request)
             .ok_or_else(|| CliError::usage("figures are of a placed camera"))?;
         let camera = of_model_size(camera);
-        let figures = model::brief(request.model_words(), graph, &camera)?;
-        Ok(json!({
-            "ask": request.ask,
-            "seq": request.seq,
+        let words = request.words(MODEL_FLAGS).map(Into::into);
+        let head = json!({
+            "figures": model::brief(words, graph, &camera)?,
             "width": camera.width,
             "height": camera.height,
-            "command": request.model_command(&listed.name, &shared.args.scene, &camera),
-            "figures": figures,
-        }))
+            "command": self.command("model", &listed.name, request.words(MODEL_FLAGS), &camera),
+        });
+        Ok((head, Vec::new()))
+    }
+
+    /// The command that draws a scene with these flags.
+    fn command(
+        &self,
+        verb: &str,
+        scene: &str,
+        words: impl Iterator<Item = String>,
+        camera: &Camera,
+    ) -> String {
+        let mut all = vec![format!("shiftvox {verb}"), flags::quoted(scene)];
+        all.extend(flags::scene_words(&self.args.scene).chain(words));
+        all.push(format!("--size={}x{}", camera.width, camera.height));
+        all.push(camera_line(camera));
+        all.join(" ")
     }
 }
 

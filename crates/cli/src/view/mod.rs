@@ -1,27 +1,25 @@
 //! `view`: scenes on a page, for a browser on this computer.
 //!
-//! A page opens sockets, each of which has a thread that draws for it alone (`drawer.rs`). A
-//! question on a socket has one answer, and where questions come faster than answers the newest
-//! alone is answered: pictures never queue. What a page may ask is in `request.rs`, who may ask in
-//! `server.rs`.
+//! The crate `shiftvox-view` serves the page. `drawer.rs` answers its requests, with the settings
+//! that `flags.rs` parses and the overlays of `overlay.rs`.
 
 mod drawer;
+mod flags;
 mod overlay;
-mod request;
-mod server;
 
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
-use std::sync::{Arc, OnceLock};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::sync::OnceLock;
 
 use clap::Args;
 use serde_json::json;
+use shiftvox::project::Coverage;
+use shiftvox_view::Server;
 
 use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs};
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs, Opened};
 use super::{report, scenes};
-use shiftvox::project::Coverage;
 
 /// Arguments of `view`.
 #[derive(Debug, Args)]
@@ -46,19 +44,17 @@ pub(super) struct ViewArgs {
     scene: SceneArgs,
 }
 
-/// What all pages look at.
+/// The scenes and the settings of all pages.
 struct Shared {
     args: ViewArgs,
     scenes: Vec<Listed>,
-    /// The secret of the printed address.
-    token: String,
 }
 
 /// A scene of the list.
 struct Listed {
     name: String,
     opened: Opened,
-    /// A mesh with the opacities that `--coverage alpha` draws, once that was asked for.
+    /// A mesh with the opacities that `--coverage alpha` draws, after the first request for them.
     blended: Option<OnceLock<Result<Opened, CliError>>>,
 }
 
@@ -76,7 +72,7 @@ impl Listed {
         })
     }
 
-    /// The scene as flags want it.
+    /// The scene that is drawn with these flags.
     fn for_flags(&self, args: &DrawArgs<'_>) -> Result<&Opened, CliError> {
         match &self.blended {
             Some(blended) if args.engine.rules.coverage == Some(Coverage::Alpha) => blended
@@ -103,7 +99,7 @@ impl ViewArgs {
 /// Serves pages until the program is stopped.
 ///
 /// # Errors
-/// A wrong command line, a bad scene, or an address that cannot be listened on.
+/// A wrong command line, a bad scene, or an address that cannot be used.
 pub(super) fn run(
     args: ViewArgs,
     from_config: Vec<String>,
@@ -116,69 +112,38 @@ pub(super) fn run(
             "--aov is for render; the page shows the same buffers as overlays",
         ));
     }
-    request::check_first(&args.picture)?;
-    let at = SocketAddr::new(args.bind, args.port);
-    let listener = listen(at)?;
-    let token = random_word()?;
+    if let Some(size) = args.picture.size {
+        let size = [size.width, size.height];
+        shiftvox_view::check_size(size, 1 << args.picture.aa_log2())
+            .map_err(|reason| CliError::new(Kind::Limit, reason))?;
+    }
+    let server = listen(SocketAddr::new(args.bind, args.port))?;
     let opened = names.iter().map(|name| Listed::open(name, &args, console));
     let scenes = opened.collect::<Result<Vec<_>, _>>()?;
-    let bound = listener.local_addr().map_err(|e| failed(&e))?;
-    // All addresses are no address: others put this computer's name before the port.
-    let shown = match bound.ip() {
-        ip if ip.is_unspecified() => SocketAddr::new(Ipv4Addr::LOCALHOST.into(), bound.port()),
-        _ => bound,
-    };
-    let address = format!("http://{shown}/?token={token}");
+    let address = server.page_address();
     match console.json {
         true => console.line(&report::document("view", json!({ "address": address })).to_string()),
         false => console.data(&address),
     }?;
     console.note("open this address in a browser; Ctrl-C ends the program");
-    if !bound.ip().is_loopback() {
-        let mut note =
-            "who knows the token can look from other computers, and nothing is encrypted";
-        if bound.ip().is_unspecified() {
-            note = "who knows the token can look from other computers, under this one's address, and nothing is encrypted";
-        }
-        console.note(note);
+    if !args.bind.is_loopback() {
+        let under = match args.bind.is_unspecified() {
+            true => ", under this one's address,",
+            false => ",",
+        };
+        console.note(format!(
+            "who knows the token can look from other computers{under} and nothing is encrypted"
+        ));
     }
-    let shared = Arc::new(Shared {
-        args,
-        scenes,
-        token,
-    });
-    let runtime = tokio::runtime::Builder::new_current_thread()
-        .enable_all()
-        .build();
-    let runtime = runtime.map_err(|e| failed(&e))?;
-    runtime
-        .block_on(server::serve(listener, shared))
-        .map_err(|e| failed(&e))
+    server.serve(&Shared { args, scenes })
 }
 
-fn failed(error: &std::io::Error) -> CliError {
-    CliError::new(Kind::Run, format!("cannot serve the page: {error}"))
-}
-
-fn listen(at: SocketAddr) -> Result<TcpListener, CliError> {
-    let listen = || {
-        let listener = TcpListener::bind(at)?;
-        listener.set_nonblocking(true)?;
-        Ok(listener)
-    };
-    listen().map_err(|error: std::io::Error| {
+fn listen(at: SocketAddr) -> Result<Server, CliError> {
+    Server::bind(at).map_err(|error| {
         let advice = match error.kind() {
             std::io::ErrorKind::AddrNotAvailable => "--bind takes an address of this computer",
             _ => "leave --port out: a free one is found",
         };
         CliError::new(Kind::Run, format!("cannot listen on {at}: {error}")).advise(advice)
     })
-}
-
-/// 128 random bits, as 32 hexadecimal digits.
-fn random_word() -> Result<String, CliError> {
-    let mut bytes = [0; 16];
-    getrandom::fill(&mut bytes)
-        .map_err(|error| CliError::new(Kind::Run, format!("no random numbers: {error}")))?;
-    Ok(format!("{:032x}", u128::from_ne_bytes(bytes)))
 }

@@ -1,40 +1,39 @@
-//! What a picture's buffers look like.
+//! Buffers of a picture as colours.
 
 use std::ops::Range;
 
-use super::request::Show;
-use crate::error::CliError;
 use shiftvox::drawing::Buffers;
 use shiftvox::picture::npy::Values;
 use shiftvox::picture::{Buffer, Rows};
 use shiftvox_lab::model::heat;
 
-/// What is shown where nothing is seen.
+use crate::error::CliError;
+
+/// Colour of pixels in which nothing is visible.
 const NOTHING: [u8; 4] = [24, 26, 30, 255];
 
-/// Colours, row by row, and the least and greatest value that they stand for.
+/// Colours, row by row, and the range of the values behind them.
 pub(super) type Painted = (Vec<[u8; 4]>, Option<Range<f64>>);
 
 /// A buffer as colours, and the numbers of its ends if it has any.
 ///
 /// # Errors
-/// When the buffer cannot be made.
-pub(super) fn colors(buffers: &Buffers<'_>, show: Show) -> Result<Painted, CliError> {
+/// When the buffer cannot be made, or has no colours.
+pub(super) fn colors(buffers: &Buffers<'_>, buffer: Buffer) -> Result<Painted, CliError> {
     let rows = 0..buffers.size().1;
-    let values = buffers.rows(show.buffer().unwrap_or(Buffer::Color), rows)?;
-    Ok(match (show, values) {
-        (Show::Records, Values::F32(records)) => {
+    let values = buffers.rows(buffer, rows)?;
+    Ok(match (buffer, values) {
+        (Buffer::Records, Values::F32(records)) => {
             let (colors, most) = heat::colors(&records);
             (colors, Some(0.0..f64::from(most)))
         }
-        (Show::Depth, Values::F32(depths)) => depth(&depths),
-        (Show::Normal, Values::F32(normals)) => (
+        (Buffer::Depth, Values::F32(depths)) => depth(&depths),
+        (Buffer::Normal, Values::F32(normals)) => (
             normals.as_chunks::<3>().0.iter().map(normal).collect(),
             None,
         ),
-        (Show::Level, Values::I32(voxels)) => level(voxels.as_chunks::<4>().0),
-        (_, Values::U8(colors)) => (colors.as_chunks::<4>().0.to_vec(), None),
-        (_, Values::I32(_) | Values::F32(_)) => (Vec::new(), None),
+        (Buffer::Voxel, Values::I32(voxels)) => level(voxels.as_chunks::<4>().0),
+        _ => return Err(CliError::usage("a page does not show this buffer")),
     })
 }
 

@@ -2,7 +2,6 @@
 
 use std::process::Command;
 
-use assert_cmd::cargo::cargo_bin;
 use serde_json::{Value, json};
 use shiftvox::picture::png;
 
@@ -54,7 +53,7 @@ fn meshes_and_their_methods_are_drawn_as_render_draws_them() {
     let folder = tempfile::tempdir().unwrap();
     let made = |name: &str, words: &[&str]| {
         let path = folder.path().join(name);
-        let mut convert = Command::new(cargo_bin("shiftvox"));
+        let mut convert = Command::new(env!("CARGO_BIN_EXE_shiftvox"));
         let convert = convert
             .args(["convert", "assets/knot.obj", "--quiet"])
             .arg(&path)
@@ -152,7 +151,7 @@ fn overlays_are_buffers_as_colours() {
     let program = Program::start(&["gen:menger,depth=3"]);
     let mut page = program.page();
     let mut seen = Vec::new();
-    for show in ["color", "records", "level", "depth", "normal"] {
+    for show in ["color", "records", "voxel", "depth", "normal"] {
         let (head, rgba) = page.ask(json!({ "show": show, "hash": true, "size": [64, 64] }));
         assert_eq!(rgba.len(), 64 * 64 * 4, "{head}");
         assert_eq!(
@@ -193,7 +192,7 @@ fn figures_are_those_of_the_model() {
         .unwrap()
         .strip_prefix("shiftvox ")
         .unwrap();
-    let model = Command::new(cargo_bin("shiftvox"))
+    let model = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
         .args(words.split(' '))
         .arg("--json")
         .output()

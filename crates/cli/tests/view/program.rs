@@ -5,7 +5,6 @@ use std::net::TcpStream;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use assert_cmd::cargo::cargo_bin;
 use serde_json::{Value, json};
 use tungstenite::handshake::client::generate_key;
 use tungstenite::http::Request;
@@ -23,7 +22,7 @@ pub(crate) struct Program {
 impl Program {
     /// Starts `shiftvox view` with these words, in the folder of the sources.
     pub(crate) fn start(words: &[&str]) -> Self {
-        let mut child = Command::new(cargo_bin("shiftvox"))
+        let mut child = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
             .args(["view", "--quiet"])
             .args(words)
             .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
@@ -181,7 +180,7 @@ pub(crate) fn run_command(command: &str) -> (Vec<u8>, String) {
     let path = folder.path().join("picture.png");
     let words = command.strip_prefix("shiftvox ").unwrap();
     let words = words.strip_suffix(" -o picture.png").unwrap();
-    let output = Command::new(cargo_bin("shiftvox"))
+    let output = Command::new(env!("CARGO_BIN_EXE_shiftvox"))
         .args(words.split(' '))
         .args(["--hash", "-o"])
         .arg(&path)

@@ -1,6 +1,6 @@
 //! Frames a second, and how long each takes from question to picture: `docs/view.md` has the figures.
 //!
-//! `cargo test --release --test view rate -- --ignored --nocapture`
+//! `cargo test --release -p shiftvox-cli --test view rate -- --ignored --nocapture`
 
 use std::time::Instant;
 

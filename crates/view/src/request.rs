@@ -1,0 +1,136 @@
+//! Requests of a page, in JSON.
+//!
+//! A page names scenes by their place in the list, and settings by a few flags of
+//! `shiftvox render`.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// Most pixels of a picture: 2048 x 2048.
+pub(crate) const MOST_PIXELS: u64 = 1 << 22;
+/// Most samples of a picture: 16 per pixel at 1024 x 1024.
+pub(crate) const MOST_SAMPLES: u64 = 1 << 24;
+/// Most letters of a flag's value.
+const MOST_LETTERS: usize = 24;
+
+/// Flags of `render` that a page may set, separated by blanks. None of them names a file.
+pub const FLAGS: &str = "background bits cage coverage engine erosion erosion-grid far-opacity frac \
+                         isa lod overflow shade tolerance";
+
+/// Values of flags, by the flags' long names.
+pub type Flags = BTreeMap<String, String>;
+
+/// A request.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Request {
+    /// The page's own number, which the answer repeats.
+    pub(crate) seq: u64,
+    /// The kind of answer.
+    pub ask: Ask,
+    /// Place in the list of scenes.
+    pub scene: usize,
+    /// Pixels across and down.
+    pub size: [u32; 2],
+    /// Samples per pixel and axis.
+    pub aa: u32,
+    /// `None`: a camera that is fitted to the scene.
+    #[serde(default)]
+    pub camera: Option<Camera>,
+    /// Flags of [`FLAGS`] that are set.
+    #[serde(default)]
+    pub flags: Flags,
+    /// The buffer of `render` that is shown as colours, if it is not `color`.
+    #[serde(default)]
+    pub show: Option<String>,
+    /// Whether the answer has the picture's hash.
+    #[serde(default)]
+    pub hash: bool,
+    /// Whether the picture comes as a PNG file; otherwise as four bytes per pixel.
+    #[serde(default)]
+    pub png: bool,
+}
+
+/// The kind of answer that a page asks for.
+#[derive(Debug, Clone, Copy, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Ask {
+    /// A picture.
+    Picture,
+    /// Figures of the hardware model.
+    Figures,
+}
+
+/// A placed camera. JSON has no infinity and no NaN: they come as `null`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[expect(missing_docs, reason = "named as in the camera of render")]
+pub struct Camera {
+    pub eye: [Option<f64>; 3],
+    pub target: [Option<f64>; 3],
+    pub up: [Option<f64>; 3],
+    pub fov: Option<f64>,
+}
+
+/// Refuses a picture that is too large, with so many samples per pixel and axis.
+///
+/// # Errors
+/// The reason.
+pub fn check_size([width, height]: [u32; 2], aa: u32) -> Result<(), String> {
+    let pixels = u64::from(width) * u64::from(height);
+    let samples = pixels.saturating_mul(u64::from(aa).pow(2));
+    if pixels <= MOST_PIXELS && samples <= MOST_SAMPLES {
+        return Ok(());
+    }
+    let most = format!("{MOST_PIXELS} pixels and {MOST_SAMPLES} samples");
+    Err(format!("a page's picture has at most {most}"))
+}
+
+impl Request {
+    /// Refuses flags that a page may not set, values that no flag has, and large pictures.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        for (name, value) in &self.flags {
+            if !FLAGS.split(' ').any(|flag| flag == name) {
+                return Err("a page may not set this flag".to_owned());
+            }
+            let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "+-.,".contains(letter);
+            if value.len() > MOST_LETTERS || !value.chars().all(is_plain) {
+                return Err(format!("--{name} has no such value"));
+            }
+        }
+        check_size(self.size, self.aa)
+    }
+
+    /// The flags that are set, of these, as words of a command line.
+    pub fn words(&self, of: &str) -> impl Iterator<Item = String> {
+        let flags = of
+            .split(' ')
+            .filter_map(|name| self.flags.get_key_value(name));
+        flags.map(|(name, value)| format!("--{name}={value}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn flags_name_no_files() {
+        let is_allowed = |flags: &str| {
+            let fields = r#""seq":1,"ask":"picture","scene":0,"size":[64,32],"aa":2"#;
+            let request: Request =
+                serde_json::from_str(&format!(r#"{{{fields},"flags":{flags}}}"#)).unwrap();
+            request.check().is_ok()
+        };
+        assert!(is_allowed(r#"{"coverage":"any","lod":"2"}"#));
+        for wrong in [
+            r#"{"output":"a.png"}"#,
+            r#"{"config":"a.toml"}"#,
+            r#"{"coverage":"/etc/passwd"}"#,
+            r#"{"lod":"1 --outdir=x"}"#,
+        ] {
+            assert!(!is_allowed(wrong), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! A socket: requests of a page, and the answers to them.
+//!
+//! A message to a page is the length of its head in four bytes (least significant first), the head
+//! as JSON, and the picture if there is one. Requests do not queue: of those that have arrived,
+//! only the newest is answered.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use tungstenite::protocol::frame::Frame;
+use tungstenite::protocol::frame::coding::{CloseCode, Data, OpCode};
+use tungstenite::protocol::{CloseFrame, Role, WebSocketConfig};
+use tungstenite::{Error, Message, Utf8Bytes, WebSocket};
+
+use crate::request::{MOST_PIXELS, MOST_SAMPLES, Request};
+use crate::{Answer, Program};
+
+/// Most bytes of a message from a page.
+const MOST_BYTES: usize = 4096;
+/// Most messages per second.
+const MOST_MESSAGES: u32 = 250;
+const SECOND: Duration = Duration::from_secs(1);
+/// The drawer is dropped after this time without a request: its buffers may take hundreds of
+/// megabytes.
+const IDLE: Duration = Duration::from_secs(10);
+
+/// A stream for slow links. A write fails after two of the stream's time limits without progress.
+struct Patient(TcpStream);
+
+impl Read for Patient {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        self.0.read(bytes)
+    }
+}
+
+impl Write for Patient {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        // The system wakes a writer when a third of its buffer is free. A second attempt needs one
+        // byte.
+        self.0.write(bytes).or_else(|_| self.0.write(bytes))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Serves a socket until the page or this program closes it.
+pub(crate) fn talk(stream: TcpStream, program: &impl Program) {
+    let config = WebSocketConfig::default()
+        .read_buffer_size(MOST_BYTES)
+        .max_message_size(Some(MOST_BYTES))
+        .max_frame_size(Some(MOST_BYTES));
+    let mut socket = WebSocket::from_raw_socket(Patient(stream), Role::Server, Some(config));
+    // After an error nothing can be sent.
+    if let Ok(closed) = answer_all(&mut socket, program) {
+        let frame = closed.map(|(code, reason)| CloseFrame {
+            code,
+            reason: reason.into(),
+        });
+        let _ = socket.close(frame);
+    }
+}
+
+/// Answers requests until the socket is closed. Returns why this program closes it; `None`: the page
+/// closed it, and gets a reply.
+fn answer_all(
+    socket: &mut WebSocket<Patient>,
+    program: &impl Program,
+) -> Result<Option<(CloseCode, &'static str)>, Error> {
+    let mut hello = program.hello();
+    hello["ask"] = json!("hello");
+    hello["version"] = json!(env!("CARGO_PKG_VERSION"));
+    hello["most_pixels"] = json!(MOST_PIXELS);
+    hello["most_samples"] = json!(MOST_SAMPLES);
+    send(socket, (hello, Vec::new()))?;
+    socket.get_ref().0.set_read_timeout(Some(IDLE))?;
+    let (mut drawer, mut newest) = (None, None::<Utf8Bytes>);
+    let (mut second, mut count) = (Instant::now(), 0);
+    loop {
+        // After a request, only messages that have arrived are read.
+        socket.get_ref().0.set_nonblocking(newest.is_some())?;
+        let message = match socket.read() {
+            Ok(message) => message,
+            Err(Error::Io(error)) => {
+                match error.kind() {
+                    ErrorKind::WouldBlock | ErrorKind::TimedOut => {}
+                    ErrorKind::Interrupted => continue,
+                    _ => return Err(error.into()),
+                }
+                let Some(message) = newest.take() else {
+                    drawer = None;
+                    continue;
+                };
+                socket.get_ref().0.set_nonblocking(false)?;
+                let drawer = drawer.get_or_insert_with(|| program.drawer());
+                let drawn = catch_unwind(AssertUnwindSafe(|| answer(drawer, &message)));
+                let Ok(answer) = drawn else {
+                    let reason = "the program cannot go on with this page";
+                    return Ok(Some((CloseCode::Error, reason)));
+                };
+                send(socket, answer)?;
+                continue;
+            }
+            Err(Error::Capacity(_) | Error::Protocol(_) | Error::Utf8(_)) => {
+                return Ok(Some((CloseCode::Size, "a message is too long or broken")));
+            }
+            Err(error) => return Err(error),
+        };
+        if second.elapsed() >= SECOND {
+            (second, count) = (Instant::now(), 0);
+        }
+        count += 1;
+        if count > MOST_MESSAGES {
+            return Ok(Some((CloseCode::Policy, "too many messages")));
+        }
+        match message {
+            Message::Text(text) => newest = Some(text),
+            Message::Binary(_) => return Ok(Some((CloseCode::Unsupported, "messages are text"))),
+            Message::Close(_) => return Ok(None),
+            Message::Ping(_) | Message::Pong(_) | Message::Frame(_) => {}
+        }
+    }
+}
+
+fn send(socket: &mut WebSocket<Patient>, (head, picture): Answer) -> Result<(), Error> {
+    let head = head.to_string();
+    // A head has a few thousand bytes.
+    let mut begin = (head.len() as u32).to_le_bytes().to_vec();
+    begin.extend_from_slice(head.as_bytes());
+    let begin = Frame::message(begin, OpCode::Data(Data::Binary), false);
+    let rest = Frame::message(picture, OpCode::Data(Data::Continue), true);
+    socket.write(Message::Frame(begin))?;
+    socket.send(Message::Frame(rest))
+}
+
+/// The answer to a message, or the reason why there is none.
+fn answer(drawer: &mut impl FnMut(&Request) -> Result<Answer, String>, message: &str) -> Answer {
+    let request = serde_json::from_str::<Request>(message)
+        .map_err(|error| format!("this message is not understood: {error}"));
+    let mut seq = None;
+    let drawn = request.and_then(|request| {
+        seq = Some(request.seq);
+        request.check()?;
+        let (mut head, picture) = drawer(&request)?;
+        head["ask"] = json!(request.ask);
+        Ok((head, picture))
+    });
+    let refused = |reason| (json!({ "ask": "error", "error": reason }), Vec::new());
+    let (mut head, picture) = drawn.unwrap_or_else(refused);
+    head["seq"] = json!(seq);
+    (head, picture)
+}
