@@ -8,8 +8,8 @@ use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::Value;
 
 use super::error::{CliError, Kind};
@@ -209,59 +209,113 @@ fn is_drawn_on() -> bool {
     io::stderr().is_terminal() && std::env::var_os("TERM").is_some_and(has_name)
 }
 
-/// One bar at a time, without colours, gone when the work is done.
+/// The work that is under way, one at a time: a line that is rewritten, and removed at the end.
 #[derive(Default)]
 struct Bars {
-    bar: Mutex<Option<ProgressBar>>,
+    bar: Mutex<Option<Bar>>,
+}
+
+/// Progress of one piece of work.
+struct Bar {
+    what: String,
+    /// Steps in all; 0 if unknown.
+    steps: u64,
+    done: u64,
+    started: Instant,
+    /// Time of the last writing.
+    written: Option<Instant>,
+}
+
+/// Time between two writings.
+const REFRESH: Duration = Duration::from_millis(100);
+/// Longest text before the percentage: lines must not wrap.
+const MOST_LETTERS: usize = 56;
+
+impl Bar {
+    /// What is done, and the remaining time at the present rate.
+    fn line(&self, elapsed: Duration) -> String {
+        let what: String = self.what.chars().take(MOST_LETTERS).collect();
+        let share = self.done.min(self.steps) as f64 / self.steps.max(1) as f64;
+        if self.steps == 0 || share == 0.0 {
+            return format!("{what} ...");
+        }
+        let left = elapsed.as_secs_f64() * (1.0 - share) / share;
+        let left = match left {
+            seconds if seconds < 99.5 => format!("{seconds:.0} s"),
+            seconds if seconds < 5970.0 => format!("{:.0} min", seconds / 60.0),
+            seconds => format!("{:.1} h", seconds / 3600.0),
+        };
+        format!("{what} {:3.0} % ({left} left)", 100.0 * share)
+    }
+
+    fn write(&mut self) {
+        let now = Instant::now();
+        if self.written.is_some_and(|at| now - at < REFRESH) {
+            return;
+        }
+        self.written = Some(now);
+        // Back to the beginning of the line; what stood behind the text is cleared.
+        let _ = write!(io::stderr().lock(), "\r{}\x1b[K", self.line(now - self.started));
+    }
 }
 
 impl Bars {
-    fn with(&self, act: impl FnOnce(&mut Option<ProgressBar>)) {
-        // A bar is no reason to fail: whoever panicked left it usable.
-        act(&mut self.bar.lock().unwrap_or_else(PoisonError::into_inner));
+    /// Replaces the bar, and clears its line if it had one.
+    fn put(&self, bar: Option<Bar>) {
+        let mut slot = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
+        if slot.take().is_some() {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        }
+        *slot = bar;
+        slot.iter_mut().for_each(Bar::write);
     }
 }
 
 impl Progress for Bars {
     fn begin(&self, what: &str, steps: u64) {
-        let bar = if steps == 0 {
-            ProgressBar::new_spinner()
-        } else {
-            ProgressBar::new(steps)
-        };
-        if steps > 0
-            && let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent}% {eta}")
-        {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        bar.set_message(harmless(what).into_owned());
-        self.with(|slot| {
-            if let Some(old) = slot.replace(bar) {
-                old.finish_and_clear();
-            }
-        });
+        self.put(Some(Bar {
+            what: harmless(what).replace('\n', " "),
+            steps,
+            done: 0,
+            started: Instant::now(),
+            written: None,
+        }));
     }
 
     fn advance(&self, steps: u64) {
-        self.with(|slot| {
-            if let Some(bar) = slot {
-                bar.inc(steps);
-            }
-        });
+        let mut slot = self.bar.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(bar) = &mut *slot {
+            bar.done += steps;
+            bar.write();
+        }
     }
 
     fn end(&self) {
-        self.with(|slot| {
-            if let Some(bar) = slot.take() {
-                bar.finish_and_clear();
-            }
-        });
+        self.put(None);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn progress_is_one_line_with_the_time_that_is_left() {
+        let bar = |what: &str, steps, done| Bar {
+            what: what.to_owned(),
+            steps,
+            done,
+            started: Instant::now(),
+            written: None,
+        };
+        let after = |bar: Bar, seconds| bar.line(Duration::from_secs(seconds));
+        assert_eq!(after(bar("reading a", 0, 9), 5), "reading a ...");
+        assert_eq!(after(bar("building", 200, 50), 10), "building  25 % (30 s left)");
+        assert_eq!(after(bar("b", 4, 1), 100), "b  25 % (5 min left)");
+        assert_eq!(after(bar("b", 4, 1), 12_000), "b  25 % (10.0 h left)");
+        assert_eq!(after(bar("b", 4, 5), 3), "b 100 % (0 s left)");
+        assert!(after(bar(&"x".repeat(500), 4, 1), 9).chars().count() < 80);
+    }
 
     #[test]
     fn names_do_not_move_the_cursor() {
