@@ -1,6 +1,5 @@
 //! Contexts of a sequential lane (rule 14): one of them has the lane at a time.
 
-use super::observe::Observer;
 use super::simulate::Simulation;
 use super::turn::Workload;
 
@@ -26,7 +25,7 @@ impl Sharing {
     }
 }
 
-impl<W: Workload, O: Observer> Simulation<'_, W, O> {
+impl<W: Workload> Simulation<'_, W> {
     fn sharing(&mut self, context: u32) -> &mut Sharing {
         &mut self.asked.sharing[(context / self.hardware.contexts) as usize]
     }

@@ -31,10 +31,12 @@ pub struct VisitSpan {
 }
 
 /// Watches a simulation. Its methods do nothing by default, and where
-/// [`Observer::ENABLED`] is false the first two are not called at all.
+/// [`Observer::watches_visits`] is false the first two are not called at all.
 pub trait Observer {
-    /// Whether visits and queues are reported to it.
-    const ENABLED: bool = true;
+    /// Whether visits and queues are reported to it; the same for all of a simulation.
+    fn watches_visits(&self) -> bool {
+        true
+    }
 
     /// A visit begins; its whole course is known by then. Visits come in the
     /// order in which they begin.
@@ -59,7 +61,9 @@ pub trait Observer {
 pub struct NoObserver;
 
 impl Observer for NoObserver {
-    const ENABLED: bool = false;
+    fn watches_visits(&self) -> bool {
+        false
+    }
 }
 
 /// Calls a function with cycles and records every few thousand records.
@@ -67,7 +71,9 @@ impl Observer for NoObserver {
 pub struct Progress<F>(pub F);
 
 impl<F: FnMut(u64, u64)> Observer for Progress<F> {
-    const ENABLED: bool = false;
+    fn watches_visits(&self) -> bool {
+        false
+    }
 
     fn progress(&mut self, cycle: u64, records: u64) {
         (self.0)(cycle, records);
@@ -76,7 +82,9 @@ impl<F: FnMut(u64, u64)> Observer for Progress<F> {
 
 /// Both watch.
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    const ENABLED: bool = A::ENABLED || B::ENABLED;
+    fn watches_visits(&self) -> bool {
+        self.0.watches_visits() || self.1.watches_visits()
+    }
 
     fn visit(&mut self, span: &VisitSpan) {
         self.0.visit(span);
@@ -95,7 +103,9 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 }
 
 impl<O: Observer> Observer for &mut O {
-    const ENABLED: bool = O::ENABLED;
+    fn watches_visits(&self) -> bool {
+        (**self).watches_visits()
+    }
 
     fn visit(&mut self, span: &VisitSpan) {
         (**self).visit(span);

@@ -8,7 +8,6 @@ use std::collections::VecDeque;
 
 use super::contexts::Sharing;
 use super::hardware::Hardware;
-use super::observe::Observer;
 use super::report::Cause;
 use super::simulate::{Simulation, SimulationError};
 use super::turn::Workload;
@@ -71,7 +70,7 @@ pub(super) struct Step {
     cause: Option<Cause>,
 }
 
-impl<W: Workload, O: Observer> Simulation<'_, W, O> {
+impl<W: Workload> Simulation<'_, W> {
     /// All lanes ask for tiles.
     pub(super) fn ask_for_tiles(&mut self) {
         let contexts = 0..self.contexts.len() as u32;

@@ -89,10 +89,10 @@ pub(super) struct Lane {
 ///
 /// # Errors
 /// When [`Hardware::check`] fails, the workload fails, or a stack overflows that does not spill.
-pub fn simulate<W: Workload, O: Observer>(
+pub fn simulate<W: Workload>(
     hardware: &Hardware,
     workload: &mut W,
-    observer: &mut O,
+    observer: &mut dyn Observer,
 ) -> Result<CycleReport, SimulationError<W::Error>> {
     hardware.check().map_err(SimulationError::Hardware)?;
     let mut simulation = Simulation::new(hardware, workload, observer);
@@ -100,10 +100,12 @@ pub fn simulate<W: Workload, O: Observer>(
     Ok(simulation.report(end))
 }
 
-pub(super) struct Simulation<'a, W, O> {
+pub(super) struct Simulation<'a, W> {
     pub(super) hardware: &'a Hardware,
     pub(super) workload: &'a mut W,
-    observer: &'a mut O,
+    observer: &'a mut dyn Observer,
+    /// Whether the observer watches visits.
+    watched: bool,
     pub(super) wheel: Wheel,
     pub(super) contexts: Vec<Context>,
     pub(super) lanes: Vec<Lane>,
@@ -119,8 +121,8 @@ pub(super) struct Simulation<'a, W, O> {
     accounted: u64,
 }
 
-impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
-    fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut O) -> Self {
+impl<'a, W: Workload> Simulation<'a, W> {
+    fn new(hardware: &'a Hardware, workload: &'a mut W, observer: &'a mut dyn Observer) -> Self {
         // Contexts that draw tiles of their own have a stack each: a lane for each as far as records go.
         let (lanes, contexts) = match hardware.hands_out_tiles() {
             true => (hardware.stacks(), 1),
@@ -161,6 +163,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             accounted: 0,
             hardware,
             workload,
+            watched: observer.watches_visits(),
             observer,
         }
     }
@@ -344,7 +347,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
             of.from = of.lane;
         }
         self.blocks[of.lane as usize][visit.stage as usize].free_at = frees;
-        if O::ENABLED {
+        if self.watched {
             self.observer.visit(&VisitSpan {
                 record: of.record,
                 lane: context / self.hardware.contexts,
@@ -415,7 +418,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
                 place -= 1;
             }
             ready.insert(place, task);
-            if O::ENABLED {
+            if self.watched {
                 self.tell_queue(now, at);
             }
         }
@@ -483,7 +486,7 @@ impl<'a, W: Workload, O: Observer> Simulation<'a, W, O> {
         self.idle -= 1;
         self.lanes[from].stored -= 1;
         self.totals.stack.stolen += u64::from(stolen);
-        if O::ENABLED {
+        if self.watched {
             self.tell_queue(now, from);
         }
         let of = &mut self.contexts[context as usize];

@@ -96,18 +96,18 @@ impl Machine {
     /// # Errors
     /// When the hardware's description is not sound, a word overflows under
     /// the trap policy, or a stack that does not spill is full.
-    pub fn simulate<O: Observer>(
+    pub fn simulate(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
         hardware: &Hardware,
-        observer: &mut O,
+        observer: &mut dyn Observer,
     ) -> Result<Simulated, SimulateError> {
         hardware.check()?;
         let log = TurnLog::new(hardware);
         let (simulated, _) = with_cage!(setup, L => {
-            self.simulate_as::<_, L, _>(graph, setup, frame, hardware, observer, log)
+            self.simulate_as::<_, L>(graph, setup, frame, hardware, observer, log)
         })?;
         Ok(simulated)
     }
@@ -133,18 +133,18 @@ impl Machine {
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {
-            self.simulate_as::<_, L, _>(graph, setup, frame, hardware, &mut observer, probes)
+            self.simulate_as::<_, L>(graph, setup, frame, hardware, &mut observer, probes)
         })?;
         Ok(tape.finish())
     }
 
-    fn simulate_as<P: TurnProbe, L: CageCoordinate, O: Observer>(
+    fn simulate_as<P: TurnProbe, L: CageCoordinate>(
         &mut self,
         graph: &GraphView<'_>,
         setup: &FrameSetup,
         frame: &mut Frame,
         hardware: &Hardware,
-        observer: &mut O,
+        observer: &mut dyn Observer,
         log: P,
     ) -> Result<(Simulated, P), SimulateError> {
         let options = MachineOptions {

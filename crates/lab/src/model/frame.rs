@@ -169,12 +169,12 @@ pub fn count_priced(
 ///
 /// # Errors
 /// When a word overflows under the trap policy, or a stack that does not spill.
-pub fn simulate<O: Observer>(
+pub fn simulate(
     graph: &GraphView<'_>,
     setup: &FrameSetup,
     hardware: &Hardware,
     overflow: Overflow,
-    observer: &mut O,
+    observer: &mut dyn Observer,
 ) -> Result<(Frame, Simulated), ModelError> {
     let setup = &*in_words(setup, hardware.organisation);
     let mut frame = Frame::new(setup.width, setup.height, false);
