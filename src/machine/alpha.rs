@@ -1,4 +1,4 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 11): how much of its
+//! Blending, under the rule `alpha` (`SPEC.md`, R11): how much of its
 //! outline a voxel covers, and what that adds to a sample.
 //!
 //! At most three sides of a voxel are seen. The share of each is the eye's
@@ -182,7 +182,7 @@ fn plus_product<P: Probe>(
     sum
 }
 
-/// What a voxel adds to each sample that it is drawn at.
+/// Weight and colour of a voxel at each sample where it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendColor {
     /// 0 to 256.

@@ -4,24 +4,27 @@
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
-macro_rules! blocks {
-    ($($(#[$doc:meta])* $name:ident,)*) => {
-        /// A block of the machine that works without memory: its outputs follow
-        /// from its inputs and the frame's constants.
+/// An enumeration and the list of its values.
+macro_rules! numbered {
+    ($(#[$enum_doc:meta])* $enum:ident, $count:literal: $($(#[$doc:meta])* $name:ident,)*) => {
+        $(#[$enum_doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
-        pub enum Block {
+        pub enum $enum {
             $($(#[$doc])* $name,)*
         }
 
-        impl Block {
-            /// All blocks, in the order of their numbers.
-            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+        impl $enum {
+            /// All, in the order of their numbers.
+            pub const ALL: [Self; $count] = [$(Self::$name,)*];
         }
     };
 }
 
-blocks! {
+numbered! {
+    /// A block of the machine that works without memory: its outputs follow
+    /// from its inputs and the frame's constants.
+    Block, 38:
     /// Is the quadtree node full?
     Filled,
     /// May a record's depth change to screen space?
@@ -106,11 +109,10 @@ impl From<Block> for u32 {
     }
 }
 
-/// Where a record's turn meets the machine's memories. What crosses a port is shown as the block
-/// whose number follows those of all [`Block`]s: the address, and what is written or read there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Port {
+numbered! {
+    /// A port between a record's turn and the machine's memories. A probe sees it as a block, with a number after those
+    /// of all [`Block`]s: its input is the address, and its output what is written or read there.
+    Port, 8:
     /// A record is taken from the stack: its turn begins.
     Pop,
     /// A record is put on the stack.
@@ -130,19 +132,7 @@ pub enum Port {
 }
 
 impl Port {
-    /// All ports, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
-        Self::Pop,
-        Self::Push,
-        Self::FillRead,
-        Self::FillWrite,
-        Self::NodeRead,
-        Self::AttributeRead,
-        Self::PixelWrite,
-        Self::Made,
-    ];
-
-    /// Shows what crosses the port.
+    /// Shows the port's signals to a probe.
     #[inline(always)]
     pub(super) fn tap<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
         let number = Block::ALL.len() as u32 + self as u32;

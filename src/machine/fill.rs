@@ -1,5 +1,5 @@
 //! The fill vectors as the machine holds them: four bits for each node of the image quadtree, or the lowest two levels
-//! joined.
+//! joined. Both decisions of R6 (`SPEC.md`) that follow from one vector are here.
 //!
 //! A sample's vector is all ones or all zeros, and each bit of its parent's says the same of a sample. *Joined*,
 //! a node two levels above the samples has one word of 16 bits, one a sample, in the place of the 21 vectors
@@ -7,9 +7,11 @@
 
 use std::cell::Cell;
 
+use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::blocks::{Block, Port};
+use super::quadrants::only;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -30,12 +32,19 @@ pub(super) struct FillStore<'f> {
     words: Vec<u16>,
     /// The address of the word in the register.
     latched: Cell<u64>,
+    /// Whether full nodes reject records.
+    pub(super) rejects_full: bool,
 }
 
 impl<'f> FillStore<'f> {
     /// Vectors as they are, or with the lowest two levels joined, where there are
-    /// so many below `tile_levels`.
-    pub(super) fn new(vectors: &'f mut FillVectors, joined: bool, tile_levels: u32) -> Self {
+    /// so many below the tiles.
+    pub(super) fn new(
+        vectors: &'f mut FillVectors,
+        organisation: Organisation,
+        rejects_full: bool,
+    ) -> Self {
+        let (joined, tile_levels) = (organisation.joined_fill, organisation.tile_levels);
         let level = vectors.levels().checked_sub(LEVELS_BELOW);
         let words = match level.filter(|level| joined && *level >= tile_levels) {
             None => Vec::new(),
@@ -51,6 +60,7 @@ impl<'f> FillStore<'f> {
             vectors,
             words,
             latched: Cell::new(NO_WORD),
+            rejects_full,
         }
     }
 
@@ -103,6 +113,49 @@ impl<'f> FillStore<'f> {
             self.read_vector(dp, node);
         }
         self.peek(node)
+    }
+
+    /// Whether all of a record's node is drawn by the time of its turn.
+    #[inline(always)]
+    pub(super) fn is_full<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode) -> bool {
+        dp.stage(Stage::Filled);
+        if !self.rejects_full {
+            return false;
+        }
+        let vector = self.read(dp, quad);
+        let full = dp.and_bits(4, vector, FULL) == FULL;
+        dp.tap(Block::Filled, &Short::unsigned(vector, 4), &full);
+        full
+    }
+
+    /// Whether the search for a box's node rejects the box, which overlaps `quadrants` of `quad`: none of them is open.
+    ///
+    /// The search enters no full node, so it needs no test for one: it continues only with a quadrant that is open in
+    /// its parent's vector, and marking a node as full sets its bit there. The node where it begins is the exception. A
+    /// parent that draws its children one by one may fill its own node, and then this rejects the others.
+    #[inline]
+    pub(super) fn rejects<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        quadrants: u8,
+    ) -> bool {
+        if !self.rejects_full {
+            return quadrants == 0;
+        }
+        let vector = self.read(dp, quad);
+        let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
+        let choice = only(quadrants);
+        dp.tap(
+            Block::NodeChoice,
+            &(Short::unsigned(quadrants, 4), Short::unsigned(vector, 4)),
+            &(
+                rejects,
+                choice.is_some(),
+                Short::unsigned(choice.unwrap_or(0), 2),
+            ),
+        );
+        rejects
     }
 
     /// A node's vector.
@@ -253,12 +306,19 @@ mod tests {
 
     use super::*;
 
+    fn joined_levels() -> Organisation {
+        Organisation {
+            joined_fill: true,
+            ..Organisation::default()
+        }
+    }
+
     /// A picture of 8 x 8 samples, the first 4 x 4 of which are drawn one by one.
     #[test]
     fn a_word_holds_what_its_vectors_do() {
         let (mut plain, mut joined) = (FillVectors::new(3, 8, 7), FillVectors::new(3, 8, 7));
-        let mut plain = FillStore::new(&mut plain, false, 0);
-        let mut joined = FillStore::new(&mut joined, true, 0);
+        let mut plain = FillStore::new(&mut plain, Organisation::default(), true);
+        let mut joined = FillStore::new(&mut joined, joined_levels(), true);
         let dp = || Datapath::new(Format::new(32, 8).unwrap(), Overflow::Trap, Counter::new());
         let (mut one, mut two) = (dp(), dp());
         for at in 0..16 {
@@ -289,7 +349,7 @@ mod tests {
     #[test]
     fn the_register_saves_reads_within_a_turn() {
         let mut vectors = FillVectors::new(3, 8, 8);
-        let fill = FillStore::new(&mut vectors, true, 0);
+        let fill = FillStore::new(&mut vectors, joined_levels(), true);
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, Counter::new());
         let node = QuadNode::ROOT.quadrant(2);

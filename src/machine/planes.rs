@@ -1,4 +1,4 @@
-//! Silhouettes of cubes in clip space, exact (`SPEC.md`, "Exact coverage").
+//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
 //!
 //! A ray meets the inside of a cube if and only if for each axis j the four
 //! edges along j do not all pass on one side of it. The plane through the eye
@@ -86,8 +86,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. If that is on the plane: of a point right
-    /// of it by an infinitesimal and below it by one infinitely smaller.
+    /// The side of the node's middle. If that is on the plane, a tie (R8.1): of a
+    /// point right of it by an infinitesimal and below it by one infinitely smaller.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -186,8 +186,9 @@ impl Silhouette {
         Self { edges, front }
     }
 
-    /// The half of the rays that can reach a cube: those towards it along an
-    /// axis on which the eye is outside it. `None` for a cube that holds the eye.
+    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those
+    /// towards it along an axis on which the eye is outside it. `None` for a cube
+    /// that holds the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -300,8 +301,7 @@ fn combine<P: Probe>(
     })
 }
 
-/// The planes of a child, from its parent's: moved by half a side along each
-/// axis whose bit the child's octant has.
+/// The planes of a child, from its parent's.
 pub(super) fn of_child<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -309,17 +309,9 @@ pub(super) fn of_child<P: Probe>(
     parent_level: u32,
     octant: u8,
 ) -> Planes {
-    let half_shift = constants.depth - parent_level - 1;
     let mut planes = *parent;
-    for j in 0..3 {
-        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-        for (axis, of, add) in [(k, l, false), (l, k, true)] {
-            if octant >> (2 - axis) & 1 != 0 {
-                let across = axis_plane(constants, parent, of).map(|v| dp.shl(v, half_shift));
-                planes.edge[j] = combine(dp, planes.edge[j], across, add);
-            }
-        }
-    }
+    move_edges(dp, constants, &mut planes, parent_level, octant, false);
+    let half_shift = constants.depth - parent_level - 1;
     let axes = (constants.axis_ab, parent.axis_c);
     let half = Short::unsigned(half_shift, LEVEL_BITS);
     let octant = Short::unsigned(octant, 3);
@@ -331,18 +323,20 @@ pub(super) fn of_child<P: Probe>(
     planes
 }
 
-/// The planes of a parent at a level, from its child's: what [`of_child`] did, undone.
-pub(super) fn to_parent<P: Probe>(
+/// Moves planes by half a parent's side along each axis whose bit the child's octant has; `is_back`: from the child's
+/// to the parent's, which undoes [`of_child`].
+pub(super) fn move_edges<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     planes: &mut Planes,
     parent_level: u32,
     octant: u8,
+    is_back: bool,
 ) {
     let half_shift = constants.depth - parent_level - 1;
     for j in 0..3 {
         let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-        for (axis, of, add) in [(k, l, true), (l, k, false)] {
+        for (axis, of, add) in [(k, l, is_back), (l, k, !is_back)] {
             if octant >> (2 - axis) & 1 != 0 {
                 let across = axis_plane(constants, planes, of).map(|v| dp.shl(v, half_shift));
                 planes.edge[j] = combine(dp, planes.edge[j], across, add);
@@ -351,7 +345,7 @@ pub(super) fn to_parent<P: Probe>(
     }
 }
 
-/// Makes planes relative to the parent of their node, of which that is a quadrant: what [`move_to_quadrant`] did, undone.
+/// Makes planes relative to the parent of their node, of which that is a quadrant: undoes [`move_to_quadrant`].
 pub(super) fn move_out_of_quadrant<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

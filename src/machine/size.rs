@@ -1,4 +1,4 @@
-//! How large a record is in samples, and which sample holds its centre.
+//! The size of a record in samples, and the sample that holds its centre (`SPEC.md`, R7).
 
 use hwmodel::{Datapath, Probe, Short, Word};
 

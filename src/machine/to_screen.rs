@@ -1,5 +1,5 @@
-//! The change from clip space to screen space: the one place where the
-//! machine divides, bit by bit, with subtractions and shifts.
+//! The change from clip space to screen space (`SPEC.md`, R5): the one place where
+//! the machine divides, bit by bit, with subtractions and shifts.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 

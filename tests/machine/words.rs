@@ -56,7 +56,11 @@ const TO_HOST: [Allowed; 14] = [
         "put(16, &c.origin.map(Word::to_host));",
         REGISTER,
     ),
-    allowed("constants.rs", ".map(|edge| edge.to_host())", REGISTER),
+    allowed(
+        "constants.rs",
+        "put(19, &c.edges.map(|edges| edges.map(Word::to_host)).concat());",
+        REGISTER,
+    ),
     allowed(
         "constants.rs",
         "put(13, &c.eye_ceil.map(Word::to_host));",
@@ -75,7 +79,7 @@ const TO_HOST: [Allowed; 14] = [
     ),
     allowed(
         "decide.rs",
-        "let voxel = min.to_host() >> self.constants.sub_levels;",
+        "let voxel = min.to_host() >> c.sub_levels;",
         "the voxel's number in the picture: what is shown, not what is computed with",
     ),
     allowed(
@@ -178,7 +182,7 @@ const RECORD: &str = "a record is its fields, in order, where it crosses the sta
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
-const PRODUCTS: [Allowed; 13] = [
+const PRODUCTS: [Allowed; 12] = [
     allowed(
         "constants.rs",
         "let (i, j) = ((k + 1) % 3, (k + 2) % 3);",
@@ -190,30 +194,25 @@ const PRODUCTS: [Allowed; 13] = [
         "where a sample lies in the host's memory",
     ),
     allowed(
-        "heat.rs",
+        "records_by_sample.rs",
         "let (x, y) = ((at % width) as u32, (at / width) as u32);",
-        HEAT,
+        WORK_MAP,
     ),
     allowed(
-        "heat.rs",
+        "records_by_sample.rs",
         "let samples = f64::from(1u32 << below) * f64::from(1u32 << below);",
-        HEAT,
+        WORK_MAP,
     ),
     allowed(
-        "heat.rs",
-        "f64::from(self.records[quad.address()]) / samples",
-        HEAT,
+        "records_by_sample.rs",
+        "f64::from(self.turns[quad.address()]) / samples",
+        WORK_MAP,
     ),
     allowed("cage.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
     allowed("cage.rs", "let at = 3 * j + k;", INDEX),
     allowed("cage.rs", "let at = 9 * i + k;", INDEX),
     allowed("cage.rs", "let at = 9 * i + 3 * j;", INDEX),
     allowed("cage.rs", "pool[low + 9 * a + 3 * b + c]", INDEX),
-    allowed(
-        "planes.rs",
-        "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
-        INDEX,
-    ),
     allowed(
         "planes.rs",
         "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
@@ -244,7 +243,7 @@ const REGISTER: &str = "what the host writes into the registers of the Verilog (
 const CONSTANT: &str = "a constant of the frame, made by the host before the first record";
 const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const INDEX: &str = "which wire, known when the machine is built";
-const HEAT: &str = "the heat map: measured by the host after the last record";
+const WORK_MAP: &str = "records per sample: computed by the host after the last record";
 
 /// The only files that compute with the machine's numbers in another way: for measurements, and for
 /// inputs of blocks. Nothing of them may reach the machine: see

@@ -9,9 +9,9 @@ use hwmodel::Overflow;
 use super::scene::SceneArgs;
 use super::setting::{Setting, word};
 use super::values::Tolerance;
-use shiftvox_mesh::far::view::Opacity;
 use shiftvox::fast::Instructions;
 use shiftvox::project::{CageKind, Coverage, SetupOptions};
+use shiftvox_mesh::far::view::Opacity;
 
 /// Which engine draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
@@ -149,7 +149,7 @@ impl RuleArgs {
     /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
     #[must_use]
     pub fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
-        let blends = self.coverage == Some(Coverage::Alpha);
+        let blends = self.coverage.is_some_and(Coverage::blends);
         SceneArgs {
             opacities: scene.opacities || blends,
             ..scene.clone()

@@ -13,9 +13,9 @@ use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use crate::{engines, report};
+use shiftvox::project::{Coverage, SetupOptions};
 use shiftvox_lab::error::{PixelStyle, References, voxel_method};
 use shiftvox_lab::flicker::{self as experiment, FilmPlan, Films, Motion};
-use shiftvox::project::{Coverage, SetupOptions};
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 128;
@@ -79,7 +79,7 @@ impl FlickerArgs {
 /// Drawing rules with one and four samples a pixel, `exact` with sixteen; the
 /// paper; the default without level of detail; and `alpha` where `blends`.
 fn options(blends: bool) -> Vec<SetupOptions> {
-    let rules = [Coverage::Exact, Coverage::Center, Coverage::Any];
+    let rules = Coverage::UNBLENDED;
     let one = rules.map(|coverage| (coverage, 0));
     let four = rules.map(|coverage| (coverage, 1));
     let mut all = Vec::new();

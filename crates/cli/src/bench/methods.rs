@@ -16,22 +16,22 @@ use crate::experiment::context::Context;
 use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::{engines, report, scenes};
-use shiftvox::drawing::{milliseconds_since};
-use shiftvox_mesh::drawing::{Erosion};
-use shiftvox_mesh::far::view::Opacity;
-use shiftvox_mesh::far::{BuildOptions, FarFile};
+use shiftvox::drawing::milliseconds_since;
 use shiftvox::graph::Graph;
+use shiftvox::project::{Bounds, Coverage, SetupOptions, Up};
+use shiftvox::whole;
 use shiftvox_lab::bench::Schedule;
 use shiftvox_lab::error::{Method, PixelStyle, Refused, voxel_method};
 use shiftvox_lab::flicker::Motion;
 use shiftvox_lab::methods::{self as experiment, Distance, Facts, MeshMethods, MethodsPlan};
-use shiftvox_mesh::decimate::compact;
-use shiftvox_mesh::{Mesh, Surface, mesh_box};
-use shiftvox::project::{Bounds, Coverage, SetupOptions, Up};
 use shiftvox_lab::report::html::Page;
 use shiftvox_lab::report::plot::Panel;
+use shiftvox_mesh::decimate::compact;
+use shiftvox_mesh::drawing::Erosion;
+use shiftvox_mesh::far::view::Opacity;
+use shiftvox_mesh::far::{BuildOptions, FarFile};
 use shiftvox_mesh::textured::{self, TexturedFile};
-use shiftvox::whole;
+use shiftvox_mesh::{Mesh, Surface, mesh_box};
 
 /// Pixels a side where nothing is said.
 const DEFAULT_SIDE: u32 = 256;
@@ -298,10 +298,7 @@ fn methods<'m>(
                 aa_log2,
                 ..SetupOptions::of(coverage)
             };
-            let (graph, ms) = match coverage {
-                Coverage::Alpha => airy,
-                _ => opaque,
-            };
+            let (graph, ms) = if coverage.blends() { airy } else { opaque };
             let engine = (engines::FAST.name, engines::FAST.make);
             let method = voxel_method(graph, engine, options, style);
             all.push(candidate(label, graph.bytes(), *ms, method));

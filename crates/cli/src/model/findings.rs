@@ -10,6 +10,8 @@ use super::{trace, vectors};
 use crate::console::Console;
 use crate::error::{CliError, Kind};
 use crate::experiment::subjects;
+use shiftvox::machine::Simulated;
+use shiftvox::project::{FrameSetup, SetupOptions};
 use shiftvox_lab::bench::Subject;
 use shiftvox_lab::float_rays::RayOrder;
 use shiftvox_lab::model::ModelError;
@@ -28,8 +30,6 @@ use shiftvox_lab::model::record::{self, NumberWidths};
 use shiftvox_lab::model::rules::{self, RuleRow};
 use shiftvox_lab::model::steps::{self, StepRow};
 use shiftvox_lab::model::sweep::{self, FormatRow};
-use shiftvox::machine::Simulated;
-use shiftvox::project::{FrameSetup, SetupOptions};
 
 /// Everything that the model found of a scene.
 pub(super) struct Findings {
@@ -314,7 +314,7 @@ impl From<ModelError> for CliError {
         use shiftvox::machine::SimulateError;
         match error {
             ModelError::Setup(error) => error.into(),
-            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Engine(error)) => {
+            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Workload(error)) => {
                 error.into()
             }
             ModelError::Simulate(error) => Self::new(Kind::Limit, error),

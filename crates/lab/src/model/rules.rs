@@ -11,9 +11,9 @@ use super::area::{self, LightFrame};
 use super::cost::{self, Prices};
 use super::frame;
 use super::record::{record_bits, record_fields};
+use crate::measure::CoverageError;
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::machine::SimulateError;
-use crate::measure::CoverageError;
 use shiftvox::project::{CageKind, Camera, Coverage, EngineError, FrameSetup, SetupOptions};
 
 /// Tolerances of the table, pixels, of a rule: `exact` has none but 0.
@@ -118,7 +118,7 @@ pub fn measure(
     let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
     let simulated = match simulated {
         Ok((_, simulated)) => simulated,
-        Err(ModelError::Simulate(SimulateError::Engine(EngineError::Trap(trap)))) => {
+        Err(ModelError::Simulate(SimulateError::Workload(EngineError::Trap(trap)))) => {
             return trapped(trap.to_string());
         }
         Err(error) => return Err(error),
@@ -164,10 +164,9 @@ pub fn table(
 ) -> Result<Vec<RuleRow>, ModelError> {
     let exact = frame::reference(&graph.view(), &true_setup(graph, camera, base)?)?;
     let cages = [CageKind::Corners, CageKind::Frame];
-    let rules = [Coverage::Any, Coverage::Center, Coverage::Exact];
     let mut ways = Vec::new();
     for cage in cages {
-        for coverage in rules {
+        for coverage in Coverage::UNBLENDED.into_iter().rev() {
             ways.extend(tolerances(coverage).iter().map(|&px| (cage, coverage, px)));
         }
     }

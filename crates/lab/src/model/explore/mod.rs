@@ -29,9 +29,9 @@ use super::range::Range;
 use super::ray_caster::{self, RayRun};
 use super::ray_cycles::RayHardware;
 use super::{ModelError, rules};
+use crate::float_rays::RayOrder;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, Progress};
-use crate::float_rays::RayOrder;
 use shiftvox::machine::SimulateError;
 use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 use space::Point;
@@ -329,7 +329,7 @@ impl<'a> Shared<'a> {
         match report {
             Ok(report) => Ok(Ok(report)),
             Err(ModelError::Simulate(
-                error @ (SimulateError::Engine(_) | SimulateError::StackOverflow { .. }),
+                error @ (SimulateError::Workload(_) | SimulateError::StackOverflow { .. }),
             )) => Ok(Err(error.to_string())),
             Err(error) => Err(error),
         }

@@ -1,29 +1,30 @@
-//! How many records were worked on for each sample: the frame's `records`.
+//! Records per sample: the frame's `records`, a measure of work that reports show as a heat map.
 
-use super::watch::Watch;
+use super::cage::CageCoordinate;
+use super::watch::{Event, Watch};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::nodes_to;
 
-/// Counts the records of each quadtree node.
+/// Counts the turns at each quadtree node.
 #[derive(Debug)]
-pub(super) struct Heat {
+pub(super) struct RecordsBySample {
     /// Level of the samples.
     levels: u32,
-    /// Records by the address of their node.
-    records: Vec<u32>,
+    /// Turns by the address of the quadtree node.
+    turns: Vec<u32>,
 }
 
-impl Heat {
+impl RecordsBySample {
     /// For a quadtree whose samples are at level `levels`.
     pub(super) fn new(levels: u32) -> Self {
         Self {
             levels,
-            records: vec![0; nodes_to(levels)],
+            turns: vec![0; nodes_to(levels)],
         }
     }
 
     /// Writes each sample's share: a record counts 1, spread evenly over the
-    /// samples of its node. `shares`: row by row, `width` samples a row.
+    /// samples of its node. `shares` holds rows of `width` samples.
     pub(super) fn write_shares(&self, width: u32, shares: &mut [f32]) {
         let width = width as usize;
         for (at, share) in shares.iter_mut().enumerate() {
@@ -37,16 +38,18 @@ impl Heat {
                         y: y >> below,
                     };
                     let samples = f64::from(1u32 << below) * f64::from(1u32 << below);
-                    f64::from(self.records[quad.address()]) / samples
+                    f64::from(self.turns[quad.address()]) / samples
                 })
                 .sum::<f64>() as f32;
         }
     }
 }
 
-impl Watch for Heat {
+impl Watch for RecordsBySample {
     #[inline(always)]
-    fn turn(&mut self, quad: QuadNode) {
-        self.records[quad.address()] += 1;
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
+        if let Event::Turn(quad) = event {
+            self.turns[quad.address()] += 1;
+        }
     }
 }
