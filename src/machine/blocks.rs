@@ -1,6 +1,6 @@
-//! The blocks of the machine: what a designer would build, and test, each
-//! alone. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
-//! `shiftvox model --vectors` writes what crosses their borders.
+//! The blocks of the machine: combinational parts that a designer would build and
+//! test separately. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
+//! `shiftvox model --vectors` writes their inputs and outputs.
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
@@ -53,9 +53,9 @@ numbered! {
     ChildCorners,
     /// The least and the greatest of a child's vertices, one coordinate.
     ChildSpan,
-    /// What boxes are widened by in clip space.
+    /// The margin that widens boxes in clip space.
     MarginGrow,
-    /// What boxes are narrowed by in clip space.
+    /// The margin that narrows boxes in clip space.
     MarginGap,
     /// A clip-space box and the edges of a node, along one axis.
     BorderClip,
@@ -95,11 +95,11 @@ numbered! {
     BlendWay,
     /// A voxel's outline shared among the three sides that are seen.
     BlendShares,
-    /// What the sides count for, of their shares.
+    /// The weights of the three sides, from their shares.
     BlendCounts,
     /// A voxel's weight, of its opacities.
     BlendWeight,
-    /// What a sample takes of a voxel.
+    /// The light and the opacity that a voxel adds to a sample.
     BlendSample,
 }
 
@@ -123,11 +123,11 @@ numbered! {
     FillWrite,
     /// A node is read: which children it has, and where they begin.
     NodeRead,
-    /// The attributes of a node are read; the record loop does not look at them.
+    /// The attributes of a node are read. The record loop does not use them.
     AttributeRead,
     /// A pixel is written: the node that it shows.
     PixelWrite,
-    /// Where parents lie on the stack: a record is in registers, new (0) or worked back (1).
+    /// Where parents lie on the stack: a record is in registers, new (0) or restored (1).
     Made,
 }
 

@@ -25,8 +25,8 @@ pub(super) enum Margin {
 }
 
 /// Size, in units of the last place of a screen position, up to which a record
-/// is drawn as a solid whatever is below it: vertices so near to each other are
-/// not parted by rounded midpoints.
+/// is drawn as a solid, with children or without. Rounded midpoints cannot separate
+/// vertices so near to each other.
 const LEAST_SIZE: i64 = 4;
 
 /// Records across the near plane are dropped once the depth that they span is
@@ -80,7 +80,7 @@ pub(super) struct Constants {
     pub(super) grow: Option<i32>,
     /// Samples that a voxel drawn at its centre may span.
     pub(super) size_limit: ShiftSum,
-    /// Samples up to which a node is taken for a solid; `None`: never.
+    /// Samples up to which a node is drawn as a solid, if any is.
     pub(super) lod_limit: Option<ShiftSum>,
     /// `size_limit` and `lod_limit` in screen units, at least [`LEAST_SIZE`].
     pub(super) size_limit_screen: Word,
@@ -90,11 +90,11 @@ pub(super) struct Constants {
     pub(super) near: Word,
     /// Depth that a record across the near plane must span to be subdivided.
     pub(super) near_crossing: Word,
-    /// By level, least depth of a record that may change to screen space;
-    /// `None`: none may.
+    /// By level, least depth of a record that may change to screen space, if any
+    /// may.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a clip-space node that is taken for a solid by
-    /// level of detail; `None`: none is.
+    /// By level, least depth of a clip-space node that level of detail draws as a
+    /// solid, if it draws any.
     pub(super) lod_depth: Vec<Option<Word>>,
     /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded
     /// down and up, and brought to just beyond the object if it is far away.
@@ -133,7 +133,7 @@ impl Constants {
             };
             depths.iter().map(depth).collect()
         };
-        // All eyes beyond the object compare alike, so a far one is brought near.
+        // All eyes beyond the object compare alike, so a far eye is moved to its border.
         let beyond = (1i64 << (setup.depth + setup.sub_levels)) + 1;
         let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, beyond)));
         let screen_frac = setup.format.frac();
@@ -202,8 +202,8 @@ impl Constants {
 }
 
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on, of a graph that lies in memory so; all ones but the sign where a level has no depth. Under the rules that draw
-/// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
+/// on. A level without a depth has the greatest word. Under the rules that draw outlines the constants of silhouette
+/// planes follow (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
 #[must_use]
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
@@ -252,7 +252,7 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
     registers
 }
 
-/// Registers of constants but those of planes, and the first of those that have one for each octree level.
+/// Number of registers without those of planes, and the first register of the depths by octree level.
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 

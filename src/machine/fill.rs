@@ -130,9 +130,10 @@ impl<'f> FillStore<'f> {
 
     /// Whether the search for a box's node rejects the box, which overlaps `quadrants` of `quad`: none of them is open.
     ///
-    /// The search enters no full node, so it needs no test for one: it continues only with a quadrant that is open in
-    /// its parent's vector, and marking a node as full sets its bit there. The node where it begins is the exception. A
-    /// parent that draws its children one by one may fill its own node, and then this rejects the others.
+    /// The search never steps into a full node, so it needs no test for one, and a count of such steps is always zero. It
+    /// continues only with a quadrant that is open in its parent's vector, and a node that becomes full sets its bit
+    /// there ([`Self::mark`]). Only the node where the search begins may be full: a parent that draws its children one
+    /// by one may have filled its own node. Then no quadrant is open, and the box is rejected here.
     #[inline]
     pub(super) fn rejects<P: Probe>(
         &self,
@@ -202,7 +203,7 @@ impl<'f> FillStore<'f> {
                 break;
             }
             bits = 1 << quad.in_parent();
-            quad = parent_of(quad);
+            quad = quad.ancestor(quad.level - 1);
             let vector = self.read_vector(dp, quad);
             dp.or_bits(4, vector, bits);
         }
@@ -217,7 +218,7 @@ impl<'f> FillStore<'f> {
         let (node, at) = self.word_at(sample);
         self.read_word(dp, sample);
         let word = &mut self.words[at];
-        let quadrant = parent_of(sample).in_parent();
+        let quadrant = sample.ancestor(sample.level - 1).in_parent();
         // Four gates a quadrant, of which one changes, beside what led here: the word is in its register.
         let before = (*word >> (quadrant << 2)) as u8 & FULL;
         dp.beside(Stage::FillUpdate, |dp| {
@@ -229,7 +230,7 @@ impl<'f> FillStore<'f> {
         let written = Short::unsigned(*word, WORD_BITS);
         Port::FillWrite.tap(dp, node.address() as u64, &written);
         let is_full = *word == ALL_DRAWN && node.level > 0;
-        is_full.then(|| (parent_of(node), 1 << node.in_parent()))
+        is_full.then(|| (node.ancestor(node.level - 1), 1 << node.in_parent()))
     }
 
     /// Reads a vector that is not joined.
@@ -249,12 +250,9 @@ impl<'f> FillStore<'f> {
     /// The node whose word holds a joined node, and the word's place.
     fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
         let level = self.levels() - LEVELS_BELOW;
-        let below = node.level - level;
-        let (x, y) = (node.x >> below, node.y >> below);
-        (
-            QuadNode { level, x, y },
-            ((y as usize) << level) + x as usize,
-        )
+        let holder = node.ancestor(level);
+        let at = ((holder.y as usize) << level) + holder.x as usize;
+        (holder, at)
     }
 
     fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
@@ -276,7 +274,8 @@ impl<'f> FillStore<'f> {
             0 => (0..4).fold(0, |bits, q| bits | u8::from(quarter(q) == FULL) << q),
             1 => quarter(node.in_parent()),
             _ => {
-                let drawn = quarter(parent_of(node).in_parent()) >> node.in_parent() & 1;
+                let drawn =
+                    quarter(node.ancestor(node.level - 1).in_parent()) >> node.in_parent() & 1;
                 if drawn == 0 { 0 } else { FULL }
             }
         }
@@ -289,14 +288,6 @@ fn word_of(vectors: &FillVectors, node: QuadNode) -> u16 {
         let bits = vectors.vector(node.quadrant(quadrant));
         word | u16::from(bits) << (quadrant << 2)
     })
-}
-
-fn parent_of(node: QuadNode) -> QuadNode {
-    QuadNode {
-        level: node.level - 1,
-        x: node.x >> 1,
-        y: node.y >> 1,
-    }
 }
 
 #[cfg(test)]
@@ -342,7 +333,7 @@ mod tests {
         };
         // Plain: a sample and its parent each time, once four their parent, once that the root.
         assert_eq!(accesses(one), (16 + 4 + 1, 32 + 4 + 1));
-        // Joined: a word each time, read and written; at last the root.
+        // Joined: a word is read and written each time, and at last the root.
         assert_eq!(accesses(two), (17, 17));
     }
 

@@ -29,10 +29,10 @@
 //! - `instruments`, which watch the machine or drive it in another way. The
 //!   machine does not depend on them.
 //!
-//! Every step takes the parts of the [state](state) that it works on: the
-//! datapath, on which it computes; the [job](state::Job), which it only reads;
-//! the canvas or its fill vectors; the [traversal](state::Traversal) or its
-//! counts. So its signature says what it reads and writes.
+//! Every step takes the parts of the state (`state.rs`) that it works on, so that its
+//! signature lists its inputs and outputs. The parts are the datapath, on which it
+//! computes, the `Job`, which no step writes, the `Canvas` with its fill vectors,
+//! and the `Traversal` with its counts.
 
 mod alpha;
 mod blocks;

@@ -222,7 +222,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         dp.stage(Stage::Pop);
         dp.read(Memory::Stack, address);
         Port::Pop.tap(dp, address, entry);
-        if fill.is_full(dp, path::quad_above(from.place.quad, entry.quad_level)) {
+        if fill.is_full(dp, from.place.quad.ancestor(entry.quad_level)) {
             self.traversal.counts.already_full += 1;
             return None;
         }
@@ -359,12 +359,7 @@ impl TileView {
     /// The view of a tile that is not begun.
     pub(super) fn new(tile: QuadNode) -> Self {
         let vector = |level: u32| {
-            let below = tile.level - level - 1;
-            let child = QuadNode {
-                level: level + 1,
-                x: tile.x >> below,
-                y: tile.y >> below,
-            };
+            let child = tile.ancestor(level + 1);
             FULL & !(1 << child.in_parent())
         };
         Self {
@@ -376,13 +371,7 @@ impl TileView {
     /// Puts the view's vectors into their places, and keeps those that were there.
     pub(super) fn swap(&mut self, fill: &mut FillStore<'_>) {
         for (level, own) in (0..self.tile.level).zip(&mut self.above) {
-            let below = self.tile.level - level;
-            let node = QuadNode {
-                level,
-                x: self.tile.x >> below,
-                y: self.tile.y >> below,
-            };
-            *own = fill.replace(node, *own);
+            *own = fill.replace(self.tile.ancestor(level), *own);
         }
     }
 }

@@ -143,8 +143,8 @@ pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
     /// Of a cube that is not wholly before the eye: a plane perpendicular to an
-    /// axis, and the side of it on which rays reach the cube and not its mirror
-    /// image behind the eye.
+    /// axis, and the side on which rays reach the cube. Those on the other side
+    /// reach its mirror image behind the eye.
     front: Option<(Plane, Side)>,
 }
 

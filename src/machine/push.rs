@@ -25,7 +25,7 @@ impl<L: CageCoordinate, W: Watch> Traversal<L, W> {
         fill: &FillStore<'_>,
         tile: QuadNode,
     ) {
-        // Where a frame begins, also where a tile does after another's last record.
+        // A tile begins at level 0, also after another tile's last record.
         dp.resume(0);
         fill.begin_tile(dp, tile);
         dp.stage(Stage::Push);

@@ -2,9 +2,9 @@
 //! against the node's two bisectors (image-order paper, 3.5).
 //!
 //! In clip space `x` runs from 0 to `w` across the node, so the sign of
-//! `2x - w` is the side of the bisector, and `2x - w` is `x` relative to the far
-//! half, `2x` relative to the near one. In screen space positions are those in
-//! the whole picture, and are compared with the bisector's.
+//! `2x - w` is the side of the bisector. Relative to the far half `x` is `2x - w`,
+//! relative to the near one `2x`. In screen space positions are those in the whole
+//! picture, and are compared with the bisector's.
 
 use hwmodel::{Datapath, Probe, Short, Word};
 

@@ -195,7 +195,7 @@ const PRODUCTS: [Allowed; 12] = [
     ),
     allowed(
         "records_by_sample.rs",
-        "let (x, y) = ((at % width) as u32, (at / width) as u32);",
+        "let (level, x, y) = (self.levels, (at % width) as u32, (at / width) as u32);",
         WORK_MAP,
     ),
     allowed(
@@ -205,7 +205,7 @@ const PRODUCTS: [Allowed; 12] = [
     ),
     allowed(
         "records_by_sample.rs",
-        "f64::from(self.turns[quad.address()]) / samples",
+        "f64::from(self.turns[sample.ancestor(level).address()]) / samples",
         WORK_MAP,
     ),
     allowed("cage.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),

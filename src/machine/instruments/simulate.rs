@@ -128,7 +128,7 @@ impl Machine {
             handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
-            // The first sees what there is: nothing is above the whole picture.
+            // The first is the whole picture, which has no vectors above it.
             tiles: vec![TileView::new(QuadNode::ROOT)],
             walks: vec![Walk::default()],
             open: Open::default(),
@@ -210,7 +210,7 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     free: Vec<u32>,
     /// Tiles that the hardware gives its lanes, in order.
     handed_out: Vec<QuadNode>,
-    /// What each tile sees of the fill vectors above it.
+    /// Each tile's view of the fill vectors above it.
     tiles: Vec<TileView>,
     /// By tile, its walk.
     walks: Vec<Walk<L>>,

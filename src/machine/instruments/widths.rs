@@ -157,7 +157,7 @@ impl NumberSpan {
 /// Spans by number.
 pub type NumberSpans = BTreeMap<RecordNumber, NumberSpan>;
 
-/// What the set-up proves of a frame's records, and of wide words on the way to them.
+/// Widths, proven from the set-up, of a frame's records and of wide words on the way to them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProvenWidths {
     /// Spans by number.
@@ -166,7 +166,7 @@ pub struct ProvenWidths {
     pub wide_bits: u32,
 }
 
-/// What a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
+/// The widths that a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
 #[must_use]
 pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     if !setup.options.coverage.draws_outlines() {
