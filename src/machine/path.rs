@@ -67,7 +67,7 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         for coordinate in [&mut clip.x, &mut clip.y, &mut clip.w] {
             *coordinate = coordinate.of_parent(dp, octant);
         }
-        planes::move_edges(dp, constants, &mut planes, level, octant, true);
+        planes::to_parent(dp, constants, &mut planes, level, octant);
         min = min.map(|corner| dp.without_bit(corner, place));
         if level > entry.level {
             dp.next_step(0);

@@ -301,7 +301,8 @@ fn combine<P: Probe>(
     })
 }
 
-/// The planes of a child, from its parent's.
+/// The planes of a child, from its parent's: moved by half a side along each
+/// axis whose bit the child's octant has.
 pub(super) fn of_child<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -309,34 +310,36 @@ pub(super) fn of_child<P: Probe>(
     parent_level: u32,
     octant: u8,
 ) -> Planes {
-    let mut planes = *parent;
-    move_edges(dp, constants, &mut planes, parent_level, octant, false);
     let half_shift = constants.depth - parent_level - 1;
+    let mut planes = *parent;
+    for j in 0..3 {
+        let (k, l) = ((j + 1) % 3, (j + 2) % 3);
+        for (axis, of, add) in [(k, l, false), (l, k, true)] {
+            if octant >> (2 - axis) & 1 != 0 {
+                let across = axis_plane(constants, parent, of).map(|v| dp.shl(v, half_shift));
+                planes.edge[j] = combine(dp, planes.edge[j], across, add);
+            }
+        }
+    }
     let axes = (constants.axis_ab, parent.axis_c);
     let half = Short::unsigned(half_shift, LEVEL_BITS);
-    let octant = Short::unsigned(octant, 3);
-    dp.tap(
-        Block::ChildPlanes,
-        &(parent.edge, axes, half, octant),
-        &planes.edge,
-    );
+    let stimulus = (parent.edge, axes, half, Short::unsigned(octant, 3));
+    dp.tap(Block::ChildPlanes, &stimulus, &planes.edge);
     planes
 }
 
-/// Moves planes by half a parent's side along each axis whose bit the child's octant has; `is_back`: from the child's
-/// to the parent's, which undoes [`of_child`].
-pub(super) fn move_edges<P: Probe>(
+/// The planes of a parent at a level, from its child's: undoes [`of_child`].
+pub(super) fn to_parent<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     planes: &mut Planes,
     parent_level: u32,
     octant: u8,
-    is_back: bool,
 ) {
     let half_shift = constants.depth - parent_level - 1;
     for j in 0..3 {
         let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-        for (axis, of, add) in [(k, l, is_back), (l, k, !is_back)] {
+        for (axis, of, add) in [(k, l, true), (l, k, false)] {
             if octant >> (2 - axis) & 1 != 0 {
                 let across = axis_plane(constants, planes, of).map(|v| dp.shl(v, half_shift));
                 planes.edge[j] = combine(dp, planes.edge[j], across, add);

@@ -182,7 +182,7 @@ const RECORD: &str = "a record is its fields, in order, where it crosses the sta
 
 const SHOW: &str = "fn show(&self, to: &mut Vec<Signal>) {";
 
-const PRODUCTS: [Allowed; 12] = [
+const PRODUCTS: [Allowed; 13] = [
     allowed(
         "constants.rs",
         "let (i, j) = ((k + 1) % 3, (k + 2) % 3);",
@@ -213,6 +213,11 @@ const PRODUCTS: [Allowed; 12] = [
     allowed("cage.rs", "let at = 9 * i + k;", INDEX),
     allowed("cage.rs", "let at = 9 * i + 3 * j;", INDEX),
     allowed("cage.rs", "pool[low + 9 * a + 3 * b + c]", INDEX),
+    allowed(
+        "planes.rs",
+        "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
+        INDEX,
+    ),
     allowed(
         "planes.rs",
         "let (k, l) = ((j + 1) % 3, (j + 2) % 3);",
