@@ -13,12 +13,6 @@ const ENGINES: [(&str, EngineKind); 3] = [
     ("machine", EngineKind::Machine),
     ("rays", EngineKind::Rays),
 ];
-const COVERAGES: [(&str, Coverage); 4] = [
-    ("exact", Coverage::Exact),
-    ("alpha", Coverage::Alpha),
-    ("center", Coverage::Center),
-    ("any", Coverage::Any),
-];
 const CAGES: [(&str, CageKind); 2] = [("frame", CageKind::Frame), ("corners", CageKind::Corners)];
 const AXES: [(&str, Up); 2] = [("y", Up::Y), ("z", Up::Z)];
 
@@ -35,7 +29,8 @@ pub(crate) fn engine(word: &str) -> PyResult<EngineKind> {
 }
 
 pub(crate) fn coverage(word: &str) -> PyResult<Coverage> {
-    one_of("coverage", word, &COVERAGES)
+    let rules = Coverage::ALL.map(|rule| (rule.name(), rule));
+    one_of("coverage", word, &rules)
 }
 
 pub(crate) fn cage(word: &str) -> PyResult<CageKind> {

@@ -13,7 +13,7 @@ use crate::frame::{Colors, Frame};
 use crate::graph::{Graph, GraphView};
 use crate::picture::{Background, Buffer, Pixels, ResolveError, Resolver, Rows, Shading, lights};
 use crate::project::{
-    Bounds, Camera, Contents, Coverage, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
+    Bounds, Camera, Contents, Engine, FrameSetup, SetupOptions, Stats, Up, Viewer,
 };
 
 /// What a voxel graph is drawn with.
@@ -175,7 +175,7 @@ impl<'g> GraphDrawing<'g> {
             Contents::Voxels => voxel,
             Contents::Records => voxel + records,
         };
-        let blends = self.style.options.coverage == Coverage::Alpha;
+        let blends = self.style.options.coverage.blends();
         node + voxels + if blends { blend } else { 0 }
     }
 

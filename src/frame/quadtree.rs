@@ -35,6 +35,18 @@ impl QuadNode {
         }
     }
 
+    /// The node of a level above, or its own, that holds this node.
+    #[inline(always)]
+    #[must_use]
+    pub const fn ancestor(self, level: u32) -> Self {
+        let below = self.level - level;
+        Self {
+            level,
+            x: self.x >> below,
+            y: self.y >> below,
+        }
+    }
+
     /// Address of the node's fill vector: level by level, row by row.
     #[inline]
     #[must_use]

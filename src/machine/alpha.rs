@@ -1,9 +1,9 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 11): how much of its
+//! Blending, under the rule `alpha` (`SPEC.md`, R11): how much of its
 //! outline a voxel covers, and what that adds to a sample.
 //!
 //! At most three sides of a voxel are seen. The share of each is the eye's
-//! distance along its axis over the sum of the three, in sixteenths; it counts by
-//! the square of its cosine, which is unbiased over all directions. Both are
+//! distance along its axis over the sum of the three, in sixteenths. A side counts
+//! by the square of its cosine, which is unbiased over all directions. Both are
 //! quotients of few bits, computed for each voxel that is drawn. Counts and
 //! opacities of the three sides give the voxel's weight, and a sample takes that
 //! weight times the light that it still lets through. Products are sums of
@@ -92,8 +92,8 @@ impl VisibleSides {
             let eighth = dp.shr_narrow(OPACITY_BITS, opacity, 3);
             let covered = dp.add_narrow(SHARE_BITS, opacity, eighth);
             weight = plus_product(dp, WEIGHT_BITS, weight, covered, count, SHARE_BITS);
-            // Sixteen sixteenths: one bit. From however flat an angle such a side is seen, it lets nothing through: a
-            // ray that grazes a wall would pass many of its voxels by the little that each covers from there.
+            // Sixteen sixteenths: one bit. Such a side lets nothing through, however flat the angle. Otherwise a ray that
+            // grazes a wall would pass many of its voxels, since each covers little from there.
             is_whole |= dp.bit_narrow(covered, OPACITY_BITS);
         }
         let weight = dp.select_narrow(WEIGHT_BITS, is_whole, WHOLE, weight);
@@ -182,7 +182,7 @@ fn plus_product<P: Probe>(
     sum
 }
 
-/// What a voxel adds to each sample that it is drawn at.
+/// Weight and colour of a voxel at each sample where it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BlendColor {
     /// 0 to 256.

@@ -1,27 +1,30 @@
-//! The blocks of the machine: what a designer would build, and test, each
-//! alone. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
-//! `shiftvox model --vectors` writes what crosses their borders.
+//! The blocks of the machine: combinational parts that a designer would build and
+//! test separately. [`Datapath::tap`](hwmodel::Datapath::tap) names them;
+//! `shiftvox model --vectors` writes their inputs and outputs.
 
 use hwmodel::{Datapath, Probe, Short, Wires};
 
-macro_rules! blocks {
-    ($($(#[$doc:meta])* $name:ident,)*) => {
-        /// A block of the machine that works without memory: its outputs follow
-        /// from its inputs and the frame's constants.
+/// An enumeration and the list of its values.
+macro_rules! numbered {
+    ($(#[$enum_doc:meta])* $enum:ident, $count:literal: $($(#[$doc:meta])* $name:ident,)*) => {
+        $(#[$enum_doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[repr(u8)]
-        pub enum Block {
+        pub enum $enum {
             $($(#[$doc])* $name,)*
         }
 
-        impl Block {
-            /// All blocks, in the order of their numbers.
-            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+        impl $enum {
+            /// All, in the order of their numbers.
+            pub const ALL: [Self; $count] = [$(Self::$name,)*];
         }
     };
 }
 
-blocks! {
+numbered! {
+    /// A block of the machine that works without memory: its outputs follow
+    /// from its inputs and the frame's constants.
+    Block, 38:
     /// Is the quadtree node full?
     Filled,
     /// May a record's depth change to screen space?
@@ -50,9 +53,9 @@ blocks! {
     ChildCorners,
     /// The least and the greatest of a child's vertices, one coordinate.
     ChildSpan,
-    /// What boxes are widened by in clip space.
+    /// The margin that widens boxes in clip space.
     MarginGrow,
-    /// What boxes are narrowed by in clip space.
+    /// The margin that narrows boxes in clip space.
     MarginGap,
     /// A clip-space box and the edges of a node, along one axis.
     BorderClip,
@@ -92,11 +95,11 @@ blocks! {
     BlendWay,
     /// A voxel's outline shared among the three sides that are seen.
     BlendShares,
-    /// What the sides count for, of their shares.
+    /// The weights of the three sides, from their shares.
     BlendCounts,
     /// A voxel's weight, of its opacities.
     BlendWeight,
-    /// What a sample takes of a voxel.
+    /// The light and the opacity that a voxel adds to a sample.
     BlendSample,
 }
 
@@ -106,11 +109,10 @@ impl From<Block> for u32 {
     }
 }
 
-/// Where a record's turn meets the machine's memories. What crosses a port is shown as the block
-/// whose number follows those of all [`Block`]s: the address, and what is written or read there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[repr(u8)]
-pub enum Port {
+numbered! {
+    /// A port between a record's turn and the machine's memories. A probe sees it as a block, with a number after those
+    /// of all [`Block`]s: its input is the address, and its output what is written or read there.
+    Port, 8:
     /// A record is taken from the stack: its turn begins.
     Pop,
     /// A record is put on the stack.
@@ -121,28 +123,16 @@ pub enum Port {
     FillWrite,
     /// A node is read: which children it has, and where they begin.
     NodeRead,
-    /// The attributes of a node are read; the record loop does not look at them.
+    /// The attributes of a node are read. The record loop does not use them.
     AttributeRead,
     /// A pixel is written: the node that it shows.
     PixelWrite,
-    /// Where parents lie on the stack: a record is in registers, new (0) or worked back (1).
+    /// Where parents lie on the stack: a record is in registers, new (0) or restored (1).
     Made,
 }
 
 impl Port {
-    /// All ports, in the order of their numbers.
-    pub const ALL: [Self; 8] = [
-        Self::Pop,
-        Self::Push,
-        Self::FillRead,
-        Self::FillWrite,
-        Self::NodeRead,
-        Self::AttributeRead,
-        Self::PixelWrite,
-        Self::Made,
-    ];
-
-    /// Shows what crosses the port.
+    /// Shows the port's signals to a probe.
     #[inline(always)]
     pub(super) fn tap<P: Probe>(self, dp: &mut Datapath<P>, address: u64, data: &impl Wires) {
         let number = Block::ALL.len() as u32 + self as u32;

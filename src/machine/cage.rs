@@ -1,5 +1,5 @@
-//! One coordinate of a cage, that is of a voxel's eight projected vertices,
-//! held in either of two ways: eight corners (the image-order paper) or one corner and
+//! Cages (`SPEC.md`, R4): one coordinate of a voxel's eight projected vertices, held
+//! in either of two ways: eight corners (the image-order paper) or one corner and
 //! three edges.
 //!
 //! A cage coordinate gives its children's by adds and shifts, and the least
@@ -41,10 +41,10 @@ pub(super) trait CageCoordinate: Copy + std::fmt::Debug + Wires {
     /// The coordinate of one child, selected from the pool: wires, no operation.
     fn child(pool: &Self::Pool, octant: usize) -> Self;
 
-    /// What the children's numbers are made from, one child at a time.
+    /// The numbers from which children are made one at a time.
     type Seed: Copy;
 
-    /// Computes what the children's numbers are made from.
+    /// Computes the numbers from which children are made.
     fn seed<P: Probe>(&self, dp: &mut Datapath<P>) -> Self::Seed;
 
     /// The coordinate of one child, as [`child`](Self::child) has it.

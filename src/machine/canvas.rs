@@ -1,62 +1,53 @@
-//! The picture in the making: draws samples and updates the fill vectors
+//! The canvas: draws samples and updates the fill vectors
 //! (image-order paper, 3.3).
 
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::alpha::BlendColor;
 use super::blocks::{ADDRESS_BITS, Port};
+use super::counters::Counts;
 use super::fill::FillStore;
 use super::planes::{Cover, Silhouette};
 use crate::frame::quadtree::FULL;
 use crate::frame::{Frame, QuadNode};
 
-/// What a record shows at the samples where it is drawn.
+/// The entry that a record writes to the samples where it is drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Paint {
     /// Octree node.
     pub(super) node: u32,
     /// The voxel's lowest corner in finest voxels, and its level.
     pub(super) voxel: [i32; 4],
-    /// What it adds to a sample, where voxels are blended; `None`: it is opaque.
-    pub(super) ink: Option<BlendColor>,
+    /// Weight and colour under the rule that blends; else `None`.
+    pub(super) color: Option<BlendColor>,
 }
 
-/// The picture, the fill vectors, and counts of what was drawn.
+/// The picture and its fill vectors.
 #[derive(Debug)]
 pub(super) struct Canvas<'f> {
     pub(super) fill: FillStore<'f>,
-    frame: &'f mut Frame,
-    /// Samples drawn.
-    pub(super) drawn: u64,
-    /// Voxels added to samples, where voxels are blended.
-    pub(super) blended: u64,
-    /// Draws of samples that were full before.
-    pub(super) occluded: u64,
+    pub(super) frame: &'f mut Frame,
 }
 
-impl<'f> Canvas<'f> {
-    pub(super) fn new(fill: FillStore<'f>, frame: &'f mut Frame) -> Self {
-        Self {
-            fill,
-            frame,
-            drawn: 0,
-            blended: 0,
-            occluded: 0,
-        }
-    }
-
+impl Canvas<'_> {
     /// Draws one sample, unless it is full already.
     #[inline]
-    pub(super) fn draw<P: Probe>(&mut self, dp: &mut Datapath<P>, sample: QuadNode, paint: &Paint) {
+    pub(super) fn draw<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        counts: &mut Counts,
+        sample: QuadNode,
+        paint: &Paint,
+    ) {
         dp.stage(Stage::Draw);
         let vector = self.fill.read(dp, sample);
         if dp.and_bits(4, vector, FULL) == FULL {
-            self.occluded += 1;
+            counts.samples_already_drawn += 1;
             return;
         }
         let at = sample.y as usize * self.frame.width as usize + sample.x as usize;
-        if let Some(ink) = &paint.ink {
-            if !self.blend(dp, at, ink, paint) {
+        if let Some(color) = &paint.color {
+            if !self.blend(dp, counts, at, color, paint) {
                 return;
             }
         } else {
@@ -64,14 +55,20 @@ impl<'f> Canvas<'f> {
             dp.next_step(0);
             dp.read(Memory::Attribute, node);
             Port::AttributeRead.tap(dp, node, &Short::unsigned(0u8, ADDRESS_BITS));
-            self.put(dp, at, paint);
+            self.put(dp, counts, at, paint);
         }
         self.fill.mark(dp, sample);
     }
 
     /// Writes node and voxel to sample number `at`.
     #[inline(always)]
-    fn put<P: Probe>(&mut self, dp: &mut Datapath<P>, at: usize, paint: &Paint) {
+    fn put<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        counts: &mut Counts,
+        at: usize,
+        paint: &Paint,
+    ) {
         dp.write(Memory::Pixel, at as u64);
         let shown = Short::unsigned(paint.node, ADDRESS_BITS);
         Port::PixelWrite.tap(dp, at as u64, &shown);
@@ -80,7 +77,7 @@ impl<'f> Canvas<'f> {
         if let Some(to) = self.frame.voxel.get_mut(at) {
             *to = paint.voxel;
         }
-        self.drawn += 1;
+        counts.samples_drawn += 1;
     }
 
     /// Blends a voxel into sample number `at`, which shows the first voxel that
@@ -88,18 +85,19 @@ impl<'f> Canvas<'f> {
     fn blend<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
+        counts: &mut Counts,
         at: usize,
-        ink: &BlendColor,
+        color: &BlendColor,
         paint: &Paint,
     ) -> bool {
         let Some(blend) = &mut self.frame.blend else {
             unreachable!("the engine makes room for blending before the first record");
         };
-        let taken = ink.add_to(dp, at as u64, &mut blend[at]);
-        self.blended += 1;
+        let taken = color.add_to(dp, at as u64, &mut blend[at]);
+        counts.samples_blended += 1;
         if taken.is_first {
             dp.stage(Stage::Draw);
-            self.put(dp, at, paint);
+            self.put(dp, counts, at, paint);
         }
         taken.is_full
     }
@@ -109,6 +107,7 @@ impl<'f> Canvas<'f> {
     pub(super) fn draw_silhouette<P: Probe>(
         &mut self,
         dp: &mut Datapath<P>,
+        counts: &mut Counts,
         quad: QuadNode,
         mut silhouette: Silhouette,
         paint: &Paint,
@@ -118,7 +117,7 @@ impl<'f> Canvas<'f> {
         let mut divided = quad.level.saturating_sub(1);
         match silhouette.cover(dp, below) {
             Cover::None => {}
-            Cover::All => self.draw_all(dp, quad, paint),
+            Cover::All => self.draw_all(dp, counts, quad, paint),
             Cover::Some => {
                 divided = quad.level;
                 for quadrant in self.open_quadrants(dp, quad) {
@@ -126,7 +125,8 @@ impl<'f> Canvas<'f> {
                     dp.next_step(divided - quad.level);
                     let inner = silhouette.in_quadrant(dp, quadrant);
                     dp.next_step(0);
-                    divided = self.draw_silhouette(dp, quad.quadrant(quadrant), inner, paint);
+                    let quad = quad.quadrant(quadrant);
+                    divided = self.draw_silhouette(dp, counts, quad, inner, paint);
                 }
             }
         }
@@ -134,14 +134,20 @@ impl<'f> Canvas<'f> {
     }
 
     /// Draws all samples of a node that are not full yet.
-    fn draw_all<P: Probe>(&mut self, dp: &mut Datapath<P>, quad: QuadNode, paint: &Paint) {
+    fn draw_all<P: Probe>(
+        &mut self,
+        dp: &mut Datapath<P>,
+        counts: &mut Counts,
+        quad: QuadNode,
+        paint: &Paint,
+    ) {
         if quad.level == self.fill.levels() {
-            self.draw(dp, quad, paint);
+            self.draw(dp, counts, quad, paint);
             return;
         }
         for quadrant in self.open_quadrants(dp, quad) {
             dp.next_step(0);
-            self.draw_all(dp, quad.quadrant(quadrant), paint);
+            self.draw_all(dp, counts, quad.quadrant(quadrant), paint);
         }
     }
 

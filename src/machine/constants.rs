@@ -6,9 +6,9 @@
 use hwmodel::{Datapath, NoProbe, Overflow, Probe, WideWord, Word};
 
 use crate::graph::{GraphView, NodeLayout};
-use crate::project::options::ShiftSum;
+use crate::project::FrameSetup;
+use crate::project::options::{OutlineRule, ShiftSum};
 use crate::project::vector::cross;
-use crate::project::{Coverage, FrameSetup};
 
 /// How a clip-space box is compared with a bisector of the quadtree.
 #[derive(Debug, Clone)]
@@ -25,8 +25,8 @@ pub(super) enum Margin {
 }
 
 /// Size, in units of the last place of a screen position, up to which a record
-/// is drawn as a solid whatever is below it: vertices so near to each other are
-/// not parted by rounded midpoints.
+/// is drawn as a solid, with children or without. Rounded midpoints cannot separate
+/// vertices so near to each other.
 const LEAST_SIZE: i64 = 4;
 
 /// Records across the near plane are dropped once the depth that they span is
@@ -55,9 +55,9 @@ impl BlendEye {
 /// Constants of a frame.
 #[derive(Debug)]
 pub(super) struct Constants {
-    /// Which samples a voxel covers; `Exact` also where voxels are blended.
-    pub(super) coverage: Coverage,
-    /// `Some` where voxels are blended.
+    /// Rule by which a voxel's samples are found.
+    pub(super) outline: OutlineRule,
+    /// `Some` under the rule that blends.
     pub(super) blend_eye: Option<BlendEye>,
     /// Level of the samples in the image quadtree.
     pub(super) levels: u32,
@@ -80,7 +80,7 @@ pub(super) struct Constants {
     pub(super) grow: Option<i32>,
     /// Samples that a voxel drawn at its centre may span.
     pub(super) size_limit: ShiftSum,
-    /// Samples up to which a node is taken for a solid; `None`: never.
+    /// Samples up to which a node is drawn as a solid, if any is.
     pub(super) lod_limit: Option<ShiftSum>,
     /// `size_limit` and `lod_limit` in screen units, at least [`LEAST_SIZE`].
     pub(super) size_limit_screen: Word,
@@ -90,11 +90,11 @@ pub(super) struct Constants {
     pub(super) near: Word,
     /// Depth that a record across the near plane must span to be subdivided.
     pub(super) near_crossing: Word,
-    /// By level, least depth of a record that may change to screen space;
-    /// `None`: none may.
+    /// By level, least depth of a record that may change to screen space, if any
+    /// may.
     pub(super) screen_depth: Vec<Option<Word>>,
-    /// By level, least depth of a clip-space node that is taken for a solid by
-    /// level of detail; `None`: none is.
+    /// By level, least depth of a clip-space node that level of detail draws as a
+    /// solid, if it draws any.
     pub(super) lod_depth: Vec<Option<Word>>,
     /// The eye in object space, units of `2^-sub_levels` finest voxels, rounded
     /// down and up, and brought to just beyond the object if it is far away.
@@ -118,7 +118,7 @@ impl Constants {
     /// Loads a frame; no probe sees it.
     pub(super) fn load<P: Probe>(dp: &mut Datapath<P>, setup: &FrameSetup) -> Self {
         let options = &setup.options;
-        let exact = options.coverage.draws_outlines();
+        let outline = options.coverage.outline_rule();
         let scale = setup.sub_levels;
         let (origin_clip, edge_clip) = (setup.origin_clip, setup.edge_clip);
         let mut word = |value: i64, shift: u32| dp.load(clamped(i128::from(value) << shift));
@@ -133,7 +133,7 @@ impl Constants {
             };
             depths.iter().map(depth).collect()
         };
-        // All eyes beyond the object compare alike, so a far one is brought near.
+        // All eyes beyond the object compare alike, so a far eye is moved to its border.
         let beyond = (1i64 << (setup.depth + setup.sub_levels)) + 1;
         let eye = |eye: [i64; 3]| eye.map(|c| Word::from_host(c.clamp(-1, beyond)));
         let screen_frac = setup.format.frac();
@@ -147,7 +147,7 @@ impl Constants {
         let mut axis_ab = [[WideWord::ZERO; 2]; 3];
         let mut axis_c = [WideWord::ZERO; 3];
         let mut edge_planes = [[WideWord::ZERO; 3]; 3];
-        if exact {
+        if outline.has_planes() {
             for k in 0..3 {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
                 let mut plane = |a: [i64; 3], b: [i64; 3]| {
@@ -162,12 +162,8 @@ impl Constants {
             }
         }
         Self {
-            coverage: if exact {
-                Coverage::Exact
-            } else {
-                options.coverage
-            },
-            blend_eye: (options.coverage == Coverage::Alpha).then(|| BlendEye::load(dp, setup)),
+            outline,
+            blend_eye: options.coverage.blends().then(|| BlendEye::load(dp, setup)),
             levels: setup.levels,
             depth: setup.depth,
             sub_levels: setup.sub_levels,
@@ -175,10 +171,10 @@ impl Constants {
             screen_frac,
             half_sample_places: [screen_frac.saturating_sub(1), u32::from(screen_frac == 0)],
             finite_tolerance: options.tolerance_px.is_finite(),
-            margin: match setup.grow_shift {
-                _ if exact => Margin::Gap,
-                Some(shift) => Margin::Grow(shift),
-                None => Margin::Plain,
+            margin: match (outline, setup.grow_shift) {
+                (OutlineRule::Silhouette, _) => Margin::Gap,
+                (OutlineRule::Box | OutlineRule::Centre, Some(shift)) => Margin::Grow(shift),
+                (OutlineRule::Box | OutlineRule::Centre, None) => Margin::Plain,
             },
             grow: setup.grow_shift,
             size_limit: setup.size_limit.clone(),
@@ -206,8 +202,8 @@ impl Constants {
 }
 
 /// A frame's constants as the host writes them to the registers of `rtl/machine/frame_constants.v`, from number 0
-/// on, of a graph that lies in memory so; all ones but the sign where a level has no depth. Under the rules that draw
-/// outlines those of silhouette planes follow (`rtl/stage_b/plane_constants.v`), each in two, the low bits first.
+/// on. A level without a depth has the greatest word. Under the rules that draw outlines the constants of silhouette
+/// planes follow (`rtl/stage_b/plane_constants.v`), each in two registers, the low bits first.
 #[must_use]
 pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeLayout) -> Vec<i64> {
     let mut dp = Datapath::new(setup.format, Overflow::Wrap, NoProbe);
@@ -232,32 +228,20 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
     let is_leaf = graph.mask(graph.root) == 0;
     let bricks = layout.bricks();
     let flags = [coarse, has_lod, c.positive, is_leaf, !bricks.is_empty()];
-    put(
-        7,
-        &[(0..)
-            .zip(flags)
-            .map(|(at, flag)| i64::from(flag) << at)
-            .sum()],
-    );
+    let flags = (0..).zip(flags).map(|(at, flag)| i64::from(flag) << at);
+    put(7, &[flags.sum()]);
     let sizes = [c.size_limit_screen, c.lod_limit_screen, c.least_size_screen];
     put(8, &[c.near, c.near_crossing].map(Word::to_host));
     put(10, &sizes.map(Word::to_host));
     put(16, &c.origin.map(Word::to_host));
-    put(
-        19,
-        &c.edges
-            .concat()
-            .iter()
-            .map(|edge| edge.to_host())
-            .collect::<Vec<_>>(),
-    );
+    put(19, &c.edges.map(|edges| edges.map(Word::to_host)).concat());
     put(13, &c.eye_ceil.map(Word::to_host));
     put(28, &c.eye_floor.map(Word::to_host));
     put(31, &[i64::from(bricks.start)]);
     let depths = c.lod_depth.iter().take(REGISTERS - LEVEL_REGISTERS);
     let depths = depths.map(|depth| depth.map_or(setup.format.max(), Word::to_host));
     put(LEVEL_REGISTERS, &depths.collect::<Vec<_>>());
-    if c.coverage == Coverage::Exact {
+    if c.outline.has_planes() {
         let across = c.axis_ab.iter().zip(&c.axis_c);
         let across = across.flat_map(|(&[a, b], &c)| [a, b, c]);
         for number in across.chain(c.edge_planes.concat()) {
@@ -268,7 +252,7 @@ pub fn frame_registers(setup: &FrameSetup, graph: &GraphView<'_>, layout: &NodeL
     registers
 }
 
-/// Registers of constants but those of planes, and the first of those that have one for each octree level.
+/// Number of registers without those of planes, and the first register of the depths by octree level.
 const REGISTERS: usize = 128;
 const LEVEL_REGISTERS: usize = 64;
 

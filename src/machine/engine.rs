@@ -4,12 +4,12 @@ use hwmodel::cycles::Organisation;
 use hwmodel::{NoProbe, Probe};
 
 use super::cage::{CageCoordinate, with_cage};
-use super::heat::Heat;
 use super::options::MachineOptions;
+use super::records_by_sample::RecordsBySample;
 use super::state::State;
 use crate::frame::{FillVectors, Frame, QuadNode};
 use crate::graph::GraphView;
-use crate::project::{Coverage, Engine, EngineError, FrameSetup, Stats};
+use crate::project::{Engine, EngineError, FrameSetup, Stats};
 
 /// The scalar engine.
 #[derive(Debug, Default)]
@@ -89,9 +89,10 @@ impl Machine {
         most: u64,
     ) -> Result<Option<(Stats, P)>, EngineError> {
         let options = self.options;
-        let heat = frame.records.is_some().then(|| Heat::new(setup.levels));
+        let wants_records = frame.records.is_some();
+        let records = wants_records.then(|| RecordsBySample::new(setup.levels));
         let canvas = (self.emptied(setup, frame), &mut *frame);
-        let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, heat);
+        let mut state = State::<P, L, _>::new(options, graph, setup, canvas, probe, records);
         let is_done = if options.organisation == Organisation::default() {
             state.draw_object(QuadNode::ROOT, most)?
         } else {
@@ -100,9 +101,9 @@ impl Machine {
         if !is_done {
             return Ok(None);
         }
-        let (stats, probe, heat) = state.finish();
-        if let (Some(heat), Some(shares)) = (heat, &mut frame.records) {
-            heat.write_shares(frame.width, shares);
+        let (stats, probe, records) = state.finish();
+        if let (Some(records), Some(shares)) = (records, &mut frame.records) {
+            records.write_shares(frame.width, shares);
         }
         Ok(Some((stats, probe)))
     }
@@ -110,7 +111,7 @@ impl Machine {
     /// Clears a frame, and makes fill vectors of its size with nothing drawn.
     pub(super) fn emptied(&mut self, setup: &FrameSetup, frame: &mut Frame) -> &mut FillVectors {
         frame.clear();
-        frame.set_blending(setup.options.coverage == Coverage::Alpha);
+        frame.set_blending(setup.options.coverage.blends());
         let size = (setup.levels, setup.width, setup.height);
         if self.fill.as_ref().is_some_and(|kept| kept.size != size) {
             self.fill = None;

@@ -1,5 +1,5 @@
 //! The fill vectors as the machine holds them: four bits for each node of the image quadtree, or the lowest two levels
-//! joined.
+//! joined. Both decisions of R6 (`SPEC.md`) that follow from one vector are here.
 //!
 //! A sample's vector is all ones or all zeros, and each bit of its parent's says the same of a sample. *Joined*,
 //! a node two levels above the samples has one word of 16 bits, one a sample, in the place of the 21 vectors
@@ -7,9 +7,11 @@
 
 use std::cell::Cell;
 
+use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, Memory, Probe, Short, Stage};
 
 use super::blocks::{Block, Port};
+use super::quadrants::only;
 use crate::frame::quadtree::FULL;
 use crate::frame::{FillVectors, QuadNode};
 
@@ -30,12 +32,19 @@ pub(super) struct FillStore<'f> {
     words: Vec<u16>,
     /// The address of the word in the register.
     latched: Cell<u64>,
+    /// Whether full nodes reject records.
+    pub(super) rejects_full: bool,
 }
 
 impl<'f> FillStore<'f> {
     /// Vectors as they are, or with the lowest two levels joined, where there are
-    /// so many below `tile_levels`.
-    pub(super) fn new(vectors: &'f mut FillVectors, joined: bool, tile_levels: u32) -> Self {
+    /// so many below the tiles.
+    pub(super) fn new(
+        vectors: &'f mut FillVectors,
+        organisation: Organisation,
+        rejects_full: bool,
+    ) -> Self {
+        let (joined, tile_levels) = (organisation.joined_fill, organisation.tile_levels);
         let level = vectors.levels().checked_sub(LEVELS_BELOW);
         let words = match level.filter(|level| joined && *level >= tile_levels) {
             None => Vec::new(),
@@ -51,6 +60,7 @@ impl<'f> FillStore<'f> {
             vectors,
             words,
             latched: Cell::new(NO_WORD),
+            rejects_full,
         }
     }
 
@@ -105,6 +115,50 @@ impl<'f> FillStore<'f> {
         self.peek(node)
     }
 
+    /// Whether all of a record's node is drawn by the time of its turn.
+    #[inline(always)]
+    pub(super) fn is_full<P: Probe>(&self, dp: &mut Datapath<P>, quad: QuadNode) -> bool {
+        dp.stage(Stage::Filled);
+        if !self.rejects_full {
+            return false;
+        }
+        let vector = self.read(dp, quad);
+        let full = dp.and_bits(4, vector, FULL) == FULL;
+        dp.tap(Block::Filled, &Short::unsigned(vector, 4), &full);
+        full
+    }
+
+    /// Whether the search for a box's node rejects the box, which overlaps `quadrants` of `quad`: none of them is open.
+    ///
+    /// The search never steps into a full node, so it needs no test for one, and a count of such steps is always zero. It
+    /// continues only with a quadrant that is open in its parent's vector, and a node that becomes full sets its bit
+    /// there ([`Self::mark`]). Only the node where the search begins may be full: a parent that draws its children one
+    /// by one may have filled its own node. Then no quadrant is open, and the box is rejected here.
+    #[inline]
+    pub(super) fn rejects<P: Probe>(
+        &self,
+        dp: &mut Datapath<P>,
+        quad: QuadNode,
+        quadrants: u8,
+    ) -> bool {
+        if !self.rejects_full {
+            return quadrants == 0;
+        }
+        let vector = self.read(dp, quad);
+        let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
+        let choice = only(quadrants);
+        dp.tap(
+            Block::NodeChoice,
+            &(Short::unsigned(quadrants, 4), Short::unsigned(vector, 4)),
+            &(
+                rejects,
+                choice.is_some(),
+                Short::unsigned(choice.unwrap_or(0), 2),
+            ),
+        );
+        rejects
+    }
+
     /// A node's vector.
     #[inline(always)]
     pub(super) fn peek(&self, node: QuadNode) -> u8 {
@@ -149,7 +203,7 @@ impl<'f> FillStore<'f> {
                 break;
             }
             bits = 1 << quad.in_parent();
-            quad = parent_of(quad);
+            quad = quad.ancestor(quad.level - 1);
             let vector = self.read_vector(dp, quad);
             dp.or_bits(4, vector, bits);
         }
@@ -164,7 +218,7 @@ impl<'f> FillStore<'f> {
         let (node, at) = self.word_at(sample);
         self.read_word(dp, sample);
         let word = &mut self.words[at];
-        let quadrant = parent_of(sample).in_parent();
+        let quadrant = sample.ancestor(sample.level - 1).in_parent();
         // Four gates a quadrant, of which one changes, beside what led here: the word is in its register.
         let before = (*word >> (quadrant << 2)) as u8 & FULL;
         dp.beside(Stage::FillUpdate, |dp| {
@@ -176,7 +230,7 @@ impl<'f> FillStore<'f> {
         let written = Short::unsigned(*word, WORD_BITS);
         Port::FillWrite.tap(dp, node.address() as u64, &written);
         let is_full = *word == ALL_DRAWN && node.level > 0;
-        is_full.then(|| (parent_of(node), 1 << node.in_parent()))
+        is_full.then(|| (node.ancestor(node.level - 1), 1 << node.in_parent()))
     }
 
     /// Reads a vector that is not joined.
@@ -196,12 +250,9 @@ impl<'f> FillStore<'f> {
     /// The node whose word holds a joined node, and the word's place.
     fn word_at(&self, node: QuadNode) -> (QuadNode, usize) {
         let level = self.levels() - LEVELS_BELOW;
-        let below = node.level - level;
-        let (x, y) = (node.x >> below, node.y >> below);
-        (
-            QuadNode { level, x, y },
-            ((y as usize) << level) + x as usize,
-        )
+        let holder = node.ancestor(level);
+        let at = ((holder.y as usize) << level) + holder.x as usize;
+        (holder, at)
     }
 
     fn read_word<P: Probe>(&self, dp: &mut Datapath<P>, node: QuadNode) {
@@ -223,7 +274,8 @@ impl<'f> FillStore<'f> {
             0 => (0..4).fold(0, |bits, q| bits | u8::from(quarter(q) == FULL) << q),
             1 => quarter(node.in_parent()),
             _ => {
-                let drawn = quarter(parent_of(node).in_parent()) >> node.in_parent() & 1;
+                let drawn =
+                    quarter(node.ancestor(node.level - 1).in_parent()) >> node.in_parent() & 1;
                 if drawn == 0 { 0 } else { FULL }
             }
         }
@@ -238,14 +290,6 @@ fn word_of(vectors: &FillVectors, node: QuadNode) -> u16 {
     })
 }
 
-fn parent_of(node: QuadNode) -> QuadNode {
-    QuadNode {
-        level: node.level - 1,
-        x: node.x >> 1,
-        y: node.y >> 1,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use hwmodel::count::Counter;
@@ -253,12 +297,19 @@ mod tests {
 
     use super::*;
 
+    fn joined_levels() -> Organisation {
+        Organisation {
+            joined_fill: true,
+            ..Organisation::default()
+        }
+    }
+
     /// A picture of 8 x 8 samples, the first 4 x 4 of which are drawn one by one.
     #[test]
     fn a_word_holds_what_its_vectors_do() {
         let (mut plain, mut joined) = (FillVectors::new(3, 8, 7), FillVectors::new(3, 8, 7));
-        let mut plain = FillStore::new(&mut plain, false, 0);
-        let mut joined = FillStore::new(&mut joined, true, 0);
+        let mut plain = FillStore::new(&mut plain, Organisation::default(), true);
+        let mut joined = FillStore::new(&mut joined, joined_levels(), true);
         let dp = || Datapath::new(Format::new(32, 8).unwrap(), Overflow::Trap, Counter::new());
         let (mut one, mut two) = (dp(), dp());
         for at in 0..16 {
@@ -282,14 +333,14 @@ mod tests {
         };
         // Plain: a sample and its parent each time, once four their parent, once that the root.
         assert_eq!(accesses(one), (16 + 4 + 1, 32 + 4 + 1));
-        // Joined: a word each time, read and written; at last the root.
+        // Joined: a word is read and written each time, and at last the root.
         assert_eq!(accesses(two), (17, 17));
     }
 
     #[test]
     fn the_register_saves_reads_within_a_turn() {
         let mut vectors = FillVectors::new(3, 8, 8);
-        let fill = FillStore::new(&mut vectors, true, 0);
+        let fill = FillStore::new(&mut vectors, joined_levels(), true);
         let format = Format::new(32, 8).unwrap();
         let mut dp = Datapath::new(format, Overflow::Trap, Counter::new());
         let node = QuadNode::ROOT.quadrant(2);

@@ -18,15 +18,21 @@
 //!
 //! Each file imports files named before it only:
 //!
-//! - data: `blocks`, `options`, `cage`, `record`, `constants`;
-//! - steps on words: `shifts`, `planes`, `fill`, `quadrants`, `smallest_node`,
-//!   `to_screen`, `size`, `alpha`, `canvas`, `path`;
-//! - steps of the loop: `watch`, `state`, `push`, `undrawn`,
-//!   `verdict`, `decide`, `children`, `record_loop`, and `parents`, the loop
-//!   with parents on its stack, and tiles;
-//! - `heat` and `engine`, the machine as an [`Engine`](crate::project::Engine);
+//! - data: `blocks`, `counters`, `options`, `cage`, `record`, `constants`;
+//! - steps on words: `shifts`, `planes`, `quadrants`, `fill`, `smallest_node`,
+//!   `to_screen`, `size`, `alpha`, `canvas`, `undrawn`, `path`;
+//! - steps of the loop: `watch`, `state`, `verdict`, `decide`, `push`, `children`;
+//! - the loop: `record_loop`, and `parents`, the loop with parents on its stack,
+//!   and tiles;
+//! - `records_by_sample`, and `engine`, the machine as an
+//!   [`Engine`](crate::project::Engine);
 //! - `instruments`, which watch the machine or drive it in another way. The
 //!   machine does not depend on them.
+//!
+//! Every step takes the parts of the state (`state.rs`) that it works on, so that its
+//! signature lists its inputs and outputs. The parts are the datapath, on which it
+//! computes, the `Job`, which no step writes, the `Canvas` with its fill vectors,
+//! and the `Traversal` with its counts.
 
 mod alpha;
 mod blocks;
@@ -34,10 +40,10 @@ mod cage;
 mod canvas;
 mod children;
 mod constants;
+mod counters;
 mod decide;
 mod engine;
 mod fill;
-mod heat;
 mod instruments;
 mod options;
 mod parents;
@@ -47,6 +53,7 @@ mod push;
 mod quadrants;
 mod record;
 mod record_loop;
+mod records_by_sample;
 mod shifts;
 mod size;
 mod smallest_node;
@@ -59,6 +66,7 @@ mod watch;
 pub use crate::project::OCCLUSION_ORDER;
 pub use blocks::{Block, Port};
 pub use constants::frame_registers;
+pub use counters::{COUNTERS, CounterInfo};
 pub use engine::Machine;
 #[cfg(feature = "mutants")]
 pub use instruments::mutants;

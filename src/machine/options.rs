@@ -8,7 +8,7 @@ use crate::project::OCCLUSION_ORDER;
 /// Settings of the machine that are not part of a frame set-up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MachineOptions {
-    /// What a result that does not fit its word becomes.
+    /// Treatment of a result that does not fit its word.
     pub overflow: Overflow,
     /// Whether records whose quadrants are all full are rejected. The picture
     /// is the same either way.
@@ -16,7 +16,7 @@ pub struct MachineOptions {
     /// Children by octant, nearest first, for octant 000; only tests use
     /// another array than [`OCCLUSION_ORDER`].
     pub order: [u8; 8],
-    /// What the stack holds, what is read for a leaf, and whether the picture is drawn by tiles.
+    /// Contents of the stack, reads for a leaf, and whether the picture is drawn by tiles.
     /// Without the organisation of the image-order paper, only a frame's records and accesses
     /// change, not its picture.
     pub organisation: Organisation,

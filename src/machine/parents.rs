@@ -4,7 +4,7 @@
 //! the current record is the object's
 //! loop:
 //!     of the current record's children that are left, nearest first:
-//!         make the child, fit it; if it cannot be seen: the next
+//!         make the child, search for its quadtree node; if it cannot be seen: the next
 //!         if it is drawn: draw it; the next
 //!         else store the current record, if it has children left, on the stack;
 //!              the child is the current record
@@ -12,26 +12,29 @@
 //! ```
 //!
 //! The image-order paper's loop stores each child that can be seen, with its vertices, and reads it
-//! back. Here only what is subdivided is stored, and that only while it has children left, so the
-//! stack is never deeper than the octree, and a drawn voxel is never on it. A child is fitted when
-//! its turn comes, so it finds more of the picture drawn. The vertices of a parent's children are
-//! kept in registers, and made again when the parent comes back from the stack. The stack holds
-//! whole parents, or of each its node and the children that are left; then the rest is worked back
-//! from the record that the walk comes from (`path.rs`).
+//! back. Here only a record that is subdivided is stored, and only while it has children left. So the
+//! stack is never deeper than the octree, and a drawn voxel is never on it. The search for a child's
+//! node is made when its turn comes, and finds more of the picture drawn. The vertices of a parent's
+//! children are kept in registers, and made again when the parent comes back from the stack. The stack
+//! holds whole parents, or a path entry of each: its node and the children that are left. Then the rest
+//! is restored from the record that the walk comes from (`path.rs`).
 //!
 //! *Tiles*: the object is drawn once for each tile of the picture, with everything outside the tile
 //! full from the start. Only the fill vectors above the tiles differ from one tile to the next.
 
 use hwmodel::cycles::StackHolds;
-use hwmodel::{Memory, Probe, Stage, Word};
+use hwmodel::{Datapath, Memory, Probe, Stage, Word};
 
 use super::blocks::Port;
 use super::cage::CageCoordinate;
-use super::decide::RemainingWork;
+use super::children::{centre_and_order, child_cube};
+use super::decide::{RemainingWork, decide};
+use super::fill::FillStore;
 use super::path::{self, PathEntry};
-use super::record::{Pose, Record};
-use super::state::State;
-use super::watch::Watch;
+use super::record::{Child, Pose, Record};
+use super::record_loop::check_trap;
+use super::state::{Job, State};
+use super::watch::{Event, Watch};
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 use crate::project::EngineError;
@@ -42,13 +45,13 @@ pub(super) struct Parent<L: CageCoordinate> {
     pub(super) record: Record<L>,
     /// Children that are left, a bit for each place in the order, nearest first.
     left: u8,
-    /// What its children are made from; `None`: it is new or was stored, and that is to be made.
+    /// Numbers of its children; `None` if it is new or was stored.
     expanded: Option<Expanded<L>>,
     /// Whether it lies on the stack.
     is_stored: bool,
 }
 
-/// What lies on the stack: a whole parent, or the way to it.
+/// An entry of the stack: a whole parent, or the path to it.
 #[expect(
     clippy::large_enum_variant,
     reason = "a stack holds one kind or the other; boxes would be slower"
@@ -56,10 +59,10 @@ pub(super) struct Parent<L: CageCoordinate> {
 #[derive(Clone, Copy)]
 pub(super) enum Stored<L: CageCoordinate> {
     Whole(Parent<L>),
-    Way(PathEntry),
+    Path(PathEntry),
 }
 
-/// What the children of a record are made from: in registers.
+/// The numbers from which a record's children are made: in registers.
 #[derive(Clone, Copy)]
 struct Expanded<L: CageCoordinate> {
     centre: [Word; 3],
@@ -83,7 +86,7 @@ impl<L: CageCoordinate> Parent<L> {
         self.left == 0
     }
 
-    /// What lies on the stack of the way to it.
+    /// Its entry where paths lie on the stack.
     fn entry(&self) -> PathEntry {
         let Record { cube, place, .. } = &self.record;
         PathEntry {
@@ -110,9 +113,9 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
     pub(super) fn draw_by_tiles(&mut self, most_records: u64) -> Result<bool, EngineError> {
         for tile in self.tiles() {
             let mut view = TileView::new(tile);
-            view.swap(self);
+            view.swap(&mut self.canvas.fill);
             let is_done = self.draw_tile(tile, most_records)?;
-            view.swap(self);
+            view.swap(&mut self.canvas.fill);
             if !is_done {
                 return Ok(false);
             }
@@ -125,7 +128,7 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         let level = self.tile_levels();
         let side = 1u32 << level;
         let tiles = (0..side).flat_map(|y| (0..side).map(move |x| QuadNode { level, x, y }));
-        // What is full lies beside the picture.
+        // A tile outside the picture is full.
         tiles
             .filter(|&tile| self.canvas.fill.peek(tile) != FULL)
             .collect()
@@ -133,36 +136,36 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// Levels of the image quadtree above the tiles; a tile is at least a sample.
     pub(super) fn tile_levels(&self) -> u32 {
-        let wanted = self.options.organisation.tile_levels;
-        wanted.min(self.constants.levels)
+        let wanted = self.job.organisation.tile_levels;
+        wanted.min(self.job.constants.levels)
     }
 
-    /// Draws what is not full of the picture.
+    /// Draws all samples of the picture that are not full.
     fn draw_tile(&mut self, tile: QuadNode, most_records: u64) -> Result<bool, EngineError> {
-        if self.options.organisation.stack == StackHolds::Children {
+        if self.job.organisation.stack == StackHolds::Children {
             return self.draw_object(tile, most_records);
         }
         let mut stack = Vec::new();
         let mut current = self.object(tile);
-        self.check_trap()?;
-        // Where the walk comes from.
+        check_trap(&self.dp)?;
+        // The record that the walk comes from.
         let mut last = None;
         loop {
             let mut parent = match current.take().map(Stored::Whole).or_else(|| stack.pop()) {
                 None => break,
                 Some(Stored::Whole(parent)) => parent,
-                Some(Stored::Way(entry)) => {
+                Some(Stored::Path(entry)) => {
                     match self.take_back(&entry, last.as_ref(), stack.len() as u64) {
                         Some(parent) => parent,
                         None => continue,
                     }
                 }
             };
-            if self.counts.records >= most_records {
+            if self.traversal.counts.records >= most_records {
                 return Ok(false);
             }
             let child = self.parent_turn(&mut parent, stack.len() as u64);
-            self.check_trap()?;
+            check_trap(&self.dp)?;
             last = Some(parent.record);
             current = match child {
                 Some(child) => {
@@ -179,28 +182,31 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// The whole object in a tile, if it is to be subdivided; it is drawn or dropped if not.
     pub(super) fn object(&mut self, tile: QuadNode) -> Option<Parent<L>> {
-        self.push_object(tile);
+        let fill = &self.canvas.fill;
+        self.traversal
+            .push_object(&mut self.dp, &self.job, fill, tile);
         self.work_on_new()
     }
 
     /// A parent goes to the stack. `address`: its place there.
     pub(super) fn store(&mut self, mut parent: Parent<L>, address: u64) -> Stored<L> {
-        self.dp.resume(parent.record.cube.level);
-        self.dp.stage(Stage::Push);
-        self.dp.write(Memory::Stack, address);
-        self.counts.deepest_stack = self.counts.deepest_stack.max(address + 1);
+        let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
+        dp.resume(parent.record.cube.level);
+        dp.stage(Stage::Push);
+        dp.write(Memory::Stack, address);
+        counts.deepest_stack = counts.deepest_stack.max(address + 1);
         parent.expanded = None;
         parent.is_stored = true;
         let entry = parent.entry();
-        Port::Push.tap(&mut self.dp, address, &entry);
-        match self.options.organisation.stack {
-            StackHolds::Path => Stored::Way(entry),
-            _ => Stored::Whole(parent),
+        Port::Push.tap(dp, address, &entry);
+        match self.job.organisation.stack {
+            StackHolds::Path => Stored::Path(entry),
+            StackHolds::Children | StackHolds::Parents => Stored::Whole(parent),
         }
     }
 
-    /// Takes a parent back of which the way is on the stack, at `address`, to go on with its children; `None`: its
-    /// place is full by now. `from`: the record that the walk comes from.
+    /// Restores a parent from its path entry on the stack, at `address`, to continue with its children. `None`: its
+    /// quadtree node is full by now. `from`: the record that the walk comes from.
     pub(super) fn take_back(
         &mut self,
         entry: &PathEntry,
@@ -208,21 +214,22 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         address: u64,
     ) -> Option<Parent<L>> {
         let Some(from) = from else {
-            unreachable!("what is on the stack was left for a child");
+            unreachable!("an entry of the stack was left for a child");
         };
-        self.canvas.fill.begin_turn();
-        self.dp.resume(entry.level);
-        self.dp.stage(Stage::Pop);
-        self.dp.read(Memory::Stack, address);
-        Port::Pop.tap(&mut self.dp, address, entry);
-        if self.is_full(path::quad_above(from.place.quad, entry.quad_level)) {
-            self.counts.already_full += 1;
+        let (dp, fill) = (&mut self.dp, &self.canvas.fill);
+        fill.begin_turn();
+        dp.resume(entry.level);
+        dp.stage(Stage::Pop);
+        dp.read(Memory::Stack, address);
+        Port::Pop.tap(dp, address, entry);
+        if fill.is_full(dp, from.place.quad.ancestor(entry.quad_level)) {
+            self.traversal.counts.already_full += 1;
             return None;
         }
-        self.dp.stage(Stage::Pop);
-        let record = path::back(&mut self.dp, &self.constants, entry, from);
+        dp.stage(Stage::Pop);
+        let record = path::back(dp, &self.job.constants, entry, from);
         if P::TAPS {
-            self.show_worked_back(record);
+            show_restored(dp, record);
         }
         Some(Parent {
             left: entry.left,
@@ -230,66 +237,58 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
         })
     }
 
-    /// Shows a parent that was worked back. What its turn does not need is not shown: its number, of which the stack has
-    /// what is read there, and its least depth.
-    fn show_worked_back(&mut self, mut record: Record<L>) {
-        record.cube.node = 0;
-        if let Pose::Clip(clip, _) = &mut record.pose {
-            clip.w_min = Word::ZERO;
-        }
-        Port::Made.tap(&mut self.dp, u64::from(true), &record);
-    }
-
-    /// Goes on with a parent's children until one can be seen, and draws that one, or returns it if
+    /// Continues with a parent's children until one can be seen. Draws that one, or returns it if
     /// it must be subdivided. `address`: the parent's on the stack, if it was there.
     pub(super) fn parent_turn(
         &mut self,
         parent: &mut Parent<L>,
         address: u64,
     ) -> Option<Parent<L>> {
-        self.canvas.fill.begin_turn();
-        self.dp.resume(parent.record.cube.level);
+        let (dp, job, fill) = (&mut self.dp, &self.job, &self.canvas.fill);
+        let traversal = &mut self.traversal;
+        fill.begin_turn();
+        dp.resume(parent.record.cube.level);
         let expanded = match parent.expanded {
             Some(expanded) => expanded,
             None => {
                 if std::mem::take(&mut parent.is_stored) {
-                    self.dp.stage(Stage::Pop);
-                    self.dp.read(Memory::Stack, address);
-                    Port::Pop.tap(&mut self.dp, address, &parent.entry());
-                    if self.is_full(parent.record.place.quad) {
-                        self.counts.already_full += 1;
+                    dp.stage(Stage::Pop);
+                    dp.read(Memory::Stack, address);
+                    Port::Pop.tap(dp, address, &parent.entry());
+                    if fill.is_full(dp, parent.record.place.quad) {
+                        traversal.counts.already_full += 1;
                         parent.left = 0;
                         return None;
                     }
                 }
-                self.counts.subdivided += u64::from(parent.is_new());
-                *parent.expanded.insert(self.expand(&parent.record))
+                traversal.counts.subdivided += u64::from(parent.is_new());
+                *parent.expanded.insert(expand(dp, job, &parent.record))
             }
         };
-        let cube = &parent.record.cube;
+        let record = &parent.record;
         while parent.left != 0 {
             let place = parent.left.trailing_zeros() as usize & 7;
             parent.left &= parent.left - 1;
             let octant = expanded.order[place];
-            let Some(child) = self.child_cube(cube, octant, &expanded.centre) else {
+            let counts = &mut traversal.counts;
+            let cube = &record.cube;
+            let Some(cube) = child_cube(dp, job, counts, cube, octant, &expanded.centre) else {
                 continue;
             };
-            let from = parent.record.place;
+            let from = record.place;
+            let child = Child { cube, from };
             // A child is made in one step, its vertices beside its box.
-            let mut grow = |seed| {
-                let octant = octant as usize;
-                self.dp
-                    .beside(Stage::VertexPool, |dp| L::grow(dp, seed, octant))
-            };
-            let is_seen = match &parent.record.pose {
+            let mut grow =
+                |seed| dp.beside(Stage::VertexPool, |dp| L::grow(dp, seed, octant as usize));
+            let is_seen = match &record.pose {
                 Pose::Clip(_, planes) => {
                     let cage = expanded.seeds.each_ref().map(grow);
-                    self.push_clip_child(octant, cage, planes, child, from)
+                    traversal.push_clip_child(dp, job, fill, child, cage, (planes, octant))
                 }
                 Pose::Screen(_) => {
                     let [x, y, _] = &expanded.seeds;
                     let cage = [x, y].map(&mut grow);
-                    self.push_screen_child(|| cage, child, from)
+                    traversal.push_screen(dp, job, fill, child, || cage)
                 }
             };
             if is_seen {
@@ -301,36 +300,53 @@ impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
 
     /// Draws or drops the record that was just made, unless it must be subdivided.
     fn work_on_new(&mut self) -> Option<Parent<L>> {
-        let mut record = self.stack.pop()?;
-        self.dp.begin_record(self.counts.records, record.cube.level);
-        self.counts.records += 1;
-        Port::Made.tap(&mut self.dp, u64::from(false), &record);
-        self.watch.turn(record.place.quad);
-        match self.decide(&mut record) {
+        let mut record = self.traversal.stack.pop()?;
+        let (dp, counts) = (&mut self.dp, &mut self.traversal.counts);
+        dp.begin_record(counts.records, record.cube.level);
+        counts.records += 1;
+        Port::Made.tap(dp, u64::from(false), &record);
+        self.traversal
+            .watch
+            .see(Event::<L>::Turn(record.place.quad));
+        match decide(dp, &self.job, &mut self.canvas, counts, &mut record) {
             RemainingWork::Nothing => None,
             RemainingWork::Children => Some(Parent::new(record)),
         }
     }
+}
 
-    /// Makes what the children of a record are made from.
-    fn expand(&mut self, record: &Record<L>) -> Expanded<L> {
-        let (centre, order) = self.centre_and_order(&record.cube);
-        let seeds = self.dp.beside(Stage::VertexPool, |dp| match &record.pose {
-            Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
-            Pose::Screen(screen) => {
-                let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
-                [x, y, y]
-            }
-        });
-        Expanded {
-            centre,
-            order,
-            seeds,
+/// Shows a restored parent to the probe, without the numbers that its turn does not need: its node, which the stack
+/// has, and its least depth.
+fn show_restored<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, mut record: Record<L>) {
+    record.cube.node = 0;
+    if let Pose::Clip(clip, _) = &mut record.pose {
+        clip.w_min = Word::ZERO;
+    }
+    Port::Made.tap(dp, u64::from(true), &record);
+}
+
+/// Computes the numbers from which a record's children are made.
+fn expand<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    job: &Job<'_>,
+    record: &Record<L>,
+) -> Expanded<L> {
+    let (centre, order) = centre_and_order(dp, job, &record.cube);
+    let seeds = dp.beside(Stage::VertexPool, |dp| match &record.pose {
+        Pose::Clip(clip, _) => [&clip.x, &clip.y, &clip.w].map(|cage| cage.seed(dp)),
+        Pose::Screen(screen) => {
+            let [x, y] = [&screen.x, &screen.y].map(|cage| cage.seed(dp));
+            [x, y, y]
         }
+    });
+    Expanded {
+        centre,
+        order,
+        seeds,
     }
 }
 
-/// A tile's own view of the fill vectors above it: all but the way to the tile is full.
+/// A tile's own view of the fill vectors above it: all but the path to the tile is full.
 #[derive(Debug, Clone)]
 pub(super) struct TileView {
     tile: QuadNode,
@@ -342,34 +358,20 @@ pub(super) struct TileView {
 impl TileView {
     /// The view of a tile that is not begun.
     pub(super) fn new(tile: QuadNode) -> Self {
-        let way = |level: u32| {
-            let below = tile.level - level - 1;
-            let child = QuadNode {
-                level: level + 1,
-                x: tile.x >> below,
-                y: tile.y >> below,
-            };
+        let vector = |level: u32| {
+            let child = tile.ancestor(level + 1);
             FULL & !(1 << child.in_parent())
         };
         Self {
             tile,
-            above: (0..tile.level).map(way).collect(),
+            above: (0..tile.level).map(vector).collect(),
         }
     }
 
     /// Puts the view's vectors into their places, and keeps those that were there.
-    pub(super) fn swap<P: Probe, L: CageCoordinate, W: Watch>(
-        &mut self,
-        state: &mut State<'_, P, L, W>,
-    ) {
+    pub(super) fn swap(&mut self, fill: &mut FillStore<'_>) {
         for (level, own) in (0..self.tile.level).zip(&mut self.above) {
-            let below = self.tile.level - level;
-            let node = QuadNode {
-                level,
-                x: self.tile.x >> below,
-                y: self.tile.y >> below,
-            };
-            *own = state.canvas.fill.replace(node, *own);
+            *own = fill.replace(self.tile.ancestor(level), *own);
         }
     }
 }

@@ -1,9 +1,12 @@
-//! The way back: a record's ancestor, from the record.
+//! Restores a record's ancestor from the record.
 //!
-//! Under the rules that draw outlines every step down can be undone to the bit. Edges were halved without a remainder,
-//! since no record is finer than the finest voxels; a child's vertices and planes are its parent's, moved by its own
-//! edges; and what a quadrant did to coordinates (`2x` or `2x - w`) is undone by an add and a shift by one place. So a
-//! parent need not be stored with its vertices: its node and the children that are left are enough.
+//! Under the rules that draw outlines every step down can be undone to the bit:
+//!
+//! - Edges were halved without a remainder, since no record is finer than the finest voxels.
+//! - A child's vertices and planes are its parent's, moved by its own edges.
+//! - Coordinates in a quadrant, `2x` or `2x - w`, return by an add and a shift by one place.
+//!
+//! So a parent need not be stored with its vertices: its node and the children that are left are enough.
 
 use hwmodel::{Datapath, Probe, Short, Signal, Wires};
 
@@ -12,9 +15,8 @@ use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::planes;
 use super::record::{Clip, Cube, ImagePlace, Planes, Pose, Record};
-use crate::frame::QuadNode;
 
-/// What is stored of a parent.
+/// The entry of a parent on the stack.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PathEntry {
     /// Its octree node; with it, in hardware, which children it has and where they begin.
@@ -29,7 +31,7 @@ pub(super) struct PathEntry {
     pub(super) left: u8,
 }
 
-/// What tells one entry from another; of the node only its number is known here.
+/// The fields but the node, of which only the number is known here.
 impl Wires for PathEntry {
     fn show(&self, to: &mut Vec<Signal>) {
         Short::unsigned(self.left, 8).show(to);
@@ -40,17 +42,7 @@ impl Wires for PathEntry {
     }
 }
 
-/// The quadtree node of `level` that holds `quad`.
-pub(super) fn quad_above(quad: QuadNode, level: u32) -> QuadNode {
-    let up = quad.level - level;
-    QuadNode {
-        level,
-        x: quad.x >> up,
-        y: quad.y >> up,
-    }
-}
-
-/// The parent of which `entry` was stored, from a descendant of it.
+/// The parent of a stored entry, from one of its descendants.
 pub(super) fn back<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -65,7 +57,7 @@ pub(super) fn back<P: Probe, L: CageCoordinate>(
         out_of_quadrant(dp, constants, &mut clip, &mut planes, quad.in_parent());
         // Hardware undoes a level at a time, of the picture or of the octree.
         dp.next_step(0);
-        quad = quad_above(quad, quad.level - 1);
+        quad = quad.ancestor(quad.level - 1);
     }
     let mut min = from.cube.min;
     for level in (entry.level..from.cube.level).rev() {

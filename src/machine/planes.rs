@@ -1,4 +1,4 @@
-//! Silhouettes of cubes in clip space, exact (`SPEC.md`, "Exact coverage").
+//! Exact coverage (`SPEC.md`, R8): silhouettes of cubes in clip space.
 //!
 //! A ray meets the inside of a cube if and only if for each axis j the four
 //! edges along j do not all pass on one side of it. The plane through the eye
@@ -86,8 +86,8 @@ impl Plane {
         dp.tap(Block::PlaneSide, &plane, &self.side.wires());
     }
 
-    /// The side of the node's middle. If that is on the plane: of a point right
-    /// of it by an infinitesimal and below it by one infinitely smaller.
+    /// The side of the node's middle. If that is on the plane, a tie (R8.1): of a
+    /// point right of it by an infinitesimal and below it by one infinitely smaller.
     fn of_sample<P: Probe>(&self, dp: &mut Datapath<P>) -> Side {
         let [a, b] = self.ab;
         let doubled = dp.shl(self.c, 1);
@@ -143,8 +143,8 @@ pub(super) struct Silhouette {
     /// By direction, the planes of the four edges along it.
     edges: [[Plane; 4]; 3],
     /// Of a cube that is not wholly before the eye: a plane perpendicular to an
-    /// axis, and the side of it on which rays reach the cube and not its mirror
-    /// image behind the eye.
+    /// axis, and the side on which rays reach the cube. Those on the other side
+    /// reach its mirror image behind the eye.
     front: Option<(Plane, Side)>,
 }
 
@@ -186,8 +186,9 @@ impl Silhouette {
         Self { edges, front }
     }
 
-    /// The half of the rays that can reach a cube: those towards it along an
-    /// axis on which the eye is outside it. `None` for a cube that holds the eye.
+    /// Plane of the eye (R8.2): the half of the rays that can reach a cube, those
+    /// towards it along an axis on which the eye is outside it. `None` for a cube
+    /// that holds the eye.
     fn front<P: Probe>(
         dp: &mut Datapath<P>,
         constants: &Constants,
@@ -322,16 +323,12 @@ pub(super) fn of_child<P: Probe>(
     }
     let axes = (constants.axis_ab, parent.axis_c);
     let half = Short::unsigned(half_shift, LEVEL_BITS);
-    let octant = Short::unsigned(octant, 3);
-    dp.tap(
-        Block::ChildPlanes,
-        &(parent.edge, axes, half, octant),
-        &planes.edge,
-    );
+    let stimulus = (parent.edge, axes, half, Short::unsigned(octant, 3));
+    dp.tap(Block::ChildPlanes, &stimulus, &planes.edge);
     planes
 }
 
-/// The planes of a parent at a level, from its child's: what [`of_child`] did, undone.
+/// The planes of a parent at a level, from its child's: undoes [`of_child`].
 pub(super) fn to_parent<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -351,7 +348,7 @@ pub(super) fn to_parent<P: Probe>(
     }
 }
 
-/// Makes planes relative to the parent of their node, of which that is a quadrant: what [`move_to_quadrant`] did, undone.
+/// Makes planes relative to the parent of their node, of which that is a quadrant: undoes [`move_to_quadrant`].
 pub(super) fn move_out_of_quadrant<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,

@@ -1,10 +1,10 @@
-//! Which quadrants of a quadtree node a box overlaps: the box against the
-//! node's two bisectors (image-order paper, 3.5).
+//! The quadrants of a quadtree node that a box overlaps (`SPEC.md`, R6): the box
+//! against the node's two bisectors (image-order paper, 3.5).
 //!
 //! In clip space `x` runs from 0 to `w` across the node, so the sign of
-//! `2x - w` is the side of the bisector, and `2x - w` is `x` relative to the far
-//! half, `2x` relative to the near one. In screen space positions are those in
-//! the whole picture, and are compared with the bisector's.
+//! `2x - w` is the side of the bisector. Relative to the far half `x` is `2x - w`,
+//! relative to the near one `2x`. In screen space positions are those in the whole
+//! picture, and are compared with the bisector's.
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -48,6 +48,13 @@ pub(super) fn quadrants<P: Probe>(dp: &mut Datapath<P>, x: Halves, y: Halves) ->
         &Short::unsigned(both, 4),
     );
     both
+}
+
+/// The only quadrant of a set, if it has just one.
+pub(super) fn only(quadrants: u8) -> Option<u8> {
+    quadrants
+        .is_power_of_two()
+        .then(|| quadrants.trailing_zeros() as u8)
 }
 
 /// The quadrants of its node that a clip-space box overlaps, and its x and y

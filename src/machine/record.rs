@@ -1,6 +1,4 @@
-//! The record: what the machine keeps of a cube on its stack (image-order paper, 2.4).
-//! Data only; the steps that work on it are in `push.rs`, `undrawn.rs`, `verdict.rs`, `decide.rs`,
-//! `children.rs`, `record_loop.rs` and `parents.rs`.
+//! The record: a cube on the machine's stack (image-order paper, 2.4). Data only.
 
 use hwmodel::{Short, Signal, WideWord, Wires, Word};
 
@@ -52,6 +50,14 @@ impl ImagePlace {
     };
 }
 
+/// A cube that may become a record.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Child {
+    pub(super) cube: Cube,
+    /// Its parent's place, where the search for its own begins.
+    pub(super) from: ImagePlace,
+}
+
 /// A cube's projected vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pose<L> {
@@ -85,7 +91,7 @@ pub(super) struct Screen<L> {
 /// Least and greatest x, least and greatest y, in screen space.
 pub(super) type Spans = [(Word, Word); 2];
 
-/// Silhouette planes of a cube in clip space (`SPEC.md`, "Exact coverage"),
+/// Silhouette planes of a cube in clip space (`SPEC.md`, R8),
 /// relative to the quadtree node: functions `a x + b y + c` with `x` and `y`
 /// from 0 to 1 across the node.
 #[derive(Debug, Clone, Copy, Default)]

@@ -1,4 +1,4 @@
-//! How large a record is in samples, and which sample holds its centre.
+//! The size of a record in samples, and the sample that holds its centre (`SPEC.md`, R7).
 
 use hwmodel::{Datapath, Probe, Short, Word};
 
@@ -14,9 +14,9 @@ use crate::project::options::ShiftSum;
 /// `below` levels above the samples.
 ///
 /// An edge `E` moves a vertex at `x` (0 to 1 across the node) by
-/// `(E_X - x E_W) / W`, so the sum over the edges of the greater of `|E_X|` and
-/// `|E_X - E_W|`, divided by the least `W`, bounds the size. Conservative: a few
-/// cages just within the limit are taken for larger.
+/// `(E_X - x E_W) / W`. So the size is bounded by the sum over the edges of the
+/// greater of `|E_X|` and `|E_X - E_W|`, divided by the least `W`. Conservative: a
+/// few cages just within the limit are rejected.
 pub(super) fn clip_at_most<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     clip: &Clip<L>,

@@ -1,10 +1,10 @@
-//! The fit: the smallest unfilled quadtree node that holds a box (image-order paper, 3.5).
+//! The smallest unfilled quadtree node that holds a box (`SPEC.md`, R6; image-order paper, 3.5).
 //!
 //! ```text
 //! from the parent's node on:
 //!     find the quadrants that the box overlaps
 //!     if all of them are full: reject the box
-//!     if there is exactly one: go on with that quadrant
+//!     if there is exactly one: continue with that quadrant
 //!     else: this is the node
 //! ```
 //!
@@ -18,71 +18,23 @@ use super::cage::CageCoordinate;
 use super::constants::Constants;
 use super::fill::FillStore;
 use super::planes;
-use super::quadrants::{self, margins};
+use super::quadrants::{self, margins, only};
 use super::record::{Clip, ImagePlace, Planes, Spans};
 use crate::frame::QuadNode;
-use crate::frame::quadtree::FULL;
-use crate::project::Coverage;
 
-/// The fill vectors, and whether full quadrants reject boxes.
-pub(super) struct Fill<'f> {
-    pub(super) vectors: &'f FillStore<'f>,
-    pub(super) reject: bool,
-}
-
-impl Fill<'_> {
-    /// Whether a box that overlaps `quadrants` of `quad` is rejected.
-    #[inline]
-    pub(super) fn rejects<P: Probe>(
-        &self,
-        dp: &mut Datapath<P>,
-        quad: QuadNode,
-        quadrants: u8,
-    ) -> bool {
-        if !self.reject {
-            return quadrants == 0;
-        }
-        let vector = self.vectors.read(dp, quad);
-        let rejects = dp.and_bits(4, quadrants, !vector & FULL) == 0;
-        let choice = only(quadrants);
-        dp.tap(
-            Block::NodeChoice,
-            &(Short::unsigned(quadrants, 4), Short::unsigned(vector, 4)),
-            &(
-                rejects,
-                choice.is_some(),
-                Short::unsigned(choice.unwrap_or(0), 2),
-            ),
-        );
-        rejects
-    }
-}
-
-/// The only quadrant of a set, if it has just one.
-fn only(quadrants: u8) -> Option<u8> {
-    quadrants
-        .is_power_of_two()
-        .then(|| quadrants.trailing_zeros() as u8)
-}
-
-/// Fits a clip-space cage, and makes it and its planes relative to the node
-/// found. `None`: rejected.
+/// Searches for the node of a clip-space cage, and makes the cage and its planes
+/// relative to it. `None`: rejected.
 pub(super) fn clip<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &Fill<'_>,
+    fill: &FillStore<'_>,
     place: ImagePlace,
     clip: &mut Clip<L>,
     planes: &mut Planes,
 ) -> Option<ImagePlace> {
     dp.stage(Stage::QuadtreeFit);
     let mut quad = place.quad;
-    let inside = place.inside
-        || match border(dp, constants, quad, clip) {
-            Border::Outside => return None,
-            Border::Across => false,
-            Border::Inside => true,
-        };
+    let inside = place.inside || is_inside(dp, constants, quad, clip)?;
     loop {
         let (overlapped, far) = quadrants::of_clip(dp, constants, quad, clip);
         if fill.rejects(dp, quad, overlapped) {
@@ -102,7 +54,7 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
             break;
         }
         *clip = to;
-        if constants.coverage == Coverage::Exact {
+        if constants.outline.has_planes() {
             planes::move_to_quadrant(dp, constants, planes, quadrant);
         }
         quad = quad.quadrant(quadrant);
@@ -110,23 +62,18 @@ pub(super) fn clip<P: Probe, L: CageCoordinate>(
     Some(ImagePlace { quad, inside })
 }
 
-/// Fits a screen-space box. `None`: rejected.
+/// Searches for the node of a screen-space box. `None`: rejected.
 #[inline(always)]
 pub(super) fn screen<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
-    fill: &Fill<'_>,
+    fill: &FillStore<'_>,
     place: ImagePlace,
     spans: &Spans,
 ) -> Option<ImagePlace> {
     dp.stage(Stage::QuadtreeFit);
     let mut quad = place.quad;
-    let inside = place.inside
-        || match screen_border(dp, constants, quad, spans) {
-            Border::Outside => return None,
-            Border::Across => false,
-            Border::Inside => true,
-        };
+    let inside = place.inside || is_screen_inside(dp, constants, quad, spans)?;
     loop {
         let overlapped = quadrants::of_screen(dp, constants, quad, spans);
         if fill.rejects(dp, quad, overlapped) {
@@ -154,21 +101,15 @@ pub(super) fn near_node<P: Probe, L: CageCoordinate>(dp: &mut Datapath<P>, x: &L
     near
 }
 
-/// How a box lies to a node whose edges are the picture's wherever the box of
-/// the parent left it.
-enum Border {
-    Inside,
-    Across,
-    Outside,
-}
-
-/// A clip-space box, widened by [`Constants::grow`], against a node's edges.
-fn border<P: Probe, L: CageCoordinate>(
+/// Whether a clip-space box, widened by [`Constants::grow`], lies inside a node.
+/// `None`: it lies outside. The node's edges are the picture's wherever the box
+/// of the parent left it.
+fn is_inside<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,
     clip: &Clip<L>,
-) -> Border {
+) -> Option<bool> {
     let below = (constants.levels - quad.level) as i32;
     let mut inside = true;
     for x in [&clip.x, &clip.y] {
@@ -203,24 +144,20 @@ fn border<P: Probe, L: CageCoordinate>(
             &(outside, within),
         );
         if outside {
-            return Border::Outside;
+            return None;
         }
         inside &= within;
     }
-    if inside {
-        Border::Inside
-    } else {
-        Border::Across
-    }
+    Some(inside)
 }
 
-/// A screen-space box against a node's edges.
-fn screen_border<P: Probe>(
+/// The same of a screen-space box.
+fn is_screen_inside<P: Probe>(
     dp: &mut Datapath<P>,
     constants: &Constants,
     quad: QuadNode,
     &[x, y]: &Spans,
-) -> Border {
+) -> Option<bool> {
     let below = constants.levels - quad.level;
     // A multiple of the node's width, as a screen position.
     let edge = |column: u32| {
@@ -238,13 +175,9 @@ fn screen_border<P: Probe>(
         );
         dp.tap(Block::BorderScreen, &(low, high, node), &(outside, within));
         if outside {
-            return Border::Outside;
+            return None;
         }
         inside &= within;
     }
-    if inside {
-        Border::Inside
-    } else {
-        Border::Across
-    }
+    Some(inside)
 }

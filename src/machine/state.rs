@@ -1,11 +1,11 @@
-//! The state of the record loop. What is done with it is in `push.rs`, `undrawn.rs`, `verdict.rs`,
-//! `decide.rs`, `children.rs`, `record_loop.rs` and `parents.rs`.
+//! The parts of the record loop's state. Each step takes the parts that it reads or writes.
 
+use hwmodel::cycles::Organisation;
 use hwmodel::{Datapath, Probe, Stage};
 
-use super::cage::CageCoordinate;
 use super::canvas::Canvas;
 use super::constants::Constants;
+use super::counters::Counts;
 use super::fill::FillStore;
 use super::options::MachineOptions;
 use super::record::Record;
@@ -14,41 +14,37 @@ use crate::frame::{FillVectors, Frame};
 use crate::graph::{GraphView, NodeLayout};
 use crate::project::{FrameSetup, Stats};
 
-/// Counts of a frame, by the names in [`State::finish`].
-#[derive(Debug, Default)]
-pub(super) struct RecordCounts {
-    pub(super) records: u64,
-    pub(super) subdivided: u64,
-    pub(super) already_full: u64,
-    pub(super) hidden: u64,
-    pub(super) absent_children: u64,
-    pub(super) behind_eye: u64,
-    pub(super) rejected: u64,
-    pub(super) changed_to_screen: u64,
-    pub(super) at_bound: u64,
-    pub(super) solids: u64,
-    pub(super) deepest_stack: u64,
+/// The inputs of a frame: no step writes them.
+pub(super) struct Job<'a> {
+    pub(super) constants: Constants,
+    pub(super) graph: &'a GraphView<'a>,
+    /// Addresses of the graph's nodes.
+    pub(super) layout: NodeLayout,
+    /// [`MachineOptions::order`].
+    pub(super) order: [u8; 8],
+    pub(super) organisation: Organisation,
 }
 
-/// All that the record loop works on, in cages of type `L`.
-pub(super) struct State<'a, P: Probe, L, W> {
-    pub(super) dp: Datapath<P>,
-    pub(super) constants: Constants,
-    pub(super) options: MachineOptions,
-    pub(super) graph: &'a GraphView<'a>,
-    /// Where its nodes are read.
-    pub(super) layout: NodeLayout,
-    pub(super) canvas: Canvas<'a>,
+/// The records that wait for their turn, and the counts of all.
+pub(super) struct Traversal<L, W> {
     pub(super) stack: Vec<Record<L>>,
-    pub(super) counts: RecordCounts,
+    pub(super) counts: Counts,
     pub(super) watch: W,
 }
 
-impl<'a, P: Probe, L: CageCoordinate, W: Watch> State<'a, P, L, W> {
+/// The record loop's state, in cages of type `L`.
+pub(super) struct State<'a, P: Probe, L, W> {
+    pub(super) dp: Datapath<P>,
+    pub(super) job: Job<'a>,
+    pub(super) canvas: Canvas<'a>,
+    pub(super) traversal: Traversal<L, W>,
+}
+
+impl<'a, P: Probe, L, W: Watch> State<'a, P, L, W> {
     /// The state of a frame before the first record: the stack is empty. `fill`
     /// and `frame` have the set-up's size and are cleared.
     pub(super) fn new(
-        mut options: MachineOptions,
+        options: MachineOptions,
         graph: &'a GraphView<'a>,
         setup: &FrameSetup,
         (fill, frame): (&'a mut FillVectors, &'a mut Frame),
@@ -57,48 +53,38 @@ impl<'a, P: Probe, L: CageCoordinate, W: Watch> State<'a, P, L, W> {
     ) -> Self {
         let mut dp = Datapath::new(setup.format, options.overflow, probe);
         dp.stage(Stage::Push);
+        let mut organisation = options.organisation;
         if !setup.options.coverage.draws_outlines() {
-            options.organisation = options.organisation.without_outlines();
+            organisation = organisation.without_outlines();
         }
-        let organisation = options.organisation;
-        let layout = NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks);
-        let fill = FillStore::new(fill, organisation.joined_fill, organisation.tile_levels);
-        let constants = Constants::load(&mut dp, setup);
+        let job = Job {
+            constants: Constants::load(&mut dp, setup),
+            graph,
+            layout: NodeLayout::new(graph, organisation.leaf_masks, organisation.bricks),
+            order: options.order,
+            organisation,
+        };
         Self {
             dp,
-            constants,
-            options,
-            graph,
-            layout,
-            canvas: Canvas::new(fill, frame),
-            stack: Vec::new(),
-            counts: RecordCounts::default(),
-            watch,
+            job,
+            canvas: Canvas {
+                fill: FillStore::new(fill, organisation, options.reject_filled),
+                frame,
+            },
+            traversal: Traversal {
+                stack: Vec::new(),
+                counts: Counts::default(),
+                watch,
+            },
         }
     }
 
-    /// The counts of a frame after its last record, and what watched it.
-    pub(super) fn finish(self) -> (Stats, P, W) {
-        let counts = &self.counts;
-        let mut stats = vec![
-            ("records", counts.records),
-            ("subdivided", counts.subdivided),
-            ("already_full", counts.already_full),
-            ("hidden_across_bisectors", counts.hidden),
-            ("absent_children", counts.absent_children),
-            ("behind_eye", counts.behind_eye),
-            ("rejected_by_quadtree", counts.rejected),
-            ("changed_to_screen", counts.changed_to_screen),
-            ("at_level_bound", counts.at_bound),
-            ("solids_drawn", counts.solids),
-            ("samples_drawn", self.canvas.drawn),
-            ("samples_already_drawn", self.canvas.occluded),
-            ("deepest_stack", counts.deepest_stack),
-            ("overflows", self.dp.overflows()),
-        ];
-        if self.constants.blend_eye.is_some() {
-            stats.push(("samples_blended", self.canvas.blended));
-        }
-        (stats, self.dp.into_probe(), self.watch)
+    /// The counts of a frame after its last record, its probe and its watch.
+    pub(super) fn finish(mut self) -> (Stats, P, W) {
+        self.traversal.counts.overflows = self.dp.overflows();
+        let mut stats = self.traversal.counts.stats();
+        let blends = self.job.constants.blend_eye.is_some();
+        stats.retain(|&(name, _)| blends || name != "samples_blended");
+        (stats, self.dp.into_probe(), self.traversal.watch)
     }
 }

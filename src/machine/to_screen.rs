@@ -1,5 +1,5 @@
-//! The change from clip space to screen space: the one place where the
-//! machine divides, bit by bit, with subtractions and shifts.
+//! The change from clip space to screen space (`SPEC.md`, R5): the one place where
+//! the machine divides, bit by bit, with subtractions and shifts.
 
 use hwmodel::{Datapath, Probe, Short, Stage, Word};
 
@@ -59,8 +59,8 @@ pub(super) fn change<P: Probe, L: CageCoordinate>(
 }
 
 /// Whether the box leaves the picture by no more than the bound on the
-/// deviation allows for: an eighth of its side; four times its side where the
-/// tolerance is infinite.
+/// deviation allows for: an eighth of the picture's side, or four times its side
+/// where the tolerance is infinite.
 fn within_guard<P: Probe, L: CageCoordinate>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -74,7 +74,7 @@ fn within_guard<P: Probe, L: CageCoordinate>(
         -(OFFSET_SHIFT as i32) - level
     };
     if level > 0 && places <= 0 {
-        // Below the root the fit lets no box leave a node by more than its width.
+        // Below the root the search for a node lets no box leave it by more than its width.
         return true;
     }
     [&clip.x, &clip.y].into_iter().all(|x| {

@@ -1,6 +1,6 @@
-//! The first sample of a box that is not drawn yet.
+//! The first sample of a box that is not drawn yet, for records across a bisector (`SPEC.md`, R6) and for `any`.
 //!
-//! Unlike the fit this goes on where a box lies across a bisector.
+//! Unlike the search for the smallest node, this one continues where a box lies across a bisector.
 
 use hwmodel::{Datapath, Probe, Stage};
 
@@ -9,23 +9,23 @@ use super::constants::Constants;
 use super::fill::FillStore;
 use super::quadrants;
 use super::record::{Clip, Pose, Record, Spans};
-use super::state::State;
-use super::watch::Watch;
 use crate::frame::QuadNode;
 use crate::frame::quadtree::FULL;
 
-impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// The first sample of a record's box that is not drawn yet.
-    #[inline]
-    pub(super) fn first_undrawn(&mut self, record: &Record<L>) -> Option<QuadNode> {
-        let fill = &self.canvas.fill;
-        let (dp, constants, quad) = (&mut self.dp, &self.constants, record.place.quad);
-        let found = match &record.pose {
-            Pose::Clip(clip, _) => first(dp, constants, fill, quad, *clip),
-            Pose::Screen(screen) => first_inlined(dp, constants, fill, quad, screen.spans),
-        };
-        found.ok()
-    }
+/// The first sample of a record's box that is not drawn yet.
+#[inline]
+pub(super) fn first_undrawn<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    constants: &Constants,
+    fill: &FillStore<'_>,
+    record: &Record<L>,
+) -> Option<QuadNode> {
+    let quad = record.place.quad;
+    let found = match &record.pose {
+        Pose::Clip(clip, _) => first(dp, constants, fill, quad, *clip),
+        Pose::Screen(screen) => first_inlined(dp, constants, fill, quad, screen.spans),
+    };
+    found.ok()
 }
 
 /// A box in the image, relative to a quadtree node.
@@ -89,8 +89,8 @@ fn first_inlined<P: Probe, B: ImageBox>(
     }
 }
 
-/// The first sample of `quad` that a box overlaps and that is not drawn yet; `Err`: there is none, and this is the
-/// level of the last node that was looked at.
+/// The first sample of `quad` that a box overlaps and that is not drawn yet; else the level of the last node that was
+/// examined.
 fn first<P: Probe, B: ImageBox>(
     dp: &mut Datapath<P>,
     constants: &Constants,
@@ -117,7 +117,7 @@ impl<L: CageCoordinate> ImageBox for Clip<L> {
         quadrants::clip_in_quadrant(dp, self, quadrant, far)
     }
 
-    /// Hardware undoes a level at a time what made a box relative to its node: here the boxes above are kept.
+    /// Hardware moves a box back to its node's parent, one level at a time. Here the boxes above are kept.
     fn climb<P: Probe>(dp: &mut Datapath<P>, levels: u32) {
         dp.next_step(levels + 1);
     }

@@ -1,18 +1,21 @@
-//! The drawing rules: whether a record is drawn, dropped or subdivided
-//! (`SPEC.md`, "Drawing rules").
+//! The drawing rules (`SPEC.md`, R7, with R10, the end of subdivision): whether a
+//! record is drawn, dropped or subdivided.
 
-use hwmodel::{Probe, Stage};
+use hwmodel::{Datapath, Probe, Stage};
 
 use super::blocks::Block;
 use super::cage::CageCoordinate;
+use super::canvas::Canvas;
+use super::constants::Constants;
+use super::counters::Counts;
 use super::planes::Silhouette;
 use super::record::{Pose, Record};
 use super::size;
-use super::state::State;
-use super::watch::Watch;
-use crate::project::Coverage;
+use super::state::Job;
+use super::undrawn::first_undrawn;
+use crate::project::options::OutlineRule;
 
-/// What is to be done with a record.
+/// The next step for a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
     /// Draw it at the sample of its centre (`any`, `center`).
@@ -27,166 +30,171 @@ pub(super) enum Verdict {
     Subdivide,
 }
 
-impl<P: Probe, L: CageCoordinate, W: Watch> State<'_, P, L, W> {
-    /// Applies the frame's drawing rule to a record, and level of detail, which
-    /// may make it solid.
-    pub(super) fn verdict(&mut self, record: &mut Record<L>) -> Verdict {
-        if self.constants.coverage == Coverage::Exact {
-            return self.verdict_exact(record);
+/// Applies the frame's drawing rule to a record, and level of detail, which may make it solid.
+pub(super) fn verdict<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    counts: &mut Counts,
+    record: &mut Record<L>,
+) -> Verdict {
+    let has_near_plane = match c.outline {
+        OutlineRule::Silhouette => false,
+        OutlineRule::Box | OutlineRule::Centre => true,
+    };
+    if has_near_plane && is_sliver_at_near(dp, c, record) {
+        return Verdict::Drop;
+    }
+    apply_level_of_detail(dp, c, record);
+    let is_drawn = match c.outline {
+        OutlineRule::Silhouette => record.cube.solid,
+        OutlineRule::Box => is_in_one_sample(dp, c, record),
+        OutlineRule::Centre => {
+            record.cube.solid && !crosses_near(dp, c, record) && is_at_most_a_sample(dp, c, record)
         }
-        if self.is_sliver_at_near(record) {
-            return Verdict::Drop;
-        }
-        let any = self.constants.coverage == Coverage::Any;
-        let verdict = if any {
-            self.verdict_any(record)
+    };
+    let is_last = record.cube.level >= c.level_bound;
+    // Rounded screen positions do not part the vertices of a record so small.
+    let mut is_least = || match &record.pose {
+        Pose::Clip(..) => false,
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.least_size_screen),
+    };
+    let (draw, is_at_bound) = match c.outline {
+        // A record at the level of the finest voxels is solid.
+        OutlineRule::Silhouette => (Verdict::DrawSolid, false),
+        OutlineRule::Box => (Verdict::DrawBox, is_last || is_least()),
+        OutlineRule::Centre => (Verdict::DrawCentre, is_last),
+    };
+    if is_drawn {
+        return draw;
+    }
+    if !is_at_bound {
+        return Verdict::Subdivide;
+    }
+    counts.at_level_bound += 1;
+    if crosses_near(dp, c, record) {
+        Verdict::DrawCentre
+    } else {
+        draw
+    }
+}
+
+/// Whether all samples that a record may cover are drawn already, where that is searched for:
+///
+/// - In the organisation that does not read occluded nodes, whether no undrawn sample's ray meets the record.
+/// - Else of a record no larger than a sample across a bisector, where the search for the smallest node stops. Without
+///   this test all parts of a solid along a bisector would be kept until both sides of it are full.
+pub(super) fn is_hidden<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    job: &Job<'_>,
+    canvas: &Canvas<'_>,
+    record: &Record<L>,
+) -> bool {
+    let c = &job.constants;
+    canvas.fill.rejects_full
+        && if job.organisation.hidden_unread {
+            !is_seen(dp, c, canvas, record)
         } else {
-            self.verdict_center(record)
-        };
-        let at_bound =
-            record.cube.level >= self.constants.level_bound || any && self.is_least(record);
-        if verdict == Verdict::Subdivide && at_bound {
-            self.counts.at_bound += 1;
-            return match (any, self.crosses_near(record)) {
-                (true, false) => Verdict::DrawBox,
-                _ => Verdict::DrawCentre,
-            };
+            record.place.quad.level < c.levels
+                && !crosses_near(dp, c, record)
+                && is_at_most_a_sample(dp, c, record)
+                && first_undrawn(dp, c, &canvas.fill, record).is_none()
         }
-        verdict
-    }
+}
 
-    /// Whether a record no larger than a sample lies across a bisector, where
-    /// the fit stops, and all samples that it overlaps are drawn. Without this
-    /// test all parts of a solid along a bisector would be kept until both sides
-    /// of it are full.
-    ///
-    /// Where what is hidden is not read: whether no undrawn sample's ray meets the record.
-    pub(super) fn is_hidden(&mut self, record: &Record<L>) -> bool {
-        if self.options.organisation.hidden_unread {
-            return self.options.reject_filled && !self.sees(record);
-        }
-        self.options.reject_filled
-            && record.place.quad.level < self.constants.levels
-            && !self.crosses_near(record)
-            && self.is_at_most_a_sample(record)
-            && self.first_undrawn(record).is_none()
-    }
+/// Whether the ray of a sample that is not drawn yet meets a record.
+fn is_seen<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    canvas: &Canvas<'_>,
+    record: &Record<L>,
+) -> bool {
+    let Pose::Clip(clip, planes) = &record.pose else {
+        unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
+    };
+    dp.stage(Stage::Draw);
+    let silhouette = Silhouette::new(dp, c, &record.cube, planes, clip.w_min);
+    dp.next_step(0);
+    canvas.sees(dp, record.place.quad, silhouette).is_ok()
+}
 
-    /// Whether the ray of a sample that is not drawn yet meets a record.
-    fn sees(&mut self, record: &Record<L>) -> bool {
-        let Pose::Clip(clip, planes) = &record.pose else {
-            unreachable!("`FrameSetup::screen_depth` lets no record change under these rules");
-        };
-        self.dp.stage(Stage::Draw);
-        let (dp, cube) = (&mut self.dp, &record.cube);
-        let silhouette = Silhouette::new(dp, &self.constants, cube, planes, clip.w_min);
-        dp.next_step(0);
-        self.canvas.sees(dp, record.place.quad, silhouette).is_ok()
+/// Near plane (R7.2): whether a record lies across it and spans so little depth
+/// that it is dropped.
+fn is_sliver_at_near<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    let Pose::Clip(clip, _) = &record.pose else {
+        return false;
+    };
+    if !dp.lt(clip.w_min, c.near) {
+        return false;
     }
+    let (w_min, w_max) = clip.w.span(dp);
+    let span = dp.sub(w_max, w_min);
+    dp.lt(span, c.near_crossing)
+}
 
-    /// Whether a record lies across the near plane and spans so little depth
-    /// that it is dropped.
-    fn is_sliver_at_near(&mut self, record: &Record<L>) -> bool {
-        let Pose::Clip(clip, _) = &record.pose else {
-            return false;
-        };
-        if !self.dp.lt(clip.w_min, self.constants.near) {
-            return false;
-        }
-        let (w_min, w_max) = clip.w.span(&mut self.dp);
-        let span = self.dp.sub(w_max, w_min);
-        self.dp.lt(span, self.constants.near_crossing)
+/// The image-order paper's rule, `any`: a solid whose box lies in one sample is drawn there.
+fn is_in_one_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    let one = record.place.quad.level == c.levels && record.place.inside;
+    if !one || crosses_near(dp, c, record) {
+        return false;
     }
+    // A box within one sample meets a level of detail of one sample or more.
+    let lod = c.lod_limit.as_ref();
+    let is_coarse = lod.is_some_and(|limit| limit.value() >= c.size_limit.value());
+    record.cube.solid || is_coarse
+}
 
-    /// Whether a record is so small that rounded screen positions do not part
-    /// its vertices.
-    fn is_least(&mut self, record: &Record<L>) -> bool {
-        match &record.pose {
-            Pose::Clip(..) => false,
-            Pose::Screen(screen) => {
-                size::screen_at_most(&mut self.dp, screen, self.constants.least_size_screen)
-            }
-        }
+/// Level of detail (R7.1): makes a node with children solid if it is small enough.
+#[inline(always)]
+pub(super) fn apply_level_of_detail<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &mut Record<L>,
+) {
+    if record.cube.solid {
+        return;
     }
+    record.cube.solid = match &record.pose {
+        Pose::Clip(clip, _) => c.lod_depth[record.cube.level as usize].is_some_and(|least| {
+            let solid = dp.le(least, clip.w_min);
+            dp.tap(Block::DetailDepth, &(clip.w_min, least), &solid);
+            solid
+        }),
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.lod_limit_screen),
+    };
+}
 
-    /// `any`, the image-order paper's rule: a box within one sample is drawn there.
-    fn verdict_any(&mut self, record: &mut Record<L>) -> Verdict {
-        self.apply_level_of_detail(record);
-        let one = record.place.quad.level == self.constants.levels && record.place.inside;
-        if !one || self.crosses_near(record) {
-            return Verdict::Subdivide;
-        }
-        // A box within one sample meets a level of detail of one sample or more.
-        let coarse = self
-            .constants
-            .lod_limit
-            .as_ref()
-            .is_some_and(|limit| limit.value() >= self.constants.size_limit.value());
-        if record.cube.solid || coarse {
-            Verdict::DrawBox
-        } else {
-            Verdict::Subdivide
-        }
+/// Whether a part of a record is before the near plane.
+fn crosses_near<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    match &record.pose {
+        Pose::Clip(clip, _) => dp.lt(clip.w_min, c.near),
+        Pose::Screen(_) => false,
     }
+}
 
-    /// `center`: a voxel no larger than a sample is drawn at the sample of its
-    /// centre.
-    fn verdict_center(&mut self, record: &mut Record<L>) -> Verdict {
-        self.apply_level_of_detail(record);
-        if record.cube.solid && !self.crosses_near(record) && self.is_at_most_a_sample(record) {
-            Verdict::DrawCentre
-        } else {
-            Verdict::Subdivide
+/// Whether a record is no larger than a sample, less twice the tolerance.
+#[inline(always)]
+fn is_at_most_a_sample<P: Probe, L: CageCoordinate>(
+    dp: &mut Datapath<P>,
+    c: &Constants,
+    record: &Record<L>,
+) -> bool {
+    match &record.pose {
+        Pose::Clip(clip, _) => {
+            let below = c.levels - record.place.quad.level;
+            size::clip_at_most(dp, clip, &c.size_limit, below)
         }
-    }
-
-    /// `exact` and `alpha`: a leaf, or a node taken for one by level of detail,
-    /// is drawn by its silhouette.
-    fn verdict_exact(&mut self, record: &mut Record<L>) -> Verdict {
-        self.apply_level_of_detail(record);
-        if record.cube.solid {
-            Verdict::DrawSolid
-        } else {
-            Verdict::Subdivide
-        }
-    }
-
-    /// Level of detail: makes a node with children solid if it is small enough.
-    #[inline(always)]
-    pub(super) fn apply_level_of_detail(&mut self, record: &mut Record<L>) {
-        if record.cube.solid {
-            return;
-        }
-        let c = &self.constants;
-        record.cube.solid = match &record.pose {
-            Pose::Clip(clip, _) => c.lod_depth[record.cube.level as usize].is_some_and(|least| {
-                let solid = self.dp.le(least, clip.w_min);
-                self.dp
-                    .tap(Block::DetailDepth, &(clip.w_min, least), &solid);
-                solid
-            }),
-            Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.lod_limit_screen),
-        };
-    }
-
-    /// Whether a part of a record is before the near plane.
-    fn crosses_near(&mut self, record: &Record<L>) -> bool {
-        match &record.pose {
-            Pose::Clip(clip, _) => self.dp.lt(clip.w_min, self.constants.near),
-            Pose::Screen(_) => false,
-        }
-    }
-
-    /// Whether a record is no larger than a sample, less twice the tolerance.
-    #[inline(always)]
-    fn is_at_most_a_sample(&mut self, record: &Record<L>) -> bool {
-        let c = &self.constants;
-        match &record.pose {
-            Pose::Clip(clip, _) => {
-                let below = c.levels - record.place.quad.level;
-                size::clip_at_most(&mut self.dp, clip, &c.size_limit, below)
-            }
-            Pose::Screen(screen) => size::screen_at_most(&mut self.dp, screen, c.size_limit_screen),
-        }
+        Pose::Screen(screen) => size::screen_at_most(dp, screen, c.size_limit_screen),
     }
 }

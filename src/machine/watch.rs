@@ -1,47 +1,37 @@
-//! Watching the machine, record by record.
-//!
-//! Single operations, accesses to memory and what crosses the borders of blocks
-//! are reported to an [`hwmodel::Probe`]; what the record loop does with whole
-//! records is reported to a [`Watch`].
+//! Events of whole records, for a [`Watch`]. Single operations, memory accesses and the wires between blocks go to an
+//! [`hwmodel::Probe`] instead.
 
 use super::cage::CageCoordinate;
 use super::record::Record;
 use crate::frame::QuadNode;
 
-/// Receives what happens to records. Every method does nothing by default, so
-/// that the calls compile to nothing for the watch `()`.
-pub(super) trait Watch {
-    /// The turn of a record begins, whose quadtree node is `quad`.
-    fn turn(&mut self, quad: QuadNode) {
-        let _ = quad;
-    }
-
-    /// A child was pushed. `rank`: its place among the eight children in the
-    /// occlusion order, 0 (nearest) to 7.
-    fn pushed(&mut self, rank: u8) {
-        let _ = rank;
-    }
-
-    /// A record was made, and is where it belongs in the picture.
-    fn made<L: CageCoordinate>(&mut self, record: &Record<L>) {
-        let _ = record;
-    }
+/// An event in the life of a record.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Event<'r, L> {
+    /// The turn of a record begins, whose quadtree node this is.
+    Turn(QuadNode),
+    /// A child was pushed: its place among the eight children in the occlusion order, 0 (nearest) to 7.
+    Pushed(u8),
+    /// A record was made, and has its place in the picture.
+    Made(&'r Record<L>),
 }
 
-impl Watch for () {}
+/// Receives the events of records. The calls compile to nothing for the watch `()`.
+pub(super) trait Watch {
+    /// An event occurred.
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>);
+}
+
+impl Watch for () {
+    #[inline(always)]
+    fn see<L: CageCoordinate>(&mut self, _: Event<'_, L>) {}
+}
 
 impl<W: Watch> Watch for Option<W> {
     #[inline(always)]
-    fn turn(&mut self, quad: QuadNode) {
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
         if let Some(watch) = self {
-            watch.turn(quad);
-        }
-    }
-
-    #[inline(always)]
-    fn pushed(&mut self, rank: u8) {
-        if let Some(watch) = self {
-            watch.pushed(rank);
+            watch.see(event);
         }
     }
 }

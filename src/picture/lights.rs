@@ -8,7 +8,7 @@ use super::linear::Linear;
 use super::shade::towards_eye;
 use super::sight::Sight;
 use crate::graph::{Graph, PackedNormal};
-use crate::project::{Coverage, FrameSetup};
+use crate::project::FrameSetup;
 
 /// Linear light by node, 0 to 65535 a channel; nothing where the frame's rule
 /// does not blend.
@@ -19,7 +19,7 @@ use crate::project::{Coverage, FrameSetup};
 /// as what faces the camera.
 #[must_use]
 pub fn lights(graph: &Graph, setup: &FrameSetup, shading: Shading) -> Vec<[u16; 3]> {
-    if setup.options.coverage != Coverage::Alpha {
+    if !setup.options.coverage.blends() {
         return Vec::new();
     }
     let sight = Sight::new(setup);

@@ -71,6 +71,20 @@ impl Coverage {
     /// All rules.
     pub const ALL: [Self; 4] = [Self::Any, Self::Center, Self::Exact, Self::Alpha];
 
+    /// The rules that do not blend, the most accurate first.
+    pub const UNBLENDED: [Self; 3] = {
+        let (mut rules, mut found, mut left) = ([Self::Any; 3], 0, Self::ALL.len());
+        while left > 0 {
+            left -= 1;
+            if !Self::ALL[left].blends() {
+                rules[found] = Self::ALL[left];
+                found += 1;
+            }
+        }
+        assert!(found == rules.len(), "the array's length is their number");
+        rules
+    };
+
     /// Its name in settings and results.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -82,11 +96,32 @@ impl Coverage {
         }
     }
 
+    /// How the samples of a voxel are found, apart from blending.
+    #[inline]
+    #[must_use]
+    pub const fn outline_rule(self) -> OutlineRule {
+        match self {
+            Self::Any => OutlineRule::Box,
+            Self::Center => OutlineRule::Centre,
+            Self::Exact | Self::Alpha => OutlineRule::Silhouette,
+        }
+    }
+
+    /// Whether voxels are blended at the samples that they cover.
+    #[inline]
+    #[must_use]
+    pub const fn blends(self) -> bool {
+        match self {
+            Self::Any | Self::Center | Self::Exact => false,
+            Self::Alpha => true,
+        }
+    }
+
     /// Whether voxels are drawn by their silhouettes.
     #[inline]
     #[must_use]
     pub const fn draws_outlines(self) -> bool {
-        matches!(self, Self::Exact | Self::Alpha)
+        self.outline_rule().has_planes()
     }
 
     /// The tolerance, samples, where none is given. What draws outlines never
@@ -109,6 +144,29 @@ impl Coverage {
         match self {
             Self::Any | Self::Center | Self::Alpha => 1.0,
             Self::Exact => 0.5,
+        }
+    }
+}
+
+/// How the samples that a voxel covers are found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OutlineRule {
+    /// Those that the voxel's box overlaps.
+    Box,
+    /// The one that holds the voxel's centre.
+    Centre,
+    /// Those whose centres lie within the voxel's silhouette.
+    Silhouette,
+}
+
+impl OutlineRule {
+    /// Whether silhouette planes are needed to find the samples.
+    #[inline]
+    #[must_use]
+    pub const fn has_planes(self) -> bool {
+        match self {
+            Self::Box | Self::Centre => false,
+            Self::Silhouette => true,
         }
     }
 }

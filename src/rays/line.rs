@@ -1,4 +1,4 @@
-//! One sample's ray against axis-aligned cubes, exactly.
+//! Exact coverage (`SPEC.md`, R8): one sample's ray against axis-aligned cubes.
 //!
 //! # Does the line go through a cube?
 //!
@@ -17,7 +17,7 @@
 //! so the largest and the smallest of the four are at the corners that the
 //! signs of `g` name, and only these two are examined.
 //!
-//! # Ties
+//! # Ties (R8.1)
 //!
 //! The ray is thought to be moved by `(e, e^2)` in `(x, y)` for an
 //! infinitesimal `e`. A linear function `a x + b y + c w` of the direction
@@ -104,7 +104,7 @@ impl<'v, N: Number> Line<'v, N> {
         self.goes_forward_to(cube.lo, side) && self.line_crosses(cube, side, along_side)
     }
 
-    /// Of a cube that the line goes through: whether it does so before the
+    /// Plane of the eye (R8.2), of a cube that the line goes through: whether it does so before the
     /// eye. The eye outside of a slab means that the slab, and so the cube,
     /// is on one side of it along the line; inside of all three it is in the cube.
     #[inline]

@@ -52,7 +52,7 @@ impl RayFrame {
         }
     }
 
-    /// Whether level of detail takes a node with children for a solid: the
+    /// Level of detail (`SPEC.md`, R7.1): whether it takes a node with children for a solid: the
     /// node of this level whose lowest corner is `lo`.
     pub(super) fn is_solid_by_detail(&self, lo: [i64; 3], level: u32) -> bool {
         let enough = self.lod_depth.get(level as usize).copied().flatten();
@@ -92,7 +92,7 @@ impl RayFrame {
         cross(point, self.edge[axis])
     }
 
-    /// On which side of the eye the slab `lo..hi` (voxels) of axis `k` lies:
+    /// Plane of the eye (R8.2): on which side of the eye the slab `lo..hi` (voxels) of axis `k` lies:
     /// 1 where it begins at or above the eye, -1 where it ends at or below
     /// it, 0 where the eye is inside.
     #[inline]

@@ -1,4 +1,4 @@
-//! Which solid cell a ray meets first.
+//! The solid cell that a ray meets first, by its own order (for R9 of `SPEC.md`); the graph's depth ends cycles (R10).
 //!
 //! # Why the first one found is the nearest
 //!

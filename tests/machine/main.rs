@@ -18,6 +18,7 @@ mod rules;
 mod scene_table;
 mod scenes;
 mod setup_bits;
+mod tables;
 mod viewer;
 mod widths;
 mod words;

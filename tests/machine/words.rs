@@ -56,7 +56,11 @@ const TO_HOST: [Allowed; 14] = [
         "put(16, &c.origin.map(Word::to_host));",
         REGISTER,
     ),
-    allowed("constants.rs", ".map(|edge| edge.to_host())", REGISTER),
+    allowed(
+        "constants.rs",
+        "put(19, &c.edges.map(|edges| edges.map(Word::to_host)).concat());",
+        REGISTER,
+    ),
     allowed(
         "constants.rs",
         "put(13, &c.eye_ceil.map(Word::to_host));",
@@ -75,7 +79,7 @@ const TO_HOST: [Allowed; 14] = [
     ),
     allowed(
         "decide.rs",
-        "let voxel = min.to_host() >> self.constants.sub_levels;",
+        "let voxel = min.to_host() >> c.sub_levels;",
         "the voxel's number in the picture: what is shown, not what is computed with",
     ),
     allowed(
@@ -190,19 +194,19 @@ const PRODUCTS: [Allowed; 13] = [
         "where a sample lies in the host's memory",
     ),
     allowed(
-        "heat.rs",
-        "let (x, y) = ((at % width) as u32, (at / width) as u32);",
-        HEAT,
+        "records_by_sample.rs",
+        "let (level, x, y) = (self.levels, (at % width) as u32, (at / width) as u32);",
+        WORK_MAP,
     ),
     allowed(
-        "heat.rs",
+        "records_by_sample.rs",
         "let samples = f64::from(1u32 << below) * f64::from(1u32 << below);",
-        HEAT,
+        WORK_MAP,
     ),
     allowed(
-        "heat.rs",
-        "f64::from(self.records[quad.address()]) / samples",
-        HEAT,
+        "records_by_sample.rs",
+        "f64::from(self.turns[sample.ancestor(level).address()]) / samples",
+        WORK_MAP,
     ),
     allowed("cage.rs", "pool[18 * i + 6 * j + 2 * k] = value;", INDEX),
     allowed("cage.rs", "let at = 3 * j + k;", INDEX),
@@ -244,7 +248,7 @@ const REGISTER: &str = "what the host writes into the registers of the Verilog (
 const CONSTANT: &str = "a constant of the frame, made by the host before the first record";
 const ACCUMULATOR: &str = "what a sample has taken goes to its memory";
 const INDEX: &str = "which wire, known when the machine is built";
-const HEAT: &str = "the heat map: measured by the host after the last record";
+const WORK_MAP: &str = "records per sample: computed by the host after the last record";
 
 /// The only files that compute with the machine's numbers in another way: for measurements, and for
 /// inputs of blocks. Nothing of them may reach the machine: see

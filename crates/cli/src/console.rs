@@ -255,7 +255,11 @@ impl Bar {
         }
         self.written = Some(now);
         // Back to the beginning of the line; what stood behind the text is cleared.
-        let _ = write!(io::stderr().lock(), "\r{}\x1b[K", self.line(now - self.started));
+        let _ = write!(
+            io::stderr().lock(),
+            "\r{}\x1b[K",
+            self.line(now - self.started)
+        );
     }
 }
 
@@ -310,7 +314,10 @@ mod tests {
         };
         let after = |bar: Bar, seconds| bar.line(Duration::from_secs(seconds));
         assert_eq!(after(bar("reading a", 0, 9), 5), "reading a ...");
-        assert_eq!(after(bar("building", 200, 50), 10), "building  25 % (30 s left)");
+        assert_eq!(
+            after(bar("building", 200, 50), 10),
+            "building  25 % (30 s left)"
+        );
         assert_eq!(after(bar("b", 4, 1), 100), "b  25 % (5 min left)");
         assert_eq!(after(bar("b", 4, 1), 12_000), "b  25 % (10.0 h left)");
         assert_eq!(after(bar("b", 4, 5), 3), "b 100 % (0 s left)");

@@ -9,7 +9,7 @@ use shiftvox::fast::{Fast, FastOptions, Switches};
 use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
 use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::{Coverage, Engine, EngineError, FrameSetup};
+use shiftvox::project::{Engine, EngineError, FrameSetup};
 use shiftvox::rays::Rays;
 use shiftvox_lab::bench::{Candidate, Family, Frames, Variant};
 use shiftvox_lab::float_rays::FloatRays;
@@ -49,7 +49,7 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
             let options = machine_options(args);
             Ok(Box::new(move || Box::new(Machine::new(options))))
         }
-        EngineName::Rays if args.rules.options(0).coverage == Coverage::Alpha => Err(CliError::usage(
+        EngineName::Rays if args.rules.options(0).coverage.blends() => Err(CliError::usage(
             "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
         )
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),

@@ -42,6 +42,25 @@ pub enum SimulationError<E> {
     },
 }
 
+impl<E> SimulationError<E> {
+    /// The same error, of a workload whose errors are converted.
+    pub fn map<F>(self, convert: impl FnOnce(E) -> F) -> SimulationError<F> {
+        match self {
+            Self::Workload(error) => SimulationError::Workload(convert(error)),
+            Self::Hardware(error) => SimulationError::Hardware(error),
+            Self::StackOverflow {
+                record,
+                lane,
+                entries,
+            } => SimulationError::StackOverflow {
+                record,
+                lane,
+                entries,
+            },
+        }
+    }
+}
+
 /// A lane's block of one stage.
 #[derive(Debug, Clone, Copy)]
 struct StageBlock {

@@ -12,16 +12,17 @@ use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::MachineOptions;
 use crate::machine::cage::{CageCoordinate, with_cage};
-use crate::machine::children::{child_span, pool};
+use crate::machine::children::{centre_and_order, child_cube, pool};
 use crate::machine::engine::Machine;
 use crate::machine::planes::{self, Silhouette};
+use crate::machine::push::child_span;
 use crate::machine::quadrants::{self, Halves};
 use crate::machine::record::{Cube, ImagePlace, Planes, Pose, Record, Screen};
-use crate::machine::smallest_node::{self, Fill};
 use crate::machine::state::State;
-use crate::machine::{size, to_screen};
+use crate::machine::verdict::apply_level_of_detail;
+use crate::machine::{size, smallest_node, to_screen};
+use crate::project::FrameSetup;
 use crate::project::options::SCREEN_GUARD_SHIFT;
-use crate::project::{Coverage, FrameSetup};
 
 impl Machine {
     /// Gives inputs of `rounds` rounds to the blocks of a frame.
@@ -48,7 +49,7 @@ impl Machine {
         let mut state = State::<P, L, ()>::new(options, graph, setup, canvas, probe, ());
         let mut inputs = Inputs::new(setup);
         all_vectors(&mut state);
-        let blends = setup.options.coverage == Coverage::Alpha;
+        let blends = setup.options.coverage.blends();
         if blends {
             all_shares(&mut state, &mut inputs);
         }
@@ -79,17 +80,13 @@ fn all_vectors<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>) {
         };
         quadrants::quadrants(&mut state.dp, halves(0), halves(2));
     }
-    let levels = state.constants.levels;
+    let levels = state.job.constants.levels;
     let root = QuadNode::ROOT;
     for vector in 0..16u8 {
         let kept = state.canvas.fill.replace(root, vector);
-        state.is_full(root);
-        let fill = Fill {
-            vectors: &state.canvas.fill,
-            reject: true,
-        };
+        state.canvas.fill.is_full(&mut state.dp, root);
         for overlapped in 0..16 {
-            fill.rejects(&mut state.dp, root, overlapped);
+            state.canvas.fill.rejects(&mut state.dp, root, overlapped);
         }
         let _ = state.canvas.fill.replace(root, kept);
         if levels == 0 {
@@ -121,11 +118,12 @@ fn object_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     for k in 0..3 {
         let centre = state.dp.midpoint(cube.min[k], cube.max[k]);
         let any = inputs.word(0);
-        state.constants.eye_floor[k] = if inputs.flag() { centre } else { any };
+        state.job.constants.eye_floor[k] = if inputs.flag() { centre } else { any };
     }
-    let (centre, _) = state.centre_and_order(&cube);
+    let (centre, _) = centre_and_order(&mut state.dp, &state.job, &cube);
     let octant = inputs.level(7) as u8;
-    state.child_cube(&cube, octant, &centre);
+    let counts = &mut state.traversal.counts;
+    child_cube(&mut state.dp, &state.job, counts, &cube, octant, &centre);
 }
 
 /// Cages by themselves.
@@ -170,19 +168,15 @@ fn fit<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mu
         *plane = WideWord::from_host(inputs.number(8));
     }
     let place = ImagePlace {
-        quad: inputs.quad(state.constants.levels),
+        quad: inputs.quad(state.job.constants.levels),
         inside: false,
     };
     state.dp.stage(Stage::QuadtreeFit);
-    quadrants::of_clip(&mut state.dp, &state.constants, place.quad, &clip);
-    let fill = Fill {
-        vectors: &state.canvas.fill,
-        reject: true,
-    };
-    let (dp, constants) = (&mut state.dp, &state.constants);
+    quadrants::of_clip(&mut state.dp, &state.job.constants, place.quad, &clip);
+    let (dp, constants, fill) = (&mut state.dp, &state.job.constants, &state.canvas.fill);
     smallest_node::near_node(dp, &clip.x, &clip.w);
     smallest_node::near_node(dp, &clip.y, &clip.w);
-    smallest_node::clip(dp, constants, &fill, place, &mut clip, &mut planes);
+    smallest_node::clip(dp, constants, fill, place, &mut clip, &mut planes);
 }
 
 /// Comparisons of depths and sizes, with ties.
@@ -191,7 +185,7 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     inputs: &mut Inputs,
 ) {
     let mut clip = inputs.clip(state);
-    let level = inputs.level(state.constants.depth);
+    let level = inputs.level(state.job.constants.depth);
     let least = inputs.word(1);
     let one = Word::from_host(inputs.number(1));
     clip.w_min = if inputs.flag() {
@@ -199,7 +193,7 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
     } else {
         inputs.word(0)
     };
-    let kept = state.constants.lod_depth[level as usize].replace(least);
+    let kept = state.job.constants.lod_depth[level as usize].replace(least);
     let mut record = Record {
         cube: Cube {
             solid: false,
@@ -209,12 +203,12 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
         pose: Pose::Clip(clip, Planes::default()),
     };
     state.dp.stage(Stage::OnePixel);
-    state.apply_level_of_detail(&mut record);
-    state.constants.lod_depth[level as usize] = kept;
+    apply_level_of_detail(&mut state.dp, &state.job.constants, &mut record);
+    state.job.constants.lod_depth[level as usize] = kept;
 
     clip.w_min = inputs.word(SPARE);
-    let below = inputs.level(state.constants.levels);
-    let limit = state.constants.size_limit.clone();
+    let below = inputs.level(state.job.constants.levels);
+    let limit = state.job.constants.size_limit.clone();
     size::clip_at_most(&mut state.dp, &clip, &limit, below);
     let (edges_x, edges_w) = (inputs.words(SPARE), inputs.words(SPARE));
     let step = inputs.step();
@@ -225,18 +219,18 @@ fn depths_and_sizes<P: Probe, L: CageCoordinate>(
 
 /// Silhouettes.
 fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
-    let depth = state.constants.depth;
+    let depth = state.job.constants.depth;
     let mut planes = inputs.planes();
-    let kept = state.constants.axis_ab;
+    let kept = state.job.constants.axis_ab;
     let axes = inputs.planes();
-    state.constants.axis_ab = axes.edge.map(|[a, b, _]| [a, b]);
+    state.job.constants.axis_ab = axes.edge.map(|[a, b, _]| [a, b]);
     if depth > 0 {
         let parent_level = inputs.level(depth - 1);
         let octant = inputs.level(7) as u8;
         state.dp.stage(Stage::VertexPool);
         planes::of_child(
             &mut state.dp,
-            &state.constants,
+            &state.job.constants,
             &planes,
             parent_level,
             octant,
@@ -245,7 +239,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     let quadrant = inputs.level(3) as u8;
     let mut moved = planes;
     state.dp.stage(Stage::QuadtreeFit);
-    planes::move_to_quadrant(&mut state.dp, &state.constants, &mut moved, quadrant);
+    planes::move_to_quadrant(&mut state.dp, &state.job.constants, &mut moved, quadrant);
     let level = inputs.level(depth);
     let mut cube = inputs.cube(level);
     // The eye lies beside the cube along the other axes, beside a face of it or anywhere along this one.
@@ -253,7 +247,7 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
     for k in 0..3 {
         let [any, other] = inputs.words(0);
         let step = inputs.step();
-        let c = &mut state.constants;
+        let c = &mut state.job.constants;
         let dp = &mut state.dp;
         if k < axis {
             (cube.min[k], cube.max[k]) = (dp.min(any, other), dp.max(any, other));
@@ -266,30 +260,30 @@ fn outlines<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs
         c.eye_floor[k] = if inputs.flag() { above } else { any };
         c.eye_ceil[k] = if inputs.flag() { below } else { other };
     }
-    state.constants.positive = inputs.flag();
+    state.job.constants.positive = inputs.flag();
     if inputs.flag() {
         planes.edge = [planes.edge[0]; 3];
     }
     let w_min = inputs.word(0);
     state.dp.stage(Stage::Draw);
-    let silhouette = Silhouette::new(&mut state.dp, &state.constants, &cube, &planes, w_min);
+    let silhouette = Silhouette::new(&mut state.dp, &state.job.constants, &cube, &planes, w_min);
     for below in [0, 1] {
         let mut silhouette = silhouette.clone();
         silhouette.cover(&mut state.dp, below);
         silhouette.in_quadrant(&mut state.dp, quadrant);
     }
-    state.constants.axis_ab = kept;
+    state.job.constants.axis_ab = kept;
 }
 
 /// Boxes and centres in screen space, and the way there.
 fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, inputs: &mut Inputs) {
     let place = ImagePlace {
-        quad: inputs.quad(state.constants.levels),
+        quad: inputs.quad(state.job.constants.levels),
         inside: inputs.flag(),
     };
     let [x, y] = [(); 2].map(|()| inputs.cage(state));
-    let below = state.constants.levels - place.quad.level;
-    let [left, right] = state.constants.half_sample_places;
+    let below = state.job.constants.levels - place.quad.level;
+    let [left, right] = state.job.constants.half_sample_places;
     // Edges and middles of nodes, in halves of their width, or nearly.
     let mut beside = |column: u32| {
         let near = i64::from(column << 1) + inputs.dice.below(3) as i64;
@@ -302,11 +296,8 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     };
     let spans = [place.quad.x, place.quad.y].map(|column| (beside(column), beside(column)));
     state.dp.stage(Stage::QuadtreeFit);
-    let fill = Fill {
-        vectors: &state.canvas.fill,
-        reject: true,
-    };
-    smallest_node::screen(&mut state.dp, &state.constants, &fill, place, &spans);
+    let fill = &state.canvas.fill;
+    smallest_node::screen(&mut state.dp, &state.job.constants, fill, place, &spans);
     let screen = Screen { x, y, spans };
     let limit = if inputs.flag() {
         state.dp.sub(spans[0].1, spans[0].0)
@@ -316,7 +307,7 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
     state.dp.stage(Stage::OnePixel);
     size::screen_at_most(&mut state.dp, &screen, limit);
     state.dp.stage(Stage::Draw);
-    size::screen_sample(&mut state.dp, &state.constants, place, &screen);
+    size::screen_sample(&mut state.dp, &state.job.constants, place, &screen);
 
     let mut clip = inputs.clip(state);
     let centre = clip.x.centre(&mut state.dp);
@@ -331,8 +322,8 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
         inside: false,
         ..place
     };
-    size::clip_sample(&mut state.dp, &state.constants, across, &clip, w);
-    let level = inputs.level(state.constants.depth) as usize;
+    size::clip_sample(&mut state.dp, &state.job.constants, across, &clip, w);
+    let level = inputs.level(state.job.constants.depth) as usize;
     let least = if inputs.flag() { clip.w_min } else { w };
     if inputs.flag() {
         // The guard's edge goes through the vertices, in the whole picture.
@@ -342,7 +333,13 @@ fn screen_space<P: Probe, L: CageCoordinate>(state: &mut State<'_, P, L, ()>, in
             dp.neg(part)
         });
     }
-    let kept = state.constants.screen_depth[level].replace(least);
-    to_screen::may_change(&mut state.dp, &state.constants, level as u32, place, &clip);
-    state.constants.screen_depth[level] = kept;
+    let kept = state.job.constants.screen_depth[level].replace(least);
+    to_screen::may_change(
+        &mut state.dp,
+        &state.job.constants,
+        level as u32,
+        place,
+        &clip,
+    );
+    state.job.constants.screen_depth[level] = kept;
 }

@@ -1,6 +1,6 @@
-//! What watches the machine, or drives its steps in another way than the
-//! record loop: for the hardware model, experiments and tests. Instruments
-//! import the machine, never the reverse.
+//! Instruments watch the machine, or drive its steps in another way than the
+//! record loop, for the hardware model, experiments and tests. They import the
+//! machine, never the reverse.
 
 mod descent;
 mod directed;

@@ -5,10 +5,9 @@
 //! with its rank in the occlusion order and its quadtree node. Fill vectors are
 //! shared: a turn finds them as the turns before it left them.
 
-use hwmodel::Trap;
 use hwmodel::cycles::{
-    self, Child, CycleReport, Hardware, HardwareError, ImageNode, Observer, Recording, StackHolds,
-    Tape, TurnLog, TurnProbe,
+    self, Child, CycleReport, Hardware, ImageNode, Observer, Recording, StackHolds, Tape, TurnLog,
+    TurnProbe,
 };
 use serde::Serialize;
 
@@ -17,13 +16,14 @@ use crate::frame::{Frame, QuadNode};
 use crate::graph::GraphView;
 use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
-use crate::machine::heat::Heat;
 use crate::machine::options::MachineOptions;
 use crate::machine::parents::{Parent, Stored, TileView};
 use crate::machine::path::PathEntry;
 use crate::machine::record::Record;
+use crate::machine::record_loop::check_trap;
+use crate::machine::records_by_sample::RecordsBySample;
 use crate::machine::state::State;
-use crate::machine::watch::Watch;
+use crate::machine::watch::{Event, Watch};
 use crate::project::{EngineError, FrameSetup, Stats};
 
 /// The results of a simulated frame.
@@ -35,47 +35,8 @@ pub struct Simulated {
     pub counts: Stats,
 }
 
-/// Why a simulation ended early.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SimulateError {
-    /// The machine could not finish the frame.
-    #[error(transparent)]
-    Engine(#[from] EngineError),
-    /// The hardware's description is not sound.
-    #[error(transparent)]
-    Hardware(#[from] HardwareError),
-    /// A stack was full, on hardware that does not spill.
-    #[error(
-        "record {record} leaves more records than the {entries} entries of lane {lane}'s \
-         stack hold; give it more, or set overflow = \"spill\""
-    )]
-    StackOverflow {
-        /// The record, in the order of turns, from 0.
-        record: u64,
-        /// The lane.
-        lane: u32,
-        /// Entries of its stack.
-        entries: u32,
-    },
-}
-
-impl From<cycles::SimulationError<Trap>> for SimulateError {
-    fn from(error: cycles::SimulationError<Trap>) -> Self {
-        match error {
-            cycles::SimulationError::Workload(trap) => Self::Engine(trap.into()),
-            cycles::SimulationError::Hardware(error) => Self::Hardware(error),
-            cycles::SimulationError::StackOverflow {
-                record,
-                lane,
-                entries,
-            } => Self::StackOverflow {
-                record,
-                lane,
-                entries,
-            },
-        }
-    }
-}
+/// Why a simulation ended early: the workload is the machine.
+pub type SimulateError = cycles::SimulationError<EngineError>;
 
 impl Machine {
     /// Draws a frame on a simulated hardware, in its [`Organisation`](cycles::Organisation),
@@ -104,7 +65,7 @@ impl Machine {
         hardware: &Hardware,
         observer: &mut dyn Observer,
     ) -> Result<Simulated, SimulateError> {
-        hardware.check()?;
+        hardware.check().map_err(SimulateError::Hardware)?;
         let log = TurnLog::new(hardware);
         let (simulated, _) = with_cage!(setup, L => {
             self.simulate_as::<_, L>(graph, setup, frame, hardware, observer, log)
@@ -129,7 +90,7 @@ impl Machine {
         if hardware.organisation.stack == StackHolds::Children {
             return Ok(None);
         }
-        hardware.check()?;
+        hardware.check().map_err(SimulateError::Hardware)?;
         let probes = (TurnLog::new(hardware), Tape::new(most_bytes));
         let mut observer = cycles::NoObserver;
         let (_, (_, tape)) = with_cage!(setup, L => {
@@ -151,8 +112,9 @@ impl Machine {
             organisation: hardware.organisation,
             ..self.options
         };
+        let wants_records = frame.records.is_some();
         let watch = Ranks {
-            heat: frame.records.is_some().then(|| Heat::new(setup.levels)),
+            records: wants_records.then(|| RecordsBySample::new(setup.levels)),
             pushed: Vec::new(),
         };
         let canvas = (self.emptied(setup, frame), &mut *frame);
@@ -166,7 +128,7 @@ impl Machine {
             handed_out,
             waiting: Vec::new(),
             free: Vec::new(),
-            // The first sees what there is: nothing is above the whole picture.
+            // The first is the whole picture, which has no vectors above it.
             tiles: vec![TileView::new(QuadNode::ROOT)],
             walks: vec![Walk::default()],
             open: Open::default(),
@@ -177,8 +139,8 @@ impl Machine {
         let (mut counts, log, watch) = steps.state.finish();
         counts.retain(|(name, _)| *name != "deepest_stack");
         counts.push((MOST_OPEN_TILES, most_open));
-        if let (Some(heat), Some(shares)) = (watch.heat, &mut frame.records) {
-            heat.write_shares(frame.width, shares);
+        if let (Some(records), Some(shares)) = (watch.records, &mut frame.records) {
+            records.write_shares(frame.width, shares);
         }
         Ok((Simulated { cycles, counts }, log))
     }
@@ -186,21 +148,20 @@ impl Machine {
 
 /// Notes the ranks of the children on the stack.
 struct Ranks {
-    heat: Option<Heat>,
+    records: Option<RecordsBySample>,
     pushed: Vec<u8>,
 }
 
 impl Watch for Ranks {
-    fn turn(&mut self, quad: QuadNode) {
-        self.heat.turn(quad);
-    }
-
-    fn pushed(&mut self, rank: u8) {
-        self.pushed.push(rank);
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
+        if let Event::Pushed(rank) = event {
+            self.pushed.push(rank);
+        }
+        self.records.see(event);
     }
 }
 
-/// What waits for its turn.
+/// Work that waits for its turn.
 #[derive(Clone, Copy)]
 enum Work<L: CageCoordinate> {
     /// A node of the image quadtree: its tiles are to be drawn.
@@ -209,8 +170,8 @@ enum Work<L: CageCoordinate> {
     Record(Record<L>),
     /// A parent: in registers if it was not stored, else on the stack.
     Parent(Parent<L>),
-    /// A parent of which the way is on the stack.
-    Way(PathEntry, QuadNode),
+    /// A parent's path entry on the stack, and the parent's quadtree node.
+    Path(PathEntry, QuadNode),
 }
 
 /// The walk that draws a tile.
@@ -249,7 +210,7 @@ struct Steps<'a, P: TurnProbe, L: CageCoordinate> {
     free: Vec<u32>,
     /// Tiles that the hardware gives its lanes, in order.
     handed_out: Vec<QuadNode>,
-    /// What each tile sees of the fill vectors above it.
+    /// Each tile's view of the fill vectors above it.
     tiles: Vec<TileView>,
     /// By tile, its walk.
     walks: Vec<Walk<L>>,
@@ -269,7 +230,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             Work::Tiles(quad) => *quad,
             Work::Record(record) => record.place.quad,
             Work::Parent(parent) => parent.record.place.quad,
-            Work::Way(_, quad) => *quad,
+            Work::Path(_, quad) => *quad,
         };
         let image_node = ImageNode {
             level: quad.level,
@@ -300,8 +261,8 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     /// Hands the records on the stack to the scheduler, nearest first: the last
     /// that was pushed.
     fn hand_over_records(&mut self, children: &mut Vec<Child>) {
-        while let Some(record) = self.state.stack.pop() {
-            let Some(place) = self.state.watch.pushed.pop() else {
+        while let Some(record) = self.state.traversal.stack.pop() {
+            let Some(place) = self.state.traversal.watch.pushed.pop() else {
                 unreachable!("every record on the stack was pushed as a child");
             };
             self.hand_over(Work::Record(record), place, children);
@@ -311,8 +272,9 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     /// Puts a tile's view of the fill vectors into place.
     fn switch_to(&mut self, tile: usize) {
         if tile != self.shown {
-            self.tiles[self.shown].swap(&mut self.state);
-            self.tiles[tile].swap(&mut self.state);
+            let fill = &mut self.state.canvas.fill;
+            self.tiles[self.shown].swap(fill);
+            self.tiles[tile].swap(fill);
             self.shown = tile;
         }
     }
@@ -320,7 +282,7 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
     /// Begins the tiles of a node of the image quadtree: itself, or its quadrants later.
     fn begin_tiles(&mut self, quad: QuadNode, children: &mut Vec<Child>) {
         if self.state.canvas.fill.peek(quad) == FULL && quad.level > 0 {
-            // It lies beside the picture.
+            // It lies outside the picture.
             return;
         }
         if quad.level < self.state.tile_levels() {
@@ -333,12 +295,18 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         self.tiles.push(TileView::new(quad));
         self.walks.push(Walk::default());
         self.switch_to(self.tiles.len() - 1);
-        match self.state.options.organisation.stack {
+        match self.state.job.organisation.stack {
             StackHolds::Children => {
-                self.state.push_object(quad);
-                if !self.state.stack.is_empty() {
+                let State {
+                    dp,
+                    job,
+                    canvas,
+                    traversal,
+                } = &mut self.state;
+                traversal.push_object(dp, job, &canvas.fill, quad);
+                if !self.state.traversal.stack.is_empty() {
                     // The object has no siblings: any rank will do.
-                    self.state.watch.pushed(FIRST_PLACE);
+                    self.state.traversal.watch.pushed.push(FIRST_PLACE);
                 }
                 self.hand_over_records(children);
             }
@@ -367,14 +335,14 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
             let quad = parent.record.place.quad;
             let work = match self.state.store(parent, address) {
                 Stored::Whole(parent) => Work::Parent(parent),
-                Stored::Way(entry) => Work::Way(entry, quad),
+                Stored::Path(entry) => Work::Path(entry, quad),
             };
             self.hand_over(work, LAST_PLACE, children);
         }
     }
 
-    /// The turn of a parent of which the way is on the stack.
-    fn way_turn(&mut self, entry: &PathEntry, children: &mut Vec<Child>) {
+    /// The turn of a parent whose path entry is on the stack.
+    fn path_turn(&mut self, entry: &PathEntry, children: &mut Vec<Child>) {
         let from = self.walks[self.shown].last.as_ref();
         let address = u64::from(entry.level);
         if let Some(parent) = self.state.take_back(entry, from, address) {
@@ -382,15 +350,15 @@ impl<P: TurnProbe, L: CageCoordinate> Steps<'_, P, L> {
         }
     }
 
-    fn trap(&self) -> Result<(), Trap> {
-        self.state.dp.trap().map_or(Ok(()), Err)
+    fn trap(&self) -> Result<(), EngineError> {
+        check_trap(&self.state.dp)
     }
 }
 
 impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
-    type Error = Trap;
+    type Error = EngineError;
 
-    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), Trap> {
+    fn start(&mut self, children: &mut Vec<Child>) -> Result<(), EngineError> {
         self.begin_tiles(QuadNode::ROOT, children);
         self.state.dp.probe_mut().ended(None, children);
         self.trap()
@@ -400,25 +368,25 @@ impl<P: TurnProbe, L: CageCoordinate> cycles::Workload for Steps<'_, P, L> {
         self.handed_out.len() as u32
     }
 
-    fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
+    fn begin_tile(&mut self, tile: u32, children: &mut Vec<Child>) -> Result<(), EngineError> {
         self.begin_tiles(self.handed_out[tile as usize], children);
         self.state.dp.probe_mut().ended(None, children);
         self.trap()
     }
 
-    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), Trap> {
+    fn turn(&mut self, item: u32, children: &mut Vec<Child>) -> Result<(), EngineError> {
         let (work, tile) = self.waiting[item as usize];
         self.free.push(item);
         self.switch_to(tile);
         match work {
             Work::Tiles(quad) => self.begin_tiles(quad, children),
             Work::Record(record) => {
-                self.state.stack.push(record);
+                self.state.traversal.stack.push(record);
                 self.state.turn();
                 self.hand_over_records(children);
             }
             Work::Parent(parent) => self.parent_turn(parent, children),
-            Work::Way(entry, _) => self.way_turn(&entry, children),
+            Work::Path(entry, _) => self.path_turn(&entry, children),
         }
         if !matches!(work, Work::Tiles(_)) {
             let walk = &mut self.walks[tile];

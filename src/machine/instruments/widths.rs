@@ -18,9 +18,9 @@ use crate::machine::cage::{CageCoordinate, with_cage};
 use crate::machine::engine::Machine;
 use crate::machine::record::{Pose, Record};
 use crate::machine::state::State;
-use crate::machine::watch::Watch;
+use crate::machine::watch::{Event, Watch};
 use crate::project::vector::cross;
-use crate::project::{CageKind, Coverage, EngineError, FrameSetup};
+use crate::project::{CageKind, EngineError, FrameSetup};
 
 /// The numbers of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -157,7 +157,7 @@ impl NumberSpan {
 /// Spans by number.
 pub type NumberSpans = BTreeMap<RecordNumber, NumberSpan>;
 
-/// What the set-up proves of a frame's records, and of wide words on the way to them.
+/// Widths, proven from the set-up, of a frame's records and of wide words on the way to them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProvenWidths {
     /// Spans by number.
@@ -166,7 +166,7 @@ pub struct ProvenWidths {
     pub wide_bits: u32,
 }
 
-/// What a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
+/// The widths that a frame's set-up proves; `None` under the rules that do not draw outlines. `nodes`: of the graph.
 #[must_use]
 pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
     if !setup.options.coverage.draws_outlines() {
@@ -267,7 +267,7 @@ pub fn proven_widths(setup: &FrameSetup, nodes: usize) -> Option<ProvenWidths> {
 #[must_use]
 pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
     let mut narrow = setup.clone();
-    if setup.options.coverage == Coverage::Exact
+    if !setup.options.coverage.blends()
         && let Some(proven) = proven_widths(setup, 0)
     {
         narrow.format = setup.format.with_wide_bits(proven.wide_bits);
@@ -276,7 +276,7 @@ pub fn narrowed(setup: &FrameSetup) -> FrameSetup {
 }
 
 /// Adds what a record holds to the spans that were seen.
-fn see<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
+fn note_numbers<L: CageCoordinate>(spans: &mut NumberSpans, cage: CageKind, record: &Record<L>) {
     let Record { cube, place, pose } = record;
     let mut note = |number, value: i128| {
         let span = NumberSpan {
@@ -329,8 +329,10 @@ struct Seen {
 }
 
 impl Watch for Seen {
-    fn made<L: CageCoordinate>(&mut self, record: &Record<L>) {
-        see(&mut self.spans, self.cage, record);
+    fn see<L: CageCoordinate>(&mut self, event: Event<'_, L>) {
+        if let Event::Made(record) = event {
+            note_numbers(&mut self.spans, self.cage, record);
+        }
     }
 }
 

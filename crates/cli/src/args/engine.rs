@@ -149,7 +149,7 @@ impl RuleArgs {
     /// How scenes are read that are drawn so: meshes with opacities for the rule that blends.
     #[must_use]
     pub fn scene_args(&self, scene: &SceneArgs) -> SceneArgs {
-        let blends = self.coverage == Some(Coverage::Alpha);
+        let blends = self.coverage.is_some_and(Coverage::blends);
         SceneArgs {
             opacities: scene.opacities || blends,
             ..scene.clone()

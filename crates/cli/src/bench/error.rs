@@ -15,7 +15,7 @@ use crate::experiment::export::ExportArgs;
 use crate::experiment::export::{self, Results};
 use crate::experiment::subjects;
 use crate::{engines, report};
-use shiftvox::project::{Coverage, SetupOptions};
+use shiftvox::project::SetupOptions;
 use shiftvox_lab::bench::{Schedule, Subject};
 use shiftvox_lab::error::{
     self as experiment, ErrorPlan, Method, PixelStyle, SceneErrors, voxel_method,
@@ -96,7 +96,7 @@ pub(super) fn run(
 ) -> Result<(), CliError> {
     let names = subjects::names_or(&args.scenes, from_config, &SCENES);
     let scene_args = SceneArgs {
-        opacities: args.scene.opacities || args.select.coverages.contains(&Coverage::Alpha),
+        opacities: args.scene.opacities || args.select.coverages.iter().any(|rule| rule.blends()),
         ..args.scene.clone()
     };
     export::check(&args.export)?;

@@ -79,7 +79,7 @@ impl FlickerArgs {
 /// Drawing rules with one and four samples a pixel, `exact` with sixteen; the
 /// paper; the default without level of detail; and `alpha` where `blends`.
 fn options(blends: bool) -> Vec<SetupOptions> {
-    let rules = [Coverage::Exact, Coverage::Center, Coverage::Any];
+    let rules = Coverage::UNBLENDED;
     let one = rules.map(|coverage| (coverage, 0));
     let four = rules.map(|coverage| (coverage, 1));
     let mut all = Vec::new();

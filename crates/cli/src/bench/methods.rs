@@ -298,10 +298,7 @@ fn methods<'m>(
                 aa_log2,
                 ..SetupOptions::of(coverage)
             };
-            let (graph, ms) = match coverage {
-                Coverage::Alpha => airy,
-                _ => opaque,
-            };
+            let (graph, ms) = if coverage.blends() { airy } else { opaque };
             let engine = (engines::FAST.name, engines::FAST.make);
             let method = voxel_method(graph, engine, options, style);
             all.push(candidate(label, graph.bytes(), *ms, method));

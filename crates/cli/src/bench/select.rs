@@ -45,7 +45,6 @@ fn samples(text: &str) -> Result<u32, String> {
     }
 }
 
-const COVERAGES: [Coverage; 3] = [Coverage::Exact, Coverage::Center, Coverage::Any];
 const CAGES: [CageKind; 2] = [CageKind::Frame, CageKind::Corners];
 
 /// One setting of each kind.
@@ -116,7 +115,7 @@ impl SelectArgs {
         }
         let tolerances: Vec<f64> = self.tolerances.iter().map(|t| t.0).collect();
         let mut choices = Vec::new();
-        for coverage in list(&self.coverages, COVERAGES[0]) {
+        for coverage in list(&self.coverages, Coverage::default()) {
             let tolerances = match has_tolerances(coverage) {
                 true => list(&tolerances, 0.125),
                 false => vec![0.0],
@@ -145,14 +144,14 @@ impl SelectArgs {
 
 /// Whether a rule takes other tolerances than 0.
 fn has_tolerances(coverage: Coverage) -> bool {
-    matches!(coverage, Coverage::Any | Coverage::Center)
+    !coverage.draws_outlines()
 }
 
 /// Around the default settings: every drawing rule with every tolerance it has and
 /// both cages; and each rule with other levels of detail, formats, and samples a pixel.
 fn standard() -> Vec<Choice> {
     let mut choices = Vec::new();
-    for coverage in COVERAGES {
+    for coverage in Coverage::UNBLENDED {
         let default = Choice::default_with(coverage);
         let tolerances: &[f64] = match has_tolerances(coverage) {
             true => &[0.125, 0.0, 1.0 / 64.0, f64::INFINITY],
@@ -166,8 +165,7 @@ fn standard() -> Vec<Choice> {
             }));
         }
         // The other rules take seconds for a frame of 16 samples a pixel.
-        let exact = matches!(coverage, Coverage::Exact);
-        let most = if exact { 2 } else { 1 };
+        let most = if coverage.draws_outlines() { 2 } else { 1 };
         choices.extend((1..=most).map(|aa_log2| Choice { aa_log2, ..default }));
         let lods = [0.0, 0.5, 1.0, 2.0].into_iter();
         let lods = lods.filter(|&lod| lod != default.lod);

@@ -314,7 +314,7 @@ impl From<ModelError> for CliError {
         use shiftvox::machine::SimulateError;
         match error {
             ModelError::Setup(error) => error.into(),
-            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Engine(error)) => {
+            ModelError::Engine(error) | ModelError::Simulate(SimulateError::Workload(error)) => {
                 error.into()
             }
             ModelError::Simulate(error) => Self::new(Kind::Limit, error),

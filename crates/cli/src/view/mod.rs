@@ -63,7 +63,7 @@ impl Listed {
         let draw_args = args.draw_args(&args.engine, &args.picture);
         let opened = methods::open(name, &draw_args, console)?;
         drop(opened.drawable(&draw_args).map_err(|e| e.at(name))?);
-        let is_blended = args.engine.rules.coverage == Some(Coverage::Alpha);
+        let is_blended = args.engine.rules.coverage.is_some_and(Coverage::blends);
         let reads_twice = !is_blended && !args.scene.opacities && scenes::is_mesh(name)?;
         Ok(Self {
             name: name.to_owned(),
@@ -75,7 +75,7 @@ impl Listed {
     /// The scene that is drawn with these flags.
     fn for_flags(&self, args: &DrawArgs<'_>) -> Result<&Opened, CliError> {
         match &self.blended {
-            Some(blended) if args.engine.rules.coverage == Some(Coverage::Alpha) => blended
+            Some(blended) if args.engine.rules.coverage.is_some_and(Coverage::blends) => blended
                 .get_or_init(|| methods::open(&self.name, args, &Console::new(true, 0, false)))
                 .as_ref()
                 .map_err(Clone::clone),

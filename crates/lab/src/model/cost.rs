@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::fill_bits::fill_store_bits;
 use super::frame::Counted;
 use shiftvox::frame::quadtree::nodes_to;
-use shiftvox::project::{Coverage, FrameSetup};
+use shiftvox::project::FrameSetup;
 
 /// The tables, and the choices that counts leave open.
 #[derive(Debug, Clone)]
@@ -68,7 +68,7 @@ pub fn stack_bits(hardware: &Hardware, record_bits: u32) -> u64 {
 /// Bits of the accumulators of a frame: none where no voxel is blended.
 #[must_use]
 pub fn accumulator_bits(setup: &FrameSetup) -> u64 {
-    if setup.options.coverage != Coverage::Alpha {
+    if !setup.options.coverage.blends() {
         return 0;
     }
     u64::from(setup.width) * u64::from(setup.height) * u64::from(ACCUMULATOR_BITS)

@@ -14,7 +14,7 @@ use super::{ModelError, fill_bits};
 use crate::measure::CoverageError;
 use shiftvox::frame::Frame;
 use shiftvox::graph::{Graph, GraphView};
-use shiftvox::machine::{Machine, MachineOptions, SimulateError, Simulated, narrowed};
+use shiftvox::machine::{Machine, MachineOptions, Simulated, narrowed};
 use shiftvox::picture::{Shading, lights};
 use shiftvox::project::{Engine, EngineError, FrameSetup, Stats};
 use shiftvox::rays::Rays;
@@ -228,7 +228,7 @@ pub fn replay(
     hardware.check()?;
     let mut workload = turns.replay(&hardware);
     let report = cycles::simulate(&hardware, &mut workload, &mut NoObserver);
-    Ok(report.map_err(SimulateError::from)?)
+    Ok(report.map_err(|error| error.map(EngineError::from))?)
 }
 
 /// The exact picture of a frame's view, down to the finest voxels.

@@ -118,7 +118,7 @@ pub fn measure(
     let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
     let simulated = match simulated {
         Ok((_, simulated)) => simulated,
-        Err(ModelError::Simulate(SimulateError::Engine(EngineError::Trap(trap)))) => {
+        Err(ModelError::Simulate(SimulateError::Workload(EngineError::Trap(trap)))) => {
             return trapped(trap.to_string());
         }
         Err(error) => return Err(error),
@@ -164,10 +164,9 @@ pub fn table(
 ) -> Result<Vec<RuleRow>, ModelError> {
     let exact = frame::reference(&graph.view(), &true_setup(graph, camera, base)?)?;
     let cages = [CageKind::Corners, CageKind::Frame];
-    let rules = [Coverage::Any, Coverage::Center, Coverage::Exact];
     let mut ways = Vec::new();
     for cage in cages {
-        for coverage in rules {
+        for coverage in Coverage::UNBLENDED.into_iter().rev() {
             ways.extend(tolerances(coverage).iter().map(|&px| (cage, coverage, px)));
         }
     }

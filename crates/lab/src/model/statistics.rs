@@ -10,7 +10,7 @@ use super::frame::Counted;
 use super::ray_caster::RayCasterReport;
 use super::record::record_bits;
 use crate::float_rays::FloatStep;
-use shiftvox::machine::Simulated;
+use shiftvox::machine::{COUNTERS, Simulated};
 
 /// A name as one word of a dotted name.
 fn word(name: &str) -> String {
@@ -30,16 +30,10 @@ pub fn of(
 ) -> Statistics {
     let mut list = Statistics::new();
     let counter = &counted.counter;
-    list.add(
-        "machine.records",
-        counter.records(),
-        "Count",
-        "records that had their turn",
-    );
-    // `records` is the line above: a name stands once.
-    for &(name, count) in counted.stats.iter().filter(|stat| stat.0 != "records") {
-        let what = "the machine's own counter";
-        list.add(&format!("machine.{name}"), count, "Count", what);
+    for &(name, count) in &counted.stats {
+        let info = COUNTERS.iter().find(|counter| counter.name == name);
+        let meaning = info.map_or("", |counter| counter.meaning);
+        list.add(&format!("machine.{name}"), count, "Count", meaning);
     }
     for (level, records) in counter.records_by_level() {
         let name = format!("machine.level{level:02}.records");

@@ -7,7 +7,6 @@ use serde::Serialize;
 use super::case::Case;
 use super::outcome::{Check, End, Outcome};
 use super::vertex::Worst;
-use shiftvox::project::Coverage;
 
 /// What outcomes are added up by.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -16,14 +15,11 @@ pub struct Key {
     pub scene: usize,
     /// Word width.
     pub bits: u32,
-    /// Rule: 0 `exact`, 1 `center`, 2 `any`.
+    /// Place of the rule in [`Coverage::UNBLENDED`](shiftvox::project::Coverage::UNBLENDED).
     pub coverage: usize,
     /// Place of the tolerance in [`super::TOLERANCES`].
     pub tolerance: usize,
 }
-
-/// Rules by [`Key::coverage`].
-pub const COVERAGES: [Coverage; 3] = [Coverage::Exact, Coverage::Center, Coverage::Any];
 
 /// Outcomes added up.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

@@ -21,7 +21,7 @@ pub mod viewpoint;
 
 pub use case::Case;
 pub use check::{PATIENCE, STRICT_TOLERANCE};
-pub use findings::{COVERAGES, Failed, Findings, Key, Tally};
+pub use findings::{Failed, Findings, Key, Tally};
 pub use outcome::{Check, End, Failure, Outcome};
 pub use scene::StressScene;
 pub use sweep::{SweepPlan, TOLERANCES, run_case, sweep};

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::case::Case;
 use super::check::{Oracle, PATIENCE, check};
-use super::findings::{COVERAGES, Findings, Key};
+use super::findings::{Findings, Key};
 use super::outcome::{Check, Outcome};
 use super::scene::StressScene;
 use super::shrink::Shrinker;
@@ -230,7 +230,7 @@ fn run_job(subject: &dyn Subject, plan: &SweepPlan, job: &Job<'_>) -> Findings {
                 let key = Key {
                     scene: job.scene,
                     bits,
-                    coverage: place_of(&COVERAGES, &options.coverage),
+                    coverage: place_of(&Coverage::UNBLENDED, &options.coverage),
                     tolerance: place_of(&TOLERANCES, &options.tolerance_px),
                 };
                 findings.note(key, job.viewpoint.name, &case, &outcome);

@@ -1,11 +1,12 @@
 //! What a sweep found, as tables.
 
 use super::check::STRICT_TOLERANCE;
-use super::findings::{COVERAGES, Findings, Key, Tally};
+use super::findings::{Findings, Key, Tally};
 use super::outcome::Check;
 use super::sweep::{SweepPlan, TOLERANCES};
 use super::vertex::{Hold, Worst};
 use crate::report::{Cell, Table};
+use shiftvox::project::Coverage;
 
 /// A tolerance in short.
 fn tolerance_name(tolerance: f64) -> String {
@@ -35,7 +36,7 @@ pub fn rows(plan: &SweepPlan, findings: &Findings) -> Table {
         let mut row: Vec<Cell> = vec![
             Cell::Text(plan.scenes[key.scene].to_string()),
             u64::from(key.bits).into(),
-            COVERAGES[key.coverage].name().into(),
+            Coverage::UNBLENDED[key.coverage].name().into(),
             Cell::Text(TOLERANCES[key.tolerance].to_string()),
         ];
         row.extend(counts(tally).map(Cell::from));
@@ -127,7 +128,7 @@ fn by_rule(findings: &Findings) -> Table {
         "By rule: holes in closed surfaces, order, coverage against the oracle",
         columns,
     );
-    for (coverage, rule) in COVERAGES.iter().enumerate() {
+    for (coverage, rule) in Coverage::UNBLENDED.iter().enumerate() {
         for (tolerance, px) in TOLERANCES.iter().enumerate() {
             if rule.draws_outlines() && *px != 0.0 {
                 continue;

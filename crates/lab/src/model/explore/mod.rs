@@ -329,7 +329,7 @@ impl<'a> Shared<'a> {
         match report {
             Ok(report) => Ok(Ok(report)),
             Err(ModelError::Simulate(
-                error @ (SimulateError::Engine(_) | SimulateError::StackOverflow { .. }),
+                error @ (SimulateError::Workload(_) | SimulateError::StackOverflow { .. }),
             )) => Ok(Err(error.to_string())),
             Err(error) => Err(error),
         }

@@ -4,7 +4,7 @@ use hwmodel::Stage;
 
 use super::ports::Ports;
 use shiftvox::machine::Block;
-use shiftvox::project::{Coverage, FrameSetup};
+use shiftvox::project::FrameSetup;
 
 /// What a coordinate of object space is.
 pub(super) const OBJECT: &str =
@@ -82,7 +82,7 @@ pub fn absence(block: Block, setup: &FrameSetup) -> Option<&'static str> {
         | Block::BlendShares
         | Block::BlendCounts
         | Block::BlendWeight
-        | Block::BlendSample => (setup.options.coverage != Coverage::Alpha).then_some(NOT_ALPHA),
+        | Block::BlendSample => (!setup.options.coverage.blends()).then_some(NOT_ALPHA),
         Block::DetailDepth => {
             (setup.lod_limit.is_none()).then_some("level of detail 0 takes no node for a solid")
         }

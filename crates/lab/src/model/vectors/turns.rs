@@ -15,7 +15,7 @@ use super::manifest_fields::fields;
 use super::ports::{BIT, LEVEL, Ports, WIDE, WORD};
 use super::rows::{Rows, file_name, packed};
 use shiftvox::machine::Port;
-use shiftvox::project::{Coverage, FrameSetup};
+use shiftvox::project::FrameSetup;
 
 const NODE: SignalKind = SignalKind::Unsigned(20);
 const ADDRESS: SignalKind = SignalKind::Unsigned(32);
@@ -124,7 +124,7 @@ impl Turns {
         setup: &FrameSetup,
         stack: StackHolds,
     ) -> Result<Option<Self>, VectorsError> {
-        if setup.options.coverage == Coverage::Alpha {
+        if setup.options.coverage.blends() {
             return Ok(None);
         }
         let file = |end: &str, ports: Ports| {
