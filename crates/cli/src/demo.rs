@@ -8,9 +8,10 @@ use super::args::{CameraArgs, EngineArgs, PictureArgs, SceneArgs, Size, camera_l
 use super::console::Console;
 use super::error::{CliError, Kind};
 use super::methods::{self, DrawArgs};
-use super::{engines, outputs, report, scenes};
+use super::{outputs, report, scenes};
 use shiftvox::drawing::Drawable;
 use shiftvox::picture;
+use shiftvox_lab::model::frame;
 
 /// The demo's own picture: the only file that it replaces without --force.
 const PICTURE: &str = "out/demo.png";
@@ -45,7 +46,8 @@ pub(super) fn run(console: &Console) -> Result<(), CliError> {
     let setup = drawing.setup(&camera)?;
     let shown = drawing.shown()?;
     let shown = shown.ok_or_else(|| CliError::new(Kind::Run, "nothing was drawn"))?;
-    let counter = engines::count_operations(&engine_args, &scene.graph.view(), &setup)?;
+    let counter =
+        frame::count_operations(&scene.graph.view(), &setup, engine_args.rules.overflow())?.1;
     outputs::write(&shown, Path::new(PICTURE), &[], true)?;
     let hash = picture::hash_rows(&shown.buffers)?;
     if console.json {

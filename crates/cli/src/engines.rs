@@ -1,17 +1,12 @@
 //! The only place of the command line that makes engines.
 
-use hwmodel::count::Counter;
-use hwmodel::{Memory, Probe, StageLevel};
-
 use super::args::{EngineArgs, EngineName};
 use super::error::{CliError, Kind};
 use shiftvox::fast::{Fast, FastOptions, Switches};
-use shiftvox::frame::Frame;
-use shiftvox::graph::GraphView;
 use shiftvox::machine::{Machine, MachineOptions};
-use shiftvox::project::{Engine, EngineError, FrameSetup};
+use shiftvox::project::Engine;
 use shiftvox::rays::Rays;
-use shiftvox_lab::bench::{Candidate, Family, Frames, Variant};
+use shiftvox_lab::bench::{Candidate, Family, Frames, Variant, fetched_nodes};
 use shiftvox_lab::float_rays::FloatRays;
 
 /// What makes the engine that the flags name, as often as one is needed.
@@ -70,25 +65,6 @@ fn machine_options(args: &EngineArgs) -> MachineOptions {
         overflow: args.rules.overflow(),
         ..MachineOptions::default()
     }
-}
-
-/// Draws one frame on the machine and counts its operations.
-///
-/// # Errors
-/// When the frame cannot be finished.
-pub(super) fn count_operations(
-    args: &EngineArgs,
-    graph: &GraphView<'_>,
-    setup: &FrameSetup,
-) -> Result<Counter, CliError> {
-    let mut frame = Frame::new(setup.width, setup.height, false);
-    let (_, counter) = Machine::new(machine_options(args)).render_probed(
-        graph,
-        setup,
-        &mut frame,
-        Counter::new(),
-    )?;
-    Ok(counter)
 }
 
 pub(super) const MACHINE: Candidate = Candidate {
@@ -237,7 +213,7 @@ const FAST_VARIANTS: &[Variant] = &[
         name: "attributes of all read",
         about: "colour and normal also of each node that the paper's walk fetches, in its order, \
          not of those seen alone; the picture must be the same",
-        frames: Frames::WithAttributesOf(fetched),
+        frames: Frames::WithAttributesOf(fetched_nodes),
         ..WHOLE_FAST
     },
 ];
@@ -274,21 +250,3 @@ const MACHINE_VARIANTS: &[Variant] = &[
         ..WHOLE_MACHINE
     },
 ];
-
-/// The nodes that the machine fetches for a frame.
-fn fetched(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
-    /// Notes the nodes in the order in which they are read.
-    struct FetchedNodes(Vec<u32>);
-    impl Probe for FetchedNodes {
-        fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
-            if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
-                self.0.push(node);
-            }
-        }
-    }
-    let mut frame = Frame::nodes_only(setup.width, setup.height);
-    let fetched_nodes = FetchedNodes(Vec::new());
-    let (_, fetched_nodes) =
-        Machine::default().render_probed(graph, setup, &mut frame, fetched_nodes)?;
-    Ok(fetched_nodes.0)
-}

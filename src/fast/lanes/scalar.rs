@@ -6,7 +6,7 @@ use crate::fast::strips::CELLS;
 
 /// The set that every processor has.
 #[derive(Debug, Clone, Copy)]
-pub struct Scalar;
+pub(crate) struct Scalar;
 
 impl Four for [f32; 4] {
     #[inline(always)]

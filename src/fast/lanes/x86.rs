@@ -10,11 +10,11 @@ use crate::fast::strips::CELLS;
 
 /// AVX2 with the bit and fused multiply-add instructions of its time.
 #[derive(Debug, Clone, Copy)]
-pub struct Avx2(());
+pub(crate) struct Avx2(());
 
 impl Avx2 {
     /// The set, if the processor has it.
-    pub fn detect() -> Option<Self> {
+    pub(crate) fn detect() -> Option<Self> {
         let found = is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("fma")
             && is_x86_feature_detected!("bmi1")
@@ -27,7 +27,7 @@ impl Avx2 {
 
 /// Four lanes. One can only be had from an [`Avx2`].
 #[derive(Debug, Clone, Copy)]
-pub struct Floats(__m128);
+pub(crate) struct Floats(__m128);
 
 /// An expression of intrinsics that read no memory.
 macro_rules! avx {

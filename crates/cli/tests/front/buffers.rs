@@ -5,7 +5,6 @@ use std::path::Path;
 
 use shiftvox::picture::npy::{self, Array, Values};
 use shiftvox::picture::png;
-use std::process::Command;
 
 use crate::common::Run;
 

@@ -9,10 +9,8 @@ use shiftvox::graph::Silent;
 use shiftvox::project::{Bounds, DEFAULT_FOV, Direction, Up, fit_camera};
 use shiftvox::{Camera, Renderer, Scene};
 use shiftvox_mesh::SceneOptions;
-use shiftvox_mesh::far::FarFile;
 use shiftvox_mesh::open::read_mesh;
 use shiftvox_mesh::{LoadOptions, mesh_box};
-use std::process::Command;
 
 use crate::common::Run;
 

@@ -303,7 +303,7 @@ mod unix {
             let assert = sh(folder.path(), &script).success();
             String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
         };
-        if std::process::Command::new("script")
+        if Command::new("script")
             .arg("--version")
             .output()
             .is_err()

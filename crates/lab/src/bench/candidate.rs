@@ -1,6 +1,9 @@
 //! What can be measured: engines by name, and engines with a part switched off.
 
+use hwmodel::{Memory, Probe, StageLevel};
+use shiftvox::frame::Frame;
 use shiftvox::graph::GraphView;
+use shiftvox::machine::Machine;
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupOptions};
 
 /// Makes an engine for so many threads, 1 or more.
@@ -61,4 +64,24 @@ pub struct Family {
     pub whole: Candidate,
     /// One technique off at a time.
     pub variants: &'static [Variant],
+}
+
+/// The nodes that the machine fetches for a frame: a [`FetchedNodes`].
+///
+/// # Errors
+/// When the machine cannot finish the frame.
+pub fn fetched_nodes(graph: &GraphView<'_>, setup: &FrameSetup) -> Result<Vec<u32>, EngineError> {
+    /// Notes the nodes in the order in which they are read.
+    struct Reads(Vec<u32>);
+    impl Probe for Reads {
+        fn read(&mut self, memory: Memory, address: u64, _: StageLevel) {
+            if let (Memory::Node, Ok(node)) = (memory, u32::try_from(address)) {
+                self.0.push(node);
+            }
+        }
+    }
+    let mut frame = Frame::nodes_only(setup.width, setup.height);
+    let fetched = Reads(Vec::new());
+    let (_, fetched) = Machine::default().render_probed(graph, setup, &mut frame, fetched)?;
+    Ok(fetched.0)
 }

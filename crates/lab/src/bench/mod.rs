@@ -16,7 +16,7 @@ pub mod scaling;
 mod scan;
 mod statistics;
 
-pub use candidate::{Candidate, Family, FetchedNodes, Frames, MakeEngine, Variant};
+pub use candidate::{Candidate, Family, FetchedNodes, Frames, MakeEngine, Variant, fetched_nodes};
 pub use clock::{Clock, Elapsed};
 pub use harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
 pub use measure::{BenchPlan, Subject, Timing, measure};

@@ -185,8 +185,8 @@ impl Spooled {
 ///
 /// # Errors
 /// See [`BuildError`].
-pub fn build<S: Surface + ?Sized>(
-    surface: &S,
+pub fn build(
+    surface: &dyn Surface,
     options: &BuildOptions,
     progress: &dyn Progress,
 ) -> Result<FarData, BuildError> {
@@ -205,8 +205,8 @@ pub fn build<S: Surface + ?Sized>(
 ///
 /// # Errors
 /// See [`BuildError`].
-pub fn build_outside<S: Surface + ?Sized>(
-    surface: &S,
+pub fn build_outside(
+    surface: &dyn Surface,
     options: &BuildOptions,
     outside: &Outside<'_>,
     progress: &dyn Progress,
@@ -236,21 +236,21 @@ fn failed(file: &Path, problem: &io::Error) -> BuildError {
 
 /// Triangles in the order of the hierarchy, in coordinates in which all of them together have a
 /// size of about 1: single precision holds their squares and products, however small the mesh is.
-struct Ordered<'s, S: ?Sized> {
-    surface: &'s S,
+struct Ordered<'s> {
+    surface: &'s dyn Surface,
     order: &'s [u32],
     centre: DVec3,
     /// A power of two, so that nothing is rounded.
     scale: f64,
 }
 
-impl<S: Surface + ?Sized> Ordered<'_, S> {
+impl Ordered<'_> {
     fn place(&self, point: DVec3) -> DVec3 {
         (point - self.centre) * self.scale
     }
 }
 
-impl<S: Surface + ?Sized> Triangles for Ordered<'_, S> {
+impl Triangles for Ordered<'_> {
     fn corners(&self, number: usize) -> [DVec3; 3] {
         let corners = self.surface.corners(self.order[number] as usize);
         corners.map(|p| self.place(p))
@@ -269,8 +269,8 @@ impl<S: Surface + ?Sized> Triangles for Ordered<'_, S> {
 }
 
 /// Fills a spool with the nodes that are not in it yet.
-fn fill<S: Surface + ?Sized, F: Read + Write + Seek + Send>(
-    surface: &S,
+fn fill<F: Read + Write + Seek + Send>(
+    surface: &dyn Surface,
     options: &BuildOptions,
     outside: Option<&Outside<'_>>,
     (mut spool, resume): (
@@ -441,7 +441,7 @@ fn parts(branches: &[Branch], place: impl Fn(DVec3) -> DVec3) -> Vec<Part> {
     parts
 }
 
-fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(), BuildError> {
+fn check(surface: &dyn Surface, options: &BuildOptions) -> Result<(), BuildError> {
     if surface.is_empty() {
         return Err(BuildError::Empty);
     }
@@ -465,7 +465,7 @@ fn check<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Result<(),
 }
 
 /// What coordinates are relative to, and what makes them about 1.
-fn centre<S: Surface + ?Sized>(surface: &S) -> Result<(DVec3, f64), BuildError> {
+fn centre(surface: &dyn Surface) -> Result<(DVec3, f64), BuildError> {
     let (low, high) = surface.bounds();
     let extent = (high - low).max_element();
     let farthest = low.abs().max(high.abs()).max_element();
@@ -607,11 +607,7 @@ impl Fitted {
     }
 }
 
-fn leaf_triangles<S: Surface + ?Sized>(
-    surface: &S,
-    order: &[u32],
-    centre: DVec3,
-) -> Vec<LeafTriangle> {
+fn leaf_triangles(surface: &dyn Surface, order: &[u32], centre: DVec3) -> Vec<LeafTriangle> {
     order
         .iter()
         .map(|&number| {

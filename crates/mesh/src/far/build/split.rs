@@ -65,10 +65,7 @@ struct Tree {
 /// Splits until a node has fewer triangles than `leaf_triangles` (or one).
 /// Gives the nodes, parents before children, and the triangles' numbers in
 /// their new order. The surface has triangles, and fewer than 2^32.
-pub(super) fn split<S: Surface + ?Sized>(
-    surface: &S,
-    leaf_triangles: usize,
-) -> (Vec<Branch>, Vec<u32>) {
+pub(super) fn split(surface: &dyn Surface, leaf_triangles: usize) -> (Vec<Branch>, Vec<u32>) {
     let item_of = |&number: &u32| {
         let [a, b, c] = surface.corners(number as usize);
         Item {

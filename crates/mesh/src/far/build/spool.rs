@@ -29,7 +29,7 @@ pub(super) struct Origin {
 
 impl Origin {
     /// That of a build.
-    pub(super) fn of<S: Surface + ?Sized>(surface: &S, options: &BuildOptions) -> Self {
+    pub(super) fn of(surface: &dyn Surface, options: &BuildOptions) -> Self {
         let mut mesh = Xxh3::new();
         for number in 0..surface.len() {
             let triangle = surface.triangle(number);

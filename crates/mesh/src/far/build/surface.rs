@@ -35,17 +35,17 @@ const MOST_BYTES: f64 = 4.0;
 pub(super) const MOST_TRIANGLES: usize = 1 << 21;
 
 /// What surfaces of nodes are made of.
-pub(super) struct Surfaces<'s, S: ?Sized> {
-    surface: &'s S,
+pub(super) struct Surfaces<'s> {
+    surface: &'s dyn Surface,
     order: &'s [u32],
     centre: DVec3,
     options: &'s BuildOptions,
     parts: Parts,
 }
 
-impl<'s, S: Surface + ?Sized> Surfaces<'s, S> {
+impl<'s> Surfaces<'s> {
     pub(super) fn new(
-        surface: &'s S,
+        surface: &'s dyn Surface,
         order: &'s [u32],
         centre: DVec3,
         options: &'s BuildOptions,
