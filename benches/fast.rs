@@ -14,10 +14,12 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
+use shiftvox::drawing::{Drawable, GraphDrawing, GraphStyle};
 use shiftvox::fast::{Fast, FastOptions, Instructions};
 use shiftvox::frame::Frame;
 use shiftvox::machine::Machine;
 use shiftvox::project::{Camera, Engine, FrameSetup, SetupOptions};
+use shiftvox::{Background, Renderer, Scene, Shading, View};
 
 use scenes::graph_of_spec;
 
@@ -88,12 +90,59 @@ fn frames(criterion: &mut Criterion) {
     }
 }
 
+/// Small pictures in a loop: the frames that `render --repeat` times, a renderer that is kept, and a new one for each.
+fn small_pictures(criterion: &mut Criterion) {
+    let scene = Scene::from(graph_of_spec("gen:menger,depth=4"));
+    let camera = shiftvox::Camera::fit(&scene);
+    for size in [64, 256] {
+        let mut group = criterion.benchmark_group(format!("pictures of {size} x {size}"));
+        let style = GraphStyle {
+            options: SetupOptions::default(),
+            shading: Shading::Flat,
+            background: Background::default(),
+            buffers: Vec::new(),
+            is_hashed: false,
+        };
+        let options = FastOptions {
+            threads: 1,
+            ..FastOptions::default()
+        };
+        let engine = || -> Box<dyn Engine + Send> {
+            Box::new(Fast::new(options, Box::new(Machine::default())))
+        };
+        let drawing = GraphDrawing::new(scene.graph(), scene.up(), style, engine);
+        let placed = camera.of_size(size, size).expect("a camera");
+        let mut frame = drawing.frames(&placed).expect("a frame");
+        group.bench_function("--repeat", |bencher| {
+            bencher.iter(|| frame().expect("a frame"));
+        });
+        let renderer = Renderer::new().shading(Shading::Flat).threads(1);
+        let mut pixels = vec![[0; 4]; (size * size) as usize];
+        group.bench_function("a renderer that is kept", |bencher| {
+            bencher.iter(|| {
+                renderer
+                    .render_into(&scene, &camera, size, size, &mut pixels)
+                    .expect("a picture")
+            });
+        });
+        group.bench_function("a new renderer for each", |bencher| {
+            bencher.iter(|| {
+                let renderer = renderer.clone();
+                renderer
+                    .render(&scene, &camera, size, size)
+                    .expect("a picture")
+            });
+        });
+        group.finish();
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default()
         .sample_size(20)
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(1));
-    targets = frames
+    targets = frames, small_pictures
 }
 criterion_main!(benches);

@@ -303,11 +303,7 @@ mod unix {
             let assert = sh(folder.path(), &script).success();
             String::from_utf8_lossy(&assert.get_output().stdout).into_owned()
         };
-        if Command::new("script")
-            .arg("--version")
-            .output()
-            .is_err()
-        {
+        if Command::new("script").arg("--version").output().is_err() {
             eprintln!("skipped: there is no `script` to make a terminal");
             return;
         }

@@ -9,7 +9,7 @@ use shiftvox_mesh::{
     self, LoadOptions, Material, Mesh, MeshBuilder, MeshError, MeshFormat, Nothing,
 };
 
-pub use super::gltf_bytes::{data_uri, glb};
+pub(crate) use super::gltf_bytes::{data_uri, glb};
 
 /// A mesh of one material.
 pub fn mesh_of(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Mesh {
