@@ -15,7 +15,7 @@ pub fn map(file: &File) -> io::Result<Arc<Mmap>> {
     // the user's part, as with any program that maps its input: see `spec/graph.md`. What is read is plain numbers of any value, and no
     // index among them is followed unchecked, so changed bytes give a wrong
     // picture. A file truncated under the map ends the process (SIGBUS); the
-    // command line says why (`src/cli/fatal_signals.rs`).
+    // command line says why (`crates/cli/src/fatal_signals.rs`).
     let map = unsafe { Mmap::map(file) }?;
     Ok(Arc::new(map))
 }

@@ -378,7 +378,7 @@ fn every_command_is_run() {
     };
     for (before, known) in [("", commands(&[])), ("bench ", commands(&["bench"]))] {
         assert!(known.len() >= 8, "{known:?}");
-        // A page is served until it is stopped (`tests/view`).
+        // A page is served until it is stopped (`crates/cli/tests/view`).
         let others = ["help", "view"];
         for name in { known.iter() }.filter(|name| !others.contains(&name.as_str())) {
             let begins = format!("{before}{name}");
