@@ -5,6 +5,7 @@
 //! ```text
 //! cargo bench --bench fast
 //! ```
+#![allow(missing_docs, reason = "the functions that criterion makes")]
 
 #[path = "../tests/machine/scenes/mod.rs"]
 mod scenes;

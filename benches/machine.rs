@@ -8,6 +8,7 @@
 //! Times are the drawing thread's time on a processor where the system reports it
 //! (the machine draws on one thread), so that other work on the machine shows
 //! less; elsewhere they are wall times.
+#![allow(missing_docs, reason = "the functions that criterion makes")]
 
 #[path = "../tests/machine/scenes/mod.rs"]
 mod scenes;

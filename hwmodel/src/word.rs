@@ -90,6 +90,7 @@ impl WideWord {
 
 mod sealed {
     /// Raw access that only the datapath has.
+    #[expect(unnameable_types, reason = "a sealed trait")]
     pub trait Raw: Copy {
         const WIDE: bool;
         fn raw(self) -> i64;

@@ -169,6 +169,7 @@ impl View for FittedCamera {
 
 mod private {
     /// Only this crate has cameras.
+    #[expect(unnameable_types, reason = "a sealed trait")]
     pub trait Sealed {}
     impl Sealed for super::Camera {}
     impl Sealed for super::FittedCamera {}

@@ -1,11 +1,12 @@
 //! Blending, under the rule `alpha` (`SPEC.md`, section 11): with products
 //! where the machine adds shifts.
 //!
-//! Which samples a voxel draws, and in which order, is found as under `exact`; a
-//! sample stays open until it is opaque enough.
+//! Voxels reach the same samples in the same order as under `exact`. A sample stays open until it is
+//! opaque enough.
 
 use super::band::Band;
 use super::lanes::Isa;
+use super::window::bits;
 use crate::graph::sixteenths;
 use crate::project::{ALL_LEFT, OPAQUE_ENOUGH, OpacityEye, SHARES};
 
@@ -28,7 +29,7 @@ fn side_weights(eye: &OpacityEye, min: [i32; 3], side: i32) -> [u32; 3] {
 
 impl<I: Isa> Band<'_, I> {
     /// Shows a voxel at open samples of the square whose first sample is given,
-    /// eight bits a row. Those that are drawn by that: all, unless voxels are blended.
+    /// eight bits per row. Those that are drawn by that: all, unless voxels are blended.
     #[inline(always)]
     pub(super) fn show(
         &mut self,
@@ -61,10 +62,8 @@ impl<I: Isa> Band<'_, I> {
         }
         let light = self.graph.light_of(node).map(u32::from);
         let first = self.pixels.at(x, y);
-        let (mut left, mut full) = (samples, 0);
-        while left != 0 {
-            let bit = left.trailing_zeros() as usize;
-            left &= left - 1;
+        let mut full = 0;
+        for bit in bits(samples) {
             let at = first + (bit >> 3) * self.pixels.width + (bit & 7);
             let Some(sample) = self.pixels.blend.get_mut(at) else {
                 continue;

@@ -1,45 +1,27 @@
-//! Small voxels, sample by sample: two or four levels of the graph in one step.
+//! Bricks: nodes of which two or four levels are drawn in one step, sample by sample.
 //!
-//! A brick is a node whose parts, the children's children, are solids: 64 parts.
-//! For each open sample of its window, three look-ups say which parts the
-//! sample's line may meet (`strips.rs`), in the order in which it meets them; the
-//! first that it does meet (`lines.rs`) is what the sample shows. So the work is
-//! for samples, not for voxels, and hidden voxels cost nothing.
+//! A brick is a node whose 64 parts, its grandchildren, are solids. For each open sample, three
+//! look-ups say which parts its line may meet, in the order in which it meets them (`strips.rs`). The
+//! sample shows the first part that it does meet (`lines.rs`). So the work is for samples, not for
+//! voxels, and occluded voxels cost nothing.
 //!
-//! Where voxels are smaller than samples, a brick's parts are blocks, and each
-//! block's parts are the voxels: the same look-ups twice, 4096 voxels a brick.
-//! A block's parts are put in order when the first line asks for them.
+//! Where voxels are smaller than samples, the parts are blocks, nodes with 64 parts of their own: the
+//! same look-ups twice, for 4096 voxels. A block's parts are read when the first line needs them.
 
 use super::band::{Band, Brick, Hit, voxel_at};
 use super::directions::Samples;
 use super::lanes::Isa;
 use super::lines::{Lines, Meeting, OFFSETS};
+use super::orders::turned_parts;
 use super::parts::Part;
 use super::projection::Projection;
-use super::squares::{DrawSquare, SAMPLES, each_square};
+use super::squares::{SAMPLES, each_square};
 use super::strips::STRIPS;
 use super::window::Window;
 
-/// Draws squares of a brick of two levels, or of four (`DEEP`).
-struct BySamples<'b, I: Isa, const DEEP: bool> {
-    brick: Brick<'b>,
-    projection: Projection<I>,
-}
-
-/// Draws a brick of two levels.
+/// Draws a brick of two levels, or of four (`DEEP`).
 #[inline(always)]
-pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
-    draw_levels::<I, false>(band, brick, window);
-}
-
-/// Draws a brick of four levels.
-#[inline(always)]
-pub(super) fn draw_deep<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
-    draw_levels::<I, true>(band, brick, window);
-}
-
-#[inline(always)]
-fn draw_levels<I: Isa, const DEEP: bool>(
+pub(super) fn draw<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
     brick: Brick<'_>,
     window: &Window,
@@ -64,37 +46,31 @@ fn draw_levels<I: Isa, const DEEP: bool>(
     } else {
         brick.parts.prefetch(band.isa, band.graph);
     }
-    each_square(band, &window, &BySamples::<I, DEEP> { brick, projection });
+    each_square(
+        band,
+        &window,
+        #[inline(always)]
+        |band, samples| draw_samples::<I, DEEP>(band, brick, &projection, samples),
+    );
 }
 
-impl<I: Isa, const DEEP: bool> DrawSquare<I> for BySamples<'_, I, DEEP> {
-    #[inline(always)]
-    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64 {
-        draw_samples::<I, DEEP>(band, self, samples)
-    }
-}
-
-/// Draws what samples show: returns those drawn.
+/// Draws the parts that samples show; returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa, const DEEP: bool>(
     band: &mut Band<'_, I>,
-    &BySamples { brick, projection }: &BySamples<'_, I, DEEP>,
+    brick: Brick<'_>,
+    projection: &Projection<I>,
     samples: &Samples<'_, I>,
 ) -> u64 {
-    let &Samples {
-        square,
-        open,
-        octant,
-        ..
-    } = samples;
+    let (square, open, octant) = (samples.square, samples.open, samples.octant);
     let isa = band.isa;
     let strips = &*STRIPS;
     band.counters.samples_tested += u64::from(open.count_ones());
-    let lines = Lines::new(isa, band.constants, &projection, samples);
+    let lines = Lines::new(isa, band.constants, projection, samples);
     let tables = strips.touched(lines.tables);
-    let exist = isa.turned_parts(brick.parts.exist, octant);
+    let exist = turned_parts(isa, brick.parts.exist, octant);
     let cells = lines.in_cells(isa, if DEEP { 0.25 } else { 1.0 });
-    let any = isa.parts_of_samples(tables, &cells, exist, open, &mut band.candidates);
+    let any = band.candidates.look_up(isa, tables, &cells, exist, open);
     let pair = u32::from(octant) * 9;
     if DEEP && any != 0 {
         brick.parts.prefetch_masks(isa, band.graph);
@@ -113,7 +89,7 @@ fn draw_samples<I: Isa, const DEEP: bool>(
         'sample: while wanted != 0 {
             let number = wanted.trailing_zeros() as usize & 63;
             wanted &= wanted - 1;
-            // What the number is of: a block with parts of its own, or a part.
+            // The number of a block with parts of its own, or of a part.
             let (line, mut parts) = if DEEP {
                 if ready >> number & 1 == 0 {
                     ready |= 1 << number;
@@ -312,7 +288,7 @@ fn prepare<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, number: usize, octa
     let parts = &mut band.brick_blocks.parts[number & 63];
     parts.read(band.isa, band.graph, block.node, false, 0);
     parts.prefetch(band.isa, band.graph);
-    band.brick_blocks.exist[number & 63] = band.isa.turned_parts(parts.exist, octant);
+    band.brick_blocks.exist[number & 63] = turned_parts(band.isa, parts.exist, octant);
 }
 
 /// Where in a brick a voxel is.

@@ -1,18 +1,18 @@
-//! The picture in the making: which samples are drawn, and what they show.
+//! The picture in the making: a coverage mask of the samples that are drawn, and their contents.
 //!
-//! One bit a sample, set while it is open, in words of 8 x 8 samples (tiles), and one bit a tile,
-//! in words of 8 x 8 tiles (blocks). So a few words decide whether anything can still
-//! be drawn in a window. What lies outside the picture counts as drawn from the start,
-//! as in the image quadtree. A square is at most as large as a tile and may lie anywhere.
+//! The mask has one bit per sample, set while it is open, in words of 8 x 8 samples (tiles). A second
+//! level has one bit per tile, in words of 8 x 8 tiles (blocks). So a few words decide whether anything
+//! can still be drawn in a window. Samples outside the picture count as drawn. A square (`squares.rs`)
+//! is at most as large as a tile and may lie anywhere.
 
-use super::lanes::Isa;
-use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window};
+use super::lanes::{Isa, Scalar};
+use super::window::{ALL, BLOCK_LOG2, LEFT_COLUMN, TILE_LOG2, Window, bits};
 use crate::frame::{Blend, NO_NODE, color_word};
 
 /// Tiles along a block's side.
 const TILES_PER_BLOCK: usize = 1 << (BLOCK_LOG2 - TILE_LOG2);
 
-/// Which samples of a band of the picture are drawn.
+/// The coverage mask of a band of the picture.
 #[derive(Debug)]
 pub(super) struct Fill<'p> {
     /// The band's samples.
@@ -31,9 +31,9 @@ pub(super) struct Fill<'p> {
 /// The memory of a picture's fill, or a band's part of it.
 #[derive(Debug)]
 pub(super) struct FillPart<'p> {
-    /// One bit a sample, set where it is open; by tile.
+    /// One bit per sample, set where it is open; by tile.
     tiles: &'p mut [u64],
-    /// One bit a tile, set where a sample of it is open; by block.
+    /// One bit per tile, set where a sample of it is open; by block.
     blocks: &'p mut [u64],
 }
 
@@ -174,7 +174,7 @@ impl<'p> Fill<'p> {
         self.part.tiles.get(at).copied().unwrap_or(0)
     }
 
-    /// The open samples of a square, eight bits a row.
+    /// The open samples of a square, eight bits per row.
     #[inline(always)]
     pub(super) fn open_in_square(&self, window: &Window) -> u64 {
         let (x, y) = ((window.left & 7) as u32, (window.top & 7) as u32);
@@ -183,8 +183,8 @@ impl<'p> Fill<'p> {
             (window.bottom - window.top) as usize,
         );
         let at = self.tile_at(window.left >> TILE_LOG2, window.top >> TILE_LOG2);
-        // What lies in the four tiles that the window may reach. Those that it
-        // does not reach are shifted out or masked.
+        // The four tiles that the window may reach. Those that it does not reach are shifted out
+        // or masked.
         let below = at.wrapping_add(self.grid.tiles_across);
         let [a, b, c, d] = match self.part.tiles.get(at..below.wrapping_add(2)) {
             Some(tiles) => [tiles[0], tiles[1], tiles[below - at], tiles[below - at + 1]],
@@ -287,31 +287,31 @@ impl<'p> Fill<'p> {
     }
 }
 
-/// What the samples of a band show.
+/// The contents of a band's samples.
 #[derive(Debug)]
 pub(super) struct Pixels<'f> {
-    /// Samples a row.
+    /// Samples per row.
     pub(super) width: usize,
     /// First row of the band.
     pub(super) top: i32,
     /// Nodes, or their colours as words.
     pub(super) shown: &'f mut [u32],
-    /// Colours by node where those are asked for, else empty.
+    /// Colours by node if they are requested, else empty.
     pub(super) color: &'f [[u8; 3]],
-    /// Empty where voxels are not asked for.
+    /// Empty unless voxels are requested.
     pub(super) voxel: &'f mut [[i32; 4]],
-    /// What was blended so far; empty under rules that do not blend.
+    /// The blended light so far. Empty under rules that do not blend.
     pub(super) blend: &'f mut [Blend],
 }
 
 impl Pixels<'_> {
-    /// Whether voxels are asked for.
+    /// Whether voxels are requested.
     #[inline(always)]
     pub(super) fn wants_voxels(&self) -> bool {
         !self.voxel.is_empty()
     }
 
-    /// What a sample holds that shows a node.
+    /// The entry of a sample that shows a node.
     #[inline(always)]
     pub(super) fn word(&self, node: u32) -> u32 {
         if self.color.is_empty() {
@@ -327,8 +327,8 @@ impl Pixels<'_> {
         (y - self.top) as usize * self.width + x as usize
     }
 
-    /// Shows a node, and a voxel where asked for, at samples of the square
-    /// whose first sample is (x, y), eight bits a row.
+    /// Shows a node, and a voxel if requested, at samples of the square whose first sample is (x, y),
+    /// eight bits per row.
     #[inline(always)]
     pub(super) fn show<I: Isa>(
         &mut self,
@@ -339,12 +339,15 @@ impl Pixels<'_> {
         voxel: [i32; 4],
     ) {
         let first = self.at(x, y);
-        isa.put(self.shown, first, self.width, samples, self.word(node));
+        let word = self.word(node);
+        // All eight rows, drawn or not: how many there are cannot be predicted.
+        let end = first + 7 * self.width + 8;
+        match self.shown.get_mut(first..end) {
+            Some(rows) => isa.store_masked(rows, self.width, samples, word),
+            None => Scalar.store_masked(&mut self.shown[first..], self.width, samples, word),
+        }
         if self.wants_voxels() {
-            let mut left = samples;
-            while left != 0 {
-                let bit = left.trailing_zeros() as usize;
-                left &= left - 1;
+            for bit in bits(samples) {
                 self.voxel[first + (bit >> 3) * self.width + (bit & 7)] = voxel;
             }
         }

@@ -5,7 +5,7 @@
 //! So the compares with depths of level of detail are the machine's.
 
 use crate::project::vector::cross;
-use crate::project::{Coverage, FrameSetup, OpacityEye};
+use crate::project::{FrameSetup, OpacityEye};
 
 /// Positions, times sixteen, stay below this: whole numbers of an `f64`.
 const EXACT_LIMIT: i128 = 1 << 53;
@@ -25,7 +25,7 @@ const LARGE_SAMPLES: f64 = 24.0;
 /// Size, in samples, from which on windows are computed with a margin that nodes can have.
 const TINY_SAMPLES: f64 = 1.0 / 8.0;
 
-/// What nodes of one octree level have in common.
+/// The constants of an octree level.
 #[derive(Debug, Clone)]
 pub(super) struct Level {
     /// The children's centres relative to their parent's: by coordinate of the clip vector, then by
@@ -33,9 +33,9 @@ pub(super) struct Level {
     pub(super) child: [[f64; 8]; 3],
     /// The vertices relative to the centre, in the same way.
     pub(super) vertices: [[f64; 8]; 3],
-    /// Half of what a node spans in depth.
+    /// Half of a node's extent in depth.
     pub(super) half_depth: f64,
-    /// Least W of a node with children that is a solid by level of detail; infinite: none is.
+    /// Least W of a node with children that is a solid by level of detail. Infinite where none is.
     pub(super) lod_depth: f64,
     /// A node's side, finest voxels.
     pub(super) side: i32,
@@ -111,7 +111,7 @@ pub(super) struct Constants {
     pub(super) edge_columns: [[f64; 4]; 3],
     /// [`Constants::edge`], rounded.
     pub(super) edge_lanes: [[f32; 3]; 3],
-    /// What a product of two edges is scaled by for [`Constants::direction`].
+    /// Scale of a product of two edges in [`Constants::direction`].
     pub(super) scale: f64,
     /// 1 / the scale.
     pub(super) inverse_scale: f64,
@@ -154,13 +154,8 @@ impl Constants {
             let [x, y, z] = [0, 1, 2].map(|k| direction[k][i] as f32);
             [x, y, z, 0.0]
         };
-        let focal: f64 = {
-            let squares = edge.map(|e| {
-                let x = e[0] - middle[0] * e[2];
-                x * x
-            });
-            libm::sqrt(squares.iter().sum())
-        };
+        let across = edge.map(|e| e[0] - middle[0] * e[2]);
+        let focal = libm::sqrt(across.iter().map(|x| x * x).sum());
         if root_samples > MOST_WIDTH * focal {
             return Err(Declined::FieldOfView);
         }
@@ -186,7 +181,7 @@ impl Constants {
             scale,
             inverse_scale: 1.0 / scale,
             eye_floor: setup.eye_floor.map(|c| c.clamp(-1, far + 1)),
-            opacity_eye: (setup.options.coverage == Coverage::Alpha).then(|| setup.opacity_eye()),
+            opacity_eye: (setup.options.coverage.blends()).then(|| setup.opacity_eye()),
         })
     }
 
@@ -207,8 +202,8 @@ impl Constants {
         top..bottom
     }
 
-    /// Which octant of a node is nearest to the eye, the node's lowest corner
-    /// and half side given: bit k is set where the eye is above the centre.
+    /// The octant nearest to the eye, of a node with this lowest corner and half side: bit k is set
+    /// where the eye is above the centre.
     #[inline(always)]
     pub(super) fn nearest_octant(&self, min: [i32; 3], half_side: i32) -> u8 {
         let mut octant = 0;

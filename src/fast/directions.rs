@@ -2,14 +2,15 @@
 
 use super::constants::Constants;
 use super::exact::Exact;
-use super::lanes::{Four, Isa};
-use super::window::Window;
+use super::lanes::{F32x4, Floats, Isa};
+use super::window::{Window, bits};
 
 /// Steps in `f32` that a line's values take, each rounded by 2^-24 of what is
 /// summed up at most: `spec/fast.md` counts them.
 pub(super) const STEPS: f32 = 18.0;
-/// Of what lines' values are made of, the error of their sum.
-pub(super) const RELATIVE_ERROR: f32 = STEPS / (1 << 24) as f32;
+/// Bounds the error in `f32` of a direction, a moment, and a line's distance from a part, relative to
+/// the sum of the sizes of their terms.
+pub(super) const LINE_ERROR: f32 = STEPS / (1 << 24) as f32;
 /// Rounding of a direction in `f64`, of what it is summed of: its coefficients are differences
 /// of numbers up to 2^13 times as large (`Constants::new`).
 const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
@@ -17,10 +18,10 @@ const DIRECTION_ERROR: f64 = 1.0 / (1u64 << 38) as f64;
 /// The direction of lines in a square's middle, and by how much it changes from there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions<I: Isa> {
-    pub(super) middle: I::Four,
-    pub(super) spread: I::Four,
-    /// What directions are summed of, at most.
-    pub(super) size: I::Four,
+    pub(super) middle: I::F32x4,
+    pub(super) spread: I::F32x4,
+    /// The greatest sum of the sizes of a direction's terms.
+    pub(super) size: I::F32x4,
     /// The octant in which lines begin: a bit for each axis along which they run downwards.
     pub(super) octant: u8,
     /// Whether lines of the square differ in that, or may.
@@ -36,14 +37,14 @@ impl<I: Isa> Directions<I> {
         let x = isa.splat(square.left as f32).add(half_across);
         let y = isa.splat(square.top as f32).add(half_down);
         let middle = columns.fma(x, rows.fma(y, first));
-        // What the sum is made of bounds its rounding.
+        // The sizes of the terms bound the rounding of the sum.
         let right = isa.splat((square.right + 1) as f32);
         let bottom = isa.splat((square.bottom + 1) as f32);
         let size = columns
             .abs()
             .fma(right, rows.abs().fma(bottom, first.abs()));
         let spread = size.fma(
-            isa.splat(RELATIVE_ERROR),
+            isa.splat(LINE_ERROR),
             columns.abs().fma(half_across, rows.abs().mul(half_down)),
         );
         Self {
@@ -63,7 +64,7 @@ static OCTANTS: [u8; 8] = [0, 4, 2, 6, 1, 5, 3, 7];
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Samples<'s, I: Isa> {
     pub(super) square: &'s Window,
-    /// Which, eight bits a row.
+    /// Their mask, eight bits per row.
     pub(super) open: u64,
     pub(super) directions: Directions<I>,
     pub(super) octant: u8,
@@ -91,11 +92,11 @@ pub(super) fn by_octant(
     open: u64,
 ) -> [u64; 8] {
     let mut parts = [0; 8];
-    let mut left = open;
-    while left != 0 {
-        let bit = left.trailing_zeros() as i32;
-        left &= left - 1;
-        let at = [square.left + (bit & 7), square.top + (bit >> 3)];
+    for bit in bits(open) {
+        let at = [
+            square.left + (bit as i32 & 7),
+            square.top + (bit as i32 >> 3),
+        ];
         let [x, y] = at.map(f64::from);
         let mut octant = 0;
         for k in 0..3 {

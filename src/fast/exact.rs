@@ -1,6 +1,9 @@
 //! Exact silhouettes (`SPEC.md`, "Exact coverage"): in `f64` where its error
 //! bound decides, in 128-bit integers where it does not.
 //!
+//! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and a cube's
+//! edge. The sign of their permuted inner product says on which side the ray passes.
+//!
 //! The plane through the eye and the edge of direction j that starts at `A` has
 //! the normal `n = A x e_j`. With the sample as `q = (2x + 1, 2y + 1, 2^(R + 1))`
 //! its side is the sign of `n q`; a zero is decided as the machine does, by the
@@ -9,9 +12,9 @@
 use super::window::Window;
 use crate::project::FrameSetup;
 
-/// Relative error of a sum of at most nine products of rounded numbers, with
-/// room: each of the few operations in a row adds 2^-53.
-const RELATIVE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
+/// Bounds the error in `f64` of a plane's value at a sample, relative to the sum of the sizes of its
+/// at most nine products. Each of the few operations in a row adds 2^-53, so there is room.
+const PLANE_ERROR: f64 = 1.0 / (1u64 << 48) as f64;
 
 /// The integers of a frame that exact decisions need.
 #[derive(Debug, Clone)]
@@ -44,10 +47,6 @@ fn side_of(plane: [i128; 3], sample: [i64; 3]) -> i8 {
         }
     }
     0
-}
-
-fn float(v: [i64; 3]) -> [f64; 3] {
-    [v[0] as f64, v[1] as f64, v[2] as f64]
 }
 
 /// A product of vectors, and with the second's sizes instead what bounds its
@@ -96,7 +95,7 @@ impl Exact {
     pub(super) fn covers(&self, min: [i32; 3], side: i32, sample: [i32; 2]) -> bool {
         let corner = self.at(min);
         let q = self.sample(sample);
-        let (base, q_float) = (float(corner), float(q));
+        let (base, q_float) = (corner.map(|c| c as f64), q.map(|c| c as f64));
         let side_float = f64::from(side);
         let mut is_certain = true;
         for j in 0..3 {
@@ -114,7 +113,7 @@ impl Exact {
             let (along_k, most_k) = dot(&self.edge_float[k], &across, &size);
             let (along_l, most_l) = dot(&self.edge_float[l], &across, &size);
             let (along_k, along_l) = (along_k * side_float, along_l * side_float);
-            let doubt = (most + (most_k + most_l) * side_float) * RELATIVE_ERROR;
+            let doubt = (most + (most_k + most_l) * side_float) * PLANE_ERROR;
             let least = value + along_k.min(0.0) + along_l.min(0.0);
             let greatest = value + along_k.max(0.0) + along_l.max(0.0);
             if least > doubt || greatest < -doubt {
@@ -130,19 +129,16 @@ impl Exact {
     fn covers_exactly(&self, corner: [i64; 3], side: i32, sample: [i64; 3]) -> bool {
         (0..3).all(|j| {
             let (k, l) = ((j + 1) % 3, (j + 2) % 3);
-            let (mut positive, mut negative) = (false, false);
-            for vertex in 0..4 {
+            let sides = [0, 1, 2, 3].map(|vertex| {
                 let mut at = corner;
                 for (axis, times) in [(k, vertex & 1), (l, vertex >> 1)] {
                     for c in 0..3 {
                         at[c] += self.edge[axis][c] * i64::from(side) * i64::from(times);
                     }
                 }
-                let side = side_of(cross(at, self.edge[j]), sample);
-                positive |= side > 0;
-                negative |= side < 0;
-            }
-            positive && negative
+                side_of(cross(at, self.edge[j]), sample)
+            });
+            sides.contains(&1) && sides.contains(&-1)
         })
     }
 
@@ -167,11 +163,7 @@ impl Exact {
                 self.plane(cross(self.at(at), self.edge[j]))
             })
         });
-        let front = if is_before_eye {
-            None
-        } else {
-            self.front(min, side)
-        };
+        let front = self.front(min, side).filter(|_| !is_before_eye);
         Outline { edges, front }
     }
 
@@ -220,7 +212,7 @@ impl Plane {
         let least = x0.min(x1) + y0.min(y1) + c;
         let greatest = x0.max(x1) + y0.max(y1) + c;
         let most = x0.abs().max(x1.abs()) + y0.abs().max(y1.abs()) + c.abs();
-        let doubt = most * RELATIVE_ERROR;
+        let doubt = most * PLANE_ERROR;
         if least > doubt {
             Some(1)
         } else if greatest < -doubt {
@@ -237,7 +229,7 @@ impl Plane {
         let x_part = a * (f64::from(x) * 2.0 + 1.0);
         let y_part = b * (f64::from(y) * 2.0 + 1.0);
         let value = x_part + y_part + c;
-        let doubt = (x_part.abs() + y_part.abs() + c.abs()) * RELATIVE_ERROR;
+        let doubt = (x_part.abs() + y_part.abs() + c.abs()) * PLANE_ERROR;
         if value > doubt {
             1
         } else if value < -doubt {
@@ -258,7 +250,7 @@ pub(super) struct Outline {
     front: Option<(Plane, i8)>,
 }
 
-/// What a window has of a silhouette.
+/// The share of a window that a silhouette covers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Cover {
     None,
@@ -270,18 +262,9 @@ impl Outline {
     pub(super) fn cover(&self, window: &Window) -> Cover {
         let mut all = true;
         for edges in &self.edges {
-            let (mut positive, mut negative, mut open) = (false, false, false);
-            for plane in edges {
-                match plane.side(window) {
-                    None => open = true,
-                    Some(side) => {
-                        positive |= side > 0;
-                        negative |= side < 0;
-                    }
-                }
-            }
-            if !(positive && negative) {
-                if !open {
+            let sides = edges.each_ref().map(|plane| plane.side(window));
+            if !(sides.contains(&Some(1)) && sides.contains(&Some(-1))) {
+                if !sides.contains(&None) {
                     return Cover::None;
                 }
                 all = false;
@@ -300,13 +283,10 @@ impl Outline {
 
     pub(super) fn covers(&self, exact: &Exact, x: i32, y: i32) -> bool {
         let inside = self.edges.iter().all(|edges| {
-            let (mut positive, mut negative) = (false, false);
-            for plane in edges {
-                let side = plane.side_of_sample(exact, x, y);
-                positive |= side > 0;
-                negative |= side < 0;
-            }
-            positive && negative
+            let sides = edges
+                .each_ref()
+                .map(|plane| plane.side_of_sample(exact, x, y));
+            sides.contains(&1) && sides.contains(&-1)
         });
         inside
             && self

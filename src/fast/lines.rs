@@ -1,26 +1,26 @@
-//! The lines of a square's samples against the parts of a node.
+//! Lines in Plücker coordinates: the lines of a square's samples against the parts of a node.
 //!
-//! # The idea
+//! A sample's ray is a line in the object. Its Plücker coordinates are its direction `v` and its
+//! moment `m` about the node's centre. With `P` the clip vector of that centre, `e_k` a voxel's edges
+//! and `q` the sample, they are `v_k = (e_k+1 x e_k+2) q` and `m_j = (P x e_j) q`, the functions of the
+//! exact rule (`SPEC.md`, "Exact coverage"). Whether the line meets a part follows from the side
+//! operator: the line's permuted inner product with the part's edges (`spec/fast.md`, section 2).
 //!
-//! With `P` the clip vector of the node's centre and `e_k` a voxel's edges, the
-//! line of the sample `q` has, in the object, the direction `v_k = (e_k+1 x e_k+2) q`
-//! and, about the node's centre, the moment `m_j = (P x e_j) q`: the exact rule's
-//! functions (`SPEC.md`, "Exact coverage"), and both are linear in the sample. So
-//! perspective costs nothing: a line's numbers are two multiply-adds from
-//! those of the square's first sample, and what is approximate in them is the
-//! rounding of `f32` alone, of numbers that are small, because moments are
-//! taken about the node and columns and rows counted from the square.
+//! Both are linear in the sample, so perspective costs nothing: a line is two multiply-adds from that
+//! of the square's first sample. The only error is the rounding of `f32`. The numbers are small,
+//! because moments are taken about the node, and columns and rows are counted from the square.
 //!
-//! All is turned so that lines run upwards along each axis (`v_k >= 0`). The
-//! unit of length is the side of a part. Errors: `spec/fast.md`.
+//! Axes are mirrored so that lines run upwards along each (`v_k >= 0`). The unit of length is the side
+//! of a part.
 
 use super::constants::Constants;
-use super::directions::{RELATIVE_ERROR, Samples};
-use super::lanes::{Four, Isa};
+use super::directions::{LINE_ERROR, Samples};
+use super::lanes::{F32x4, Floats, Isa};
+use super::orders::along;
 use super::projection::Projection;
-use super::strips::{CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, Strips};
+use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, MOST_ERROR, SHARE_STEPS, SHARES, Strips};
 
-/// Rounding of a centre's column in `f64`, of the column, over [`RELATIVE_ERROR`]: 2^-50 over
+/// Rounding of a centre's column in `f64`, of the column, over [`LINE_ERROR`]: 2^-50 over
 /// 2^-20.
 const CENTRE_ERROR: f32 = 1.0 / (1 << 30) as f32;
 /// Parts' centres are at most this many sides of a part from the node's.
@@ -46,39 +46,39 @@ static SIGNS: [[[f32; 4]; 2]; 8] = {
     table
 };
 
-/// The lines of a square's samples.
+/// The lines of a square's samples, by their Plücker coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lines<I: Isa> {
-    /// Direction at the first sample, and what a column and a row add.
-    direction: [I::Four; 3],
+    /// Directions: at the first sample, and their slopes by column and by row.
+    direction: [I::F32x4; 3],
     /// Moments, in the same way.
-    moment: [I::Four; 3],
+    moment: [I::F32x4; 3],
     /// Tables of strips, by function.
     pub(super) tables: [usize; 3],
     /// 1 / (v_n + v_l) in the middle; 0 of blind functions.
-    inverse: I::Four,
+    inverse: I::F32x4,
     /// By how many widths the values of functions that see may be wrong, at most.
     pub(super) error: f32,
     /// Of that, the rounding.
     pub(super) rounding: f32,
     /// Whether a function is blind: its table excludes no part.
     pub(super) has_blind: bool,
-    /// What is nearer to a part's outline than this is in doubt.
-    doubt: I::Four,
+    /// Distance from a part's outline below which a sample is in doubt.
+    doubt: I::F32x4,
 }
 
-/// Values of a square's lines: at the first sample, and what a column and a row add.
+/// Values of a square's lines: at the first sample, and their slopes by column and by row.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct InUnits<I: Isa> {
-    moment: [I::Four; 3],
-    next: [I::Four; 3],
-    last: [I::Four; 3],
+    moment: [I::F32x4; 3],
+    next: [I::F32x4; 3],
+    last: [I::F32x4; 3],
 }
 
 impl<I: Isa> InUnits<I> {
     /// The functions' values about a part's centre.
     #[inline(always)]
-    pub(super) fn about(&self, isa: I, offset: &Offset) -> [I::Four; 3] {
+    pub(super) fn about(&self, isa: I, offset: &Offset) -> [I::F32x4; 3] {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
         let mut values = self.moment;
         for (i, value) in values.iter_mut().enumerate() {
@@ -88,16 +88,16 @@ impl<I: Isa> InUnits<I> {
     }
 }
 
-/// The line of one sample.
+/// The line of one sample, by its Plücker coordinates.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line<I: Isa> {
-    /// `v_n` and `v_l`, by function.
-    next: I::Four,
-    last: I::Four,
-    /// The moments.
-    moment: I::Four,
+    /// The direction: `v_n` and `v_l`, by function.
+    next: I::F32x4,
+    last: I::F32x4,
+    /// The moment about the node's centre.
+    moment: I::F32x4,
     /// `(v_n + v_l) / 2`.
-    half: I::Four,
+    half: I::F32x4,
 }
 
 /// Whether a line meets a part.
@@ -111,7 +111,7 @@ pub(super) enum Meeting {
 
 /// The greatest of three lanes.
 #[inline(always)]
-fn greatest<F: Four>(four: F) -> f32 {
+fn greatest<F: F32x4>(four: F) -> f32 {
     four.max(four.next()).max(four.last()).values()[0]
 }
 
@@ -124,12 +124,7 @@ impl<I: Isa> Lines<I> {
         projection: &Projection<I>,
         samples: &Samples<'_, I>,
     ) -> Self {
-        let Samples {
-            square,
-            directions,
-            octant,
-            ..
-        } = samples;
+        let (square, directions, octant) = (samples.square, &samples.directions, samples.octant);
         let [turn, pair] = SIGNS[usize::from(octant & 7)].map(|signs| isa.four(&signs));
         let zero = isa.splat(0.0);
         let half_across = isa.splat((square.right - square.left) as f32 * 0.5);
@@ -166,7 +161,7 @@ impl<I: Isa> Lines<I> {
         let direction_size = directions.size.next().add(directions.size.last());
         let doubt = direction_size
             .fma(isa.splat(FARTHEST), size)
-            .mul(isa.splat(RELATIVE_ERROR))
+            .mul(isa.splat(LINE_ERROR))
             // Above 0: a value of 0 is never certain.
             .max(isa.splat(f32::MIN_POSITIVE));
         let rounding = doubt.mul(inverse);
@@ -175,7 +170,7 @@ impl<I: Isa> Lines<I> {
         let shares = last
             .mul(inverse)
             .fma(isa.splat(SHARE_STEPS), half_step)
-            .cells();
+            .indices::<SHARES>();
         let mut tables = [0, 1, 2].map(|j| Strips::table(j, shares[j], 0));
         let mut sees = [1.0; 4];
         let mut has_blind = false;
@@ -210,9 +205,9 @@ impl<I: Isa> Lines<I> {
         }
     }
 
-    /// The functions' values in widths: at the first sample, and what a column and a row add.
+    /// The functions in widths: at the first sample, and their slopes by column and by row.
     #[inline(always)]
-    pub(super) fn in_widths(&self) -> [I::Four; 3] {
+    pub(super) fn in_widths(&self) -> [I::F32x4; 3] {
         self.moment.map(|moment| moment.mul(self.inverse))
     }
 
@@ -229,7 +224,7 @@ impl<I: Isa> Lines<I> {
 
     /// The same in cells of a table.
     #[inline(always)]
-    pub(super) fn in_cells(&self, isa: I, widths_per_part: f32) -> [I::Four; 3] {
+    pub(super) fn in_cells(&self, isa: I, widths_per_part: f32) -> [I::F32x4; 3] {
         let unit = self
             .inverse
             .mul(isa.splat(CELLS_PER_WIDTH * widths_per_part));
@@ -245,7 +240,7 @@ impl<I: Isa> Lines<I> {
     #[inline(always)]
     pub(super) fn line(&self, isa: I, [x, y]: [f32; 2]) -> Line<I> {
         let (x, y) = (isa.splat(x), isa.splat(y));
-        let at = |[first, step_x, step_y]: &[I::Four; 3]| step_x.fma(x, step_y.fma(y, *first));
+        let at = |[first, step_x, step_y]: &[I::F32x4; 3]| step_x.fma(x, step_y.fma(y, *first));
         let direction = at(&self.direction);
         let (next, last) = (direction.next(), direction.last());
         Line {
@@ -260,7 +255,7 @@ impl<I: Isa> Lines<I> {
     #[inline(always)]
     pub(super) fn cells(&self, isa: I, line: &Line<I>) -> [usize; 3] {
         let unit = self.inverse.mul(isa.splat(CELLS_PER_WIDTH));
-        line.moment.fma(unit, isa.splat(MIDDLE)).cells()
+        line.moment.fma(unit, isa.splat(MIDDLE)).indices::<CELLS>()
     }
 
     /// Whether a line certainly meets the part of side 1 whose centre lies at an offset, and
@@ -290,9 +285,9 @@ impl<I: Isa> Lines<I> {
 }
 
 impl<I: Isa> Line<I> {
-    /// What the moments are smaller by about a point at an offset.
+    /// The decrease of the moments about a point at an offset.
     #[inline(always)]
-    fn shift(&self, isa: I, offset: &Offset) -> I::Four {
+    fn shift(&self, isa: I, offset: &Offset) -> I::F32x4 {
         let [next, last] = [isa.four(&offset.next), isa.four(&offset.last)];
         next.fms(self.last, last.mul(self.next))
     }
@@ -319,16 +314,13 @@ pub(super) struct Offset {
 
 /// The offsets of 64 parts.
 pub(super) static OFFSETS: [Offset; 64] = {
-    let mut table = [Offset {
-        next: [0.0; 4],
-        last: [0.0; 4],
-    }; 64];
+    let mut table = [NO_OFFSET; 64];
     let mut part = 0;
     while part < 64 {
         let mut j = 0;
         while j < 3 {
-            table[part].next[j] = super::strips::along(part, (j + 1) % 3) as f32 - 1.5;
-            table[part].last[j] = super::strips::along(part, (j + 2) % 3) as f32 - 1.5;
+            table[part].next[j] = along(part, (j + 1) % 3) as f32 - 1.5;
+            table[part].last[j] = along(part, (j + 2) % 3) as f32 - 1.5;
             j += 1;
         }
         part += 1;
@@ -337,7 +329,7 @@ pub(super) static OFFSETS: [Offset; 64] = {
 };
 
 /// The offset of a node from itself.
-pub(super) static NO_OFFSET: Offset = Offset {
+pub(super) const NO_OFFSET: Offset = Offset {
     next: [0.0; 4],
     last: [0.0; 4],
 };
@@ -419,12 +411,7 @@ pub(super) mod tests {
                 {
                     continue;
                 }
-                let square = Window {
-                    left,
-                    top,
-                    right: left + 7,
-                    bottom: top + 7,
-                };
+                let square = Window::of([left, top, left + 7, top + 7]);
                 let directions = Directions::of(isa, &constants, &square);
                 if directions.is_mixed {
                     continue;

@@ -1,6 +1,6 @@
 //! Tables of octants: masks of children in order of occlusion, and the slabs of a node's 64 parts.
 
-use super::strips::along;
+use super::lanes::{Isa, Lanes, U8x16};
 
 /// By octant: the bits of a child mask turned, so that bit `c` is child `c ^ octant`.
 static TURNED: [[u8; 256]; 8] = {
@@ -30,18 +30,19 @@ pub(super) fn turned(mask: u8, octant: u8) -> u8 {
 
 /// The same of 64 parts, both octants of a part turned.
 #[inline(always)]
-pub(super) fn turned_parts(parts: u64, octant: u8) -> u64 {
-    let mut all = 0;
-    for outer in 0..8u8 {
-        let mask = (parts >> (8 * (outer ^ octant & 7))) as u8;
-        all |= u64::from(turned(mask, octant)) << (8 * outer);
-    }
-    all
+pub(super) fn turned_parts<I: Isa>(isa: I, parts: u64, octant: u8) -> u64 {
+    let [outer, low, high] = &TURNED_BYTES[usize::from(octant & 7)];
+    let [lower, upper] = isa
+        .bytes(parts)
+        .look_up(I::U8x16::load(isa, outer))
+        .nibbles();
+    let low = I::U8x16::load(isa, low).look_up(lower);
+    low.or(I::U8x16::load(isa, high).look_up(upper)).low()
 }
 
 /// By octant, for lanes of sixteen bytes: the outer octants' order, and a
 /// mask's lower and upper half turned.
-pub(super) static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
+static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
     let mut table = [[[0u8; 16]; 3]; 8];
     let mut octant = 0;
     while octant < 8 {
@@ -56,6 +57,11 @@ pub(super) static TURNED_BYTES: [[[u8; 16]; 3]; 8] = {
     }
     table
 };
+
+/// Place of a part along an axis, 0 to 3.
+pub(super) const fn along(part: usize, axis: usize) -> usize {
+    (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1
+}
 
 /// By axis, the parts of the four slabs of a node.
 pub(super) static SLABS: [[u64; 4]; 3] = {

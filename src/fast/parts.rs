@@ -1,4 +1,4 @@
-//! Which of the 64 parts of a node exist, and the nodes that they are.
+//! Parts: the 64 grandchildren of a node.
 
 use super::lanes::Isa;
 use crate::graph::GraphView;
@@ -6,13 +6,13 @@ use crate::graph::GraphView;
 /// The children's children of a node: 64 parts of a quarter of its side.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Parts {
-    /// Which exist: bit `outer << 3 | inner`, octants in Morton order.
+    /// Mask of those that exist: bit `outer << 3 | inner`, octants in Morton order.
     pub(super) exist: u64,
     /// Where the node's children begin.
     first: u32,
     /// The node itself.
     node: u32,
-    /// Which children the node has.
+    /// Mask of the node's children.
     mask: u8,
     /// Children that are solid themselves: all their parts are they.
     solid: u8,
@@ -31,7 +31,7 @@ enum Kind {
     Solid,
 }
 
-/// What a part of a node is.
+/// A part of a node: the node that fills it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Part {
     pub(super) node: u32,
@@ -94,7 +94,7 @@ impl Parts {
                 .get(first as usize..)
                 .and_then(|m| m.first_chunk())
         {
-            let (exist, bytes) = isa.spread(u64::from_le_bytes(*eight), mask);
+            let [exist, bytes] = isa.expand(u64::from_le_bytes(*eight), mask);
             // A byte of zeros among those of children: a child without children.
             let filled = exist | !bytes;
             if filled.wrapping_sub(ONES) & !filled & (ONES << 7) == 0 {
@@ -178,7 +178,7 @@ impl Parts {
         self.kind == Kind::Solid
     }
 
-    /// What a part is that exists.
+    /// A part that exists.
     #[inline(always)]
     pub(super) fn part(&self, graph: &GraphView<'_>, part: u32) -> Part {
         if self.kind != Kind::Plain {

@@ -4,21 +4,16 @@
 use super::band::Band;
 use super::exact::{Cover, Outline};
 use super::lanes::Isa;
-use super::window::{BLOCK_LOG2, TILE_LOG2, Window};
+use super::window::{BLOCK_LOG2, TILE_LOG2, Window, bits};
 
 /// The part of a window in a cell of a grid of `2^log2` samples.
 fn cell_of(x: i32, y: i32, log2: u32, window: &Window) -> Window {
     let (left, top, side) = (x << log2, y << log2, 1 << log2);
-    Window {
-        left,
-        top,
-        right: left + side - 1,
-        bottom: top + side - 1,
-    }
-    .and(window)
+    Window::of([left, top, left + side - 1, top + side - 1]).and(window)
 }
 
 /// Draws all open samples of a window that the silhouette covers.
+#[inline(always)]
 pub(super) fn draw<I: Isa>(
     band: &mut Band<'_, I>,
     outline: &Outline,
@@ -45,6 +40,7 @@ pub(super) fn draw<I: Isa>(
     }
 }
 
+#[inline(always)]
 fn draw_block<I: Isa>(
     band: &mut Band<'_, I>,
     outline: &Outline,
@@ -70,18 +66,11 @@ fn draw_block<I: Isa>(
                 Cover::None => 0,
                 Cover::All => open,
                 Cover::Some => {
-                    let mut left_over = open;
-                    let mut covered = 0;
-                    while left_over != 0 {
-                        let bit = left_over.trailing_zeros() as i32;
-                        let sample = left_over & left_over.wrapping_neg();
-                        left_over ^= sample;
-                        band.counters.exact_samples += 1;
-                        if outline.covers(band.exact, left + (bit & 7), top + (bit >> 3)) {
-                            covered |= sample;
-                        }
-                    }
-                    covered
+                    band.counters.exact_samples += u64::from(open.count_ones());
+                    bits(open).fold(0, |covered, bit| {
+                        let (x, y) = (left + (bit as i32 & 7), top + (bit as i32 >> 3));
+                        covered | u64::from(outline.covers(band.exact, x, y)) << bit
+                    })
                 }
             };
             if samples != 0 {

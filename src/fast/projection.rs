@@ -2,10 +2,11 @@
 //! parts.
 
 use super::constants::{Constants, Level};
-use super::lanes::{BEYOND, Four, Isa, WINDOW_MARGIN};
-use super::window::Window;
+use super::lanes::{F32x4, Floats, Isa, Lanes, U64x4};
+use super::orders::{EXTENTS, SLABS};
+use super::window::{BEYOND, WINDOW_MARGIN, Window};
 
-/// Rounding of [`Projection::window`], of what the window is made of: `spec/fast.md`, section 5.
+/// Rounding of [`Projection::window`], relative to its terms: `spec/fast.md`, section 5.
 const BOX_ROUNDING: f32 = 1.0 / (1 << 18) as f32;
 
 /// Half a node's depth over its centre's, from which on [`Projection::window`] leaves windows as
@@ -19,8 +20,8 @@ pub(super) struct Projection<I: Isa> {
     pub(super) centre: [f64; 2],
     /// 1 / its depth.
     inverse: f64,
-    /// What a step of a column, and of a row, adds to the moments, by axis.
-    pub(super) step: [I::Four; 2],
+    /// The slopes of the moments by column and by row, by axis.
+    pub(super) step: [I::F32x4; 2],
 }
 
 impl<I: Isa> Projection<I> {
@@ -41,7 +42,7 @@ impl<I: Isa> Projection<I> {
         Self {
             centre,
             inverse,
-            step: isa.steps(&constants.edge_columns, centre, unit),
+            step: steps(isa, &constants.edge_columns, centre, unit),
         }
     }
 
@@ -66,7 +67,7 @@ impl<I: Isa> Projection<I> {
         if share > NEAR {
             return *window;
         }
-        let [middle, half] = isa.extent(parts);
+        let [middle, half] = extent(isa, parts);
         let side = f64::from(level.side);
         let scale = side * side / (4.0 * across) * constants.inverse_scale;
         let scale = (scale * self.inverse * self.inverse) as f32;
@@ -88,16 +89,44 @@ impl<I: Isa> Projection<I> {
         let end = centre.add(reach.abs().fma(spread, reach.add(margin)));
         let bounds = [window.left, window.top, window.right, window.bottom].map(|c| c as f32);
         let bounds = isa.four(&bounds).flip(outward);
-        // What is not a number leaves the window as it is.
+        // NaN leaves the window as it is.
         let end = end.min(bounds).max(isa.splat(-BEYOND as f32));
-        let [left, top, right, bottom] = end.floor().flip(outward).whole();
-        Window {
-            left,
-            top,
-            right,
-            bottom,
-        }
+        Window::of(end.floor().flip(outward).whole())
     }
+}
+
+/// The slopes, by column and by row, of moments about the point at `centre` (column and row).
+/// `edges`: by coordinate, times `unit`.
+#[inline(always)]
+fn steps<I: Isa>(isa: I, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [I::F32x4; 2] {
+    let (column, row) = (
+        I::F64x4::splat(isa, centre[0]),
+        I::F64x4::splat(isa, centre[1]),
+    );
+    let [x, y, w] = edges;
+    let w = I::F64x4::load(isa, w);
+    let column_step = row.fms(w, I::F64x4::load(isa, y));
+    let row_step = column.fnma(w, I::F64x4::load(isa, x));
+    let unit = I::F64x4::splat(isa, unit);
+    [
+        isa.narrow(column_step.mul(unit)),
+        isa.narrow(row_step.mul(unit)),
+    ]
+}
+
+/// The middle and half the extent, along each axis, of the box around parts of a node: from its
+/// centre, in sides of a part.
+#[inline(always)]
+fn extent<I: Isa>(isa: I, parts: u64) -> [I::F32x4; 2] {
+    let mut extent = [isa.splat(0.0); 2];
+    let parts = I::U64x4::splat(isa, parts);
+    for (axis, slabs) in SLABS.iter().enumerate() {
+        let empty = parts.and(I::U64x4::load(isa, slabs)).zeros() as usize;
+        let [middle, half] = &EXTENTS[axis][(empty & 15) ^ 15];
+        extent[0] = extent[0].add(isa.four(middle));
+        extent[1] = extent[1].add(isa.four(half));
+    }
+    extent
 }
 
 #[cfg(test)]
@@ -105,7 +134,7 @@ mod tests {
     use super::*;
     use crate::fast::lanes::Scalar;
     use crate::fast::lines::tests::{numbers, random_frame};
-    use crate::fast::strips::along;
+    use crate::fast::orders::along;
 
     /// Windows hold the picture of each corner of each part, and are hardly larger.
     #[test]

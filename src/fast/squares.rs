@@ -1,4 +1,4 @@
-//! Windows, square by square: at most 8 x 8 samples, of which some are open.
+//! Squares: pieces of at most 8 x 8 samples of a window, the unit of work of bricks and voxels.
 
 use super::band::Band;
 use super::directions::{Directions, Samples, by_octant};
@@ -16,30 +16,20 @@ pub(super) static SAMPLES: [[f32; 2]; 64] = {
     table
 };
 
-/// What draws squares.
-pub(super) trait DrawSquare<I: Isa> {
-    /// Draws what samples show; returns those drawn.
-    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64;
-}
-
-/// Takes a window apart into squares with open samples, and those into samples
-/// whose lines begin in one octant, which nearly always is all.
+/// Divides a window into squares with open samples, and those into samples whose lines begin in one
+/// octant, which nearly always is all of them. `draw` draws such samples and returns those drawn.
 #[inline(always)]
 pub(super) fn each_square<I: Isa>(
     band: &mut Band<'_, I>,
     window: &Window,
-    drawer: &impl DrawSquare<I>,
+    draw: impl Fn(&mut Band<'_, I>, &Samples<'_, I>) -> u64,
 ) {
     let mut top = window.top;
     while top <= window.bottom {
         let mut left = window.left;
         while left <= window.right {
-            let square = Window {
-                left,
-                top,
-                right: (left + 7).min(window.right),
-                bottom: (top + 7).min(window.bottom),
-            };
+            let [right, bottom] = [(left + 7).min(window.right), (top + 7).min(window.bottom)];
+            let square = Window::of([left, top, right, bottom]);
             let open = band.fill.open_in_square(&square);
             if open != 0 {
                 band.counters.squares += 1;
@@ -57,7 +47,7 @@ pub(super) fn each_square<I: Isa>(
                 }
                 let mut drawn = 0;
                 loop {
-                    drawn |= drawer.draw(band, &samples);
+                    drawn |= draw(band, &samples);
                     if !directions.is_mixed || !samples.take_group(&mut groups) {
                         break;
                     }

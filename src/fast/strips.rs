@@ -1,36 +1,30 @@
-//! Which of 64 parts of a node a line may go through: three look-ups.
+//! Strips: three table look-ups give the parts of a node that a line may meet.
 //!
-//! # The idea
-//!
-//! Seen along a line, a cube is a hexagon: where three strips overlap, one
-//! along each kind of edge. A line of direction `v` (all `v_k >= 0`, by
-//! orientation) that passes the centre of a node with the moment `m` goes
-//! through the part whose centre lies at `t` (in sides of a part) exactly if,
-//! for each axis j with `n`, `l` the next two (modulo 3),
+//! A part is a grandchild of a node, a cube. Seen along a line it is a hexagon, the intersection of
+//! three strips, one along each kind of edge. Let `v` and `m` be the line's Plücker coordinates about
+//! the node's centre (`lines.rs`). The line is in the strips of the part at `t` (in sides of a part) if
+//! for each axis j, with `n`, `l` the next two,
 //!
 //! ```text
 //! |m_j - (t_n v_l - t_l v_n)| < (v_n + v_l) / 2
 //! ```
 //!
-//! Divided by `v_n + v_l`, a strip is 1 wide, and where the 16 different strips
-//! of a function lie depends on one number alone, the share `s = v_l / (v_n + v_l)`:
-//! at `t_n s - t_l (1 - s)`. So one table for each share, made once for all
-//! frames, says for each cell of the value which of the 64 parts may be met;
-//! the three functions' answers and which parts exist are put together by `and`.
+//! Divided by `v_n + v_l`, a strip is 1 wide, and the 16 strips of a function lie at
+//! `t_n s - t_l (1 - s)`. They depend only on the share `s = v_l / (v_n + v_l)`. So there is a table for
+//! each share, made once for all frames, which says for each cell of the value which parts may be
+//! met. The answers of the three functions are combined by `and`. Strips in tables are wider by a
+//! margin, so that no part is left out (`spec/fast.md`, section 3).
 //!
-//! Parts are numbered so that a line meets lower ones first: `outer << 3 |
-//! inner`, each an octant in Morton order, with bits turned where the line
-//! runs downwards.
-//!
-//! # What the margin has room for
-//!
-//! A table's strips are wider than the truth by a margin on either side: what is
-//! found is a few parts too many and never one too few. `spec/fast.md` derives it.
+//! Parts are numbered `outer << 3 | inner`, each an octant in Morton order, with bits turned where the
+//! line runs downwards. So a line meets lower numbers first.
 
 use std::sync::LazyLock;
 
+use super::lanes::{Floats, Isa, Lanes, U64x4};
+use super::orders::SLABS;
+
 /// Shares that there are tables for: from 0 to 1, both included.
-const SHARES: usize = 128;
+pub(super) const SHARES: usize = 128;
 /// Steps of the share between them.
 pub(super) const SHARE_STEPS: f32 = (SHARES - 1) as f32;
 /// Cells of a strip's width.
@@ -56,9 +50,6 @@ pub(super) const MOST_ERROR: [f32; CLASSES] = [
 
 /// Tables of one margin.
 const PER_MARGIN: usize = 3 * SHARES;
-/// The table that excludes no part.
-const BLIND: usize = MARGINS.len() * PER_MARGIN;
-
 /// By cell, parts.
 pub(super) type Row = [u64; CELLS];
 
@@ -76,29 +67,79 @@ pub(super) struct Strips {
 /// The tables, made when they are first wanted.
 pub(super) static STRIPS: LazyLock<Strips> = LazyLock::new(Strips::new);
 
-/// Place of a part along an axis, 0 to 3.
-pub(super) const fn along(part: usize, axis: usize) -> usize {
-    (part >> (5 - axis) & 1) << 1 | part >> (2 - axis) & 1
+/// By sample of a square: the parts that its line may meet.
+#[derive(Debug)]
+#[repr(C, align(32))]
+pub(super) struct Candidates(pub(super) [u64; 64]);
+
+impl Candidates {
+    /// Looks up the `wanted` parts that the tables name, by open sample of a square. Returns the open
+    /// samples that have any, eight bits per row. `cells`: the three functions in cells, at the first
+    /// sample, and their slopes by column and by row.
+    #[inline(always)]
+    pub(super) fn look_up<I: Isa>(
+        &mut self,
+        isa: I,
+        tables: [&Row; 3],
+        cells: &[I::F32x4; 3],
+        wanted: u64,
+        open: u64,
+    ) -> u64 {
+        let wanted = I::U64x4::splat(isa, wanted);
+        let [mut x, mut y, mut z] = [
+            first_row::<I, 0>(isa, cells),
+            first_row::<I, 1>(isa, cells),
+            first_row::<I, 2>(isa, cells),
+        ];
+        let rows = 8 - open.leading_zeros() as usize / 8;
+        let (mut any, mut left) = (0u64, open);
+        for row in self.0.as_chunks_mut::<8>().0.iter_mut().take(rows) {
+            any <<= 8;
+            if left & 0xff != 0 {
+                let [x, y, z] = [
+                    isa.look_up(tables[0], x.0),
+                    isa.look_up(tables[1], y.0),
+                    isa.look_up(tables[2], z.0),
+                ];
+                let low = wanted.and(x[0]).and(y[0]).and(z[0]);
+                let high = wanted.and(x[1]).and(y[1]).and(z[1]);
+                let (halves, _) = row.as_chunks_mut();
+                halves[0] = low.values();
+                halves[1] = high.values();
+                // The last row ends up lowest.
+                any |= u64::from(low.zeros() | high.zeros() << 4) ^ 0xff;
+            }
+            left >>= 8;
+            x.0 = x.0.add(x.1);
+            y.0 = y.0.add(y.1);
+            z.0 = z.0.add(z.1);
+        }
+        let missing = open.leading_zeros() / 8 * 8;
+        (any << (missing & 63)).swap_bytes() & open
+    }
 }
 
-/// By axis and place along it, the parts there.
-static AT: [[u64; 4]; 3] = {
-    let mut at = [[0; 4]; 3];
-    let mut number = 0;
-    while number < 3 * 64 {
-        let (axis, part) = (number / 64, number % 64);
-        at[axis][along(part, axis)] |= 1 << part;
-        number += 1;
-    }
-    at
-};
+/// A function's values at a square's first row, and its slope by row.
+#[inline(always)]
+fn first_row<I: Isa, const FUNCTION: i32>(
+    isa: I,
+    [first, step_x, step_y]: &[I::F32x4; 3],
+) -> (I::F32x8, I::F32x8) {
+    let columns = I::F32x8::load(isa, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0]);
+    let first = isa.broadcast::<FUNCTION>(*first);
+    let step_x = isa.broadcast::<FUNCTION>(*step_x);
+    (
+        step_x.fma(columns, first),
+        isa.broadcast::<FUNCTION>(*step_y),
+    )
+}
 
 impl Strips {
     fn new() -> Self {
         let mut strips = Self {
-            touched: vec![[0; CELLS]; BLIND + 1],
-            ends_above: vec![[0; CELLS]; BLIND + 1],
-            begins_below: vec![[0; CELLS]; BLIND + 1],
+            touched: vec![[0; CELLS]; Self::BLIND + 1],
+            ends_above: vec![[0; CELLS]; Self::BLIND + 1],
+            begins_below: vec![[0; CELLS]; Self::BLIND + 1],
         };
         for (class, margin) in MARGINS.into_iter().enumerate() {
             for axis in 0..3 {
@@ -108,9 +149,9 @@ impl Strips {
                 }
             }
         }
-        strips.touched[BLIND] = [u64::MAX; CELLS];
-        strips.ends_above[BLIND] = [u64::MAX; CELLS];
-        strips.begins_below[BLIND] = [u64::MAX; CELLS];
+        strips.touched[Self::BLIND] = [u64::MAX; CELLS];
+        strips.ends_above[Self::BLIND] = [u64::MAX; CELLS];
+        strips.begins_below[Self::BLIND] = [u64::MAX; CELLS];
         strips
     }
 
@@ -121,7 +162,7 @@ impl Strips {
         let (begun, ends) = (&mut self.begins_below[at], &mut self.ends_above[at]);
         for place in 0..16 {
             let (a, b) = (place & 3, place >> 2);
-            let parts = AT[next][a] & AT[last][b];
+            let parts = SLABS[next][a] & SLABS[last][b];
             let centre = (a as f32 - 1.5) * share - (b as f32 - 1.5) * (1.0 - share);
             let cell = |end: f32| (end * CELLS_PER_WIDTH + MIDDLE) as usize;
             begun[cell(centre - 0.5 - margin)] |= parts;
@@ -143,8 +184,8 @@ impl Strips {
         class * PER_MARGIN + axis * SHARES + share
     }
 
-    /// The blind table's number.
-    pub(super) const BLIND: usize = BLIND;
+    /// The number of the blind table, which excludes no part.
+    pub(super) const BLIND: usize = MARGINS.len() * PER_MARGIN;
 
     /// By cell, the parts that may be met, of three tables.
     #[inline(always)]
@@ -167,6 +208,7 @@ impl Strips {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fast::orders::along;
 
     /// The parts that a line with this value of function `axis` and share meets.
     fn met(axis: usize, share: f64, value: f64) -> u64 {

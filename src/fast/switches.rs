@@ -1,4 +1,4 @@
-//! What the engine skips, each skip to be switched off for measurements.
+//! The engine's skips and short cuts, each to be switched off for measurements.
 
 /// Skips and short cuts. None changes a bit of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

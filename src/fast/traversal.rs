@@ -1,43 +1,69 @@
-//! The traversal of the graph, from the whole object down to solids and bricks, front to back.
+//! The traversal of the graph, from the whole object down to solids and bricks, front to back: a
+//! loop with an explicit stack of the nodes whose children are being visited.
 //!
 //! ```text
-//! visit(node):
+//! for each child that exists of the stack's last node, nearest to the eye first:
+//!     skip it if its window holds no open sample
 //!     a solid, or a brick (a node whose parts are solids):   draw it (voxels, bricks, planes)
-//!     else: for each child that exists, nearest to the eye first:
-//!         skip it if its window holds no open sample
-//!         visit(child)
+//!     else:                                                  put it on the stack
 //! ```
 //!
 //! Clip vectors of nodes are exact; windows are too wide by at most their rounding, never too
-//! narrow.
+//! narrow. The loop and each way to draw are functions compiled for the instruction set
+//! ([`Isa::vectorize`]).
 
-use super::band::{Band, Brick, Compiled, Record, voxel_at};
+use super::band::{Band, Brick, Record, voxel_at};
+use super::child_windows::ChildWindows;
 use super::constants::{Constants, Level};
-use super::lanes::Windows;
+use super::lanes::Isa;
 use super::orders::turned;
 use super::parts::Parts;
-use super::planes;
 use super::window::Window;
+use super::{bricks, planes, voxels};
+use crate::graph::MAX_DEPTH;
 
 /// Draws what a band shows of the whole object.
-pub(super) fn draw_object<I: Compiled>(band: &mut Band<'_, I>) {
-    let record = Record {
+#[inline(always)]
+pub(super) fn draw_object<I: Isa>(band: &mut Band<'_, I>) {
+    let root = Record {
         node: band.graph.root,
         level: 0,
         min: [0; 3],
         centre: band.constants.centre,
     };
-    let window = band.fill.bounds;
-    if record.centre[2] + band.constants.levels[0].half_depth <= 0.0 {
+    if root.centre[2] + band.constants.levels[0].half_depth <= 0.0 {
         band.counters.skipped_behind += 1;
         return;
     }
-    visit(band, &record, &window);
+    let mut stack = [Children::none(&band.constants.levels[0]); MAX_DEPTH as usize];
+    let window = band.fill.bounds;
+    if draw(band, &root, &window) {
+        return;
+    }
+    stack[0].begin(band, &root);
+    // Nodes on the stack. Each has children left.
+    let mut height = usize::from(stack[0].left != 0);
+    while height > 0 {
+        if band.fill.open == 0 && band.switches.full {
+            band.counters.skipped_full += height as u64;
+            return;
+        }
+        let last = &mut stack[height - 1];
+        let next = last.next(band);
+        height -= usize::from(last.left == 0);
+        if let Some((child, window)) = next
+            && !draw(band, &child, &window)
+        {
+            stack[height].begin(band, &child);
+            height += usize::from(stack[height].left != 0);
+        }
+    }
 }
 
-/// Draws a node, or visits its children. Something of it may be seen in the window.
+/// Draws a node of which something may be seen in the window. Returns `false` where its children
+/// have to be visited instead.
 #[inline(always)]
-fn visit<I: Compiled>(band: &mut Band<'_, I>, record: &Record, window: &Window) {
+fn draw<I: Isa>(band: &mut Band<'_, I>, record: &Record, window: &Window) -> bool {
     let (constants, isa) = (band.constants, band.isa);
     let level = &constants.levels[record.level as usize];
     let least_depth = record.centre[2] - level.half_depth;
@@ -52,49 +78,52 @@ fn visit<I: Compiled>(band: &mut Band<'_, I>, record: &Record, window: &Window) 
         if is_near || record.centre[2] < level.large_depth || !band.switches.bricks {
             draw_planes(band, record, window, !is_near);
         } else {
-            let parts = &Parts::of_solid(record.node);
-            isa.voxels(band, Brick { record, parts }, window);
+            draw_voxels(band, record, &Parts::of_solid(record.node), window);
         }
-        return;
+        return true;
     }
     if is_near || !band.switches.bricks {
-        isa.visit_children(band, record);
-        return;
+        return false;
     }
     if record.centre[2] > level.fine_depth && is_deep(constants, record, least_depth) {
-        let parts = Parts::of(isa, band.graph, record.node, false, 0);
+        let parts = &Parts::of(isa, band.graph, record.node, false, 0);
         if parts.are_even() {
-            let parts = &parts;
-            isa.deep_brick(band, Brick { record, parts }, window);
-            return;
+            let brick = Brick { record, parts };
+            isa.vectorize(
+                band,
+                brick,
+                #[inline(always)]
+                |band, brick| bricks::draw::<I, true>(band, brick, window),
+            );
+            return true;
         }
     }
     // Parts that are all solids, and not too large.
     let parts_level = record.level + 2;
     let are_solid = parts_level >= constants.depth
         || least_depth >= constants.levels[parts_level as usize].lod_depth;
-    if are_solid && record.centre[2] >= 0.25 * level.large_depth {
-        let is_last = record.level + 1 == constants.depth;
-        let parts = Parts::of(
-            isa,
-            band.graph,
-            record.node,
-            is_last,
-            detail(constants, record),
-        );
-        // What is blended is taken once, so no voxel may be of several parts.
-        if parts.are_even() || constants.opacity_eye.is_none() {
-            let parts = &parts;
-            let brick = Brick { record, parts };
-            if record.centre[2] < level.coarse_depth {
-                isa.voxels(band, brick, window);
-            } else {
-                isa.brick(band, brick, window);
-            }
-            return;
-        }
+    if !are_solid || record.centre[2] < 0.25 * level.large_depth {
+        return false;
     }
-    isa.visit_children(band, record);
+    let is_last = record.level + 1 == constants.depth;
+    let detail = detail(constants, record);
+    let parts = &Parts::of(isa, band.graph, record.node, is_last, detail);
+    // Voxels are blended once, so none may consist of several parts.
+    if !parts.are_even() && constants.opacity_eye.is_some() {
+        return false;
+    }
+    if record.centre[2] < level.coarse_depth {
+        draw_voxels(band, record, parts, window);
+    } else {
+        let brick = Brick { record, parts };
+        isa.vectorize(
+            band,
+            brick,
+            #[inline(always)]
+            |band, brick| bricks::draw::<I, false>(band, brick, window),
+        );
+    }
+    true
 }
 
 /// Whether all solids below a node, by the graph's depth or by level of detail, are four levels
@@ -129,81 +158,101 @@ fn detail(constants: &Constants, record: &Record) -> u8 {
     (0..8).map(is_solid).sum()
 }
 
-/// Visits the children of a record, nearest first.
-#[inline(always)]
-pub(super) fn visit_children<I: Compiled>(band: &mut Band<'_, I>, record: &Record) {
-    band.counters.nodes += 1;
-    let constants = band.constants;
-    let index = record.level as usize;
-    let level = &constants.levels[index];
-    let mask = band.graph.mask(record.node);
-    let half = level.side / 2;
-    let nearest = constants.nearest_octant(record.min, half);
-    let windows = band
-        .isa
-        .windows(constants, index, &record.centre, &band.fill.bounds);
-    band.counters.skipped_absent += u64::from(mask.count_zeros());
-    if !band.switches.absent_children {
-        count_absent(band, &windows, !mask);
-        band.counters.skipped_absent = 0;
-    }
-    let mut wanted = mask;
-    if band.switches.off_screen {
-        wanted &= windows.held | windows.near;
-        band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
-    }
-    let mut order = turned(wanted, nearest);
-    while order != 0 {
-        let child = order.trailing_zeros() as u8 ^ nearest;
-        order &= order - 1;
-        if band.fill.open == 0 && band.switches.full {
-            band.counters.skipped_full += 1;
-            return;
+/// A node whose children are being visited, nearest first.
+#[derive(Debug, Clone, Copy)]
+struct Children<'b> {
+    record: Record,
+    level: &'b Level,
+    windows: ChildWindows,
+    /// The octant that is nearest to the eye.
+    nearest: u32,
+    /// Children still to be visited: bit `c` is child `c ^ nearest`.
+    left: u32,
+}
+
+impl<'b> Children<'b> {
+    fn none(level: &'b Level) -> Self {
+        Self {
+            record: Record::default(),
+            level,
+            windows: ChildWindows::default(),
+            nearest: 0,
+            left: 0,
         }
-        let mut window = windows.at(child);
-        let octant = usize::from(child & 7);
+    }
+
+    #[inline(always)]
+    fn begin<I: Isa>(&mut self, band: &mut Band<'b, I>, record: &Record) {
+        band.counters.nodes += 1;
+        let constants = band.constants;
+        let index = record.level as usize;
+        let level = &constants.levels[index];
+        let mask = band.graph.mask(record.node);
+        let nearest = constants.nearest_octant(record.min, level.side >> 1);
+        let bounds = &band.fill.bounds;
+        let windows = &mut self.windows;
+        windows.compute(band.isa, constants, index, &record.centre, bounds);
+        band.counters.skipped_absent += u64::from(mask.count_zeros());
+        if !band.switches.absent_children {
+            count_absent(band, windows, !mask);
+            band.counters.skipped_absent = 0;
+        }
+        let mut wanted = mask;
+        if band.switches.off_screen {
+            wanted &= windows.held | windows.near;
+            band.counters.skipped_off_screen += u64::from((mask ^ wanted).count_ones());
+        } else {
+            // Only for measurements: children without a sample are tested against the whole band.
+            windows.near |= !windows.held;
+        }
+        self.record = *record;
+        self.level = level;
+        self.nearest = u32::from(nearest);
+        self.left = u32::from(turned(wanted, nearest));
+    }
+
+    /// Takes the next child: the child and its window, if something of it may be seen.
+    #[inline(always)]
+    fn next<I: Isa>(&mut self, band: &mut Band<'_, I>) -> Option<(Record, Window)> {
+        let (record, level) = (&self.record, self.level);
+        let octant = (self.left.trailing_zeros() ^ self.nearest) as usize & 7;
+        self.left &= self.left - 1;
+        let mut window = self.windows.at(octant);
         let centre = [0, 1, 2].map(|c| record.centre[c] + level.child[c][octant]);
-        if windows.near >> child & 1 != 0 {
-            let below = &constants.levels[index + 1];
+        if self.windows.near >> octant & 1 != 0 {
+            let below = &band.constants.levels[record.level as usize + 1];
             if centre[2] + below.half_depth <= 0.0 {
                 band.counters.skipped_behind += 1;
-                continue;
+                return None;
             }
             if band.switches.off_screen && is_off_screen(below, &centre) {
                 band.counters.skipped_off_screen += 1;
-                continue;
+                return None;
             }
-            window = band.fill.bounds;
-        } else if windows.held >> child & 1 == 0 {
-            // Only where `off_screen` is switched off, for measurements.
             window = band.fill.bounds;
         }
         if band.switches.hidden && !band.fill.is_open(&window) {
             band.counters.skipped_hidden += 1;
-            continue;
+            return None;
         }
-        let Some(node) = band.graph.child(record.node, child) else {
-            continue;
-        };
+        let node = band.graph.child(record.node, octant as u8)?;
+        let half = level.side >> 1;
         let bit = |k: usize| (octant as i32 >> (2 - k) & 1) * half;
+        let [x, y, z] = record.min;
         let child = Record {
             node,
             level: record.level + 1,
-            min: [
-                record.min[0] + bit(0),
-                record.min[1] + bit(1),
-                record.min[2] + bit(2),
-            ],
+            min: [x + bit(0), y + bit(1), z + bit(2)],
             centre,
         };
-        visit(band, &child, &window);
+        Some((child, window))
     }
 }
 
 /// Tests the windows of children that do not exist, as for those that do: measures what skipping
 /// them saves.
 #[inline(never)]
-fn count_absent<I: Compiled>(band: &mut Band<'_, I>, windows: &Windows, absent: u8) {
+fn count_absent<I: Isa>(band: &mut Band<'_, I>, windows: &ChildWindows, absent: u8) {
     let held = absent & windows.held & !windows.near;
     band.counters.skipped_off_screen += u64::from((absent & !held).count_ones());
     for child in (0..8).filter(|child| held >> child & 1 != 0) {
@@ -212,33 +261,46 @@ fn count_absent<I: Compiled>(band: &mut Band<'_, I>, windows: &Windows, absent: 
     }
 }
 
-/// Whether a box that is partly behind the eye lies beside the picture: all eight vertices are
-/// beyond one edge of the image root. The numbers are exact, and the test is linear: what holds for
+/// Whether a box that is partly behind the eye lies outside the frustum: all eight vertices are beyond
+/// one edge of the image root. The numbers are exact, and the test is linear: what holds for
 /// the vertices holds for every point.
 #[inline(never)]
 fn is_off_screen(level: &Level, centre: &[f64; 3]) -> bool {
     (0..2).any(|axis| {
-        let mut left = true;
-        let mut right = true;
-        for i in 0..8 {
-            let at = |c: usize| centre[c] + level.vertices[c][i];
-            left &= at(axis) < 0.0;
-            right &= at(2) < at(axis);
-        }
-        left || right
+        let at = |c: usize, vertex: usize| centre[c] + level.vertices[c][vertex];
+        (0..8).all(|i| at(axis, i) < 0.0) || (0..8).all(|i| at(2, i) < at(axis, i))
     })
 }
 
+/// Draws a brick, or a solid, voxel by voxel.
+#[inline(always)]
+fn draw_voxels<I: Isa>(band: &mut Band<'_, I>, record: &Record, parts: &Parts, window: &Window) {
+    let brick = Brick { record, parts };
+    band.isa.vectorize(
+        band,
+        brick,
+        #[inline(always)]
+        |band, brick| voxels::draw(band, brick, window),
+    );
+}
+
 /// Draws a solid by its planes.
-#[inline(never)]
-fn draw_planes<I: Compiled>(
+#[inline(always)]
+fn draw_planes<I: Isa>(
     band: &mut Band<'_, I>,
     record: &Record,
     window: &Window,
     is_before_eye: bool,
 ) {
-    let side = band.constants.levels[record.level as usize].side;
-    let outline = band.exact.outline(record.min, side, is_before_eye);
-    let voxel = voxel_at(record.min, record.level);
-    planes::draw(band, &outline, window, record.node, voxel);
+    band.isa.vectorize(
+        band,
+        record,
+        #[inline(always)]
+        |band, record| {
+            let side = band.constants.levels[record.level as usize].side;
+            let outline = band.exact.outline(record.min, side, is_before_eye);
+            let voxel = voxel_at(record.min, record.level);
+            planes::draw(band, &outline, window, record.node, voxel);
+        },
+    );
 }

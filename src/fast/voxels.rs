@@ -1,19 +1,20 @@
-//! Voxels of some samples, one after the other: whole squares at a time.
+//! Voxels of some samples, one after the other, each against a square of samples at once.
 //!
-//! For each square of 8 x 8 samples of a brick's window: which parts its lines
-//! may meet, between the least and the greatest values of the three functions
-//! (`strips.rs`); then, in order, each part against all samples, in numbers of 16
-//! bits. Samples well inside are drawn, those near the outline are decided one by one.
+//! For each square, the tables (`strips.rs`) say which parts its lines may meet, between the least and
+//! the greatest values of the three functions. Each of these parts, nearest first, is tested against
+//! 64 samples in numbers of 16 bits. Samples well inside are drawn. Those near the outline are decided
+//! one by one.
 
 use super::band::{Band, Brick};
 use super::bricks::{Path, is_covered};
 use super::directions::Samples;
-use super::lanes::{Four, Isa};
+use super::lanes::{F32x4, Floats, I16x16, Isa, Lanes};
 use super::lines::{Lines, Meeting, NO_OFFSET, OFFSETS};
+use super::orders::turned_parts;
 use super::projection::Projection;
-use super::squares::{DrawSquare, SAMPLES, each_square};
-use super::strips::{CELLS_PER_WIDTH, MIDDLE, STRIPS};
-use super::window::Window;
+use super::squares::{SAMPLES, each_square};
+use super::strips::{CELLS, CELLS_PER_WIDTH, MIDDLE, STRIPS};
+use super::window::{Window, bits};
 
 /// Units of a width in numbers of 16 bits.
 const UNIT: f32 = 2048.0;
@@ -23,14 +24,6 @@ const ROUNDING: f32 = 8.5;
 /// Values up to this, in units, fit these numbers.
 const LARGEST: f32 = 30_000.0;
 
-/// Draws squares voxel by voxel.
-struct ByVoxels<'b, I: Isa> {
-    brick: Brick<'b>,
-    projection: Projection<I>,
-    /// Whether the brick is a solid.
-    is_single: bool,
-}
-
 /// Draws a brick voxel by voxel, or a solid.
 #[inline(always)]
 pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Window) {
@@ -39,43 +32,30 @@ pub(super) fn draw<I: Isa>(band: &mut Band<'_, I>, brick: Brick<'_>, window: &Wi
     let across = if is_single { 1.0 } else { 4.0 };
     let projection = Projection::new(band.isa, band.constants, level, brick.record.centre, across);
     band.counters.bricks += u64::from(!is_single);
-    let drawer = ByVoxels {
-        brick,
-        projection,
-        is_single,
-    };
-    each_square(band, window, &drawer);
+    each_square(
+        band,
+        window,
+        #[inline(always)]
+        |band, samples| draw_samples(band, brick, &projection, samples),
+    );
 }
 
-impl<I: Isa> DrawSquare<I> for ByVoxels<'_, I> {
-    #[inline(always)]
-    fn draw(&self, band: &mut Band<'_, I>, samples: &Samples<'_, I>) -> u64 {
-        draw_samples(band, self, samples)
-    }
-}
-
+/// Draws the parts that samples show; returns the samples drawn.
 #[inline(always)]
 fn draw_samples<I: Isa>(
     band: &mut Band<'_, I>,
-    &ByVoxels {
-        brick,
-        projection,
-        is_single,
-    }: &ByVoxels<'_, I>,
+    brick: Brick<'_>,
+    projection: &Projection<I>,
     samples: &Samples<'_, I>,
 ) -> u64 {
-    let &Samples {
-        square,
-        open,
-        octant,
-        ..
-    } = samples;
+    let is_single = brick.parts.is_single();
+    let (square, open, octant) = (samples.square, samples.open, samples.octant);
     let isa = band.isa;
-    let lines = Lines::new(isa, band.constants, &projection, samples);
+    let lines = Lines::new(isa, band.constants, projection, samples);
     let mut wanted = if is_single {
         1
     } else {
-        candidates(isa, &lines, square) & isa.turned_parts(brick.parts.exist, octant)
+        candidates(isa, &lines, square) & turned_parts(isa, brick.parts.exist, octant)
     };
     if wanted == 0 {
         return 0;
@@ -109,10 +89,10 @@ fn draw_samples<I: Isa>(
         let reach = step_x
             .abs()
             .fma(size[0], step_y.abs().fma(size[1], first.abs()));
-        let distances = isa.distances(&values);
+        let distances = Distances::new(isa, &values);
         let fit = largest.sub(reach).signs() & 7 == 0;
         let held = if fit {
-            isa.below(&distances, most)
+            distances.below(isa, most)
         } else {
             u64::MAX
         } & left;
@@ -125,12 +105,9 @@ fn draw_samples<I: Isa>(
             part: number as u32 ^ pair,
             levels: part.levels,
         };
-        let certain = if fit { isa.below(&distances, sure) } else { 0 };
+        let certain = if fit { distances.below(isa, sure) } else { 0 };
         let mut covered = held & certain;
-        let mut doubt = held & !certain;
-        while doubt != 0 {
-            let bit = doubt.trailing_zeros() as usize & 63;
-            doubt &= doubt - 1;
+        for bit in bits(held & !certain) {
             let line = lines.line(isa, SAMPLES[bit]);
             let is_met = match lines.meets(isa, &line, offset) {
                 Meeting::Misses => false,
@@ -158,6 +135,46 @@ fn draw_samples<I: Isa>(
     drawn
 }
 
+/// How far the three functions are from 0 at most, by sample of a square, two rows to a vector. Of no
+/// use where values leave 16 bits.
+struct Distances<I: Isa>([I::I16x16; 4]);
+
+impl<I: Isa> Distances<I> {
+    /// Distances of values, at the first sample and by column and row, rounded to whole numbers.
+    #[inline(always)]
+    fn new(isa: I, values: &[I::F32x4; 3]) -> Self {
+        let mut distances = Self([I::I16x16::splat(isa, 0); 4]);
+        distances.add_function::<0>(isa, values);
+        distances.add_function::<1>(isa, values);
+        distances.add_function::<2>(isa, values);
+        distances
+    }
+
+    #[inline(always)]
+    fn add_function<const FUNCTION: i32>(&mut self, isa: I, values: &[I::F32x4; 3]) {
+        let columns = I::I16x16::load(isa, &[0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7]);
+        let rows = I::I16x16::load(isa, &[0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1]);
+        let [first, step_x, step_y] = *values;
+        let first = isa.broadcast_rounded::<FUNCTION>(first);
+        let step_x = isa.broadcast_rounded::<FUNCTION>(step_x);
+        let step_y = isa.broadcast_rounded::<FUNCTION>(step_y);
+        let mut at = first.add(columns.mul(step_x)).add(rows.mul(step_y));
+        let two_rows = step_y.add(step_y);
+        for worst in &mut self.0 {
+            *worst = worst.max_unsigned(at.abs());
+            at = at.add(two_rows);
+        }
+    }
+
+    /// The samples at which distances are below a limit, eight bits per row.
+    #[inline(always)]
+    fn below(&self, isa: I, limit: i16) -> u64 {
+        let limit = I::I16x16::splat(isa, limit);
+        let [a, b, c, d] = self.0;
+        u64::from(a.below(b, limit)) | u64::from(c.below(d, limit)) << 32
+    }
+}
+
 /// The parts that a square's lines may meet.
 #[inline(always)]
 fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
@@ -174,5 +191,9 @@ fn candidates<I: Isa>(isa: I, lines: &Lines<I>, square: &Window) -> u64 {
     if high.signs() & 7 != 0 {
         return 0;
     }
-    STRIPS.between(lines.tables, low.cells(), high.cells())
+    STRIPS.between(
+        lines.tables,
+        low.indices::<CELLS>(),
+        high.indices::<CELLS>(),
+    )
 }

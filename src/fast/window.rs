@@ -9,6 +9,22 @@ pub(super) const ALL: u64 = u64::MAX;
 /// The leftmost samples of a tile's eight rows.
 pub(super) const LEFT_COLUMN: u64 = 0x0101_0101_0101_0101;
 
+/// Margin of windows beyond their rounding, in samples.
+pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
+/// Columns and rows beyond all pictures.
+pub(super) const BEYOND: f64 = 40_000.0;
+
+/// The numbers of a mask's bits, lowest first.
+#[inline(always)]
+pub(super) fn bits(mask: u64) -> impl Iterator<Item = usize> {
+    let mut left = mask;
+    std::iter::from_fn(move || {
+        let bit = left.trailing_zeros() as usize;
+        left &= left.wrapping_sub(1);
+        (bit < 64).then_some(bit)
+    })
+}
+
 /// Samples from `left` to `right` and `top` to `bottom`, all included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Window {
@@ -19,13 +35,24 @@ pub(super) struct Window {
 }
 
 impl Window {
+    /// A window of its left, top, right and bottom.
+    #[inline(always)]
+    pub(super) fn of([left, top, right, bottom]: [i32; 4]) -> Self {
+        Self {
+            left,
+            top,
+            right,
+            bottom,
+        }
+    }
+
     /// Whether it has no sample.
     #[inline(always)]
     pub(super) fn is_empty(&self) -> bool {
         self.left > self.right || self.top > self.bottom
     }
 
-    /// What it has in common with another.
+    /// The intersection with another.
     #[inline(always)]
     pub(super) fn and(&self, other: &Self) -> Self {
         Self {

@@ -1,28 +1,38 @@
-//! The few steps that work on many lanes at once, and the instruction sets
-//! that have them: plain code that defines what they do, and AVX2.
+//! Operations on lanes: several numbers at once, by one instruction where the processor has it.
 //!
-//! An instruction set is a value that can only be had where the processor has
-//! it. Whoever holds one may call its steps. The traversal is compiled once
-//! for each set (`compiled.rs`), so that these steps become a
-//! few instructions in the middle of it and not calls.
+//! This module holds operations only. Each algorithm is written once, generic over [`Isa`], in the
+//! file of its subject. [`Scalar`] is plain Rust and defines every operation; [`Avx2`] uses AVX2. To
+//! support another instruction set, add a file that implements these traits.
 //!
-//! Sets may round differently (AVX2 multiplies and adds in one step). No
-//! picture depends on that: what rounding could decide is decided exactly.
+//! An instruction set is a value, which exists only where the processor has the set. Vectors are
+//! made from such a value only, so their methods are safe to call. Two rules keep them fast:
+//!
+//! 1. Each large step of the traversal runs in [`Isa::vectorize`], which compiles it for the set.
+//! 2. Functions below it that use lanes are `#[inline(always)]`, so that they are compiled with it.
+//!
+//! Sets may round differently, because AVX2 multiplies and adds in one step. No picture depends on
+//! it: what rounding could decide is decided exactly.
 
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::fmt::Debug;
+
 pub(super) use scalar::Scalar;
 #[cfg(target_arch = "x86_64")]
 pub(super) use x86::Avx2;
 
-use super::constants::Constants;
-use super::strips::Row;
-use super::window::Window;
+/// A vector of `N` lanes.
+pub(super) trait Lanes<const N: usize>: Copy + Send + Sync + Debug {
+    type Isa;
+    type Lane;
+    fn load(isa: Self::Isa, values: &[Self::Lane; N]) -> Self;
+    fn splat(isa: Self::Isa, value: Self::Lane) -> Self;
+}
 
-/// Four `f32`: three axes, and a fourth lane that is not used.
-pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
+/// Floating-point numbers.
+pub(super) trait Floats<const N: usize>: Lanes<N> {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
@@ -31,9 +41,17 @@ pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
     fn fma(self, by: Self, plus: Self) -> Self;
     /// `self * by - less`.
     fn fms(self, by: Self, less: Self) -> Self;
+    /// `from - self * by`.
+    fn fnma(self, by: Self, from: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn abs(self) -> Self;
+    fn floor(self) -> Self;
+    fn ceil(self) -> Self;
+}
+
+/// Four `f32`: three axes, and a fourth lane that most algorithms ignore.
+pub(super) trait F32x4: Floats<4, Lane = f32> {
     /// With the sign turned where `signs` (0 or -0) has one.
     fn flip(self, signs: Self) -> Self;
     /// By axis, the value along the next axis (modulo 3).
@@ -42,115 +60,95 @@ pub(super) trait Four: Copy + Send + Sync + std::fmt::Debug {
     fn last(self) -> Self;
     /// Sign bits, the first lane's lowest.
     fn signs(self) -> u32;
-    /// Whole parts of the first three, as cells of a table: what is outside is the last one.
-    fn cells(self) -> [usize; 3];
+    /// Whole parts of the first three, as indices of a table of `N` entries. Numbers outside the
+    /// table become its last index.
+    fn indices<const N: usize>(self) -> [usize; 3];
     fn values(self) -> [f32; 4];
-    /// Rounded down.
-    fn floor(self) -> Self;
-    /// All lanes' sums: this one's, the other's, and both again.
+    /// The sums of all lanes: of this vector, of the other, and of both again.
     fn sums(self, other: Self) -> Self;
     /// Whole numbers, of lanes that are whole and small.
     fn whole(self) -> [i32; 4];
 }
 
-/// The windows of a node's eight children, by octant, cut to the band.
-#[derive(Debug, Clone, Copy)]
-#[repr(C, align(32))]
-pub(super) struct Windows {
-    /// Left, top, right and bottom.
-    pub(super) sides: [[i32; 8]; 4],
-    /// Which have a sample, one bit each. Of those that are near: of no meaning.
-    pub(super) held: u8,
-    /// Which reach to the eye's plane or behind it.
-    pub(super) near: u8,
+/// Eight `f32`.
+pub(super) trait F32x8: Floats<8, Lane = f32> {
+    /// The lanes that are at most the other's, one bit each.
+    fn at_most(self, other: Self) -> u8;
+    /// The inverse, to 11 bits or more.
+    fn reciprocal(self) -> Self;
+    /// Whole parts, of lanes that fit.
+    fn whole(self) -> [i32; 8];
 }
 
-impl Windows {
-    #[inline(always)]
-    pub(super) fn at(&self, octant: u8) -> Window {
-        let [left, top, right, bottom] =
-            [0, 1, 2, 3].map(|i| self.sides[i][usize::from(octant & 7)]);
-        Window {
-            left,
-            top,
-            right,
-            bottom,
-        }
-    }
+/// Sixteen `i16`. Sums and products wrap around.
+pub(super) trait I16x16: Lanes<16, Lane = i16> {
+    fn add(self, other: Self) -> Self;
+    fn mul(self, other: Self) -> Self;
+    fn abs(self) -> Self;
+    /// The greater, of lanes taken as `u16`.
+    fn max_unsigned(self, other: Self) -> Self;
+    /// The lanes of this vector, then of the next, that are below a limit, one bit each.
+    fn below(self, next: Self, limit: Self) -> u32;
 }
 
-/// Beyond the rounding that it is for, what windows are wider by, in samples.
-pub(super) const WINDOW_MARGIN: f32 = 1.0 / 512.0;
-/// The rounding of `f32`, with room: of positions, and of extents.
-const WINDOW_ROUNDING: f32 = 1.0 / (1 << 21) as f32;
-/// What extents are larger by, for an inverse of 11 bits and their own rounding.
-const WINDOW_SCALE: f32 = 1.0 + 1.0 / 256.0;
-/// What windows in `f64` are wider by, of what they are made of and in samples.
-const TINY_WINDOW_MARGIN: f64 = 1.0 / (1u64 << 40) as f64;
-/// Columns and rows beyond all pictures.
-pub(super) const BEYOND: f64 = 40_000.0;
+/// Four masks of 64 bits.
+pub(super) trait U64x4: Lanes<4, Lane = u64> {
+    fn and(self, other: Self) -> Self;
+    /// The lanes that are 0, one bit each.
+    fn zeros(self) -> u32;
+    fn values(self) -> [u64; 4];
+}
+
+/// Sixteen bytes.
+pub(super) trait U8x16: Lanes<16, Lane = u8> {
+    fn or(self, other: Self) -> Self;
+    /// The lower and the upper half of each byte.
+    fn nibbles(self) -> [Self; 2];
+    /// By lane, this table's entry of the number `at`, which is below 16.
+    fn look_up(self, at: Self) -> Self;
+    /// The first eight.
+    fn low(self) -> u64;
+}
 
 /// An instruction set.
-pub(super) trait Isa: Copy + Send + Sync + std::fmt::Debug + 'static {
-    type Four: Four;
-    /// A number of 16 bits for each sample of a square.
-    type Distances: Copy;
+pub(super) trait Isa: Copy + Send + Sync + Debug + 'static {
+    type F32x4: F32x4<Isa = Self>;
+    type F32x8: F32x8<Isa = Self>;
+    type F64x4: Floats<4, Isa = Self, Lane = f64>;
+    type I16x16: I16x16<Isa = Self>;
+    type U64x4: U64x4<Isa = Self>;
+    type U8x16: U8x16<Isa = Self>;
 
-    fn four(self, values: &[f32; 4]) -> Self::Four;
-    fn splat(self, value: f32) -> Self::Four;
+    /// Runs a step in a function of its own that is compiled for this set. The step is a closure
+    /// marked `#[inline(always)]`, so that it becomes part of that function. Its main arguments are
+    /// passed, not captured, so that the compiler knows that they do not alias.
+    fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A));
 
-    /// The windows of the children of a node of level `level`, whose centre's
-    /// clip vector is given, in a band. A child's window holds all samples in its box.
-    fn windows(
-        self,
-        constants: &Constants,
-        level: usize,
-        centre: &[f64; 3],
-        band: &Window,
-    ) -> Windows;
-
-    /// By open sample of a square, which of the `wanted` parts the tables name, in
-    /// `candidates`; returns the open samples that have any, eight bits a row. `cells`: the three
-    /// functions' values in cells at the first sample, and what a column and a row add.
-    fn parts_of_samples(
-        self,
-        tables: [&Row; 3],
-        cells: &[Self::Four; 3],
-        wanted: u64,
-        open: u64,
-        candidates: &mut Candidates,
-    ) -> u64;
-
-    /// How far the three functions are from 0 at most, by sample of a square: values, at the first
-    /// sample and by column and row, are rounded to whole numbers; where they leave 16 bits the
-    /// answer is of no use.
-    fn distances(self, values: &[Self::Four; 3]) -> Self::Distances;
-
-    /// The samples at which distances are below a limit, eight bits a row.
-    fn below(self, distances: &Self::Distances, limit: i16) -> u64;
-
-    /// The middle and half the extent, along each axis, of the box around parts of a node: from its
-    /// centre, in sides of a part.
-    fn extent(self, parts: u64) -> [Self::Four; 2];
-
-    /// What a step of a column, and of a row, adds to moments about what lies at `centre`
-    /// (column and row): `edges` by coordinate, times `unit`.
-    fn steps(self, edges: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [Self::Four; 2];
-
-    /// [`super::orders::turned_parts`].
-    fn turned_parts(self, parts: u64, octant: u8) -> u64;
-
-    /// Bytes one after the other at the places of a mask's bits, and ones there.
-    fn spread(self, bytes: u64, mask: u8) -> (u64, u64);
-
+    #[inline(always)]
+    fn four(self, values: &[f32; 4]) -> Self::F32x4 {
+        Self::F32x4::load(self, values)
+    }
+    #[inline(always)]
+    fn splat(self, value: f32) -> Self::F32x4 {
+        Self::F32x4::splat(self, value)
+    }
+    /// Rounded to `f32`.
+    fn narrow(self, wide: Self::F64x4) -> Self::F32x4;
+    fn join(self, low: Self::F32x4, high: Self::F32x4) -> Self::F32x8;
+    /// One of the first three lanes in all of eight.
+    fn broadcast<const LANE: i32>(self, from: Self::F32x4) -> Self::F32x8;
+    /// One of the first three lanes, rounded to 16 bits, in all of sixteen.
+    fn broadcast_rounded<const LANE: i32>(self, from: Self::F32x4) -> Self::I16x16;
+    /// A table's entries at the whole parts of lanes. Numbers outside the table get its last entry.
+    fn look_up<const N: usize>(self, table: &[u64; N], at: Self::F32x8) -> [Self::U64x4; 2];
+    /// A vector of eight bytes, and eight more of no meaning.
+    fn bytes(self, eight: u64) -> Self::U8x16;
+    /// Bytes one after the other at the places of a mask's bits, and bytes of ones there.
+    fn expand(self, bytes: u64, mask: u8) -> [u64; 2];
+    /// Writes a value to those of 8 x 8 entries that a mask has, eight bits per row, in rows that
+    /// begin `width` apart. Panics unless all entries exist. One check for eight rows: a check for
+    /// each takes a fifth more instructions per voxel.
+    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32);
     /// Asks the memory for an entry that will be read soon, if there is such an entry.
     fn prefetch<T>(self, entries: &[T], at: usize);
-
-    /// Writes a value to rows of eight entries, `width` apart, where samples are.
-    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32);
 }
-
-/// By sample of a square: the parts that its line may meet.
-#[derive(Debug)]
-#[repr(C, align(32))]
-pub(super) struct Candidates(pub(super) [u64; 64]);

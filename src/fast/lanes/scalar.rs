@@ -1,59 +1,77 @@
-//! Plain Rust: what the steps mean.
+//! Plain Rust: the meaning of every operation.
+
+use std::array::from_fn;
 
 use super::*;
-use crate::fast::orders::{self, EXTENTS, SLABS};
-use crate::fast::strips::CELLS;
 
 /// The set that every processor has.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Scalar;
+pub(in crate::fast) struct Scalar;
 
-impl Four for [f32; 4] {
+impl<T: Copy + Send + Sync + Debug, const N: usize> Lanes<N> for [T; N] {
+    type Isa = Scalar;
+    type Lane = T;
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] + other[i])
+    fn load(_: Scalar, values: &[T; N]) -> Self {
+        *values
     }
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] - other[i])
+    fn splat(_: Scalar, value: T) -> Self {
+        [value; N]
     }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] * other[i])
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i] / other[i])
-    }
-    #[inline(always)]
-    fn fma(self, by: Self, plus: Self) -> Self {
-        std::array::from_fn(|i| self[i] * by[i] + plus[i])
-    }
-    #[inline(always)]
-    fn fms(self, by: Self, less: Self) -> Self {
-        std::array::from_fn(|i| self[i] * by[i] - less[i])
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i].max(other[i]))
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        std::array::from_fn(|i| self[i].min(other[i]))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.map(f32::abs)
-    }
-    #[inline(always)]
-    fn flip(self, signs: Self) -> Self {
-        std::array::from_fn(|i| {
-            if signs[i].is_sign_negative() {
-                -self[i]
-            } else {
-                self[i]
+}
+
+/// Methods that work lane by lane: lanes of the vectors, and the result.
+macro_rules! lane_by_lane {
+    ($($name:ident($lane:ident $(, $other:ident)*) = $value:expr;)*) => {$(
+        #[inline(always)]
+        fn $name(self $(, $other: Self)*) -> Self {
+            from_fn(|i| {
+                let ($lane, $($other,)*) = (self[i], $($other[i],)*);
+                $value
+            })
+        }
+    )*};
+}
+
+macro_rules! floats {
+    ($lane:ty) => {
+        impl<const N: usize> Floats<N> for [$lane; N] {
+            lane_by_lane! {
+                add(a, b) = a + b;
+                sub(a, b) = a - b;
+                mul(a, b) = a * b;
+                div(a, b) = a / b;
+                fma(a, by, plus) = a * by + plus;
+                fms(a, by, less) = a * by - less;
+                fnma(a, by, from) = from - a * by;
+                max(a, b) = a.max(b);
+                min(a, b) = a.min(b);
+                abs(a) = a.abs();
+                floor(a) = a.floor();
+                ceil(a) = a.ceil();
             }
-        })
+        }
+    };
+}
+floats!(f32);
+floats!(f64);
+
+/// The lanes for which a condition holds, one bit each.
+#[inline(always)]
+fn bits<const N: usize>(holds: impl Fn(usize) -> bool) -> u32 {
+    (0..N).fold(0, |bits, i| bits | u32::from(holds(i)) << i)
+}
+
+/// A number's whole part as an index of a table of `N` entries.
+#[inline(always)]
+fn index<const N: usize>(at: f32) -> usize {
+    (at as i32 as u32 as usize).min(N - 1)
+}
+
+impl F32x4 for [f32; 4] {
+    lane_by_lane! {
+        flip(a, sign) = if sign.is_sign_negative() { -a } else { a };
     }
     #[inline(always)]
     fn next(self) -> Self {
@@ -65,21 +83,15 @@ impl Four for [f32; 4] {
     }
     #[inline(always)]
     fn signs(self) -> u32 {
-        (0..4)
-            .map(|i| u32::from(self[i].is_sign_negative()) << i)
-            .sum()
+        bits::<4>(|i| self[i].is_sign_negative())
     }
     #[inline(always)]
-    fn cells(self) -> [usize; 3] {
-        [0, 1, 2].map(|j| (self[j] as i32 as u32).min(CELLS as u32 - 1) as usize)
+    fn indices<const N: usize>(self) -> [usize; 3] {
+        [0, 1, 2].map(|i| index::<N>(self[i]))
     }
     #[inline(always)]
     fn values(self) -> [f32; 4] {
         self
-    }
-    #[inline(always)]
-    fn floor(self) -> Self {
-        self.map(f32::floor)
     }
     #[inline(always)]
     fn sums(self, other: Self) -> Self {
@@ -92,138 +104,121 @@ impl Four for [f32; 4] {
     }
 }
 
+impl F32x8 for [f32; 8] {
+    #[inline(always)]
+    fn at_most(self, other: Self) -> u8 {
+        bits::<8>(|i| self[i] <= other[i]) as u8
+    }
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        self.map(|c| 1.0 / c)
+    }
+    #[inline(always)]
+    fn whole(self) -> [i32; 8] {
+        self.map(|c| c as i32)
+    }
+}
+
+impl I16x16 for [i16; 16] {
+    lane_by_lane! {
+        add(a, b) = a.wrapping_add(b);
+        mul(a, b) = a.wrapping_mul(b);
+        abs(a) = a.wrapping_abs();
+        max_unsigned(a, b) = (a as u16).max(b as u16) as i16;
+    }
+    #[inline(always)]
+    fn below(self, next: Self, limit: Self) -> u32 {
+        let [low, high] = [self, next].map(|lanes| bits::<16>(|i| lanes[i] < limit[i]));
+        low | high << 16
+    }
+}
+
+impl U64x4 for [u64; 4] {
+    lane_by_lane! {
+        and(a, b) = a & b;
+    }
+    #[inline(always)]
+    fn zeros(self) -> u32 {
+        bits::<4>(|i| self[i] == 0)
+    }
+    #[inline(always)]
+    fn values(self) -> [u64; 4] {
+        self
+    }
+}
+
+impl U8x16 for [u8; 16] {
+    lane_by_lane! {
+        or(a, b) = a | b;
+    }
+    #[inline(always)]
+    fn nibbles(self) -> [Self; 2] {
+        [self.map(|byte| byte & 15), self.map(|byte| byte >> 4)]
+    }
+    #[inline(always)]
+    fn look_up(self, at: Self) -> Self {
+        at.map(|at| self[usize::from(at & 15)])
+    }
+    #[inline(always)]
+    fn low(self) -> u64 {
+        u64::from_le_bytes(from_fn(|i| self[i]))
+    }
+}
+
 impl Isa for Scalar {
-    type Four = [f32; 4];
-    type Distances = [i32; 64];
+    type F32x4 = [f32; 4];
+    type F32x8 = [f32; 8];
+    type F64x4 = [f64; 4];
+    type I16x16 = [i16; 16];
+    type U64x4 = [u64; 4];
+    type U8x16 = [u8; 16];
 
-    #[inline(always)]
-    fn four(self, values: &[f32; 4]) -> [f32; 4] {
-        *values
+    #[inline(never)]
+    fn vectorize<T, A>(self, target: &mut T, argument: A, step: impl FnOnce(&mut T, A)) {
+        step(target, argument);
     }
     #[inline(always)]
-    fn splat(self, value: f32) -> [f32; 4] {
-        [value; 4]
+    fn narrow(self, wide: [f64; 4]) -> [f32; 4] {
+        wide.map(|c| c as f32)
     }
-
-    fn windows(
-        self,
-        constants: &Constants,
-        level: usize,
-        centre: &[f64; 3],
-        band: &Window,
-    ) -> Windows {
-        let (own, below) = (&constants.levels[level], &constants.levels[level + 1]);
-        let half = f64::from(own.side) / 4.0;
-        let mut windows = Windows {
-            sides: [[0; 8]; 4],
-            held: 0,
-            near: 0,
-        };
-        for octant in 0..8 {
-            let [x, y, w] = [0, 1, 2].map(|c| centre[c] + own.child[c][octant]);
-            let nearest = w - below.half_depth;
-            if nearest <= 0.0 {
-                windows.near |= 1 << octant;
-                continue;
-            }
-            let mut side = [0; 4];
-            for (axis, c) in [x, y].into_iter().enumerate() {
-                let at = c * constants.root_samples / w - 0.5;
-                let edges = constants.edge.iter().map(|e| (e[axis] - at * e[2]).abs());
-                let extent = edges.sum::<f64>() * (half / nearest);
-                let extent = extent + (extent + at.abs() + 1.0) * TINY_WINDOW_MARGIN;
-                let (first, last) = ([band.left, band.top][axis], [band.right, band.bottom][axis]);
-                side[axis] = (at - extent).ceil().max(f64::from(first)).min(BEYOND) as i32;
-                side[axis + 2] = (at + extent).floor().min(f64::from(last)).max(-1.0) as i32;
-            }
-            for (sides, side) in windows.sides.iter_mut().zip(side) {
-                sides[octant] = side;
-            }
-            windows.held |= u8::from(side[0] <= side[2] && side[1] <= side[3]) << octant;
-        }
-        windows
+    #[inline(always)]
+    fn join(self, low: [f32; 4], high: [f32; 4]) -> [f32; 8] {
+        from_fn(|i| if i < 4 { low[i] } else { high[i - 4] })
     }
-
-    fn parts_of_samples(
-        self,
-        tables: [&Row; 3],
-        cells: &[[f32; 4]; 3],
-        wanted: u64,
-        open: u64,
-        candidates: &mut Candidates,
-    ) -> u64 {
-        let mut any = 0;
-        for sample in (0..64).filter(|sample| open >> sample & 1 != 0) {
-            let (x, y) = ((sample & 7) as f32, (sample >> 3) as f32);
-            let [first, step_x, step_y] = *cells;
-            let at = step_x.fma([x; 4], step_y.fma([y; 4], first)).cells();
-            let parts = (0..3).fold(wanted, |parts, j| parts & tables[j][at[j] % CELLS]);
-            candidates.0[sample] = parts;
-            any |= u64::from(parts != 0) << sample;
-        }
-        any
+    #[inline(always)]
+    fn broadcast<const LANE: i32>(self, from: [f32; 4]) -> [f32; 8] {
+        [from[LANE as usize]; 8]
     }
-
-    fn distances(self, values: &[[f32; 4]; 3]) -> [i32; 64] {
-        let [first, step_x, step_y] = values.map(|v| v.map(|c| c.round() as i32));
-        std::array::from_fn(|sample| {
-            let (x, y) = (sample as i32 & 7, sample as i32 >> 3);
-            let at = |j: usize| (first[j] + step_x[j] * x + step_y[j] * y).abs();
-            at(0).max(at(1)).max(at(2))
-        })
+    #[inline(always)]
+    fn broadcast_rounded<const LANE: i32>(self, from: [f32; 4]) -> [i16; 16] {
+        [from[LANE as usize].round_ties_even() as i16; 16]
     }
-
-    fn below(self, distances: &[i32; 64], limit: i16) -> u64 {
-        let bits = distances.iter().enumerate();
-        bits.fold(0, |bits, (sample, &distance)| {
-            bits | u64::from(distance < i32::from(limit)) << sample
-        })
+    #[inline(always)]
+    fn look_up<const N: usize>(self, table: &[u64; N], at: [f32; 8]) -> [[u64; 4]; 2] {
+        [0, 4].map(|first| from_fn(|i| table[index::<N>(at[first + i])]))
     }
-
-    fn extent(self, parts: u64) -> [[f32; 4]; 2] {
-        let mut extent = [[0.0; 4]; 2];
-        for (axis, slabs) in SLABS.iter().enumerate() {
-            let filled = slabs.iter().enumerate();
-            let filled = filled.map(|(i, slab)| usize::from(parts & slab != 0) << i);
-            let [middle, half] = &EXTENTS[axis][filled.sum::<usize>()];
-            extent[0] = extent[0].add(*middle);
-            extent[1] = extent[1].add(*half);
-        }
-        extent
+    #[inline(always)]
+    fn bytes(self, eight: u64) -> [u8; 16] {
+        u128::from(eight).to_le_bytes()
     }
-
-    fn steps(self, [x, y, w]: &[[f64; 4]; 3], centre: [f64; 2], unit: f64) -> [[f32; 4]; 2] {
-        [
-            std::array::from_fn(|j| ((centre[1] * w[j] - y[j]) * unit) as f32),
-            std::array::from_fn(|j| ((x[j] - centre[0] * w[j]) * unit) as f32),
-        ]
-    }
-
-    fn turned_parts(self, parts: u64, octant: u8) -> u64 {
-        orders::turned_parts(parts, octant)
-    }
-
-    fn spread(self, bytes: u64, mask: u8) -> (u64, u64) {
-        let (mut spread, mut ones, mut left) = (0, 0, bytes);
+    fn expand(self, bytes: u64, mask: u8) -> [u64; 2] {
+        let (mut expanded, mut ones, mut left) = (0, 0, bytes);
         for place in (0..8).filter(|place| mask >> place & 1 != 0) {
             ones |= 0xff << (8 * place);
-            spread |= (left & 0xff) << (8 * place);
+            expanded |= (left & 0xff) << (8 * place);
             left >>= 8;
         }
-        (spread, ones)
+        [expanded, ones]
     }
-
     #[inline(always)]
-    fn prefetch<T>(self, _: &[T], _: usize) {}
-
-    fn put(self, rows: &mut [u32], first: usize, width: usize, samples: u64, value: u32) {
-        let mut left = samples;
+    fn store_masked(self, entries: &mut [u32], width: usize, mask: u64, value: u32) {
+        let mut left = mask;
         while left != 0 {
             let bit = left.trailing_zeros() as usize;
             left &= left - 1;
-            if let Some(entry) = rows.get_mut(first + (bit >> 3) * width + (bit & 7)) {
-                *entry = value;
-            }
+            entries[(bit >> 3) * width + (bit & 7)] = value;
         }
     }
+    #[inline(always)]
+    fn prefetch<T>(self, _: &[T], _: usize) {}
 }

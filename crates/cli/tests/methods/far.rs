@@ -235,7 +235,7 @@ fn a_build_that_is_cut_short_leaves_no_file() {
     fs::write(at.join("sheet.obj"), sheet()).unwrap();
     let program = crate::common::program();
     for wait_ms in [0, 5, 20, 80] {
-        let mut child = std::process::Command::new(&program)
+        let mut child = Command::new(&program)
             .current_dir(at)
             .args(["convert", "sheet.obj", "cut.far", "--rays", "300000", "-q"])
             .args(["--leaf-triangles", "20"])

@@ -6,9 +6,11 @@ mod common;
 mod compared;
 mod far;
 mod far_stopped;
+#[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/gltf_bytes.rs"]
 mod gltf_bytes;
 mod mesh;
+#[allow(dead_code, reason = "the mesh crate's tests use the rest")]
 #[path = "../../../mesh/tests/mesh/shapes.rs"]
 mod shapes;
 mod textured;

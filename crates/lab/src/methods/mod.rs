@@ -16,6 +16,6 @@ mod tables;
 pub use answers::{Answer, Rivals, answers, rivals, tables as answer_tables};
 pub use distance::at_distance;
 pub use families::{decimated, far, hybrid, opacity_in_words, textured, triangles};
-pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, measure};
+pub use measure::{Distance, Facts, MeshMethods, MethodAtDistance, MethodsPlan, Outcome, measure};
 pub use plots::panels;
 pub use tables::{rows, table};

@@ -1,4 +1,8 @@
 //! Bytes of glTF documents: addresses, binary files, and what can be wrong with the JSON.
+#![allow(
+    unreachable_pub,
+    reason = "a module of test crates, and of a fuzz target"
+)]
 
 use serde_json::{Value, json};
 

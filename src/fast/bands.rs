@@ -1,0 +1,142 @@
+//! A picture in bands, the rows that one task draws, and the threads that draw them.
+
+use std::ops::Range;
+
+use super::band::{Band, BrickBlocks, Hit};
+use super::canvas::{Fill, FillPart, Pixels, TileGrid};
+use super::constants::Constants;
+use super::counters::Counters;
+use super::exact::Exact;
+use super::lanes::Isa;
+use super::parts::Parts;
+use super::strips::Candidates;
+use super::switches::Switches;
+use super::traversal;
+use super::window::{TILE_LOG2, Window};
+use crate::graph::GraphView;
+
+/// The data that all bands of a frame share.
+pub(super) struct Job<'j> {
+    pub(super) constants: &'j Constants,
+    pub(super) exact: &'j Exact,
+    pub(super) graph: &'j GraphView<'j>,
+    pub(super) switches: &'j Switches,
+}
+
+/// The memory of a band of the picture: whole rows of tiles.
+pub(super) struct BandBuffers<'p> {
+    pub(super) grid: TileGrid,
+    pub(super) bounds: Window,
+    pub(super) fill: FillPart<'p>,
+    pub(super) pixels: Pixels<'p>,
+}
+
+/// Rows of tiles of the first band, of `rows` from `top` on. If these are all, there is one band.
+///
+/// Nodes that lie across two bands are visited in both, so there are few bands; several to a
+/// thread, large ones first, so that threads end together. Only the
+/// rows that the object covers count, because the others cost nothing.
+fn first_band(top: usize, rows: usize, object: &Range<usize>, threads: usize) -> usize {
+    let begin = object.start.max(top);
+    let covered = object.end.min(top + rows).saturating_sub(begin);
+    let size = (covered / (2 * threads)).max(1);
+    if threads <= 1 || covered <= size {
+        return rows;
+    }
+    begin - top + size
+}
+
+impl BandBuffers<'_> {
+    /// Splits off the first rows of tiles.
+    fn split(self, rows: usize) -> (Self, Self) {
+        let top = self.bounds.top + ((rows << TILE_LOG2) as i32);
+        let samples = (top - self.bounds.top) as usize * self.pixels.width;
+        let voxels = samples.min(self.pixels.voxel.len());
+        let blends = samples.min(self.pixels.blend.len());
+        let first = (self.bounds.top >> TILE_LOG2) as usize;
+        let (fill, fill_rest) = self.fill.split(&self.grid, first, rows);
+        let (shown, shown_rest) = self.pixels.shown.split_at_mut(samples);
+        let (voxel, voxel_rest) = self.pixels.voxel.split_at_mut(voxels);
+        let (blend, blend_rest) = self.pixels.blend.split_at_mut(blends);
+        let (width, color) = (self.pixels.width, self.pixels.color);
+        let part = |bounds: Window, fill, shown, voxel, blend| Self {
+            grid: self.grid,
+            bounds,
+            fill,
+            pixels: Pixels {
+                width,
+                top: bounds.top,
+                shown,
+                color,
+                voxel,
+                blend,
+            },
+        };
+        let upper = Window {
+            bottom: top - 1,
+            ..self.bounds
+        };
+        let lower = Window { top, ..self.bounds };
+        (
+            part(upper, fill, shown, voxel, blend),
+            part(lower, fill_rest, shown_rest, voxel_rest, blend_rest),
+        )
+    }
+}
+
+/// Draws the first band, while other threads draw the rest in the same way. `object`: rows of tiles
+/// that the object covers.
+pub(super) fn run_bands<I: Isa>(
+    job: &Job<'_>,
+    buffers: BandBuffers<'_>,
+    isa: I,
+    object: &Range<usize>,
+    threads: usize,
+) -> Counters {
+    let tiles = buffers.bounds.coarser(TILE_LOG2);
+    let rows = (tiles.bottom - tiles.top + 1) as usize;
+    let first = first_band(tiles.top as usize, rows, object, threads);
+    if first == rows {
+        return run(job, buffers, isa);
+    }
+    let (upper, rest) = buffers.split(first);
+    let (mut counters, others) = rayon::join(
+        || run(job, upper, isa),
+        || run_bands(job, rest, isa, object, threads),
+    );
+    counters.add(&others);
+    counters
+}
+
+/// Draws one band.
+fn run<I: Isa>(job: &Job<'_>, mut buffers: BandBuffers<'_>, isa: I) -> Counters {
+    let mut brick_blocks = BrickBlocks {
+        exist: [0; 64],
+        parts: [Parts::default(); 64],
+    };
+    buffers.pixels.clear();
+    let fill = Fill::clear(&buffers.grid, buffers.bounds, buffers.fill);
+    let mut band = Band {
+        isa,
+        constants: job.constants,
+        exact: job.exact,
+        graph: job.graph,
+        switches: job.switches,
+        fill,
+        blends: job.constants.opacity_eye.is_some(),
+        sample_offsets: std::array::from_fn(|i| ((i >> 3) * buffers.pixels.width + (i & 7)) as u32),
+        pixels: buffers.pixels,
+        counters: Counters::default(),
+        candidates: Candidates([0; 64]),
+        hits: [Hit::default(); 64],
+        nodes: [0; 64],
+        brick_blocks: &mut brick_blocks,
+    };
+    isa.vectorize(
+        &mut band,
+        (),
+        #[inline(always)]
+        |band, ()| traversal::draw_object(band),
+    );
+    band.counters
+}
