@@ -48,6 +48,10 @@ pub(super) fn maker(args: &EngineArgs) -> Result<Maker, CliError> {
             "--engine rays casts one ray a sample and blends nothing: it has no --coverage alpha",
         )
         .advise("take --engine machine, which defines the picture, or fast, which has its bits")),
+        EngineName::Rays if args.rules.are_of_machine() => Err(CliError::usage(
+            "--engine rays draws exact coverage only, and has no --paper, --cage, --tolerance and --overflow",
+        )
+        .advise("take --engine machine for these rules")),
         EngineName::Rays => Ok(Box::new(|| Box::new(Rays))),
         EngineName::Far => Err(CliError::usage(
             "--engine far draws a .far file, and only render, turntable and view do",

@@ -121,6 +121,12 @@ pub struct EngineArgs {
 }
 
 impl RuleArgs {
+    /// Whether a rule or setting was given that only the machine's steps have.
+    pub fn are_of_machine(&self) -> bool {
+        let of_machine = self.cage.is_some() || self.tolerance.is_some() || self.overflow.is_some();
+        of_machine || self.options(0).coverage != Coverage::Exact
+    }
+
     /// The set-up's options, at so many samples per pixel and axis (as a power of two).
     #[must_use]
     pub fn options(&self, aa_log2: u32) -> SetupOptions {
