@@ -271,7 +271,9 @@ impl Bars {
             let _ = write!(io::stderr().lock(), "\r\x1b[K");
         }
         *slot = bar;
-        slot.iter_mut().for_each(Bar::write);
+        // Work of known length is written at its first step.
+        let unknown = slot.iter_mut().filter(|bar| bar.steps == 0);
+        unknown.for_each(Bar::write);
     }
 }
 

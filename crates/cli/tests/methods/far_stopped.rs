@@ -218,13 +218,13 @@ fn most_memory(process: u32) -> Option<u64> {
 
 #[test]
 fn a_budget_of_memory_is_kept() {
-    const BUDGET: u64 = 110 << 20;
+    const BUDGET: u64 = 72 << 20;
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     fs::write(at.join("sheet.stl"), stl()).unwrap();
     let most = |more: &[&str]| {
-        // 800,000 triangles: 64 MB of clusters, more than there is room for.
-        let mut command = convert_copies(at, "--instances 40 --rays 3000000");
+        // 1,000,000 triangles: 60 MB of clusters, more than there is room for.
+        let mut command = convert_copies(at, "--instances 50 --rays 3000000");
         let mut child = command.args(more).spawn().unwrap();
         let mut most = None;
         while child.try_wait().unwrap().is_none() {
