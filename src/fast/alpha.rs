@@ -1,4 +1,4 @@
-//! Blending, under the rule `alpha` (`SPEC.md`, section 11): with products
+//! Blending (rule R11), under `alpha` (`SPEC.md`, section 11): with products
 //! where the machine adds shifts.
 //!
 //! Voxels reach the same samples in the same order as under `exact`. A sample stays open until it is

@@ -1,4 +1,4 @@
-//! The constants of a frame, as the traversal needs them.
+//! The constants of a frame, as the traversal needs them; the nearest octant of a node (rule R9).
 //!
 //! Clip vectors of nodes are halves of whole numbers in `f64`, and exact:
 //! [`Constants::new`] takes no frame whose positions, times sixteen, leave 53 bits.

@@ -1,5 +1,5 @@
-//! Exact silhouettes (`SPEC.md`, "Exact coverage"): in `f64` where its error
-//! bound decides, in 128-bit integers where it does not.
+//! Exact silhouettes (rule R8 of `SPEC.md`, with its ties R8.1 and the plane of the eye R8.2): in `f64` where its
+//! error bound decides, in 128-bit integers where it does not.
 //!
 //! Each test is the side operator of two lines in Plücker coordinates, a sample's ray and a cube's
 //! edge. The sign of their permuted inner product says on which side the ray passes.

@@ -1,4 +1,4 @@
-//! Lines in Plücker coordinates: the lines of a square's samples against the parts of a node.
+//! Rule R8 by lines in Plücker coordinates: the lines of a square's samples against the parts of a node.
 //!
 //! A sample's ray is a line in the object. Its Plücker coordinates are its direction `v` and its
 //! moment `m` about the node's centre. With `P` the clip vector of that centre, `e_k` a voxel's edges

@@ -1,4 +1,4 @@
-//! Tables of octants: masks of children in order of occlusion, and the slabs of a node's 64 parts.
+//! Tables of octants (rule R9): masks of children in order of occlusion, and the slabs of a node's 64 parts.
 
 use super::lanes::{Isa, Lanes, U8x16};
 

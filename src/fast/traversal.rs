@@ -1,5 +1,6 @@
 //! The traversal of the graph, from the whole object down to solids and bricks, front to back: a
-//! loop with an explicit stack of the nodes whose children are being visited.
+//! loop with an explicit stack of the nodes whose children are being visited. Rules R7.1 (level of detail), R8.2 (plane
+//! of the eye) and R10 (termination).
 //!
 //! ```text
 //! for each child that exists of the stack's last node, nearest to the eye first:

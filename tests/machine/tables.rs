@@ -32,7 +32,7 @@ fn each_file_names_the_rules_that_it_implements() {
                 let text = read(&format!("src/{engine}/{file}"));
                 let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '.');
                 let is_named = words.any(|word| word.trim_end_matches('.') == rule);
-                assert!(is_named || engine == "fast", "src/{engine}/{file}: {rule}");
+                assert!(is_named, "src/{engine}/{file}: {rule}");
             }
         }
     }
