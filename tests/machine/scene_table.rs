@@ -74,13 +74,22 @@ pub(crate) static SCENES: [TestScene; 17] = [
 impl TestScene {
     /// The scene's graph.
     pub(crate) fn graph(&self) -> &Graph {
-        self.graph.get_or_init(|| match self.source {
+        // On a thread and in a pool of its own: a worker that waited for parts of the graph would take up other work
+        // meanwhile, and that may wait for the same graph.
+        let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
+        let build = || pool().expect("a thread").install(|| self.build());
+        let spawned = || std::thread::scope(|scope| scope.spawn(build).join());
+        self.graph.get_or_init(|| spawned().expect("a graph"))
+    }
+
+    fn build(&self) -> Graph {
+        match self.source {
             Source::Spec => graph_of_spec(self.name),
             Source::File => {
                 let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data");
                 graph_of_file(&data.join(self.name)).expect(self.name)
             }
             Source::Made(make) => make(),
-        })
+        }
     }
 }
