@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Error;
-use crate::graph::{BuildOptions, Builder, Graph, GraphView, Placement, Silent, Voxel, vxg};
+use crate::graph::{BuildOptions, Builder, Graph, Placement, Silent, Voxel, vxg};
 use crate::project::Bounds;
 pub use crate::project::Up;
 use crate::scene::{
@@ -119,12 +119,6 @@ impl Scene {
     /// [`Error::Write`] where the system refuses.
     pub fn save_vxg(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         vxg::write(&self.graph, path.as_ref(), true).map_err(|e| Error::Write(e.into()))
-    }
-
-    /// The shape of the graph, as an [`Engine`](crate::Engine) walks it: for programs that draw frame after frame.
-    #[must_use]
-    pub fn view(&self) -> GraphView<'_> {
-        self.graph.view()
     }
 
     /// Which axis is up: Z for voxels, Y for meshes other than STL and what was made of them, unless
