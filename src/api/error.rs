@@ -2,6 +2,7 @@
 
 use crate::budget::Shortage;
 use crate::drawing::DrawError;
+use crate::picture::ResolveError;
 use crate::project::{EngineError, SetupError};
 
 /// What went wrong, for people: a message, and what it came from.
@@ -52,6 +53,8 @@ impl From<DrawError> for Error {
             DrawError::Memory(short) => Self::Memory(short),
             DrawError::Camera(error) => Self::Setup(error.into()),
             DrawError::Setup(error) => Self::Setup(error),
+            DrawError::Engine(EngineError::Memory(short))
+            | DrawError::Resolve(ResolveError::Memory(short)) => Self::Memory(short),
             DrawError::Engine(error) => Self::Engine(error),
             DrawError::Resolve(error) => Self::Resolve(error.into()),
             DrawError::Method(error) => Self::Resolve(error),

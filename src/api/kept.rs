@@ -61,6 +61,14 @@ impl Kept {
         })
     }
 
+    /// Drops the idle jobs.
+    pub(super) fn clear(&self) {
+        self.0
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clear();
+    }
+
     /// Keeps a job for the next picture.
     pub(super) fn put(&self, job: Job) {
         self.0

@@ -35,7 +35,8 @@ pub enum EngineKind {
     Rays,
 }
 
-/// Draws scenes. Settings are given one after the other; each has a default that is right for a picture.
+/// Draws scenes. Settings are given one after the other; each has a default that is right for a picture. Threads, engine
+/// and frame are kept for the next picture, until [`Renderer::forget`] or the end of the renderer.
 ///
 /// ```
 /// use shiftvox::{Camera, EngineKind, Renderer, Scene};
@@ -354,6 +355,12 @@ impl Renderer {
         Ok(made?)
     }
 
+    /// Gives back the memory that is kept for the next picture: as much as the largest pictures took that were drawn at
+    /// the same time.
+    pub fn forget(&self) {
+        self.kept.clear();
+    }
+
     fn kind(&self) -> EngineKind {
         self.engine.unwrap_or_default()
     }
@@ -429,7 +436,7 @@ impl Renderer {
         let graph = scene.graph();
         let options = self.options()?;
         let camera = camera.of_size(width, height)?;
-        check_samples(&camera, options.aa_log2, FRAME_BYTES, 0)?;
+        check_samples(&camera, options.aa_log2, FRAME_BYTES, 0, 0)?;
         let setup = FrameSetup::new(&camera, &graph.placement, graph.depth, &options)?;
         let light = lights(graph, &setup, self.shading);
         let view = GraphView {

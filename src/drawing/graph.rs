@@ -155,6 +155,7 @@ impl<'g> GraphDrawing<'g> {
             self.style.options.aa_log2,
             self.sample_bytes(),
             self.pixel_bytes,
+            self.viewer.frame_bytes(),
         )?;
         let Graph {
             placement, depth, ..

@@ -127,7 +127,7 @@ pub enum DrawError {
 }
 
 /// Checks that a picture fits in memory: `sample_bytes` for each sample and `pixel_bytes` for each pixel. `aa_log2`:
-/// samples per pixel and axis, as a power of two.
+/// samples per pixel and axis, as a power of two. `held`: memory that is going to be freed or used for it, bytes.
 ///
 /// # Errors
 /// [`DrawError::TooLarge`] for more than 2^27 samples, [`DrawError::Memory`] for more memory than is free.
@@ -136,10 +136,11 @@ pub fn check_samples(
     aa_log2: u32,
     sample_bytes: u64,
     pixel_bytes: u64,
+    held: u64,
 ) -> Result<(), DrawError> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let samples = count_samples(camera.width, camera.height, aa_log2)?;
-    let needed = samples * sample_bytes + pixels * pixel_bytes;
+    let needed = (samples * sample_bytes + pixels * pixel_bytes).saturating_sub(held);
     if needed > UNCHECKED_BYTES {
         budget::check("a picture of this size", needed)?;
     }

@@ -1,5 +1,7 @@
 //! Why a picture is not made.
 
+use crate::budget::Shortage;
+
 /// Why a frame and its set-up make no picture.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ResolveError {
@@ -13,4 +15,7 @@ pub enum ResolveError {
     /// neither does the graph.
     #[error("the frame does not tell which voxels are seen")]
     Voxel,
+    /// The system refuses the memory of the pixels.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
 }

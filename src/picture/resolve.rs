@@ -11,6 +11,7 @@ use super::rows::{Buffer, Rows};
 use super::shade::{Shader, Surface};
 use super::shares::Shares;
 use super::{Background, NO_DEPTH, Picture, ResolveError, Shading};
+use crate::budget;
 use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::Graph;
 use crate::project::FrameSetup;
@@ -60,6 +61,8 @@ pub struct Resolver<'f> {
     shares: OnceLock<Option<Shares>>,
 }
 
+/// What messages call the memory of pixels.
+const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes sooner than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;
 
@@ -105,7 +108,7 @@ impl<'f> Resolver<'f> {
     /// When the frame does not say which voxels are seen and a colour depends on it.
     pub fn colors<const N: usize>(&self, rows: Range<u32>) -> Result<Vec<[u8; N]>, ResolveError> {
         let (width, _) = self.size();
-        let mut pixels = vec![[0; N]; width as usize * rows.len()];
+        let mut pixels = budget::filled(PIXELS, [0; N], width as usize * rows.len())?;
         self.write_colors(rows, &mut pixels)?;
         Ok(pixels)
     }
@@ -159,7 +162,7 @@ impl<'f> Resolver<'f> {
         each: impl Fn(At, &mut T) -> Result<(), ResolveError> + Sync,
     ) -> Result<Vec<T>, ResolveError> {
         let (width, _) = self.size();
-        let mut pixels = vec![nothing; width as usize * rows.len()];
+        let mut pixels = budget::filled(PIXELS, nothing, width as usize * rows.len())?;
         self.each_row(rows, &mut pixels, |y, to| {
             let row = (0..width).zip(to);
             { row }.try_for_each(|(x, to)| each(At { x, y }, to))

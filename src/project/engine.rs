@@ -3,6 +3,7 @@
 use hwmodel::Trap;
 
 use super::FrameSetup;
+use crate::budget::Shortage;
 use crate::frame::{Colors, Frame};
 use crate::graph::GraphView;
 
@@ -17,6 +18,9 @@ pub enum EngineError {
     /// A word overflowed under the trap policy.
     #[error("{0}; use more bits, fewer fraction bits, or another overflow policy (wrap, saturate)")]
     Trap(#[from] Trap),
+    /// The system refuses the memory of a frame.
+    #[error(transparent)]
+    Memory(#[from] Shortage),
 }
 
 /// What an engine counted of one frame: names and numbers, in a fixed order.

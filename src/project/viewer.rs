@@ -7,7 +7,8 @@
 //! but the set-up, and two set-ups can be compared.
 
 use super::{Engine, EngineError, FrameSetup, Stats};
-use crate::frame::Frame;
+use crate::budget::{self, Shortage};
+use crate::frame::{Frame, NO_NODE, NO_VOXEL};
 use crate::graph::GraphView;
 
 /// What a viewer's frame holds of each sample.
@@ -114,7 +115,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
         if self.shows(setup) {
             return Ok(false);
         }
-        self.make_room(setup);
+        self.make_room(setup)?;
         self.engine.draw(&self.graph, setup, &mut self.frame)?;
         self.shown = Some(setup.clone());
         Ok(true)
@@ -145,7 +146,7 @@ impl<'g, E: Engine> Viewer<'g, E> {
             stats.push((FRAMES_UNCHANGED, 1));
             return Ok(stats);
         }
-        self.make_room(setup);
+        self.make_room(setup)?;
         let graph = GraphView {
             light,
             ..self.graph
@@ -163,6 +164,21 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.shown.as_ref().map(|_| &self.frame)
     }
 
+    /// Memory of the frame, bytes.
+    #[must_use]
+    pub fn frame_bytes(&self) -> u64 {
+        let Frame {
+            node,
+            voxel,
+            records,
+            blend,
+            ..
+        } = &self.frame;
+        let records = records.as_deref().map_or(0, size_of_val);
+        let blend = blend.as_deref().map_or(0, size_of_val);
+        (size_of_val(&node[..]) + size_of_val(&voxel[..]) + records + blend) as u64
+    }
+
     /// Whether the frame is that of this set-up.
     #[must_use]
     pub fn shows(&self, setup: &FrameSetup) -> bool {
@@ -175,8 +191,11 @@ impl<'g, E: Engine> Viewer<'g, E> {
         self.stats = None;
     }
 
-    /// A frame of the set-up's size; the last one's memory if it has that.
-    fn make_room(&mut self, setup: &FrameSetup) {
+    /// Makes a frame of the set-up's size, or takes the last one's memory if it has that. Nothing is shown then.
+    ///
+    /// # Errors
+    /// [`Shortage`] if the system refuses the memory.
+    pub fn make_room(&mut self, setup: &FrameSetup) -> Result<(), Shortage> {
         self.forget();
         let (width, height) = (setup.width, setup.height);
         let has = match (&self.frame.records, self.frame.voxel.is_empty()) {
@@ -187,11 +206,22 @@ impl<'g, E: Engine> Viewer<'g, E> {
         if (self.frame.width, self.frame.height, has) != (width, height, self.contents) {
             // The old one's memory is free before the new one's is taken.
             self.frame = Frame::nodes_only(0, 0);
-            self.frame = match self.contents {
-                Contents::Nodes => Frame::nodes_only(width, height),
-                Contents::Voxels => Frame::new(width, height, false),
-                Contents::Records => Frame::new(width, height, true),
+            let samples = width as usize * height as usize;
+            let has_voxels = self.contents != Contents::Nodes;
+            let has_records = self.contents == Contents::Records;
+            let what = "the frame of a picture";
+            self.frame = Frame {
+                width,
+                height,
+                node: budget::filled(what, NO_NODE, samples)?,
+                voxel: budget::filled(what, NO_VOXEL, if has_voxels { samples } else { 0 })?,
+                records: match has_records {
+                    true => Some(budget::filled(what, 0.0, samples)?),
+                    false => None,
+                },
+                blend: None,
             };
         }
+        Ok(())
     }
 }

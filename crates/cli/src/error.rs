@@ -163,6 +163,7 @@ impl From<EngineError> for CliError {
     fn from(error: EngineError) -> Self {
         match error {
             EngineError::Trap(_) => Self::new(Kind::Limit, error),
+            EngineError::Memory(short) => short.into(),
         }
     }
 }
@@ -172,6 +173,7 @@ impl From<ResolveError> for CliError {
         let kind = match error {
             ResolveError::Size(..) | ResolveError::Voxel => Kind::Run,
             ResolveError::Index => Kind::Limit,
+            ResolveError::Memory(short) => return short.into(),
         };
         Self::new(kind, error)
     }

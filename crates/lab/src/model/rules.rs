@@ -114,6 +114,7 @@ pub fn measure(
     let (frame, counter, shifts, stats) = match drawn {
         Ok(drawn) => drawn,
         Err(EngineError::Trap(trap)) => return trapped(trap.to_string()),
+        Err(error) => return Err(error.into()),
     };
     let simulated = frame::simulate(&view, &setup, hardware, overflow, &mut NoObserver);
     let simulated = match simulated {

@@ -32,8 +32,9 @@ pub fn of(
     let counter = &counted.counter;
     for &(name, count) in &counted.stats {
         let info = COUNTERS.iter().find(|counter| counter.name == name);
-        let meaning = info.map_or("", |counter| counter.meaning);
-        list.add(&format!("machine.{name}"), count, "Count", meaning);
+        let meaning = info.map(|counter| format!("{} [{}]", counter.meaning, counter.unit));
+        let meaning = meaning.unwrap_or_default();
+        list.add(&format!("machine.{name}"), count, "Count", &meaning);
     }
     for (level, records) in counter.records_by_level() {
         let name = format!("machine.level{level:02}.records");

@@ -99,6 +99,9 @@ pub(crate) fn check(
             }
             return outcome;
         }
+        Err(EngineError::Memory(short)) => {
+            return Outcome::new(End::Refused(short.to_string()));
+        }
         Err(EngineError::Trap(trap)) => {
             let mut outcome = Outcome::new(End::Trapped(trap.to_string()));
             if setup.has_headroom {

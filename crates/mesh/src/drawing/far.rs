@@ -75,7 +75,13 @@ impl Drawable for FarDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
+        check_samples(
+            camera,
+            self.style.aa_log2,
+            MESH_SAMPLE_BYTES,
+            COLOR_BYTES,
+            0,
+        )?;
         let view = view_of(camera, self.file.bounds())?;
         let options = self.style.options(&view);
         let ((picture, coverage, counts), times_ms) = timed(runs, || {

@@ -102,7 +102,13 @@ impl Drawable for TexturedDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, self.style.aa_log2, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
+        check_samples(
+            camera,
+            self.style.aa_log2,
+            MESH_SAMPLE_BYTES,
+            COLOR_BYTES,
+            0,
+        )?;
         let view = view_of(camera, self.file.bounds())?;
         let ((mut drawn, counts), times_ms) = timed(runs, || Ok(self.drawn(&view)?))?;
         let coverage = std::mem::take(&mut drawn.coverage);

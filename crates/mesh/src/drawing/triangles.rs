@@ -66,7 +66,7 @@ impl Drawable for TrianglesDrawing<'_> {
 
     fn draw(&mut self, camera: &Camera, runs: u32) -> Result<(), DrawError> {
         self.kept = None;
-        check_samples(camera, 0, MESH_SAMPLE_BYTES, COLOR_BYTES)?;
+        check_samples(camera, 0, MESH_SAMPLE_BYTES, COLOR_BYTES, 0)?;
         let view = view_of(camera, self.mesh.bounds())?;
         let (mut drawn, times_ms) = timed(runs, || Ok(self.drawn(&view)?))?;
         let samples = drawn.rgba.len() * self.style.samples.per_pixel();
