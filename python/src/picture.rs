@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use numpy::{Element, IntoPyArray, PyArray3, PyArrayMethods, PyReadonlyArray};
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray};
 use pyo3::prelude::*;
 use pyo3::types::PyAny;
 use shiftvox::picture::npy::Values;
@@ -78,8 +78,12 @@ fn array(
 impl Picture {
     /// Write the colours as a PNG, replacing what is there. Raises `Error` where the system refuses.
     fn save_png(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        let rgba: PyReadonlyArray<'_, u8, _> =
-            self.rgba.bind(py).cast::<PyArray3<u8>>()?.try_readonly().map_err(refused)?;
+        let rgba: PyReadonlyArray<'_, u8, _> = self
+            .rgba
+            .bind(py)
+            .cast::<PyArrayDyn<u8>>()?
+            .try_readonly()
+            .map_err(refused)?;
         let pixels = rgba.as_slice().map_err(refused)?;
         let pixels = pixels.as_chunks::<4>().0.to_vec();
         if pixels.len() != self.width as usize * self.height as usize {
@@ -108,7 +112,8 @@ impl Picture {
 /// coverages center and any. cage: "frame" (the default) or "corners". bits, frac: width of a word, 16 to 64, and its
 /// fraction. paper: the rules of the image-order paper, which set coverage, tolerance and cage. background: three
 /// numbers, 0 to 255 in sRGB; or transparent, not both. threads: up to 1024, 0 for all; never changes the picture.
-/// buffers: those to compute besides the colours, of "depth", "normals", "voxels" and "nodes"; all unless given.
+/// buffers: those to compute besides the colours, of "depth", "normals", "voxels" and "nodes"; all unless given. A picture
+/// has None for the others.
 ///
 /// Raises `Error` for settings that are out of range or exclude each other, and where a word overflows.
 #[pyfunction]
@@ -181,9 +186,13 @@ pub(crate) fn render(
         }
     };
     let renderer = match &buffers {
-        None => renderer.buffers(BUFFERS.map(|(_, buffer)| buffer)).hashed(true),
+        None => renderer
+            .buffers(BUFFERS.map(|(_, buffer)| buffer))
+            .hashed(true),
         Some(names) => {
-            let wanted = names.iter().map(|name| arguments::one_of("buffers", name, &BUFFERS));
+            let wanted = names
+                .iter()
+                .map(|name| arguments::one_of("buffers", name, &BUFFERS));
             renderer.buffers(wanted.collect::<PyResult<Vec<_>>>()?)
         }
     };

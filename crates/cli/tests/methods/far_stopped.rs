@@ -240,7 +240,10 @@ fn a_budget_of_memory_is_kept() {
         return;
     };
     // Within the budget, and by far less than without one.
-    assert!(bound <= BUDGET && 4 * bound < 3 * free, "{bound} {BUDGET} {free}");
+    assert!(
+        bound <= BUDGET && 4 * bound < 3 * free,
+        "{bound} {BUDGET} {free}"
+    );
 }
 
 #[test]
