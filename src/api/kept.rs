@@ -1,4 +1,4 @@
-//! What a renderer keeps from picture to picture.
+//! Threads, engine and frame of a renderer, kept from picture to picture.
 
 use std::fmt;
 use std::sync::{Mutex, PoisonError};

@@ -10,7 +10,7 @@ use crate::picture::npy::{self, Values};
 use crate::project::Stats;
 use crate::whole;
 
-/// A finished picture: colours, the [buffers](crate::Renderer::buffers) that were requested, and what the engine counted.
+/// A finished picture: colours, the requested [buffers](crate::Renderer::buffers), and the counters of the engine.
 /// All have `width() * height()` entries, row by row from the top left. Colours average all samples of a pixel. Depth,
 /// normal, voxel and node are those of one sample: the pixel's only one, or of several the one right of and below its
 /// middle.
@@ -23,7 +23,7 @@ pub struct Picture {
     operations: Option<Counter>,
 }
 
-/// What a picture is made of.
+/// The contents of a picture.
 #[derive(Debug)]
 pub(super) struct Buffers {
     pub(super) rgba: Vec<[u8; 4]>,

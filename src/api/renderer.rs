@@ -35,7 +35,7 @@ pub enum EngineKind {
     Rays,
 }
 
-/// Draws scenes. Settings are given one after the other; each has a default that is right for a picture. Threads, engine
+/// Draws scenes. Settings are given one after the other. Each has a default that is right for a picture. Threads, engine
 /// and frame are kept for the next picture, until [`Renderer::forget`] or the end of the renderer.
 ///
 /// ```
@@ -555,7 +555,7 @@ mod tests {
         }
     }
 
-    /// What is kept from earlier pictures, of other scenes, sizes, rules and buffers, changes no later one.
+    /// Memory of earlier pictures, of other scenes, sizes, rules and buffers, changes no later one.
     #[test]
     fn a_renderer_that_was_used_draws_as_a_new_one() {
         let scenes = ["menger,depth=2", "sierpinski,depth=30", "terrain,depth=5"];

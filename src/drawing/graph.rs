@@ -68,7 +68,7 @@ impl Canvas {
 pub struct DrawnFrame {
     /// Its integers.
     pub setup: FrameSetup,
-    /// What the engine counted.
+    /// The counters of the engine.
     pub stats: Stats,
     /// Time to draw it, milliseconds.
     pub draw_ms: f64,

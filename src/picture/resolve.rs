@@ -61,7 +61,7 @@ pub struct Resolver<'f> {
     shares: OnceLock<Option<Shares>>,
 }
 
-/// What messages call the memory of pixels.
+/// Name of the pixels' memory in messages.
 const PIXELS: &str = "the pixels of a picture";
 /// Pixels that one thread makes sooner than it can wake another.
 const FEW_PIXELS: usize = 1 << 12;

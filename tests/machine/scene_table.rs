@@ -74,8 +74,8 @@ pub(crate) static SCENES: [TestScene; 17] = [
 impl TestScene {
     /// The scene's graph.
     pub(crate) fn graph(&self) -> &Graph {
-        // On a thread and in a pool of its own: a worker that waited for parts of the graph would take up other work
-        // meanwhile, and that may wait for the same graph.
+        // On a thread and in a pool of its own. A worker that waits for parts of the graph takes up other work, which
+        // may wait for the same graph.
         let pool = || rayon::ThreadPoolBuilder::new().num_threads(1).build();
         let build = || pool().expect("a thread").install(|| self.build());
         let spawned = || std::thread::scope(|scope| scope.spawn(build).join());
