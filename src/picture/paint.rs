@@ -76,6 +76,10 @@ impl<'p, const N: usize> Painter<'p, N> {
 
     /// One sample a pixel.
     fn single(&self, y: u32, to: &mut [[u8; N]]) -> Result<(), ResolveError> {
+        if self.shares.is_none() {
+            self.flat(y, to);
+            return Ok(());
+        }
         to.copy_from_slice(&self.behind);
         let linear = self.shader.linear;
         let shown = |color, share| pixel(linear.encode_16(lit(linear.decode(color), share)), 255);
@@ -84,6 +88,19 @@ impl<'p, const N: usize> Painter<'p, N> {
                 *to = shown;
             }
         })
+    }
+
+    /// One sample a pixel, lit in full: a colour that becomes light and a colour again stays the same.
+    fn flat(&self, y: u32, to: &mut [[u8; N]]) {
+        let width = self.frame.width as usize;
+        let nodes = &self.frame.node[y as usize * width..][..width];
+        for ((to, &node), &behind) in to.iter_mut().zip(nodes).zip(&self.behind) {
+            *to = match self.color.get(node as usize) {
+                Some(&color) => pixel(color, 255),
+                None if node == NO_NODE => behind,
+                None => pixel([0; 3], 255),
+            };
+        }
     }
 
     /// Several samples a pixel: the mean of their light.
