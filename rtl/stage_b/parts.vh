@@ -10,7 +10,7 @@ assign p_voxel_level = p_level;
 
 // ---------------------------------------------------------------- the verdict
 verdict #(W) rule (.leaf(leaf), .w_min(r_w_min), .has_lod_depth(has_lod_depth), .lod_depth(lod_depth), .solid(solid));
-// There is no search for a hidden record: none that is subdivided is that small where the fit stops (docs/rtl.md, 4).
+// There is no search for a hidden record: none that is subdivided is that small where the fit stops (docs/rtl.md, Cycles).
 assign quadrant = only;
 
 // Outlines are for drawing alone.
