@@ -49,7 +49,7 @@ const SCENES: [(&str, f64); 10] = [
     ("gen:wires", 16.0),
 ];
 
-/// `cargo test --release --test graph scale::bytes -- --nocapture` prints bytes per voxel.
+/// `cargo test --release --test graph scale bytes -- --nocapture` prints the table of `spec/graph.md`.
 #[test]
 fn bytes_a_voxel_of_each_generator() {
     for (spec, limit) in SCENES {
