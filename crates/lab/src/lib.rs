@@ -3,13 +3,10 @@
 
 pub mod bench;
 pub mod bounds;
-pub mod error;
-pub mod far_path;
-pub mod flicker;
 pub mod float_rays;
 pub mod measure;
-pub mod methods;
 pub mod model;
+pub mod quality;
 pub mod report;
 pub mod reproduce;
 pub mod stress;

@@ -1,10 +1,9 @@
-//! Interleaved runs: every contender draws a frame, then every one the next.
+//! Interleaved runs: each round draws one frame per contender.
 //!
-//! What drifts while a measurement goes on (other work, clock rates) then
-//! hits all alike, and a contender does not find the caches as its own last
-//! frame left them. A frame is: clear, traverse, colour of each sample
-//! written. Buffers are made before the first frame and reused. One frame
-//! before those is for the counters and the picture.
+//! Drift during a measurement (other work, clock rates) then affects all contenders, and none finds
+//! the caches as its own last frame left them. A frame is: clear, traverse, write the colour of each
+//! sample. Buffers are made before the first frame and reused. One frame before those gives the
+//! counters and the picture.
 
 use std::collections::BTreeMap;
 use std::hint::black_box;
@@ -28,60 +27,41 @@ pub struct Schedule {
 
 /// An engine and the frame that it draws.
 pub struct Contender<'c> {
-    /// What an error calls it.
+    /// Its name in errors.
     pub name: String,
-    /// What it draws.
+    /// The scene.
     pub graph: &'c Graph,
     /// The frame.
     pub setup: FrameSetup,
-    /// Threads of the pool that it draws in, 1 or more.
+    /// Threads of its pool, 1 or more.
     pub threads: usize,
-    /// What draws it.
+    /// What draws the frame.
     pub drawer: Drawer<'c>,
-    /// Nodes whose attributes are read besides those that are seen.
+    /// Nodes whose attributes are read besides those of visible voxels.
     pub attributes: Vec<u32>,
 }
 
 /// What draws the frames of a contender.
 pub enum Drawer<'c> {
-    /// An engine, every one.
+    /// An engine, which draws every frame.
     Engine(Box<dyn Engine + Send>),
-    /// A viewer, those that change: the first.
+    /// A viewer, which draws only frames that change.
     Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
-impl<'c> Contender<'c> {
-    /// A contender that draws every frame, on one thread.
-    pub(super) fn alone(
-        name: String,
-        graph: &'c Graph,
-        setup: FrameSetup,
-        engine: Box<dyn Engine + Send>,
-    ) -> Self {
-        Self {
-            name,
-            graph,
-            setup,
-            threads: 1,
-            drawer: Drawer::Engine(engine),
-            attributes: Vec::new(),
-        }
-    }
-}
-
-/// What a contender took.
+/// A contender's times and counters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
     /// Wall time of a frame.
     pub wall: Summary,
-    /// Processor time of the drawing thread; only for contenders on one
-    /// thread, and where the system measures it.
+    /// Processor time of the drawing thread: of contenders on one thread, where the system measures
+    /// it.
     pub thread: Option<Summary>,
     /// Counters of one frame.
     pub counters: Stats,
 }
 
-/// Why there is no measurement.
+/// An error of a measurement.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BenchError {
     /// An engine did not finish its frame.
@@ -95,7 +75,7 @@ pub enum BenchError {
     /// A frame cannot be set up.
     #[error(transparent)]
     Setup(#[from] SetupError),
-    /// Samples make no picture, or none that can be compared.
+    /// Samples make no picture, or one that cannot be compared.
     #[error("{0}")]
     Picture(String),
     /// The system gave no threads.
@@ -108,7 +88,7 @@ pub enum BenchError {
     },
 }
 
-/// A picture whose memory is there before the first frame.
+/// A picture whose memory is touched before the first frame.
 fn colors(width: u32, height: u32) -> Colors {
     let mut colors = Colors::new(width, height);
     colors.words.fill(1);
@@ -135,8 +115,8 @@ impl<'p> Harness<'p> {
         }
     }
 
-    /// Measures all contenders in turn. `look` is shown each contender's first
-    /// frame, voxels and all, by the contender's place in the list, outside of the times.
+    /// Measures all contenders. `look` gets each contender's place in the list and its first frame,
+    /// with voxels, outside of the times.
     ///
     /// # Errors
     /// When an engine fails, or there are no threads.
@@ -194,17 +174,6 @@ impl<'p> Harness<'p> {
             .collect())
     }
 
-    /// How often each contender draws.
-    #[must_use]
-    pub fn schedule(&self) -> Schedule {
-        self.schedule
-    }
-
-    /// Forgets the buffers, which the next race makes anew.
-    pub fn release_buffers(&mut self) {
-        self.buffers.clear();
-    }
-
     fn make_pool(&mut self, threads: usize) -> Result<(), BenchError> {
         if self.pools.contains_key(&threads) {
             return Ok(());
@@ -218,7 +187,7 @@ impl<'p> Harness<'p> {
         Ok(())
     }
 
-    /// A frame with its voxels and counters, which is not timed.
+    /// A frame with voxels and counters, not timed.
     fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
         let setup = &contender.setup;
         let mut frame = Frame::new(setup.width, setup.height, false);

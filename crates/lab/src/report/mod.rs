@@ -5,4 +5,4 @@ pub mod html;
 pub mod plot;
 pub mod table;
 
-pub use table::{Cell, Table, grouped};
+pub use table::{Cell, Row, Table, grouped};

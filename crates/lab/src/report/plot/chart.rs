@@ -56,6 +56,8 @@ pub struct Series {
     pub dots: bool,
     /// Whether it is grey: there for comparison.
     pub grey: bool,
+    /// Half the lengths of the points' error bars, in their order; empty: none.
+    pub deviations: Vec<f64>,
 }
 
 impl Series {
@@ -63,11 +65,8 @@ impl Series {
     #[must_use]
     pub fn curve(name: impl Into<String>, points: impl IntoIterator<Item = (f64, f64)>) -> Self {
         Self {
-            name: name.into(),
-            points: points.into_iter().map(Point::from).collect(),
             line: true,
-            dots: true,
-            grey: false,
+            ..Self::dots(name, points.into_iter().map(Point::from).collect())
         }
     }
 
@@ -80,6 +79,7 @@ impl Series {
             line: false,
             dots: true,
             grey: false,
+            deviations: Vec::new(),
         }
     }
 
@@ -298,6 +298,13 @@ pub(super) fn draw(canvas: &mut Canvas, chart: &Chart) {
         }
         if series.dots {
             places.iter().for_each(|&at| canvas.dot(at, color));
+        }
+        for (point, deviation) in series.points.iter().zip(&series.deviations) {
+            let ends = [point.y - deviation, point.y + deviation];
+            if has_place(chart, point) && (chart.y.scale == Scale::Linear || ends[0] > 0.0) {
+                let across = right_of(point.x);
+                canvas.line(&ends.map(|end| (across, below(end))), color, 1, "");
+            }
         }
         for point in points {
             let Some(label) = &point.label else { continue };

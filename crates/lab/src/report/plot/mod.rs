@@ -3,11 +3,13 @@
 mod bars;
 mod canvas;
 mod chart;
+mod of_rows;
 
 use canvas::{Canvas, Color};
 
 pub use bars::{Bar, Stack};
 pub use chart::{Axis, Chart, Point, Scale, Series};
+pub use of_rows::{ColumnAxis, RowPlot, dominated, dominates};
 
 /// One plot of a picture.
 #[derive(Debug, Clone, PartialEq)]
@@ -112,6 +114,7 @@ mod tests {
                 bars: vec![Bar {
                     name: "a & b".to_owned(),
                     value: 12.5,
+                    deviation: 1.0,
                 }],
             },
             Panel::Stacked {
