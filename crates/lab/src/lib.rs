@@ -10,4 +10,3 @@ pub mod quality;
 pub mod report;
 pub mod reproduce;
 pub mod stress;
-pub mod vertex_error;

@@ -70,15 +70,11 @@ type Settings<'t> = Vec<(&'t str, &'t str)>;
 fn combinations<'t>(alternatives: &[(&'t str, Vec<&'t str>)]) -> Vec<Settings<'t>> {
     let mut all: Vec<Settings<'t>> = vec![Vec::new()];
     for (key, values) in alternatives {
-        let with = |value: &&'t str| {
-            let before = all.iter().cloned();
-            let with = before.map(move |mut one| {
-                one.push((*key, *value));
-                one
-            });
-            with.collect::<Vec<_>>()
+        let with = |one: Settings<'t>| {
+            let values = values.iter();
+            values.map(move |value| [&one[..], &[(*key, *value)]].concat())
         };
-        all = values.iter().flat_map(with).collect();
+        all = all.into_iter().flat_map(with).collect();
     }
     all
 }

@@ -141,7 +141,10 @@ pub(super) fn run(
     fields["rows"] = all.iter().map(Row::json).collect();
     let results = Results {
         document: report::document("bench time", json!(fields)),
-        tables: vec![table("Time per frame", &all)],
+        tables: groups
+            .iter()
+            .map(|(name, rows)| table(name, rows))
+            .collect(),
         rows: Table::collect("Time per frame", &all),
         more_tables: Vec::new(),
         preface: context.markdown(schedule),

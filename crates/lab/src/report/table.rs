@@ -2,19 +2,17 @@
 
 use std::fmt::Write;
 
-use serde::Serialize;
 use serde_json::Value;
 
 /// One entry.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(untagged)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
     /// Words.
     Text(String),
     /// A whole number.
     Count(u64),
     /// A number, and how many digits after the point people see.
-    Number(f64, #[serde(skip)] usize),
+    Number(f64, usize),
     /// Empty.
     None,
 }
@@ -71,10 +69,19 @@ impl Cell {
 
     fn json(&self) -> Value {
         match self {
+            Self::Text(text) => text.as_str().into(),
+            Self::Count(count) => (*count).into(),
             // JSON has no infinity.
             Self::Number(value, _) if value.is_infinite() => value.to_string().into(),
-            cell => serde_json::json!(cell),
+            Self::Number(value, _) => (*value).into(),
+            Self::None => Value::Null,
         }
+    }
+}
+
+impl serde::Serialize for Cell {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        self.json().serialize(to)
     }
 }
 
@@ -146,6 +153,9 @@ impl Row {
             .collect()
     }
 }
+
+/// Most letters of columns that blocks repeat.
+const MOST_KEY_WIDTH: usize = 60;
 
 /// A table. Every row is as long as `columns`.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -253,7 +263,7 @@ impl Table {
     }
 
     /// The table as text in lines of at most 100 letters: words to the left, numbers to the right.
-    /// Columns without room go to a second block, which begins with the first column again.
+    /// Columns without room go to a second block, which begins with the first columns of words again.
     #[must_use]
     pub fn text(&self) -> String {
         let mut columns: Vec<Vec<Vec<String>>> = Vec::new();
@@ -268,16 +278,23 @@ impl Table {
             lines.map(|line| line.chars().count()).max().unwrap_or(0)
         };
         let mut text = wrapped(&self.title, TEXT_WIDTH).join("\n");
+        let mut keys: Vec<usize> = vec![0];
+        let mut key_width = width(0);
+        for column in (1..columns.len()).take_while(|&column| self.is_of_words(column)) {
+            key_width += width(column) + 2;
+            if key_width < MOST_KEY_WIDTH {
+                keys.push(column);
+            }
+        }
+        let taken = |block: &[usize]| block.iter().map(|&c| width(c) + 2).sum::<usize>();
         let mut block: Vec<usize> = Vec::new();
-        let mut room = TEXT_WIDTH;
         for column in 0..columns.len() {
-            if room < width(column) + 2 && block.len() > 1 {
+            if taken(&block) + width(column) > TEXT_WIDTH && block.len() > keys.len() {
                 text += &self.block(&columns, &block, width);
-                block.truncate(1);
-                room = TEXT_WIDTH - width(block[0]);
+                text.push('\n');
+                block.clone_from(&keys);
             }
             block.push(column);
-            room = room.saturating_sub(width(column) + 2);
         }
         text + &self.block(&columns, &block, width)
     }
@@ -447,6 +464,16 @@ mod tests {
         let text = table.text();
         assert!(text.lines().all(|line| line.len() <= TEXT_WIDTH), "{text}");
         assert_eq!(text.matches("first").count(), 3, "{text}");
+        let keyed = Table {
+            rows: vec![vec![
+                "k".into(),
+                long.as_str().into(),
+                Cell::None,
+                long.as_str().into(),
+            ]],
+            ..Table::of("t", "key a b c")
+        };
+        assert_eq!(keyed.text().matches("key").count(), 1, "{}", keyed.text());
     }
 
     #[test]
