@@ -79,7 +79,7 @@ def _run(command, scenes, options, parse):
 def run(command, *scenes, **options):
     """Run a command of the program and return what it prints with --json.
 
-    `run("bench error", "gen:wires,depth=5", size=48, runs=1)`; keywords are the flags that
+    `run("bench quality", "gen:wires,depth=5", size=48, runs=1)`; keywords are the flags that
     `shiftvox COMMAND --help` lists, with underscores for dashes. Scenes are files, generators, or
     `Scene` objects.
 

@@ -114,7 +114,7 @@ pub fn answers(rows: &[Row]) -> Vec<Row> {
                     };
                     let mut row = Row::default();
                     for name in [
-                        "scene", "size", "height", "family", "method", "psnr", "flip",
+                        "scene", "stem", "size", "height", "family", "method", "psnr", "flip",
                     ] {
                         row.put(name, best.get(name).clone());
                     }

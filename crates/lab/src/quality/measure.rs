@@ -247,6 +247,8 @@ fn at(
     let blank = |method: &str, family: &str, kind: &str| {
         let mut row = Row::default();
         row.put("scene", scene.name);
+        let stem = std::path::Path::new(scene.name).file_stem();
+        row.put("stem", stem.map(|stem| stem.to_string_lossy().into_owned()));
         row.put("size", format!("{}x{}", camera.width, camera.height));
         row.put("height", u64::from(camera.height));
         row.put("method", method);

@@ -1,16 +1,16 @@
 //! Far voxels along a walk: neither threads, occlusion, latency nor a memory budget changes a pixel.
 
-use glam::{DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 use shiftvox::graph::Silent;
 use shiftvox::project::Camera;
 use shiftvox_mesh::drawing::mesh_view::view_of;
 use shiftvox_mesh::far::store::encode;
 use shiftvox_mesh::far::view::{FarViewer, Opacity, ViewOptions};
 use shiftvox_mesh::far::{BuildOptions, FarFile, build};
-use shiftvox_mesh::generate;
+use shiftvox_mesh::{Instances, generate};
 
 /// Frames of the walk.
-const FRAMES: u32 = 10;
+const FRAMES: u32 = 5;
 
 /// The camera of a frame of Wagner et al. 2007, Fig. 5: once around, from two and a half sizes away
 /// to a third of one and back, from a little above.
@@ -36,11 +36,18 @@ fn camera(file: &FarFile, frame: u32) -> Camera {
 
 #[test]
 fn only_times_change_on_a_walk() {
+    // Blocks of houses behind, beside and above each other.
     let (kind, seed) = generate::parse("mesh:village,seed=1").unwrap();
-    let mesh = generate::generate(kind, seed);
+    let village = generate::generate(kind, seed);
+    let (low, high) = village.bounds();
+    let places = (0..27).map(|at| {
+        let steps = DVec3::new(f64::from(at % 3), f64::from(at / 3 % 3), f64::from(at / 9));
+        DAffine3::from_translation(steps * (high - low))
+    });
+    let mesh = Instances::new(village, places.collect());
     let options = BuildOptions {
-        rays: Some(60_000),
-        leaf_triangles: 100,
+        rays: Some(80_000),
+        leaf_triangles: 500,
         ..BuildOptions::default()
     };
     let bytes = [1, 2].map(|threads| {
