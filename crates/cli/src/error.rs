@@ -52,11 +52,11 @@ impl Kind {
 /// A failure.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CliError {
-    /// The kind, hence the exit code.
+    /// The kind, which decides on the exit code.
     pub kind: Kind,
-    /// What happened, and where.
+    /// The error and its place.
     pub message: String,
-    /// What the user can do.
+    /// Advice for the user.
     pub advice: Option<String>,
 }
 

@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-/// Stands for byte 0.
+/// The code point of byte 0.
 const FIRST: u32 = 0x10_ff00;
 
-/// The byte that a letter stands for.
+/// The byte that a letter encodes.
 pub(super) fn byte_of(letter: char) -> Option<u8> {
     u32::from(letter).checked_sub(FIRST)?.try_into().ok()
 }
@@ -22,7 +22,7 @@ pub(super) fn parser() -> impl TypedValueParser<Value = String> {
     OsStringValueParser::new().map(|name| of_bytes(name.as_encoded_bytes()))
 }
 
-/// The name of a path: for documents, and for what is put together of names.
+/// The name of a path, for documents and for composed names.
 pub(super) fn of_path(path: &Path) -> String {
     of_bytes(path.as_os_str().as_encoded_bytes())
 }

@@ -22,7 +22,7 @@ pub(super) fn camera(camera: &Camera) -> Value {
     })
 }
 
-/// What drawing one scene took.
+/// The cost of drawing one scene.
 pub(super) fn drawn(
     name: &str,
     load_ms: f64,

@@ -97,7 +97,7 @@ impl fmt::Display for Tolerance {
     }
 }
 
-/// Numbers of threads: `2`, or `1,2,4`; 0 stands for all that the machine has.
+/// Numbers of threads: `2`, or `1,2,4`. 0 means all processors.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ThreadCounts(pub Vec<u16>);
 

@@ -1,4 +1,4 @@
-//! What is made of a scene for methods to draw: graphs, decimated meshes, far and textured voxels.
+//! Data that methods draw: graphs, decimated meshes, far and textured voxels.
 
 use std::time::Instant;
 

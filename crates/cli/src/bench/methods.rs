@@ -36,7 +36,7 @@ pub(super) enum Choice {
         voxel_px: f64,
         aa_log2: u32,
     },
-    /// Textured voxels, eroded so often; `None`: by distance.
+    /// Textured voxels with so many erosions, or the erosion that the distance requires.
     Textured { level: Option<u32>, aa_log2: u32 },
 }
 
@@ -192,7 +192,7 @@ impl std::str::FromStr for Choices {
             }
             name => name,
         };
-        // What a family of mesh methods has if nothing is said.
+        // Default alternatives of the families of mesh methods.
         let defaults: &[(&str, &str)] = match name {
             "triangles" | "hybrid" => &[("aa", "1+2+4")],
             "decimated" => &[("decimated", "4+16+64+256"), ("aa", "1+2+4")],

@@ -30,7 +30,7 @@ enum Experiment {
     /// grows, and exponents of power laws are fitted. With --threads 1,2 engines that use threads
     /// are measured with each number.
     Time(Box<time::TimeArgs>),
-    /// Measure how far pictures are from the truth, and what they cost: methods x cameras x samples
+    /// Measure error and cost of pictures: methods x cameras x samples
     ///
     /// The truth is exact rays, of a mesh its triangles with 256 samples per pixel. A second
     /// reference gives the noise floor. Methods draw in turn, on one thread. Beside each time are

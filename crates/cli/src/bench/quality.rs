@@ -98,7 +98,7 @@ impl QualityArgs {
         self.motions.iter().map(motion).collect()
     }
 
-    /// What methods of a scene draw, and the scene's camera.
+    /// The data of a scene's methods, the methods, and the scene's camera.
     fn open(
         &self,
         name: &str,

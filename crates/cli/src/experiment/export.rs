@@ -13,7 +13,7 @@ use shiftvox::whole;
 use shiftvox_lab::report::Table;
 use shiftvox_lab::report::plot::{self, Panel};
 
-/// The part of a plot's file name that stands for a scene.
+/// The placeholder for a scene in the name of a plot's file.
 const SCENE_FIELD: &str = "{scene}";
 
 /// Files of results.

@@ -44,7 +44,7 @@ pub enum Frames {
 pub struct Variant {
     /// Its name in tables.
     pub name: &'static str,
-    /// What is off, and whether the picture may change.
+    /// The technique that is off, and whether the picture may change.
     pub about: &'static str,
     /// Changes the frame's settings, for techniques that are settings.
     pub adjust: fn(&mut SetupOptions),

@@ -35,13 +35,13 @@ pub struct Contender<'c> {
     pub setup: FrameSetup,
     /// Threads of its pool, 1 or more.
     pub threads: usize,
-    /// What draws the frame.
+    /// Its source of frames.
     pub drawer: Drawer<'c>,
     /// Nodes whose attributes are read besides those of visible voxels.
     pub attributes: Vec<u32>,
 }
 
-/// What draws the frames of a contender.
+/// The source of a contender's frames.
 pub enum Drawer<'c> {
     /// An engine, which draws every frame.
     Engine(Box<dyn Engine + Send>),
@@ -196,7 +196,7 @@ impl<'p> Harness<'p> {
             Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
             Drawer::Viewer(viewer) => {
                 viewer.render(setup)?;
-                // What is timed is a frame after that.
+                // Later frames are timed, so their counters are those of a second one.
                 let stats = viewer.render(setup)?;
                 if let Some(shown) = viewer.frame() {
                     frame.clone_from(shown);
@@ -273,7 +273,7 @@ mod tests {
     use std::sync::{Arc, Mutex};
 
     use super::*;
-    use shiftvox::graph::{GraphView, Placement, Silent, Store};
+    use shiftvox::graph::{GraphView, Silent};
     use shiftvox::project::{Camera, SetupOptions};
 
     /// Notes its name for each frame and how many threads it finds.
@@ -296,19 +296,7 @@ mod tests {
 
     #[test]
     fn contenders_take_turns_in_pools_of_their_own() {
-        let graph = Graph {
-            depth: 0,
-            root: 0,
-            mask: Store::from(vec![]),
-            first: Store::from(vec![]),
-            links: Store::from(vec![]),
-            color: Store::from(vec![[1, 2, 3]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 1,
-            placement: Placement::default(),
-        };
+        let graph = crate::test_graphs::one_node(0, 0, [1, 2, 3]);
         let camera = Camera {
             eye: glam::DVec3::new(0.5, -3.0, 0.5),
             target: glam::DVec3::splat(0.5),

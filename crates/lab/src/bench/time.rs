@@ -52,7 +52,7 @@ pub struct TimePlan<'p> {
     pub sizes: &'p [(u32, u32)],
     /// Thread counts, each 1 or more. Engines that use one thread are measured on one.
     pub threads: &'p [usize],
-    /// What frames are drawn with.
+    /// Settings of the frames.
     pub options: SetupOptions,
     /// The engines and their variants.
     pub families: &'p [Family],
@@ -298,8 +298,8 @@ pub fn table(title: &str, rows: &[Row]) -> Table {
     Table::select(title, rows, &COLUMNS).condensed()
 }
 
-/// A plot for each scene, or one of a kind of scene whose depth varies: curves where size or depth
-/// varies, else bars; with error bars.
+/// Plots with error bars, one per scene or per kind of scene whose depth varies. Scans are curves;
+/// other measurements are bars.
 #[must_use]
 pub fn panels(rows: &[Row]) -> Vec<Panel> {
     let is_one_plot = |a: &Row, b: &Row| {

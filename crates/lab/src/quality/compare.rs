@@ -1,4 +1,4 @@
-//! Which methods are worth having: comparisons of the rows of one scene and camera.
+//! Comparisons of the methods of one scene and camera.
 
 use crate::report::plot::dominates;
 use crate::report::{Cell, Row};
@@ -6,8 +6,9 @@ use crate::report::{Cell, Row};
 /// Less by a smaller part than this is not worth mentioning.
 const WORTH_MENTIONING: f64 = 0.01;
 
-/// Adds the column `beaten_by`: the method of the same family with the least work that has no more
-/// work, no more wrong samples and no greater error, and one of them less by a hundredth or more.
+/// Adds the column `beaten_by`. A method beats another of its family if it has no more work, no more
+/// wrong samples and no greater error, and one of these is less by a hundredth or more. Of several,
+/// the one with the least work is named.
 pub(super) fn add_beaten_by(rows: &mut [Row]) {
     let standing = |row: &Row| {
         let samples = row.get("wrong_share").number();
@@ -93,8 +94,8 @@ const CRITERIA: [Criterion; 3] = [
     ("s to build", "build_ms", 1e3, &[0.0, 0.1, 1.0, 10.0, 100.0]),
 ];
 
-/// The method with the least error of each family at equal time, bytes and time to build: a row for
-/// each scene, camera, criterion, limit and family of which a method keeps to the limit.
+/// The method with the least error of each family at equal time, bytes and time to build. There is a
+/// row for each scene, camera, criterion, limit and family that has a method within the limit.
 #[must_use]
 pub fn answers(rows: &[Row]) -> Vec<Row> {
     let is_together = |a: &Row, b: &Row| {
@@ -132,7 +133,7 @@ pub fn answers(rows: &[Row]) -> Vec<Row> {
 mod tests {
     use super::*;
 
-    /// Rows of methods: name and family, bytes, time to build, error; times are 1, 2, 3 ms.
+    /// Rows of methods with name, family, bytes, time to build and error. Times are 1, 2, 3 ms.
     fn rows(methods: &[(&str, &str, u64, f64, f64)]) -> Vec<Row> {
         let row = |(number, method): (usize, &(&str, &str, u64, f64, f64))| {
             let (name, family, bytes, build_ms, rms) = *method;

@@ -112,19 +112,7 @@ mod tests {
 
     /// Sierpinski's tetrahedron of so many levels: one node.
     fn sierpinski(depth: u32) -> Graph {
-        Graph {
-            depth,
-            root: 0,
-            mask: Store::from(vec![0b0110_1001]),
-            first: Store::from(vec![0]),
-            links: Store::from(vec![0; 4]),
-            color: Store::from(vec![[9, 8, 7]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 4u64.pow(depth),
-            placement: Placement::default(),
-        }
+        crate::test_graphs::one_node(depth, 0b0110_1001, [9, 8, 7])
     }
 
     fn set_up(away: f64, lod_px: f64) -> FrameSetup {

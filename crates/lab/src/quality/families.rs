@@ -34,7 +34,7 @@ fn examined(shown: &Shown<'_>, counters: &[Sum], solid: &'static [&'static str])
 pub struct Triangles<'m> {
     /// The triangles.
     pub mesh: &'m Mesh,
-    /// Of how many triangles one is left; 1: all of them.
+    /// Original triangles per triangle: 1 if the mesh is whole.
     pub one_of: u32,
     /// Bytes of the mesh in compact form.
     pub bytes: u64,

@@ -8,7 +8,7 @@ use crate::measure::{ColorError, CoverageBias, Flip, SizeError};
 pub struct PictureError {
     /// Root of the mean squared difference of a channel, linear light from 0 to 1.
     pub rms_linear: f64,
-    /// The same in decibels: `-20 log10`; infinite for equal pictures.
+    /// The same in decibels, `-20 log10`. Infinite for equal pictures.
     pub psnr_linear: f64,
     /// Structural similarity of the luma, 1 for equal pictures.
     pub ssim: f64,

@@ -28,7 +28,7 @@ use shiftvox_mesh::Surface;
 pub struct QualityPlan {
     /// How often each method draws.
     pub schedule: Schedule,
-    /// Camera motions that are filmed; none: no flicker.
+    /// Camera motions to film. Without any there is no flicker.
     pub motions: Vec<Motion>,
     /// Frames of a film, 2 or more.
     pub frames: u32,
@@ -125,7 +125,7 @@ fn truth(graph: &Graph, camera: &Camera, aa_log2: u32) -> Result<FrameSetup, Ben
     Ok(setup)
 }
 
-/// What exact rays see at the sample points of a picture.
+/// The voxels that exact rays hit at the sample points of a picture.
 struct Exact<'m> {
     graph: &'m Graph,
     aa_log2: u32,

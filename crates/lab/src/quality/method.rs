@@ -16,9 +16,9 @@ pub struct Method<'m> {
     pub settings: Vec<(&'static str, Cell)>,
     /// A word by which plots colour it, such as its coverage rule.
     pub kind: String,
-    /// The voxels that its samples see; `None`: it does not draw voxels of a graph.
+    /// The graph whose voxels it draws, if it draws any.
     pub graph: Option<&'m Graph>,
-    /// Bytes of what it draws.
+    /// Bytes of its data.
     pub bytes: Option<u64>,
     /// Time to make that, milliseconds.
     pub build_ms: Option<f64>,
@@ -26,7 +26,7 @@ pub struct Method<'m> {
     pub drawing: Box<dyn Fn() -> Box<dyn Drawable + 'm> + 'm>,
     /// Examines a drawn frame.
     pub examine: Box<Examine<'m>>,
-    /// Draws with the level of detail of another camera; `None`: it has no level of detail.
+    /// Draws with the level of detail of another camera, if it has levels of detail.
     pub with_cut_of: Option<Box<WithCutOf<'m>>>,
 }
 
@@ -81,7 +81,7 @@ impl From<DrawError> for Refused {
 pub struct Examined {
     /// Share of each pixel that is covered, 0 to 1.
     pub shares: Vec<f32>,
-    /// What samples see; `None` for methods without samples of voxels.
+    /// Voxels at the samples; `None` for methods that draw no voxels.
     pub samples: Option<Samples>,
     /// Distances of vertices from their exact projections, pixels.
     pub vertices: Option<Spread>,
@@ -91,7 +91,7 @@ pub struct Examined {
     pub remark: Option<String>,
 }
 
-/// What samples see, with `2^aa_log2` of them along each axis of a pixel.
+/// Voxels at the samples, with `2^aa_log2` samples along each axis of a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Samples {
     /// Samples per pixel and axis, as a power of two.

@@ -1,8 +1,8 @@
-//! What pictures cost and how far they are from the truth: methods x cameras x samples.
+//! Cost and error of pictures: methods x cameras x samples.
 //!
 //! A [`Method`] draws. A [`Scene`] has the truth: exact rays, or a mesh's triangles at 256 samples
-//! per pixel. [`measure()`] gives a row per method and camera, with time, error and flicker, and
-//! says which methods others beat.
+//! per pixel. [`measure()`] returns a row per method and camera, with time, error and flicker. It
+//! reports which methods others beat.
 
 mod compare;
 mod cut;

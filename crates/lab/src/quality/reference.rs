@@ -176,26 +176,14 @@ mod tests {
 
     use super::*;
     use shiftvox::frame::Frame;
-    use shiftvox::graph::{Placement, Silent, Store};
+    use shiftvox::graph::Silent;
     use shiftvox::picture::resolve;
     use shiftvox::project::{Engine, SetupOptions};
     use shiftvox::rays::Rays;
 
     /// One voxel, `[0, 1]^3`.
     fn cube() -> Graph {
-        Graph {
-            depth: 0,
-            root: 0,
-            mask: Store::from(vec![]),
-            first: Store::from(vec![]),
-            links: Store::from(vec![]),
-            color: Store::from(vec![[200, 40, 90]]),
-            normal: Store::from(vec![]),
-            opacity: Store::from(vec![]),
-            level_start: vec![],
-            voxels: 1,
-            placement: Placement::default(),
-        }
+        crate::test_graphs::one_node(0, 0, [200, 40, 90])
     }
 
     /// A camera that looks along y at the cube `[0, 1]^3`, whose near face is

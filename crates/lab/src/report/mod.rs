@@ -1,5 +1,4 @@
-//! Results for people and programs: tables, plots, pages. Knows nothing of
-//! what is measured.
+//! Results for people and programs: rows, tables, plots, pages. Independent of the experiments.
 
 pub mod html;
 pub mod plot;

@@ -238,8 +238,8 @@ impl Table {
         }
     }
 
-    /// The table without columns that are empty or the same in every row. The title tells their
-    /// values.
+    /// The table without columns that are empty or the same in every row. Their values are in the
+    /// title.
     #[must_use]
     pub fn condensed(&self) -> Self {
         let is_constant = |column: usize| {

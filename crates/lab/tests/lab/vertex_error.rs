@@ -2,8 +2,8 @@
 //!
 //! A perspective projection keeps lines but not midpoints. Here a cube's lattice of vertices is
 //! projected exactly for the first levels. Then it is halved on the screen, with floor midpoints in
-//! fixed point, as the machine does with `--cage corners`. The arithmetic is written anew, on whole
-//! lattices in place of eight corners, so that it can contradict the machine.
+//! fixed point, as the machine does with `--cage corners`. The arithmetic is independent of the
+//! machine's: it works on whole lattices, not on eight corners.
 
 use glam::DVec3;
 use shiftvox::graph::Placement;
@@ -13,10 +13,10 @@ use shiftvox::project::{Camera, FrameSetup, SetupOptions};
 /// Half the diagonal of a unit cube.
 const HALF_DIAGONAL: f64 = 0.866_025_403_784_438_6;
 
-/// Four views of the unit cube, 1024 x 1024, that look at its centre. Three see it in direction
-/// (1, 0.9, 0.6) from 1.5, 4 and 16 sides away, counted from half a side off the centre, with a field
-/// of view that a sphere around the cube fills. The fourth stands 0.3 sides before a face, seven
-/// eighths along its width and at half its height, and sees 60 degrees.
+/// Four views of the unit cube, 1024 x 1024, with its centre in the middle. Three are in direction
+/// (1, 0.9, 0.6), from 1.5, 4 and 16 sides away, counted from half a side off the centre. A sphere
+/// around the cube fills their field of view. The fourth is 0.3 sides before a face, seven eighths
+/// along its width and at half its height, and has 60 degrees.
 fn views() -> [Camera; 4] {
     let centre = DVec3::splat(0.5);
     let camera = |eye: DVec3, fov_degrees: f64| Camera {

@@ -7,7 +7,7 @@ use crate::report::table::Cell;
 /// A bar made of parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stack {
-    /// What stands beside it.
+    /// Its label.
     pub name: String,
     /// The lengths of its parts, 0 or more.
     pub values: Vec<f64>,
@@ -16,11 +16,11 @@ pub struct Stack {
 /// A bar of one part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bar {
-    /// What stands beside it.
+    /// Its label.
     pub name: String,
     /// Its length, 0 or more.
     pub value: f64,
-    /// Half the length of its error bar; 0: none.
+    /// Half the length of its error bar, or 0.
     pub deviation: f64,
 }
 

@@ -3,10 +3,10 @@
 use super::{Axis, Bar, Chart, Panel, Point, Scale, Series};
 use crate::report::Row;
 
-/// An axis: the column, and what the axis says of it.
+/// An axis: its column and its label.
 pub type ColumnAxis<'a> = (&'a str, &'a str);
 
-/// Which columns make a plot, and how.
+/// The columns of a plot.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct RowPlot<'a> {
     /// Above the plot.
