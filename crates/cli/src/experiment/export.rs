@@ -1,6 +1,6 @@
 //! Results to stdout and to files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use serde_json::Value;
@@ -128,7 +128,7 @@ pub(crate) fn write_with_plots(
     write(results, &args, console)
 }
 
-fn file(path: &PathBuf, text: &str, args: &ExportArgs, console: &Console) -> Result<(), CliError> {
+fn file(path: &Path, text: &str, args: &ExportArgs, console: &Console) -> Result<(), CliError> {
     whole::write(path, text.as_bytes(), args.force)?;
     console.note(format!("{}: written", path.display()));
     Ok(())

@@ -49,6 +49,15 @@ pub enum Drawer<'c> {
     Viewer(Box<Viewer<'c, Box<dyn Engine + Send>>>),
 }
 
+impl Contender<'_> {
+    fn failed(&self, source: EngineError) -> BenchError {
+        BenchError::Engine {
+            who: self.name.clone(),
+            source,
+        }
+    }
+}
+
 /// A contender's times and counters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measured {
@@ -187,12 +196,20 @@ impl<'p> Harness<'p> {
         Ok(())
     }
 
+    /// Does work in the pool of a contender.
+    fn in_pool<T: Send>(&self, threads: usize, work: impl FnOnce() -> T + Send) -> T {
+        match self.pools.get(&threads) {
+            Some(pool) => pool.install(work),
+            None => work(),
+        }
+    }
+
     /// A frame with voxels and counters, not timed.
-    fn whole_frame(&mut self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
-        let setup = &contender.setup;
+    fn whole_frame(&self, contender: &mut Contender<'_>) -> Result<(Frame, Stats), BenchError> {
+        let (setup, graph) = (&contender.setup, contender.graph.view());
         let mut frame = Frame::new(setup.width, setup.height, false);
-        let (graph, drawer) = (contender.graph.view(), &mut contender.drawer);
-        let mut draw = || match drawer {
+        let drawer = &mut contender.drawer;
+        let stats = self.in_pool(contender.threads, || match drawer {
             Drawer::Engine(engine) => engine.render(&graph, setup, &mut frame),
             Drawer::Viewer(viewer) => {
                 viewer.render(setup)?;
@@ -203,58 +220,37 @@ impl<'p> Harness<'p> {
                 }
                 Ok(stats)
             }
-        };
-        let stats = match self.pools.get(&contender.threads) {
-            Some(pool) => pool.install(draw),
-            None => draw(),
-        };
-        let stats = stats.map_err(|source| BenchError::Engine {
-            who: contender.name.clone(),
-            source,
-        })?;
+        });
+        let stats = stats.map_err(|source| contender.failed(source))?;
         Ok((frame, stats))
     }
 
     /// One frame; the clocks run inside the pool, around the work alone.
     fn frame(&mut self, contender: &mut Contender<'_>) -> Result<Elapsed, BenchError> {
-        let Contender {
-            name,
-            graph,
-            setup,
-            threads,
-            drawer,
-            attributes,
-        } = contender;
+        let (setup, graph) = (&contender.setup, contender.graph);
         let size = (setup.width, setup.height);
-        let colors = self
-            .buffers
-            .entry(size)
-            .or_insert_with(|| Colors::new(size.0, size.1));
-        let mut draw = || {
+        let mut colors = self.buffers.remove(&size);
+        let colors_of = colors.get_or_insert_with(|| Colors::new(size.0, size.1));
+        let (drawer, attributes) = (&mut contender.drawer, &contender.attributes);
+        let (elapsed, drawn) = self.in_pool(contender.threads, || {
             let clock = Clock::start();
             let drawn = match drawer {
                 Drawer::Engine(engine) => {
-                    engine.draw_colors(&graph.view(), &graph.color, setup, colors)
+                    engine.draw_colors(&graph.view(), &graph.color, setup, colors_of)
                 }
                 Drawer::Viewer(viewer) => viewer.draw(setup).map(drop),
             };
             if let Drawer::Viewer(viewer) = drawer
                 && let Some(frame) = viewer.frame()
             {
-                colors.take(&graph.color, frame);
+                colors_of.take(&graph.color, frame);
             }
-            black_box(colors.words.as_slice());
+            black_box(colors_of.words.as_slice());
             black_box(sum_of_attributes(graph, attributes));
             (clock.elapsed(), drawn)
-        };
-        let (elapsed, drawn) = match self.pools.get(threads) {
-            Some(pool) => pool.install(draw),
-            None => draw(),
-        };
-        drawn.map_err(|source| BenchError::Engine {
-            who: name.clone(),
-            source,
-        })?;
+        });
+        self.buffers.extend(colors.map(|colors| (size, colors)));
+        drawn.map_err(|source| contender.failed(source))?;
         Ok(elapsed)
     }
 }
