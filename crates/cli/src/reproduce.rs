@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use serde_json::{Value, json};
 
 use super::args::{CameraArgs, SceneArgs};
 use super::console::Console;
@@ -12,13 +11,12 @@ use super::error::CliError;
 use super::experiment::context::Context;
 use super::experiment::export::{self, ExportArgs, Results};
 use super::experiment::subjects;
-use super::report;
 use shiftvox::bounded;
 use shiftvox::project::SetupOptions;
 use shiftvox::scene::generate::Spec;
 use shiftvox::scene::{OpenError, Source};
 use shiftvox_lab::bench::{Harness, Schedule, Subject};
-use shiftvox_lab::report::{Row, Table};
+use shiftvox_lab::report::Row;
 use shiftvox_lab::reproduce::{self, List, ReproduceError};
 
 /// Arguments of `reproduce`.
@@ -120,21 +118,18 @@ pub(super) fn run(args: &ReproduceArgs, console: &Console) -> Result<(), CliErro
         .chunk_by(|a, b| a.get("table") == b.get("table"))
         .collect();
     let title = |rows: &[Row]| rows[0].text("table");
-    let mut fields = context.json(schedule, &SetupOptions::default());
-    fields["rows"] = rows.iter().map(Row::json).collect::<Value>();
+    let fields = context.json(schedule, &SetupOptions::default());
+    let printed = tables
+        .iter()
+        .map(|rows| reproduce::table(&title(rows), rows))
+        .collect();
+    let preface = context.markdown(schedule);
+    let panels = tables
+        .iter()
+        .filter_map(|rows| reproduce::panel(&title(rows), rows));
     let results = Results {
-        document: report::document("reproduce", json!(fields)),
-        tables: tables
-            .iter()
-            .map(|rows| reproduce::table(&title(rows), rows))
-            .collect(),
-        rows: Table::collect("Reproduced", &rows),
-        more_tables: Vec::new(),
-        preface: context.markdown(schedule),
-        panels: tables
-            .iter()
-            .filter_map(|rows| reproduce::panel(&title(rows), rows))
-            .collect(),
+        panels: panels.collect(),
+        ..Results::of_rows("reproduce", fields, preface, &rows, printed)
     };
     export::write(&results, &export, console)
 }

@@ -1,7 +1,6 @@
 //! `bench quality`: what pictures cost and how far they are from the truth.
 
 use clap::{Args, ValueEnum};
-use serde_json::json;
 
 use super::made::Made;
 use super::methods::{self, Choice, Choices};
@@ -12,12 +11,12 @@ use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
-use crate::{report, scenes};
+use crate::scenes;
 use shiftvox::project::{Bounds, Camera, SetupOptions, Up};
 use shiftvox_lab::quality::{
     Motion, PixelStyle, QualityPlan, Scene, answers, at_distance, measure, panels, table,
 };
-use shiftvox_lab::report::{Row, Table};
+use shiftvox_lab::report::Row;
 use shiftvox_mesh::{Surface, mesh_box};
 
 /// Scenes by default: a model, a landscape, a sponge, thin things.
@@ -185,7 +184,6 @@ pub(super) fn run(
         )?);
     }
     let mut fields = context.json(plan.schedule, &SetupOptions::default());
-    fields["rows"] = rows.iter().map(Row::json).collect();
     fields["answers"] = answers(&rows).iter().map(Row::json).collect();
     let by_picture = |a: &Row, b: &Row| {
         let same = |name: &str| a.get(name) == b.get(name);
@@ -195,14 +193,8 @@ pub(super) fn run(
     let tables = rows
         .chunk_by(by_picture)
         .map(|rows| table(&title(rows), rows));
-    let results = Results {
-        document: report::document("bench quality", json!(fields)),
-        tables: tables.collect(),
-        rows: Table::collect("Quality", &rows),
-        more_tables: Vec::new(),
-        preface: context.markdown(plan.schedule),
-        panels: Vec::new(),
-    };
+    let preface = context.markdown(plan.schedule);
+    let results = Results::of_rows("bench quality", fields, preface, &rows, tables.collect());
     let plots_of = |name: &String| {
         let of_scene: Vec<Row> = rows
             .iter()

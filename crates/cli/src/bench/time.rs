@@ -1,7 +1,6 @@
 //! `bench time`: engines, variants, scenes, sizes and numbers of threads, side by side.
 
 use clap::Args;
-use serde_json::json;
 
 use super::{ScheduleArgs, check_sizes};
 use crate::args::{CameraArgs, RuleArgs, SceneArgs, Size};
@@ -10,9 +9,9 @@ use crate::error::CliError;
 use crate::experiment::context::Context;
 use crate::experiment::export::{self, ExportArgs, Results};
 use crate::experiment::subjects;
-use crate::{engines, report, scenes};
+use crate::{engines, scenes};
 use shiftvox_lab::bench::{Harness, Scan, TimePlan, measure, panels, table};
-use shiftvox_lab::report::{Row, Table};
+use shiftvox_lab::report::Row;
 
 /// Pixels a side by default.
 const DEFAULT_SIDE: u32 = 512;
@@ -137,19 +136,12 @@ pub(super) fn run(
         groups.push((name, measure(&opened, &plan, &mut harness)?));
     }
     let all: Vec<Row> = groups.iter().flat_map(|(_, rows)| rows.clone()).collect();
-    let mut fields = context.json(schedule, &options);
-    fields["rows"] = all.iter().map(Row::json).collect();
-    let results = Results {
-        document: report::document("bench time", json!(fields)),
-        tables: groups
-            .iter()
-            .map(|(name, rows)| table(name, rows))
-            .collect(),
-        rows: Table::collect("Time per frame", &all),
-        more_tables: Vec::new(),
-        preface: context.markdown(schedule),
-        panels: Vec::new(),
-    };
+    let tables = groups
+        .iter()
+        .map(|(name, rows)| table(name, rows))
+        .collect();
+    let (fields, preface) = (context.json(schedule, &options), context.markdown(schedule));
+    let results = Results::of_rows("bench time", fields, preface, &all, tables);
     let plots: Vec<_> = groups
         .iter()
         .map(|(name, rows)| (name.clone(), panels(rows)))

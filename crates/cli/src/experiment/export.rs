@@ -7,11 +7,12 @@ use serde_json::Value;
 
 use super::subjects::file_stem;
 use crate::console::Console;
+use crate::document::document;
 use crate::error::CliError;
 use crate::names;
 use shiftvox::whole;
-use shiftvox_lab::report::Table;
 use shiftvox_lab::report::plot::{self, Panel};
+use shiftvox_lab::report::{Row, Table};
 
 /// The placeholder for a scene in the name of a plot's file.
 const SCENE_FIELD: &str = "{scene}";
@@ -51,6 +52,27 @@ pub(crate) struct Results {
     pub(crate) preface: String,
     /// The plots.
     pub(crate) panels: Vec<Panel>,
+}
+
+impl Results {
+    /// The results of an experiment whose measurements are rows. `fields`: the others of the document.
+    pub(crate) fn of_rows(
+        command: &str,
+        mut fields: Value,
+        preface: String,
+        rows: &[Row],
+        tables: Vec<Table>,
+    ) -> Self {
+        fields["rows"] = rows.iter().map(Row::json).collect();
+        Self {
+            document: document(command, fields),
+            rows: Table::collect(command, rows),
+            tables,
+            more_tables: Vec::new(),
+            preface,
+            panels: Vec::new(),
+        }
+    }
 }
 
 /// Fails before the work if a file would be replaced without `--force`, or two outputs have one

@@ -12,6 +12,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use super::clock::{Clock, Elapsed};
 use super::statistics::Summary;
+use crate::report::{Cell, Row};
 use shiftvox::frame::{Colors, Frame};
 use shiftvox::graph::{Graph, Progress};
 use shiftvox::project::{Engine, EngineError, FrameSetup, SetupError, Stats, Viewer};
@@ -58,16 +59,83 @@ impl Contender<'_> {
     }
 }
 
-/// A contender's times and counters.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+/// Times of a contender's frames.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Times {
     /// Wall time of a frame.
     pub wall: Summary,
     /// Processor time of the drawing thread: of contenders on one thread, where the system measures
     /// it.
     pub thread: Option<Summary>,
-    /// Counters of one frame.
-    pub counters: Stats,
+}
+
+impl Times {
+    fn of(elapsed: &[Elapsed]) -> Self {
+        let wall: Vec<f64> = elapsed.iter().map(|t| t.wall_ms).collect();
+        let thread: Option<Vec<f64>> = elapsed.iter().map(|t| t.thread_ms).collect();
+        Self {
+            wall: Summary::of(&wall),
+            thread: thread.map(|thread| Summary::of(&thread)),
+        }
+    }
+
+    /// The times that other work disturbs least: processor time, or else wall time.
+    #[must_use]
+    pub fn best(&self) -> Summary {
+        self.thread.unwrap_or(self.wall)
+    }
+
+    /// Sets the columns of times.
+    pub fn put(&self, row: &mut Row) {
+        let best = self.best();
+        row.put("cpu_ms", self.thread.map(|cpu| Cell::ms(cpu.median_ms)));
+        row.put("wall_ms", Cell::ms(self.wall.median_ms));
+        row.put("wall_min_ms", Cell::ms(self.wall.min_ms));
+        row.put("wall_max_ms", Cell::ms(self.wall.max_ms));
+        row.put("wall_deviation_ms", Cell::ms(self.wall.deviation_ms));
+        row.put("runs", self.wall.runs as u64);
+        row.put("ms", Cell::ms(best.median_ms));
+        row.put("deviation_ms", Cell::ms(best.deviation_ms));
+        row.put("min_ms", Cell::ms(best.min_ms));
+    }
+}
+
+/// Draws one frame per contender and round, by the contenders' places.
+///
+/// # Errors
+/// When a frame cannot be drawn.
+pub fn interleave<E>(
+    contenders: usize,
+    schedule: Schedule,
+    progress: &dyn Progress,
+    draw: &mut dyn FnMut(usize) -> Result<Elapsed, E>,
+) -> Result<Vec<Times>, E> {
+    let rounds = schedule.warmup + schedule.runs.max(1);
+    let mut elapsed = vec![Vec::with_capacity(rounds as usize); contenders];
+    progress.begin("measuring", u64::from(rounds));
+    for round in 0..rounds {
+        for (place, elapsed) in elapsed.iter_mut().enumerate() {
+            let frame = draw(place)?;
+            if round >= schedule.warmup {
+                elapsed.push(frame);
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    Ok(elapsed.iter().map(|elapsed| Times::of(elapsed)).collect())
+}
+
+/// A pool of threads.
+///
+/// # Errors
+/// When the system gives no threads.
+pub fn pool(threads: usize) -> Result<ThreadPool, BenchError> {
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| BenchError::Threads {
+        threads,
+        reason: e.to_string(),
+    })
 }
 
 /// An error of a measurement.
@@ -133,67 +201,31 @@ impl<'p> Harness<'p> {
         &mut self,
         contenders: &mut [Contender<'_>],
         look: &mut dyn FnMut(usize, &Frame),
-    ) -> Result<Vec<Measured>, BenchError> {
-        for contender in &*contenders {
-            self.make_pool(contender.threads)?;
-            let (width, height) = (contender.setup.width, contender.setup.height);
-            self.buffers
-                .entry((width, height))
-                .or_insert_with(|| colors(width, height));
-        }
-        let rounds = self.schedule.warmup + self.schedule.runs.max(1);
-        let mut times: Vec<Vec<Elapsed>> = contenders
-            .iter()
-            .map(|_| Vec::with_capacity(rounds as usize))
-            .collect();
-        let mut counters = vec![Stats::new(); contenders.len()];
-        let frames = u64::from(rounds + 1) * contenders.len() as u64;
-        self.progress.begin("measuring", frames);
+    ) -> Result<Vec<(Times, Stats)>, BenchError> {
+        let mut counters = Vec::new();
+        self.progress.begin("drawing", contenders.len() as u64);
         for (place, contender) in contenders.iter_mut().enumerate() {
+            if !self.pools.contains_key(&contender.threads) {
+                self.pools
+                    .insert(contender.threads, pool(contender.threads)?);
+            }
+            let (width, height) = (contender.setup.width, contender.setup.height);
+            let buffer = self.buffers.entry((width, height));
+            buffer.or_insert_with(|| colors(width, height));
             let (frame, stats) = self.whole_frame(contender)?;
             look(place, &frame);
-            counters[place] = stats;
+            counters.push(stats);
             self.progress.advance(1);
         }
-        for round in 0..rounds {
-            for (place, contender) in contenders.iter_mut().enumerate() {
-                let elapsed = self.frame(contender)?;
-                if round >= self.schedule.warmup {
-                    times[place].push(elapsed);
-                }
-                self.progress.advance(1);
-            }
-        }
         self.progress.end();
-        let of = |(contender, (times, counters)): (&Contender<'_>, (Vec<Elapsed>, Stats))| {
-            let wall: Vec<f64> = times.iter().map(|t| t.wall_ms).collect();
-            let thread: Option<Vec<f64>> = times.iter().map(|t| t.thread_ms).collect();
-            Measured {
-                wall: Summary::of(&wall),
-                thread: thread
-                    .filter(|_| contender.threads == 1)
-                    .map(|thread| Summary::of(&thread)),
-                counters,
-            }
-        };
-        Ok(contenders
-            .iter()
-            .zip(times.into_iter().zip(counters))
-            .map(of)
-            .collect())
-    }
-
-    fn make_pool(&mut self, threads: usize) -> Result<(), BenchError> {
-        if self.pools.contains_key(&threads) {
-            return Ok(());
-        }
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.map_err(|e| BenchError::Threads {
-            threads,
-            reason: e.to_string(),
+        let (schedule, progress) = (self.schedule, self.progress);
+        let mut times = interleave(contenders.len(), schedule, progress, &mut |place| {
+            self.frame(&mut contenders[place])
         })?;
-        self.pools.insert(threads, pool);
-        Ok(())
+        for (times, contender) in times.iter_mut().zip(contenders) {
+            times.thread = times.thread.filter(|_| contender.threads == 1);
+        }
+        Ok(times.into_iter().zip(counters).collect())
     }
 
     /// Does work in the pool of a contender.
@@ -323,11 +355,14 @@ mod tests {
         let round = [("a", 1), ("b", 2)];
         assert_eq!(*notes.lock().unwrap(), [round; 4].concat());
         assert_eq!(seen, [(0, 1), (1, 1)]);
-        assert_eq!((measured[0].wall.runs, measured[1].wall.runs), (2, 2));
+        let [one, two] = &measured[..] else {
+            panic!("two contenders");
+        };
+        assert_eq!((one.0.wall.runs, two.0.wall.runs), (2, 2));
         // Counters are those of the first frame, which is not timed; one
         // thread's time is measured for one thread alone.
-        assert_eq!(measured[1].counters, [("frames", 2)]);
-        assert_eq!(measured[1].thread, None);
-        assert_eq!(measured[0].thread.is_some(), cfg!(unix));
+        assert_eq!(two.1, [("frames", 2)]);
+        assert_eq!(two.0.thread, None);
+        assert_eq!(one.0.thread.is_some(), cfg!(unix));
     }
 }

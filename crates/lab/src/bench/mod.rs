@@ -13,7 +13,7 @@ pub mod time;
 
 pub use candidate::{Candidate, Family, FetchedNodes, Frames, MakeEngine, Variant, fetched_nodes};
 pub use clock::{Clock, Elapsed};
-pub use harness::{BenchError, Contender, Drawer, Harness, Measured, Schedule};
+pub use harness::{BenchError, Contender, Drawer, Harness, Schedule, Times, interleave, pool};
 pub use power_law::PowerLaw;
 pub use scan::Scan;
 pub use statistics::Summary;

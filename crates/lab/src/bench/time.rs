@@ -128,24 +128,18 @@ pub fn measure(
         row.put("covered", error.covered);
     })?;
     let mut whole_ms = f64::NAN;
-    for ((row, measured), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
-        let best = measured.thread.unwrap_or(measured.wall);
+    for ((row, (times, counters)), contender) in rows.iter_mut().zip(measured).zip(&contenders) {
+        times.put(row);
+        let ms = times.best().median_ms;
         if row.text("variant") == EVERYTHING_ON {
-            whole_ms = best.median_ms;
+            whole_ms = ms;
         }
-        row.put("cpu_ms", measured.thread.map(|cpu| Cell::ms(cpu.median_ms)));
-        row.put("wall_ms", Cell::ms(measured.wall.median_ms));
-        row.put("wall_min_ms", Cell::ms(measured.wall.min_ms));
-        row.put("wall_max_ms", Cell::ms(measured.wall.max_ms));
-        row.put("wall_deviation_ms", Cell::ms(measured.wall.deviation_ms));
-        row.put("runs", measured.wall.runs as u64);
-        row.put("ms", Cell::ms(best.median_ms));
-        row.put("deviation_ms", Cell::ms(best.deviation_ms));
-        row.put("min_ms", Cell::ms(best.min_ms));
-        let ratio = best.median_ms / whole_ms.max(f64::MIN_POSITIVE);
-        row.put("time_ratio", Cell::Number(ratio, 2));
+        row.put(
+            "time_ratio",
+            Cell::Number(ms / whole_ms.max(f64::MIN_POSITIVE), 2),
+        );
         let work_unit = row.text("work_unit");
-        for (name, count) in measured.counters {
+        for (name, count) in counters {
             if name == work_unit {
                 row.put("work", count);
             }

@@ -3,8 +3,6 @@
 use std::hint::black_box;
 use std::sync::Arc;
 
-use rayon::ThreadPoolBuilder;
-
 use super::compare::{add_beaten_by, add_rivals};
 use super::film::{film, flicker};
 use super::judge::{Judge, PictureError};
@@ -12,7 +10,7 @@ use super::method::{Method, Refused, Samples};
 use super::motion::Motion;
 use super::reference::{Reference, Sampling, TRIANGLE_SAMPLES, cast, of_triangles};
 use super::voxels::PixelStyle;
-use crate::bench::{BenchError, Clock, Schedule, Summary};
+use crate::bench::{BenchError, Clock, Schedule, interleave, pool};
 use crate::measure::{CoverageError, LinearPicture, SizeError, Spread, count_elsewhere};
 use crate::report::plot::{Panel, RowPlot};
 use crate::report::{Cell, Row, Table};
@@ -392,53 +390,25 @@ fn race(
     schedule: Schedule,
     progress: &dyn Progress,
 ) -> Result<(), BenchError> {
-    let pool = ThreadPoolBuilder::new().num_threads(1).build();
-    let pool = pool.map_err(|e| BenchError::Threads {
-        threads: 1,
-        reason: e.to_string(),
+    let pool = pool(1)?;
+    let takes_part = methods.iter().zip(rows);
+    let (drawings, rows): (Vec<_>, Vec<_>) = takes_part
+        .filter(|(_, row)| *row.get("refused") == Cell::None)
+        .map(|(method, row)| ((method.drawing)(), row))
+        .unzip();
+    let frames = drawings.iter().map(|drawing| drawing.frames(camera));
+    let mut frames: Vec<_> = frames.collect::<Result<_, _>>().map_err(failed)?;
+    let times = interleave(frames.len(), schedule, progress, &mut |place| {
+        pool.install(|| {
+            let clock = Clock::start();
+            let drawn = black_box(frames[place]());
+            let elapsed = clock.elapsed();
+            drawn.map(|()| elapsed).map_err(failed)
+        })
     })?;
-    let rounds = schedule.warmup + schedule.runs.max(1);
-    let takes_part = methods.iter().zip(&*rows);
-    let drawings: Vec<_> = takes_part
-        .map(|(method, row)| (*row.get("refused") == Cell::None).then(|| (method.drawing)()))
-        .collect();
-    let mut frames: Vec<_> = drawings
-        .iter()
-        .map(|drawing| drawing.as_ref()?.frames(camera).ok())
-        .collect();
-    let mut times = vec![(Vec::new(), Vec::new()); methods.len()];
-    progress.begin("measuring", u64::from(rounds));
-    for round in 0..rounds {
-        for (draw, (wall, cpu)) in frames.iter_mut().zip(&mut times) {
-            let Some(draw) = draw else { continue };
-            let elapsed = pool.install(|| {
-                let clock = Clock::start();
-                let drawn = black_box(draw());
-                let elapsed = clock.elapsed();
-                drawn.map(|()| elapsed)
-            });
-            // It drew this frame before, so it does not fail now.
-            let Ok(elapsed) = elapsed else { continue };
-            if round >= schedule.warmup {
-                wall.push(elapsed.wall_ms);
-                cpu.push(elapsed.thread_ms);
-            }
-        }
-        progress.advance(1);
-    }
-    progress.end();
-    for (row, (wall, cpu)) in rows.iter_mut().zip(times) {
-        if wall.is_empty() {
-            continue;
-        }
-        let wall = Summary::of(&wall);
-        let cpu: Option<Vec<f64>> = cpu.into_iter().collect();
-        let best = cpu.map_or(wall, |times| Summary::of(&times));
-        row.put("ms", Cell::ms(best.median_ms));
-        row.put("deviation_ms", Cell::ms(best.deviation_ms));
-        row.put("wall_ms", Cell::ms(wall.median_ms));
-        row.put("wall_min_ms", Cell::ms(wall.min_ms));
-    }
+    rows.into_iter()
+        .zip(times)
+        .for_each(|(row, times)| times.put(row));
     Ok(())
 }
 
